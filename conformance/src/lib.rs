@@ -1,0 +1,1 @@
+//! Distances between babybench and MuJoCo 3.3.0.

@@ -1,0 +1,250 @@
+//! Small fixed-size linear algebra on plain arrays.
+//!
+//! Vectors are `[f64; 3]`, quaternions `[w, x, y, z]`, matrices row-major `[f64; 9]` whose columns are the local axes in
+//! the parent frame. Every sum is written out left to right and no fused multiply-add is used, so results are the same
+//! bits on every target. Trigonometry comes from `libm` for the same reason.
+
+/// A 3-vector.
+pub type Vec3 = [f64; 3];
+/// A quaternion, `[w, x, y, z]`.
+pub type Quat = [f64; 4];
+/// A row-major 3x3 matrix.
+pub type Mat3 = [f64; 9];
+
+/// Lengths and norms below this count as zero (MuJoCo's `mjMINVAL`).
+pub const MINVAL: f64 = 1e-15;
+
+/// The identity quaternion.
+pub const QUAT_ID: Quat = [1.0, 0.0, 0.0, 0.0];
+/// The identity matrix.
+pub const MAT3_ID: Mat3 = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+
+/// `a + b`
+#[inline(always)]
+pub fn add(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// `a - b`
+#[inline(always)]
+pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a * s`
+#[inline(always)]
+pub fn scale(a: Vec3, s: f64) -> Vec3 {
+    [a[0] * s, a[1] * s, a[2] * s]
+}
+
+/// `a + b * s`
+#[inline(always)]
+pub fn add_scaled(a: Vec3, b: Vec3, s: f64) -> Vec3 {
+    [a[0] + b[0] * s, a[1] + b[1] * s, a[2] + b[2] * s]
+}
+
+/// Dot product.
+#[inline(always)]
+pub fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Cross product.
+#[inline(always)]
+pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// Euclidean length.
+#[inline(always)]
+pub fn norm(a: Vec3) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Unit vector and the original length. Shorter than [`MINVAL`] gives the x axis. Multiplies by the reciprocal.
+#[inline(always)]
+pub fn unit(a: Vec3) -> (Vec3, f64) {
+    let length = norm(a);
+    if length < MINVAL {
+        ([1.0, 0.0, 0.0], length)
+    } else {
+        (scale(a, 1.0 / length), length)
+    }
+}
+
+/// Matrix times vector.
+#[inline(always)]
+pub fn mat_vec(m: &Mat3, v: Vec3) -> Vec3 {
+    [
+        m[0] * v[0] + m[1] * v[1] + m[2] * v[2],
+        m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+        m[6] * v[0] + m[7] * v[1] + m[8] * v[2],
+    ]
+}
+
+/// Transposed matrix times vector.
+#[inline(always)]
+pub fn mat_t_vec(m: &Mat3, v: Vec3) -> Vec3 {
+    [
+        m[0] * v[0] + m[3] * v[1] + m[6] * v[2],
+        m[1] * v[0] + m[4] * v[1] + m[7] * v[2],
+        m[2] * v[0] + m[5] * v[1] + m[8] * v[2],
+    ]
+}
+
+/// Column `k` (a local axis) of a matrix.
+#[inline(always)]
+pub fn column(m: &Mat3, k: usize) -> Vec3 {
+    [m[k], m[3 + k], m[6 + k]]
+}
+
+/// Row `k` of a matrix.
+#[inline(always)]
+pub fn row(m: &Mat3, k: usize) -> Vec3 {
+    [m[3 * k], m[3 * k + 1], m[3 * k + 2]]
+}
+
+/// Matrix product `a b`.
+#[inline(always)]
+pub fn mat_mul(a: &Mat3, b: &Mat3) -> Mat3 {
+    let mut r = [0.0; 9];
+    for i in 0..3 {
+        for k in 0..3 {
+            r[3 * i + k] = a[3 * i] * b[k] + a[3 * i + 1] * b[3 + k] + a[3 * i + 2] * b[6 + k];
+        }
+    }
+    r
+}
+
+/// Transpose.
+#[inline(always)]
+pub fn transpose(m: &Mat3) -> Mat3 {
+    [m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]]
+}
+
+/// Quaternion product `a b`.
+#[inline(always)]
+pub fn quat_mul(a: Quat, b: Quat) -> Quat {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+/// Conjugate (the inverse of a unit quaternion).
+#[inline(always)]
+pub fn quat_conj(a: Quat) -> Quat {
+    [a[0], -a[1], -a[2], -a[3]]
+}
+
+/// Normalises; a zero quaternion becomes the identity, one already within [`MINVAL`] of unit length is left alone.
+#[inline(always)]
+pub fn quat_normalize(q: Quat) -> Quat {
+    let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+    if length < MINVAL {
+        QUAT_ID
+    } else if (length - 1.0).abs() > MINVAL {
+        let s = 1.0 / length;
+        [q[0] * s, q[1] * s, q[2] * s, q[3] * s]
+    } else {
+        q
+    }
+}
+
+/// Rotation matrix of a unit quaternion.
+#[inline(always)]
+pub fn quat_to_mat(q: Quat) -> Mat3 {
+    if q == QUAT_ID {
+        return MAT3_ID;
+    }
+    let [w, x, y, z] = q;
+    let (ww, wx, wy, wz) = (w * w, w * x, w * y, w * z);
+    let (xx, xy, xz) = (x * x, x * y, x * z);
+    let (yy, yz, zz) = (y * y, y * z, z * z);
+    [
+        ww + xx - yy - zz,
+        2.0 * (xy - wz),
+        2.0 * (xz + wy),
+        2.0 * (xy + wz),
+        ww - xx + yy - zz,
+        2.0 * (yz - wx),
+        2.0 * (xz - wy),
+        2.0 * (yz + wx),
+        ww - xx - yy + zz,
+    ]
+}
+
+/// Rotates a vector by a unit quaternion: `v + 2 u x (w v + u x v)`.
+#[inline(always)]
+pub fn quat_rotate(q: Quat, v: Vec3) -> Vec3 {
+    if v == [0.0; 3] {
+        return [0.0; 3];
+    }
+    if q == QUAT_ID {
+        return v;
+    }
+    let t = [
+        q[0] * v[0] + q[2] * v[2] - q[3] * v[1],
+        q[0] * v[1] + q[3] * v[0] - q[1] * v[2],
+        q[0] * v[2] + q[1] * v[1] - q[2] * v[0],
+    ];
+    [
+        v[0] + 2.0 * (q[2] * t[2] - q[3] * t[1]),
+        v[1] + 2.0 * (q[3] * t[0] - q[1] * t[2]),
+        v[2] + 2.0 * (q[1] * t[1] - q[2] * t[0]),
+    ]
+}
+
+/// Quaternion of a rotation by `angle` (rad) about the unit vector `axis`.
+#[inline(always)]
+pub fn axis_angle_to_quat(axis: Vec3, angle: f64) -> Quat {
+    if angle == 0.0 {
+        return QUAT_ID;
+    }
+    let s = libm::sin(angle * 0.5);
+    [libm::cos(angle * 0.5), axis[0] * s, axis[1] * s, axis[2] * s]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotation_by_matrix_and_quaternion_agree() {
+        let axis = unit([1.0, -2.0, 0.5]).0;
+        let q = axis_angle_to_quat(axis, 0.7);
+        let v = [0.3, 0.1, -2.0];
+        let a = quat_rotate(q, v);
+        let b = mat_vec(&quat_to_mat(q), v);
+        let c = mat_t_vec(&quat_to_mat(quat_conj(q)), v);
+        for k in 0..3 {
+            assert!((a[k] - b[k]).abs() < 1e-15 && (a[k] - c[k]).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn quaternion_product_composes_rotations() {
+        let p = axis_angle_to_quat([0.0, 0.0, 1.0], 0.3);
+        let q = axis_angle_to_quat([1.0, 0.0, 0.0], -1.1);
+        let v = [0.2, 0.4, 0.9];
+        let a = quat_rotate(quat_mul(p, q), v);
+        let b = quat_rotate(p, quat_rotate(q, v));
+        let m = mat_vec(&mat_mul(&quat_to_mat(p), &quat_to_mat(q)), v);
+        for k in 0..3 {
+            assert!((a[k] - b[k]).abs() < 1e-15 && (m[k] - b[k]).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn degenerate_input_has_a_defined_answer() {
+        assert_eq!(unit([0.0; 3]).0, [1.0, 0.0, 0.0]);
+        assert_eq!(quat_normalize([0.0; 4]), QUAT_ID);
+        assert_eq!(quat_to_mat(QUAT_ID), MAT3_ID);
+    }
+}
