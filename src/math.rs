@@ -2,7 +2,8 @@
 //!
 //! Vectors are `[f64; 3]`, quaternions `[w, x, y, z]`, matrices row-major `[f64; 9]` whose columns are the local axes in
 //! the parent frame. Every sum is written out left to right and no fused multiply-add is used, so results are the same
-//! bits on every target. Trigonometry comes from `libm` for the same reason.
+//! bits on every target. Trigonometry comes from `pxfm`, which rounds
+//! correctly, for the same reason.
 
 /// A 3-vector.
 pub type Vec3 = [f64; 3];
@@ -207,8 +208,8 @@ pub fn axis_angle_to_quat(axis: Vec3, angle: f64) -> Quat {
     if angle == 0.0 {
         return QUAT_ID;
     }
-    let s = libm::sin(angle * 0.5);
-    [libm::cos(angle * 0.5), axis[0] * s, axis[1] * s, axis[2] * s]
+    let (s, c) = pxfm::f_sincos(angle * 0.5);
+    [c, axis[0] * s, axis[1] * s, axis[2] * s]
 }
 
 #[cfg(test)]

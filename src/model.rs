@@ -4,7 +4,7 @@
 //! can be laid beside the same number there. A [`Model`] is immutable after compilation and is shared in an
 //! [`std::sync::Arc`]; what changes at run time lives in [`crate::physics::State`].
 
-use crate::math::{Quat, Vec3};
+use crate::math::{QUAT_ID, Quat, Vec3};
 
 macro_rules! id {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(
@@ -75,6 +75,42 @@ pub enum GeomType {
     Cylinder,
     /// `size` is the half lengths.
     Box,
+}
+
+/// Whether the frame of something in a body is one that is known already. MuJoCo copies such frames instead of composing
+/// them, which shows in the last bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SameFrame {
+    /// A frame of its own.
+    None,
+    /// The body's frame.
+    Body,
+    /// The inertial frame.
+    Inertia,
+    /// The body's orientation.
+    BodyRot,
+    /// The orientation of the inertial frame.
+    InertiaRot,
+}
+
+impl SameFrame {
+    /// Compares a pose in a body with the body's own frame and its inertial frame, to within 1e-6 in each number.
+    pub fn of(pos: Vec3, quat: Quat, ipos: Vec3, iquat: Quat) -> Self {
+        let close = |a: &[f64], b: &[f64], sign: f64| a.iter().zip(b).all(|(x, y)| (x - sign * y).abs() < 1e-6);
+        let same_quat = |other: Quat| close(&quat, &other, 1.0) || close(&quat, &other, -1.0);
+        let (level, aligned) = (same_quat(QUAT_ID), same_quat(iquat));
+        if level && close(&pos, &[0.0; 3], 1.0) {
+            Self::Body
+        } else if aligned && close(&pos, &ipos, 1.0) {
+            Self::Inertia
+        } else if level {
+            Self::BodyRot
+        } else if aligned {
+            Self::InertiaRot
+        } else {
+            Self::None
+        }
+    }
 }
 
 /// Camera modes.
@@ -247,7 +283,7 @@ pub struct Light {
     pub specular: [f64; 3],
     /// Constant, linear and quadratic attenuation.
     pub attenuation: [f64; 3],
-    /// Cutoff angle of a spot light, rad... stored in degrees as MuJoCo does.
+    /// Cutoff angle of a spot light, degrees.
     pub cutoff: f64,
     /// Softness of a spot light.
     pub exponent: f64,
@@ -385,6 +421,8 @@ model! {
     body_subtreemass: Vec<f64>,
     /// Principal moments of inertia, kg m^2.
     body_inertia: Vec<Vec3>,
+    /// Whether the inertial frame is the body's.
+    body_sameframe: Vec<SameFrame>,
     /// Mean inverse weight at `qpos0`: translation 1/kg, rotation 1/(kg m^2).
     body_invweight0: Vec<[f64; 2]>,
 
@@ -414,7 +452,7 @@ model! {
     jnt_solref: Vec<[f64; 2]>,
     /// `solimp` of the limit.
     jnt_solimp: Vec<[f64; 5]>,
-    /// Geom group-like tag of the joint.
+    /// Visual group.
     jnt_group: Vec<usize>,
 
     /// Body of a degree of freedom.
@@ -453,6 +491,8 @@ model! {
     geom_pos: Vec<Vec3>,
     /// Orientation in the body.
     geom_quat: Vec<Quat>,
+    /// Whether its frame is one that the body has already.
+    geom_sameframe: Vec<SameFrame>,
     /// Collision type bits.
     geom_contype: Vec<u32>,
     /// Collision affinity bits.
@@ -494,6 +534,8 @@ model! {
     site_pos: Vec<Vec3>,
     /// Orientation in the body.
     site_quat: Vec<Quat>,
+    /// Whether its frame is one that the body has already.
+    site_sameframe: Vec<SameFrame>,
     /// Visual group.
     site_group: Vec<usize>,
     /// Colour, 0..1.
@@ -521,7 +563,7 @@ model! {
     /// Materials.
     materials: Vec<Material>,
 
-    /// Explicit pair: geoms, the lower geom type first.
+    /// Explicit pair: geoms, that of the lower body first.
     pair_geom: Vec<[usize; 2]>,
     /// Explicit pair: contact dimension.
     pair_dim: Vec<usize>,

@@ -1,0 +1,71 @@
+//! 100 steps from the initial pose with contacts, against MuJoCo 3.3.0 and against the reference's environments; and the
+//! first steps of episodes.
+
+use babybench::config::Scene;
+use conformance::example_runs::{Moment, example_runs};
+use conformance::measure::{line, only_print};
+use conformance::motion::{Drift, settling};
+use conformance::reference::Reference;
+
+/// In cubes MIMo's legs start deep in the floor and leave it through more than a hundred contacts.
+fn tolerance(scene: Scene) -> f64 {
+    if scene == Scene::Cubes { 1e-4 } else { 1e-6 }
+}
+
+fn print(name: &str, d: &Drift) {
+    let (step, joints) = (d.step, d.summary());
+    println!(
+        "{name:30} {step:4} steps  joints {joints}  place {:.1e}  objects {:.1e}  qvel {:.1e}",
+        d.root, d.objects, d.qvel
+    );
+}
+
+/// The worst were 4.3e-10 rad in base and crib, 8.5e-8 rad in cubes when written.
+#[test]
+fn models_settle_as_in_mujoco() {
+    for reference in Reference::all() {
+        for drift in settling(&reference) {
+            print(&reference.name, &drift);
+            let (joints, limit) = (drift.summary().max, tolerance(reference.scene));
+            assert!(only_print() || joints <= limit, "{}: {joints:e} rad", reference.name);
+        }
+    }
+}
+
+/// The worst was 1.6e-9 rad when written.
+#[test]
+fn example_configurations_settle_as_in_the_reference() {
+    for run in example_runs() {
+        let drift = run.settled(&run.blueprint());
+        print(&run.name, &drift);
+        let (joints, limit) = (drift.summary().max, tolerance(run.config.scene));
+        assert!(only_print() || joints <= limit, "{}: {joints:e} rad", run.name);
+    }
+}
+
+/// The worst up to k = 4 were 1.5e-11 rad, 3.7e-9 for velocities and 3.4e-10 for outputs when written.
+#[test]
+fn example_episodes_start_as_in_the_reference() {
+    for run in example_runs() {
+        for moment in run.run(&run.blueprint()) {
+            print(&run.name, &moment.drift);
+            let Moment {
+                k,
+                drift,
+                outputs,
+                counts,
+            } = &moment;
+            println!("    k {k:?}  {}  contacts, rows {counts:?}", line(outputs));
+            if only_print() || *k == Some(19) {
+                continue;
+            }
+            let joints = drift.summary().max;
+            assert!(joints <= 1e-9, "{} k {k:?}: {joints:e} rad", run.name);
+            assert!(drift.qvel <= 1e-7, "{} k {k:?}: velocities {:e}", run.name, drift.qvel);
+            for (name, error) in outputs {
+                assert!(*error <= 1e-7, "{} k {k:?}: {name} {error:e}", run.name);
+            }
+            assert!(counts.iter().all(|c| c.0 == c.1), "{} k {k:?}: {counts:?}", run.name);
+        }
+    }
+}

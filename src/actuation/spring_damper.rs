@@ -1,0 +1,100 @@
+//! Torque motors that respond at once; springs and dampers are in the joints.
+
+use crate::actuation::Actuation;
+use crate::config::Compat;
+use crate::env::BoxSpace;
+use crate::model::Model;
+use crate::physics::State;
+
+/// The spring-damper model: the torque on a joint is gear times the control.
+///
+/// Under `compat: api` the action space is [-1, 1] and the motor's force range limits the torque; under
+/// `compat: reference` the action space is the force range itself.
+#[derive(Clone, Debug)]
+pub struct SpringDamper {
+    space: BoxSpace,
+}
+
+impl SpringDamper {
+    /// For the motors of `model`.
+    pub fn new(model: &Model, compat: Compat) -> Self {
+        let bounds = |i: usize| match compat {
+            Compat::Api => [-1.0, 1.0],
+            Compat::Reference => model.actuator_forcerange[i],
+        };
+        let low = (0..model.nu()).map(|i| bounds(i)[0] as f32).collect();
+        let high = (0..model.nu()).map(|i| bounds(i)[1] as f32).collect();
+        Self {
+            space: BoxSpace::new(low, high),
+        }
+    }
+}
+
+impl Actuation for SpringDamper {
+    fn action_space(&self) -> &BoxSpace {
+        &self.space
+    }
+
+    fn set_action(&mut self, _model: &Model, state: &mut State, action: &[f32]) {
+        for (i, (ctrl, &a)) in state.ctrl.iter_mut().zip(action).enumerate() {
+            *ctrl = f64::from(self.space.clip(i, a));
+        }
+    }
+
+    fn substep(&mut self, _model: &Model, _state: &mut State) {}
+
+    fn reset(&mut self, _model: &Model, state: &mut State) {
+        for (i, ctrl) in state.ctrl.iter_mut().enumerate() {
+            *ctrl = f64::from(self.space.clip(i, 0.0));
+        }
+    }
+
+    fn observation_len(&self) -> usize {
+        2 * self.space.len()
+    }
+
+    fn observation_names(&self, model: &Model) -> Vec<String> {
+        let named = |what: &str| {
+            model
+                .actuator_name
+                .iter()
+                .map(|n| format!("{n} {what}"))
+                .collect::<Vec<_>>()
+        };
+        [named("control"), named("torque")].concat()
+    }
+
+    /// Controls, then torques (N m) after the limits of the motor.
+    fn observe(&self, model: &Model, state: &State, out: &mut [f64]) {
+        let (controls, torques) = out.split_at_mut(model.nu());
+        controls.copy_from_slice(&state.ctrl);
+        for (i, t) in torques.iter_mut().enumerate() {
+            *t = state.params.actuator_gear[i] * limited(model, state, i);
+        }
+    }
+
+    /// `sum |u^2 T| / (n sum T)` over the limited controls `u` and the gears `T`.
+    fn cost(&self, model: &Model, state: &State) -> f64 {
+        let gears = &state.params.actuator_gear;
+        let total: f64 = gears.iter().sum();
+        let spent: f64 = (0..model.nu())
+            .map(|i| (limited(model, state, i).powi(2) * gears[i]).abs())
+            .sum();
+        if total == 0.0 {
+            0.0
+        } else {
+            spent / (model.nu() as f64 * total)
+        }
+    }
+}
+
+/// Control after the limits of the motor, before the gear.
+fn limited(model: &Model, state: &State, i: usize) -> f64 {
+    let u = state.ctrl[i];
+    if state.params.actuator_forcelimited[i] {
+        let [lo, hi] = model.actuator_forcerange[i];
+        u.max(lo).min(hi)
+    } else {
+        u
+    }
+}

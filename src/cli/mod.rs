@@ -1,0 +1,81 @@
+//! Arguments of the command line; each subcommand calls the library.
+
+mod inspect;
+mod replay;
+mod run;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use babybench::Blueprint;
+use babybench::config::{Compat, Config};
+use babybench::mjcf_loader::DirAssets;
+use clap::{Args, Parser, Subcommand};
+
+/// BabyBench in Rust: MIMo, its scenes and senses.
+#[derive(Parser)]
+#[command(version, about)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Runs episodes with random actions and prints what happened.
+    Run(run::Run),
+    /// Prints what a configuration contains: sizes, joints, actuators, action space, observation.
+    Inspect(inspect::Inspect),
+    /// Replays a recording (.npz) from its start with its actions.
+    Replay(replay::ReplayArgs),
+}
+
+/// What an environment is built from.
+#[derive(Args)]
+struct Source {
+    /// Configuration file (YAML); see configs/.
+    #[arg(long, value_name = "FILE")]
+    config: PathBuf,
+    /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones.
+    #[arg(long, value_name = "DIR")]
+    assets: Option<PathBuf>,
+    /// What holds where the API page and the Python code disagree: api or reference. Overrides the configuration.
+    #[arg(long, value_name = "WHICH", value_parser = parse_compat)]
+    compat: Option<Compat>,
+}
+
+fn parse_compat(text: &str) -> Result<Compat, String> {
+    Compat::from_name(text).ok_or_else(|| format!("expected one of {}", Compat::NAMES.join(", ")))
+}
+
+impl Source {
+    /// Builds the environment's blueprint and prints its warnings to stderr. `compat` is that of a configuration that does
+    /// not say.
+    fn blueprint(&self, compat: Compat) -> Result<Blueprint, Box<dyn Error>> {
+        let base = Config {
+            compat,
+            ..Config::default()
+        };
+        let mut config = base.overlay_file(&self.config)?;
+        if let Some(compat) = self.compat {
+            config.compat = compat;
+        }
+        let blueprint = match &self.assets {
+            Some(dir) => Blueprint::with_assets(config, &DirAssets::new(dir)?)?,
+            None => Blueprint::new(config)?,
+        };
+        for w in blueprint.warnings() {
+            eprintln!("warning: {w}");
+        }
+        Ok(blueprint)
+    }
+}
+
+/// Runs the command line of the process.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    match Cli::parse().command {
+        Command::Run(c) => c.run(),
+        Command::Inspect(c) => c.run(),
+        Command::Replay(c) => c.run(),
+    }
+}

@@ -1,0 +1,49 @@
+//! `babybench replay`
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use babybench::config::Compat;
+use babybench::eval::{Recording, replay};
+use babybench::npz::Npz;
+use clap::Args;
+
+use super::Source;
+
+/// Arguments of `replay`. Recordings come from the reference, so its behavior is the default here.
+#[derive(Args)]
+pub struct ReplayArgs {
+    #[command(flatten)]
+    source: Source,
+    /// Recording with qpos0, qvel0, actions, and for --one-step qpos, qvel, qacc.
+    #[arg(long, value_name = "FILE")]
+    recording: PathBuf,
+    /// Directory for replay.npz and info.jsonl.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Start each step from the recording's previous row.
+    #[arg(long)]
+    one_step: bool,
+}
+
+impl ReplayArgs {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let mut env = self.source.blueprint(Compat::Reference)?.env()?;
+        let recording = Recording::read(&Npz::open(&self.recording)?, &env)?;
+        let result = replay(&mut env, &recording, self.one_step)?;
+        result.write(&self.out, &recording)?;
+        let (n, dir) = (result.len, self.out.display());
+        println!("replayed {n} steps: {dir}/replay.npz, {dir}/info.jsonl");
+        if recording.qpos.len() == result.qpos.len() && n > 0 {
+            let nq = env.model().nq;
+            let last = (n - 1) * nq;
+            let joints = &env.proprioception().joints().qpos;
+            let squares = joints
+                .iter()
+                .map(|&q| (result.qpos[last + q] - recording.qpos[last + q]).powi(2));
+            let rms = (squares.sum::<f64>() / joints.len().max(1) as f64).sqrt();
+            println!("joint angles differ from the recording by {rms:.1e} rad (rms) after the last step");
+        }
+        Ok(())
+    }
+}

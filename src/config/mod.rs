@@ -1,0 +1,317 @@
+//! The configuration of an environment: every key of the API page, its default and its error.
+//!
+//! A configuration file is a flat YAML mapping. Keys left out have their documented default; a key that does not exist,
+//! stands twice or has a value that is not allowed is an error that names place, key, value and what is allowed.
+//! YAML 1.1's booleans (`True`, `yes`, `on` ...) are accepted as PyYAML accepts them; anchors, aliases and tags are not.
+//!
+//! ```
+//! use babybench::config::{Behavior, Config, Scene};
+//!
+//! let config = Config::from_yaml("behavior: self_touch\nscene: crib\ntouch_eyes: True\n", "example.yml")?;
+//! assert_eq!((config.behavior, config.scene), (Behavior::SelfTouch, Scene::Crib));
+//! assert_eq!(config.max_episode_steps, 1000);
+//!
+//! let error = Config::from_yaml("behaviour: self_touch\n", "example.yml").unwrap_err();
+//! assert_eq!(error.to_string(), "example.yml:1:1: unknown key `behaviour`; did you mean `behavior`?");
+//! # Ok::<(), babybench::config::ConfigError>(())
+//! ```
+
+mod choices;
+mod error;
+mod keys;
+mod parts;
+mod yaml;
+
+#[cfg(test)]
+mod tests;
+
+pub use choices::{ActuationModel, Behavior, Compat, Engine, Scene, TouchFunction, TouchResponse};
+pub use error::{ConfigError, Place};
+pub use keys::{Key, Kind, Value};
+pub use parts::{BodyParts, Part};
+
+use std::io::Read as _;
+use std::path::Path;
+
+/// The most bytes of a configuration file.
+pub const MAX_BYTES: usize = 1 << 20;
+
+/// What an environment is made from. [`Config::default`] has the defaults of the API page.
+///
+/// After changing fields, [`Config::validate`] tells whether the whole is still allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    /// The folder of logs, videos and results.
+    pub save_dir: String,
+    /// What is trained and scored; it also decides MIMo's version.
+    pub behavior: Behavior,
+    /// What stands around MIMo.
+    pub scene: Scene,
+    /// Steps after which an episode is truncated, >= 1.
+    pub max_episode_steps: u64,
+    /// Physics steps per action, >= 1.
+    pub frame_skip: u32,
+    /// Width and height of rendered images, 1 to 8192 pixels.
+    pub render_size: u32,
+    /// Episodes between two saves of the training log, >= 1.
+    pub save_logs_every: u64,
+    /// What holds where the API page and the Python code disagree.
+    pub compat: Compat,
+    /// What moves the bodies.
+    pub engine: Engine,
+    /// The seed of every random choice until a reset is given another.
+    pub seed: u64,
+    /// Joint velocities are observed.
+    pub proprio_velocity: bool,
+    /// Joint torques are observed.
+    pub proprio_torque: bool,
+    /// How far joints are into their limits is observed.
+    pub proprio_limits: bool,
+    /// The state of the actuators is observed.
+    pub proprio_actuation: bool,
+    /// The head's motion is observed.
+    pub vestibular_active: bool,
+    /// The images of both eyes are observed.
+    pub vision_active: bool,
+    /// Width and height of an eye's image, 1 to 4096 pixels.
+    pub vision_resolution: u32,
+    /// Touch is observed; see [`Config::touch_enabled`].
+    pub touch_active: bool,
+    /// Factor on the distance between touch sensors, 0 (touch is off) or >= 0.01.
+    pub touch_scale: f64,
+    /// What a touch sensor reports.
+    pub touch_function: TouchFunction,
+    /// How touch sensors share a force.
+    pub touch_response: TouchResponse,
+    /// Which parts feel (`touch_hands` ...).
+    pub touch: BodyParts<bool>,
+    /// How an action becomes joint torques.
+    pub actuation_model: ActuationModel,
+    /// Which parts are actuated (`act_hands` ...).
+    pub act: BodyParts<bool>,
+    /// Which parts' joints are held (`lock_hands` ...).
+    pub lock: BodyParts<bool>,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            save_dir: "results/test_installation".to_string(),
+            behavior: Behavior::None,
+            scene: Scene::Base,
+            max_episode_steps: 1000,
+            frame_skip: 1,
+            render_size: 480,
+            save_logs_every: 1000,
+            compat: Compat::Api,
+            engine: Engine::Soft,
+            seed: 0,
+            proprio_velocity: true,
+            proprio_torque: true,
+            proprio_limits: true,
+            proprio_actuation: true,
+            vestibular_active: true,
+            vision_active: true,
+            vision_resolution: 64,
+            touch_active: true,
+            touch_scale: 1.0,
+            touch_function: TouchFunction::Normal,
+            touch_response: TouchResponse::Nearest,
+            touch: BodyParts {
+                eyes: false,
+                ..BodyParts::all(true)
+            },
+            actuation_model: ActuationModel::SpringDamper,
+            act: BodyParts::all(true),
+            lock: BodyParts::all(false),
+        }
+    }
+}
+
+impl Config {
+    /// Reads a configuration; `file_name` only names the file in errors.
+    ///
+    /// # Errors
+    /// The first fault of the text, see [`ConfigError`].
+    pub fn from_yaml(text: &str, file_name: &str) -> Result<Self, ConfigError> {
+        Self::default().overlay_yaml(text, file_name)
+    }
+
+    /// Reads a configuration whose missing keys have the values of `self` instead of the documented defaults.
+    ///
+    /// ```
+    /// use babybench::config::{Compat, Config};
+    ///
+    /// let base = Config { compat: Compat::Reference, ..Config::default() };
+    /// let config = base.overlay_yaml("touch_function: normal_force\n", "recorded.yml")?;
+    /// assert_eq!(config.compat, Compat::Reference);
+    /// # Ok::<(), babybench::config::ConfigError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Config::from_yaml`].
+    pub fn overlay_yaml(mut self, text: &str, file_name: &str) -> Result<Self, ConfigError> {
+        if text.len() > MAX_BYTES {
+            let place = Place {
+                file: file_name.to_string(),
+                position: None,
+            };
+            return Err(ConfigError::TooLarge {
+                place,
+                limit: MAX_BYTES,
+            });
+        }
+        let positions = yaml::read(text, file_name, &mut self)?;
+        let position = |name: &str| {
+            let index = keys::KEYS.iter().position(|key| key.name == name)?;
+            positions[index]
+        };
+        self.check(file_name, position)?;
+        Ok(self)
+    }
+
+    /// Reads a configuration file of at most [`MAX_BYTES`].
+    ///
+    /// # Errors
+    /// As [`Config::from_yaml`], and when the file cannot be read or is not UTF-8.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, ConfigError> {
+        Self::default().overlay_file(path)
+    }
+
+    /// [`Config::overlay_yaml`] from a file of at most [`MAX_BYTES`].
+    ///
+    /// # Errors
+    /// As [`Config::from_file`].
+    pub fn overlay_file(self, path: impl AsRef<Path>) -> Result<Self, ConfigError> {
+        let file = path.as_ref().display().to_string();
+        let mut bytes = Vec::new();
+        let limit = MAX_BYTES as u64 + 1;
+        match std::fs::File::open(path).and_then(|open| open.take(limit).read_to_end(&mut bytes)) {
+            Ok(_) => {}
+            Err(source) => return Err(ConfigError::Read { file, source }),
+        }
+        if bytes.len() > MAX_BYTES {
+            return Err(ConfigError::TooLarge {
+                place: Place { file, position: None },
+                limit: MAX_BYTES,
+            });
+        }
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => self.overlay_yaml(text, &file),
+            Err(error) => {
+                let good = &bytes[..error.valid_up_to()];
+                let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32;
+                let column = 1 + String::from_utf8_lossy(good)
+                    .chars()
+                    .rev()
+                    .take_while(|c| *c != '\n')
+                    .count() as u32;
+                Err(ConfigError::Encoding {
+                    place: Place {
+                        file,
+                        position: Some((line, column)),
+                    },
+                })
+            }
+        }
+    }
+
+    /// The configuration as a documented file that loads back equal.
+    pub fn to_yaml(&self) -> String {
+        let mut out = String::from("# Configuration of a BabyBench environment. Keys left out have their default.\n");
+        let mut section = "";
+        for key in Self::keys() {
+            if key.section != section {
+                section = key.section;
+                out.push_str(&format!("\n# --- {section} ---\n"));
+            }
+            let options = match key.kind {
+                Kind::Choice(names) => format!(" Options: {}.", names.join(", ")),
+                _ => String::new(),
+            };
+            let (doc, default) = (key.doc, key.default_value().to_yaml());
+            out.push_str(&format!("# {doc}{options} Default: {default}\n"));
+            out.push_str(&format!("{}: {}\n", key.name, key.value(self).to_yaml()));
+        }
+        out
+    }
+
+    /// Every key with what it accepts and means, in the order of [`Config::to_yaml`].
+    pub fn keys() -> &'static [Key] {
+        keys::KEYS
+    }
+
+    /// Whether touch is observed: it is active and its scale is not 0.
+    pub fn touch_enabled(&self) -> bool {
+        self.touch_active && self.touch_scale > 0.0
+    }
+
+    /// Checks every value by itself and against the others, as reading a file does.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        self.check("configuration", |_| None)
+    }
+
+    /// [`Config::validate`] with the place of each key.
+    fn check(&self, file: &str, position: impl Fn(&str) -> Option<(u32, u32)>) -> Result<(), ConfigError> {
+        let place = |position| Place {
+            file: file.to_string(),
+            position,
+        };
+        for key in Self::keys() {
+            let value = key.value(self);
+            if let Err(misfit) = key.kind.check(&value) {
+                return Err(yaml::refusal(key, misfit, value.to_yaml(), place(position(key.name))));
+            }
+        }
+        match self.conflict() {
+            Some((key, value, reason)) => {
+                // A default that conflicts is nowhere in the file: the choice that excludes it is.
+                let place = place(position(key).or_else(|| position("compat")));
+                Err(ConfigError::Conflict {
+                    place,
+                    key,
+                    value,
+                    reason: reason.to_string(),
+                })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The first value that another excludes: key, value, and why.
+    fn conflict(&self) -> Option<(&'static str, String, &'static str)> {
+        let touch = self.touch_enabled();
+        let function = self.touch_function;
+        match self.compat {
+            Compat::Api if function == TouchFunction::NormalForce => Some((
+                "touch_function",
+                function.to_string(),
+                "that is the Python code's name for another quantity; use normal, force_vector or \
+                 force_vector_global, or set `compat: reference`",
+            )),
+            Compat::Api => None,
+            Compat::Reference if touch && function == TouchFunction::Normal => Some((
+                "touch_function",
+                function.to_string(),
+                "the Python code that `compat: reference` follows does not have it; use force_vector, \
+                 force_vector_global or normal_force",
+            )),
+            // The Python code feels with the one-finger table, whose fingers MIMo v2 does not have.
+            Compat::Reference if touch && self.touch.fingers && self.behavior == Behavior::HandRegard => Some((
+                "touch_fingers",
+                self.touch.fingers.to_string(),
+                "the Python code that `compat: reference` follows has no finger touch with `behavior: hand_regard`; \
+                 set `touch_fingers: false` or `touch_active: false`",
+            )),
+            Compat::Reference if self.vision_active && self.vision_resolution > self.render_size => Some((
+                "vision_resolution",
+                self.vision_resolution.to_string(),
+                "under `compat: reference` an eye's image cannot be larger than `render_size`; raise `render_size`",
+            )),
+            Compat::Reference => None,
+        }
+    }
+}

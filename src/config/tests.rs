@@ -1,0 +1,506 @@
+//! One helper, [`check`]: what a text becomes, as the keys that differ from the defaults or as the error.
+
+use super::*;
+
+fn read(input: &str) -> Result<Config, ConfigError> {
+    Config::from_yaml(input, "c.yml")
+}
+
+/// The keys of `config` that differ from the defaults, or the error, in one line.
+fn summary(result: Result<Config, ConfigError>) -> String {
+    match result {
+        Err(error) => format!("error {error}"),
+        Ok(config) => {
+            let differs = |key: &&Key| key.value(&config) != key.default_value();
+            let show = |key: &Key| format!("{}={}", key.name, key.value(&config).to_yaml());
+            Config::keys()
+                .iter()
+                .filter(differs)
+                .map(show)
+                .collect::<Vec<_>>()
+                .join(" ")
+        }
+    }
+}
+
+#[track_caller]
+fn check(input: &str, expect: &str) {
+    assert_eq!(summary(read(input)), expect, "input: {input:.200}");
+}
+
+#[track_caller]
+fn check_error(input: &str, expect: &str) {
+    check(input, &format!("error c.yml{expect}"));
+}
+
+#[test]
+fn defaults_are_those_of_the_api_page() {
+    let page = "save_dir=\"results/test_installation\" behavior=none scene=base max_episode_steps=1000 frame_skip=1 \
+                render_size=480 save_logs_every=1000 compat=api engine=soft seed=0 proprio_velocity=true \
+                proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
+                vision_active=true vision_resolution=64 touch_active=true touch_scale=1.0 touch_function=normal \
+                touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
+                touch_legs=true touch_body=true touch_head=true touch_eyes=false actuation_model=spring_damper \
+                act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \
+                act_eyes=true lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
+                lock_body=false lock_head=false lock_eyes=false";
+    let ours: Vec<String> = Config::keys()
+        .iter()
+        .map(|key| format!("{}={}", key.name, key.default_value().to_yaml()))
+        .collect();
+    assert_eq!(ours.join(" "), page);
+    check("{}", "");
+    assert!(Config::default().validate().is_ok());
+}
+
+/// For every key of the table: other values load, are the only change, and survive `to_yaml`; a wrong type, null, a
+/// list and values past the range are errors naming key, value and line.
+#[test]
+fn every_key_takes_what_it_says_and_nothing_else() {
+    for key in Config::keys() {
+        let name = key.name;
+        let (good, wrong_type, out_of_range): (Vec<String>, &[&str], Vec<String>) = match key.kind {
+            Kind::Bool => {
+                let words = [
+                    "True", "TRUE", "true", "yes", "Yes", "on", "ON", "False", "FALSE", "no", "NO", "off",
+                ];
+                (
+                    words.map(String::from).into(),
+                    &["1", "y", "'True'", "tru", "[true]"],
+                    vec![],
+                )
+            }
+            Kind::Whole { min, max } => (
+                vec![min.to_string(), max.to_string(), "1_000".to_string(), "+7".to_string()],
+                &["1.0", "010", "1e3", "'1'", "many", "true", "0x10", "1__", "{a: 1}"][..6],
+                vec!["-1".to_string(), (i128::from(max) + 1).to_string(), "9".repeat(99)]
+                    .into_iter()
+                    .chain(min.checked_sub(1).map(|below| below.to_string()))
+                    .collect(),
+            ),
+            Kind::ZeroOrAtLeast(_) => (
+                ["0", "0.0", "-0.0", "0.01", "1.", ".5", "2", "1e3", "1.5e+3"]
+                    .map(String::from)
+                    .into(),
+                &["one", "true", "'1'", "1.2.3", "1e", "inf", "nan", "_1.", "+"],
+                ["-1", "0.001", "1e999", ".inf", "-.INF", ".nan"]
+                    .map(String::from)
+                    .into(),
+            ),
+            Kind::Choice(names) => {
+                // Values that hang on other keys have tests of their own.
+                let legal = |name: &&&str| !["normal_force", "reference"].contains(*name);
+                let good = names
+                    .iter()
+                    .filter(legal)
+                    .flat_map(|name| [name.to_string(), format!("'{name}'")]);
+                let bad = ["nonsense", "1", "true", "''"].map(String::from).to_vec();
+                (good.collect(), &["[none]"], bad)
+            }
+            Kind::Text => {
+                let good = [
+                    "out",
+                    "'2025'",
+                    "\"true\"",
+                    "a/b c",
+                    "C:\\new",
+                    "~/x",
+                    "\"\\u4e16 \\\"\"",
+                    ">\n a\n b",
+                ];
+                let bad = ["''", "\"a\\0b\"", "\"a\\nb\""].map(String::from).to_vec();
+                (good.map(String::from).into(), &["2025", "true", "1.5", "off"], bad)
+            }
+        };
+        for value in good {
+            // A block scalar ends with a line break, which no folder name may have, unless stripped.
+            let value = value.replace(">\n", ">-\n");
+            let config =
+                read(&format!("\n{name}: {value}\n")).unwrap_or_else(|error| panic!("{name}: {value}: {error}"));
+            for other in Config::keys().iter().filter(|other| other.name != name) {
+                assert_eq!(
+                    other.value(&config),
+                    other.default_value(),
+                    "{name} changes {}",
+                    other.name
+                );
+            }
+            assert_eq!(read(&config.to_yaml()).ok(), Some(config), "{name}: {value}");
+        }
+        let refused = |value: &str| match read(&format!("\n{name}: {value}\n")) {
+            Ok(_) => panic!("{name}: {value} was accepted"),
+            Err(error) => {
+                assert_eq!(
+                    (error.key(), error.position().map(|(line, _)| line)),
+                    (Some(name), Some(2)),
+                    "{error}"
+                );
+                let expected = key.kind.expected();
+                assert!(error.to_string().contains(&expected), "{error} does not say {expected}");
+                error
+            }
+        };
+        for value in wrong_type {
+            assert!(
+                matches!(refused(value), ConfigError::WrongType { .. }),
+                "{name}: {value}"
+            );
+        }
+        for value in &out_of_range {
+            assert!(
+                matches!(refused(value), ConfigError::OutOfRange { .. }),
+                "{name}: {value}"
+            );
+        }
+        for value in ["", "~", "null", "Null", "NULL"] {
+            assert!(
+                matches!(refused(value), ConfigError::MissingValue { .. }),
+                "{name}: {value}"
+            );
+        }
+    }
+}
+
+#[test]
+fn values_arrive_in_their_fields() {
+    check(
+        "max_episode_steps: 1_000_000\nframe_skip: 4",
+        "max_episode_steps=1000000 frame_skip=4",
+    );
+    check("seed: 18446744073709551615", "seed=18446744073709551615");
+    check("touch_scale: 1e-1", "touch_scale=0.1");
+    check(
+        "touch_eyes: yes\nact_eyes: off\nlock_body: On",
+        "touch_eyes=true act_eyes=false lock_body=true",
+    );
+    check("save_dir : out # where to\nscene : crib", "save_dir=\"out\" scene=crib");
+    check(
+        "\u{feff}scene: cubes\r\nengine: rapier\r\n",
+        "scene=cubes engine=rapier",
+    );
+    check("%YAML 1.1\n---\nscene: crib\n...\n", "scene=crib");
+    check(
+        "{\"behavior\": \"self_touch\", \"touch_hands\": false}",
+        "behavior=self_touch touch_hands=false",
+    );
+    let config = read("touch_hands: no\nact_legs: no\nlock_head: yes").unwrap();
+    let off: Vec<_> = config
+        .touch
+        .iter()
+        .filter(|(_, on)| !**on)
+        .map(|(part, _)| part.name())
+        .collect();
+    assert_eq!(off, ["hands", "eyes"]);
+    assert!(!config.act.get(Part::Legs) && config.lock.get(Part::Head));
+    assert!(!read("touch_scale: 0").unwrap().touch_enabled() && !read("touch_active: no").unwrap().touch_enabled());
+}
+
+#[test]
+fn errors_name_place_key_value_and_what_is_allowed() {
+    check_error(
+        "scene: crib\nbehaviour: none",
+        ":2:1: unknown key `behaviour`; did you mean `behavior`?",
+    );
+    check_error(
+        "Touch_Hand: 1",
+        ":1:1: unknown key `Touch_Hand`; did you mean `touch_hands`?",
+    );
+    check_error("wings: 1", ":1:1: unknown key `wings`");
+    check_error("<<: {scene: crib}", ":1:1: unknown key `<<`");
+    check_error(
+        "seed: 1\nscene: base\nseed: 2",
+        ":3:1: `seed` was already given in line 1; keep one of the two",
+    );
+    check_error(
+        "frame_skip: 0",
+        ":1:13: `frame_skip` is 0, expected a whole number from 1 to 4294967295",
+    );
+    check_error(
+        "seed: -1",
+        ":1:7: `seed` is -1, expected a whole number from 0 to 18446744073709551615",
+    );
+    check_error(
+        "render_size: 8193",
+        ":1:14: `render_size` is 8193, expected a whole number from 1 to 8192",
+    );
+    check_error(
+        "touch_scale: -2.5",
+        ":1:14: `touch_scale` is -2.5, expected 0 or a finite number from 0.01",
+    );
+    check_error(
+        "touch_active: 'True'",
+        ":1:15: `touch_active` is 'True' in quotes, expected true or false",
+    );
+    check_error("act_eyes: [1]", ":1:11: `act_eyes` is a list, expected true or false");
+    check_error(
+        "act_eyes: {a: 1}",
+        ":1:11: `act_eyes` is a mapping, expected true or false",
+    );
+    check_error(
+        "scene: cube",
+        ":1:8: `scene` is cube, expected one of base, crib, cubes; did you mean `cubes`?",
+    );
+    check_error(
+        "seed:\nscene: crib",
+        ":1:5: `seed` needs a value: a whole number from 0 to 18446744073709551615; leave the line out for the default",
+    );
+    let (long, cut) = ("x".repeat(100_000), "x".repeat(60));
+    check_error(&format!("? {long}\n: 1"), &format!(":1:3: unknown key `{cut}...`"));
+}
+
+#[test]
+fn what_is_no_flat_mapping_is_refused() {
+    let flat = "a configuration is one flat list of `key: value` lines";
+    check_error("", &format!(":1:1: the file is empty: {flat}"));
+    check_error("# nothing\n", &format!(":2:1: the file is empty: {flat}"));
+    check_error("---\n", &format!(":1:4: the file is a single value: {flat}"));
+    check_error("- scene\n", &format!(":1:1: the file is a list: {flat}"));
+    check_error("crib", &format!(":1:1: the file is a single value: {flat}"));
+    check_error("seed: 1\n---\nseed: 2\n", &format!(":2:1: a second document: {flat}"));
+    check_error("scene: &a crib", &format!(":1:11: an anchor (`&`): {flat}"));
+    check_error("scene: !!str crib", &format!(":1:14: a tag (`!`): {flat}"));
+    check_error("&a {seed: 1}", &format!(":1:4: an anchor (`&`): {flat}"));
+    check_error(
+        "? [seed]\n: 1",
+        &format!(":1:3: a key that is itself a list or mapping: {flat}"),
+    );
+    check_error(
+        "scene: *a",
+        ":1:8: not valid YAML: while parsing node, found unknown anchor",
+    );
+}
+
+#[test]
+fn compat_decides_which_touch_functions_exist() {
+    check(
+        "compat: reference\ntouch_function: normal_force",
+        "compat=reference touch_function=normal_force",
+    );
+    check(
+        "compat: reference\ntouch_active: off",
+        "compat=reference touch_active=false",
+    );
+    check("compat: reference\ntouch_scale: 0", "compat=reference touch_scale=0.0");
+    let unknown = "but the Python code that `compat: reference` follows does not have it; use force_vector, \
+                   force_vector_global or normal_force";
+    check_error(
+        "touch_function: normal\ncompat: reference",
+        &format!(":1:17: `touch_function` is normal, {unknown}"),
+    );
+    check_error(
+        "seed: 1\ncompat: reference",
+        &format!(":2:9: `touch_function` is normal, {unknown}"),
+    );
+    check_error(
+        "touch_function: normal_force",
+        ":1:17: `touch_function` is normal_force, but that is the Python code's name for another quantity; use normal, \
+         force_vector or force_vector_global, or set `compat: reference`",
+    );
+}
+
+#[test]
+fn compat_reference_refuses_what_the_reference_cannot_do() {
+    let touch = "touch_function: force_vector\n";
+    check_error(
+        &format!("compat: reference\n{touch}vision_resolution: 128\nrender_size: 64"),
+        ":3:20: `vision_resolution` is 128, but under `compat: reference` an eye's image cannot be larger than \
+         `render_size`; raise `render_size`",
+    );
+    check(
+        "compat: reference\ntouch_active: off\nvision_active: off\nrender_size: 32",
+        "render_size=32 compat=reference vision_active=false touch_active=false",
+    );
+    check(
+        "vision_resolution: 128\nrender_size: 64",
+        "render_size=64 vision_resolution=128",
+    );
+    check_error(
+        &format!("compat: reference\n{touch}behavior: hand_regard"),
+        ":1:9: `touch_fingers` is true, but the Python code that `compat: reference` follows has no finger touch with \
+         `behavior: hand_regard`; set `touch_fingers: false` or `touch_active: false`",
+    );
+    check(
+        &format!("compat: reference\n{touch}behavior: hand_regard\ntouch_fingers: off"),
+        "behavior=hand_regard compat=reference touch_function=force_vector touch_fingers=false",
+    );
+}
+
+#[test]
+fn a_changed_configuration_is_checked_like_a_file() {
+    let invalid = [
+        (
+            Config {
+                frame_skip: 0,
+                ..Config::default()
+            },
+            "frame_skip",
+        ),
+        (
+            Config {
+                touch_scale: f64::NAN,
+                ..Config::default()
+            },
+            "touch_scale",
+        ),
+        (
+            Config {
+                save_dir: String::new(),
+                ..Config::default()
+            },
+            "save_dir",
+        ),
+        (
+            Config {
+                touch_function: TouchFunction::NormalForce,
+                ..Config::default()
+            },
+            "touch_function",
+        ),
+    ];
+    for (config, key) in invalid {
+        let error = config.validate().unwrap_err();
+        assert_eq!((error.key(), error.position()), (Some(key), None), "{error}");
+    }
+}
+
+#[test]
+fn files_are_read_within_the_limit_and_as_utf_8() {
+    let folder = std::env::temp_dir().join(format!("babybench-config-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("c.yml");
+    let read = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        Config::from_file(&path)
+    };
+    assert_eq!(read(b"scene: crib\n").unwrap().scene, Scene::Crib);
+    let error = read(b"seed: 1\nsave_dir: \xc3\xa9\xff\n").unwrap_err();
+    assert!(
+        matches!(error, ConfigError::Encoding { .. }) && error.position() == Some((2, 12)),
+        "{error}"
+    );
+    assert!(matches!(
+        read(&vec![b'#'; MAX_BYTES]),
+        Err(ConfigError::Unsupported { .. })
+    ));
+    assert!(matches!(
+        read(&vec![b'#'; MAX_BYTES + 1]),
+        Err(ConfigError::TooLarge { .. })
+    ));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let error = Config::from_file(&path).unwrap_err();
+    assert!(
+        matches!(error, ConfigError::Read { .. }) && error.to_string().contains("c.yml"),
+        "{error}"
+    );
+}
+
+/// The example files of this repository, and, where they stand beside it, the reference's own and its recordings'.
+#[test]
+fn example_and_recorded_configurations_load() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let reference = Config {
+        compat: Compat::Reference,
+        ..Config::default()
+    };
+    let originals = root.join("../shared/reference/configs");
+    for folder in [root.join("configs"), originals.clone(), root.join("../shared/golden")] {
+        let Ok(entries) = std::fs::read_dir(&folder) else {
+            println!("skipped: {} is not here", folder.display());
+            continue;
+        };
+        let files = entries
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|e| e == "yml"));
+        let mut count = 0;
+        for path in files {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let name = path.display().to_string();
+            // A recording is one of the Python code.
+            let base = if folder.ends_with("golden") {
+                reference.clone()
+            } else {
+                Config::default()
+            };
+            let config = base
+                .overlay_yaml(&text, &name)
+                .unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(read(&config.to_yaml()).unwrap(), config, "{name}");
+            let original = originals.join(path.file_name().unwrap());
+            if folder.ends_with("configs") && original.exists() {
+                assert_eq!(
+                    Config::from_file(original).unwrap(),
+                    config,
+                    "{name} and the original differ"
+                );
+            }
+            count += 1;
+        }
+        assert!(count >= 3, "{} holds {count} configurations", folder.display());
+    }
+}
+
+#[test]
+fn bombs_end_in_an_error() {
+    let bombs = [
+        "[".repeat(MAX_BYTES),
+        "{".repeat(MAX_BYTES),
+        "? ".repeat(MAX_BYTES / 2),
+        "- ".repeat(MAX_BYTES / 2),
+        format!("seed: {}", "[".repeat(MAX_BYTES - 6)),
+        format!("? {}\n: 1", "k".repeat(MAX_BYTES - 8)),
+        format!("save_dir: {}\n{}", "x ".repeat(1000), "#\n".repeat(MAX_BYTES / 4)) + "x",
+        "a: &a [1]\nb: &b [*a,*a]\nc: &c [*b,*b]\n".repeat(1000),
+        "seed: 1\n".repeat(MAX_BYTES / 8),
+        "\n---".repeat(MAX_BYTES / 4),
+        "\t".repeat(MAX_BYTES),
+        "!".repeat(MAX_BYTES),
+        "\"".repeat(MAX_BYTES - 1),
+        "%x\n".repeat(MAX_BYTES / 4),
+    ];
+    for bomb in bombs {
+        let error = read(&bomb).unwrap_err().to_string();
+        assert!(error.len() < 400, "{error}");
+    }
+}
+
+#[test]
+fn damaged_files_never_panic() {
+    let seeds = [
+        Config::default().to_yaml(),
+        "scene : crib # c\nsave_dir: \"\\u00e9\"\nseed: 1_0\ntouch_scale: 1.\n".to_string(),
+        "{\"behavior\": 'none', ? seed : 3, touch_scale: -1e3}\n...\n".to_string(),
+    ];
+    let mut random = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = |below: usize| {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        (random % below as u64) as usize
+    };
+    let (mut good, mut bad) = (0, 0);
+    for round in 0..6000 {
+        let mut bytes = seeds[round % seeds.len()].clone().into_bytes();
+        for _ in 0..=next(4) {
+            let at = next(bytes.len());
+            match next(3) {
+                0 => bytes[at] ^= 1 << next(8),
+                1 => bytes[at] = b"\0\t\n &*![]{}:?-|>'\"%@`#,~\\"[next(25)],
+                _ => drop(bytes.remove(at)),
+            }
+        }
+        match read(&String::from_utf8_lossy(&bytes)) {
+            Ok(config) => {
+                good += 1;
+                assert_eq!(read(&config.to_yaml()).unwrap(), config);
+            }
+            Err(error) => {
+                bad += 1;
+                assert!(
+                    error.position().is_some() && error.to_string().starts_with("c.yml:"),
+                    "{error}"
+                );
+            }
+        }
+    }
+    assert!(good > 500 && bad > 500, "{good} loaded, {bad} refused"); // 2,600 and 3,400 when written
+}

@@ -1,0 +1,72 @@
+//! What can go wrong with an environment.
+
+use thiserror::Error;
+
+use crate::config::ConfigError;
+use crate::mjcf_loader::LoadError;
+use crate::physics::EngineError;
+
+/// Why an environment cannot be built, reset or stepped.
+#[derive(Debug, Error)]
+pub enum EnvError {
+    /// The configuration is not allowed.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The assets cannot be loaded.
+    #[error("cannot load the scene: {0}")]
+    Load(#[from] LoadError),
+    /// Part of the configuration is allowed but not available in this build.
+    #[error("{key}: {value} is not available; use {}", available.join(" or "))]
+    NotAvailable {
+        /// Configuration key.
+        key: &'static str,
+        /// Its value.
+        value: String,
+        /// Values that are available.
+        available: &'static [&'static str],
+    },
+    /// The scene lacks something the environment needs.
+    #[error("the scene has no {what} named {name:?}, which {purpose} needs")]
+    Missing {
+        /// Kind of element.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// What needs it.
+        purpose: &'static str,
+    },
+    /// An action has the wrong length.
+    #[error("the action has {found} values but the action space has {expected}")]
+    ActionLength {
+        /// Length found.
+        found: usize,
+        /// Length of the action space.
+        expected: usize,
+    },
+    /// An action is not finite.
+    #[error("action[{index}] ({actuator}) is {value}: actions must be finite")]
+    ActionNotFinite {
+        /// Position in the action.
+        index: usize,
+        /// Actuator it belongs to.
+        actuator: String,
+        /// The value.
+        value: f32,
+    },
+    /// A state has the wrong length or numbers.
+    #[error("{what} has {found} values but the model needs {expected}")]
+    StateLength {
+        /// Name of the vector.
+        what: &'static str,
+        /// Length found.
+        found: usize,
+        /// Length needed.
+        expected: usize,
+    },
+    /// `step` before the first `reset`.
+    #[error("call reset before step")]
+    NotReset,
+    /// The engine cannot go on.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+}

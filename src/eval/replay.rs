@@ -1,0 +1,262 @@
+//! Replaying a recorded run: same start, same actions, everything the environment produces.
+
+use std::path::Path;
+
+use thiserror::Error;
+
+use crate::env::{Env, EnvError, Info};
+use crate::npz::{Npz, NpzError, NpzWriter};
+use crate::sensors::sensordata;
+
+/// Why a recording cannot be read or replayed.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// The archive cannot be read, or the result not written.
+    #[error(transparent)]
+    Npz(#[from] NpzError),
+    /// An array does not fit the environment.
+    #[error("array {name} of the recording has shape {found:?} but the configuration needs {expected}")]
+    Shape {
+        /// Array.
+        name: &'static str,
+        /// Shape found.
+        found: Vec<usize>,
+        /// Shape needed, in words.
+        expected: String,
+    },
+    /// The environment failed.
+    #[error("in step {step} of the replay: {source}")]
+    Env {
+        /// Environment step.
+        step: usize,
+        /// What failed.
+        source: EnvError,
+    },
+    /// A file cannot be written.
+    #[error("cannot write {path}: {source}")]
+    Write {
+        /// File.
+        path: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+/// The part of a recording that a replay needs. Row `t` is after step `t`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Positions at the start (nq).
+    pub qpos0: Vec<f64>,
+    /// Velocities at the start (nv).
+    pub qvel0: Vec<f64>,
+    /// Actions (T, na), row-major.
+    pub actions: Vec<f32>,
+    /// Steps.
+    pub len: usize,
+    /// Positions (T, nq), velocities and accelerations (T, nv), for one-step replay; empty when not recorded.
+    pub qpos: Vec<f64>,
+    /// See `qpos`.
+    pub qvel: Vec<f64>,
+    /// See `qpos`; the start of the solver.
+    pub qacc: Vec<f64>,
+}
+
+impl Recording {
+    /// Reads `qpos0, qvel0, actions` and, if they are there, `qpos, qvel, qacc`, for `env`.
+    ///
+    /// # Errors
+    /// Arrays that are missing, unreadable or of a shape that does not fit the environment.
+    pub fn read(archive: &Npz, env: &Env) -> Result<Self, ReplayError> {
+        let (nq, nv, na) = (env.model().nq, env.model().nv, env.action_space().len());
+        let vector = |name: &'static str, n: usize| {
+            let a = archive.get_f64(name)?;
+            if a.shape == [n] {
+                Ok(a.data)
+            } else {
+                Err(ReplayError::Shape {
+                    name,
+                    found: a.shape,
+                    expected: format!("({n})"),
+                })
+            }
+        };
+        let actions = archive.get_f64("actions")?;
+        if actions.shape.len() != 2 || actions.shape[1] != na {
+            return Err(ReplayError::Shape {
+                name: "actions",
+                found: actions.shape,
+                expected: format!("(steps, {na})"),
+            });
+        }
+        let len = actions.shape[0];
+        let rows = |name: &'static str, n: usize| {
+            if !archive.arrays().any(|a| a.name == name) {
+                return Ok(Vec::new());
+            }
+            let a = archive.get_f64(name)?;
+            if a.shape == [len, n] {
+                Ok(a.data)
+            } else {
+                Err(ReplayError::Shape {
+                    name,
+                    found: a.shape,
+                    expected: format!("({len}, {n})"),
+                })
+            }
+        };
+        Ok(Self {
+            qpos0: vector("qpos0", nq)?,
+            qvel0: vector("qvel0", nv)?,
+            actions: actions.data.iter().map(|&v| v as f32).collect(),
+            len,
+            qpos: rows("qpos", nq)?,
+            qvel: rows("qvel", nv)?,
+            qacc: rows("qacc", nv)?,
+        })
+    }
+}
+
+/// Everything an environment produced in a replay, row-major, one row per step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Replay {
+    /// Steps.
+    pub len: usize,
+    /// Positions (T, nq).
+    pub qpos: Vec<f64>,
+    /// Velocities (T, nv).
+    pub qvel: Vec<f64>,
+    /// Accelerations (T, nv).
+    pub qacc: Vec<f64>,
+    /// Controls (T, nu).
+    pub ctrl: Vec<f64>,
+    /// Gears (T, nu).
+    pub gear: Vec<f64>,
+    /// Sensors (T, nsensordata).
+    pub sensordata: Vec<f64>,
+    /// Proprioception (T, no).
+    pub observation: Vec<f64>,
+    /// Vestibular sense (T, 6), if active.
+    pub vestibular: Option<Vec<f64>>,
+    /// First contact of each step (T + 1).
+    pub contact_ptr: Vec<i64>,
+    /// Geoms of each contact (C, 2).
+    pub contact_geom: Vec<i64>,
+    /// Positions (C, 3), m.
+    pub contact_pos: Vec<f64>,
+    /// Frames (C, 9).
+    pub contact_frame: Vec<f64>,
+    /// Distances (C), m.
+    pub contact_dist: Vec<f64>,
+    /// Force and torque in the contact frame (C, 6), N and N m.
+    pub contact_force: Vec<f64>,
+    /// Information of each step.
+    pub info: Vec<Info>,
+}
+
+/// Replays a recording. With `one_step`, each step starts from the recording's previous row (and the solver from its
+/// acceleration) instead of the replay's own state.
+///
+/// # Errors
+/// A recording without the rows that `one_step` needs; an environment that fails.
+pub fn replay(env: &mut Env, recording: &Recording, one_step: bool) -> Result<Replay, ReplayError> {
+    let (nq, nv, na) = (env.model().nq, env.model().nv, env.action_space().len());
+    if one_step && (recording.qpos.is_empty() || recording.qvel.is_empty()) && recording.len > 0 {
+        let (name, found) = ("qpos", vec![0]);
+        return Err(ReplayError::Shape {
+            name,
+            found,
+            expected: "one row per step, with qvel".to_string(),
+        });
+    }
+    let at = |step: usize| move |source| ReplayError::Env { step, source };
+    env.reset_to(&recording.qpos0, &recording.qvel0).map_err(at(0))?;
+    let mut out = Replay {
+        len: recording.len,
+        vestibular: env.vestibular().map(|_| Vec::new()),
+        contact_ptr: vec![0],
+        ..Replay::default()
+    };
+    let mut sensors = vec![0.0; env.model().nsensordata()];
+    for t in 0..recording.len {
+        if one_step && t > 0 {
+            let s = env.state_mut();
+            s.qpos.copy_from_slice(&recording.qpos[(t - 1) * nq..t * nq]);
+            s.qvel.copy_from_slice(&recording.qvel[(t - 1) * nv..t * nv]);
+            if !recording.qacc.is_empty() {
+                s.qacc_warmstart.copy_from_slice(&recording.qacc[(t - 1) * nv..t * nv]);
+            }
+        }
+        env.step(&recording.actions[t * na..(t + 1) * na]).map_err(at(t))?;
+        let s = env.state();
+        sensordata(env.model(), s, &mut sensors);
+        out.qpos.extend_from_slice(&s.qpos);
+        out.qvel.extend_from_slice(&s.qvel);
+        out.qacc.extend_from_slice(&s.qacc);
+        out.ctrl.extend_from_slice(&s.ctrl);
+        out.gear.extend_from_slice(&s.params.actuator_gear);
+        out.sensordata.extend_from_slice(&sensors);
+        let observation = env.observation();
+        out.observation.extend_from_slice(observation.observation);
+        if let (Some(all), Some(v)) = (&mut out.vestibular, observation.vestibular) {
+            all.extend_from_slice(v);
+        }
+        for c in &s.contacts {
+            out.contact_geom.extend(c.geom.map(|g| g as i64));
+            out.contact_pos.extend(c.pos);
+            out.contact_frame.extend(c.frame);
+            out.contact_dist.push(c.dist);
+            out.contact_force.extend(c.force);
+        }
+        out.contact_ptr.push(out.contact_dist.len() as i64);
+        out.info.push(env.info().clone());
+    }
+    Ok(out)
+}
+
+impl Replay {
+    /// Writes `replay.npz`, with the recording's own start and actions, and `info.jsonl` into a directory, which is made
+    /// if it is not there.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn write(&self, dir: &Path, recording: &Recording) -> Result<(), ReplayError> {
+        let write_error = |path: &Path| {
+            let path = path.display().to_string();
+            move |source| ReplayError::Write { path, source }
+        };
+        std::fs::create_dir_all(dir).map_err(write_error(dir))?;
+        let t = self.len;
+        let columns = |n: usize| if t == 0 { 0 } else { n / t };
+        let mut npz = NpzWriter::new();
+        npz.add("qpos0", &[recording.qpos0.len()], &recording.qpos0)?;
+        npz.add("qvel0", &[recording.qvel0.len()], &recording.qvel0)?;
+        npz.add::<f64>("activity0", &[0], &[])?;
+        npz.add("actions", &[t, columns(recording.actions.len())], &recording.actions)?;
+        let tables = [
+            ("ctrl", &self.ctrl),
+            ("gear", &self.gear),
+            ("qpos", &self.qpos),
+            ("qvel", &self.qvel),
+            ("qacc", &self.qacc),
+            ("sensordata", &self.sensordata),
+            ("observation", &self.observation),
+        ];
+        for (name, data) in tables {
+            npz.add(name, &[t, columns(data.len())], data)?;
+        }
+        if let Some(v) = &self.vestibular {
+            npz.add("vestibular", &[t, columns(v.len())], v)?;
+        }
+        let n = self.contact_dist.len();
+        npz.add("contact_ptr", &[self.contact_ptr.len()], &self.contact_ptr)?;
+        npz.add("contact_geom", &[n, 2], &self.contact_geom)?;
+        npz.add("contact_pos", &[n, 3], &self.contact_pos)?;
+        npz.add("contact_frame", &[n, 9], &self.contact_frame)?;
+        npz.add("contact_dist", &[n], &self.contact_dist)?;
+        npz.add("contact_force", &[n, 6], &self.contact_force)?;
+        npz.write(dir.join("replay.npz"))?;
+        let path = dir.join("info.jsonl");
+        let lines: String = self.info.iter().map(|i| i.to_json() + "\n").collect();
+        std::fs::write(&path, lines).map_err(write_error(&path))
+    }
+}

@@ -1,0 +1,100 @@
+//! The MJCF and textures embedded in the library.
+
+use crate::mjcf_loader::EmbeddedAssets;
+
+macro_rules! embed {
+    ($($path:literal),* $(,)?) => {
+        /// Paths and contents of the embedded files.
+        const FILES: &[(&str, &[u8])] = &[$(($path, include_bytes!(concat!("../../assets/", $path)))),*];
+    };
+}
+
+embed![
+    "babybench/base.xml",
+    "babybench/classes_common.xml",
+    "babybench/crib.xml",
+    "babybench/cubes.xml",
+    "babybench/meta_common.xml",
+    "babybench/meta_v1.xml",
+    "babybench/meta_v2.xml",
+    "babybench/mimo_v1.xml",
+    "babybench/mimo_v2.xml",
+    "babybench/motor_arms.xml",
+    "babybench/motor_body.xml",
+    "babybench/motor_eyes.xml",
+    "babybench/motor_feet_v1.xml",
+    "babybench/motor_feet_v2.xml",
+    "babybench/motor_fingers_v1.xml",
+    "babybench/motor_fingers_v2.xml",
+    "babybench/motor_hands.xml",
+    "babybench/motor_head.xml",
+    "babybench/motor_legs.xml",
+    "babybench/position_arms.xml",
+    "babybench/position_body.xml",
+    "babybench/position_eyes.xml",
+    "babybench/position_feet_v1.xml",
+    "babybench/position_feet_v2.xml",
+    "babybench/position_fingers_v1.xml",
+    "babybench/position_fingers_v2.xml",
+    "babybench/position_hands.xml",
+    "babybench/position_head.xml",
+    "babybench/position_legs.xml",
+    "tex/eye_left.png",
+    "tex/eye_right.png",
+    "tex/face_angry.png",
+    "tex/face_default.png",
+    "tex/face_disgusted.png",
+    "tex/face_happy.png",
+    "tex/face_sad.png",
+    "tex/face_scared.png",
+    "tex/face_surprised.png",
+    "tex/head_back.png",
+    "tex/head_left.png",
+    "tex/head_right.png",
+    "tex/head_top.png",
+    "tex/leg_back.png",
+    "tex/leg_down.png",
+    "tex/leg_front.png",
+    "tex/leg_left.png",
+    "tex/leg_right.png",
+    "tex/leg_up.png",
+    "tex/rug.png",
+    "tex/sleeve_back.png",
+    "tex/sleeve_down.png",
+    "tex/sleeve_front.png",
+    "tex/sleeve_left.png",
+    "tex/sleeve_right.png",
+    "tex/sleeve_up.png",
+];
+
+/// The embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`.
+pub fn embedded() -> EmbeddedAssets {
+    EmbeddedAssets(FILES)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use super::*;
+
+    fn walk(dir: &Path, prefix: &str, out: &mut BTreeSet<String>) {
+        for entry in std::fs::read_dir(dir).unwrap().map(Result::unwrap) {
+            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+            if entry.file_type().unwrap().is_dir() {
+                walk(&entry.path(), &format!("{name}/"), out);
+            } else {
+                out.insert(name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_asset_is_embedded() {
+        let mut found = BTreeSet::new();
+        walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join("assets"), "", &mut found);
+        let embedded: BTreeSet<String> = FILES.iter().map(|f| f.0.to_string()).collect();
+        assert_eq!(found, embedded);
+    }
+}

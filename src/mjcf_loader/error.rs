@@ -1,0 +1,169 @@
+//! Errors with their place.
+
+use std::fmt;
+
+use super::assets::AssetError;
+
+/// Where an error was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Path of the document in the asset source.
+    pub file: String,
+    /// Line, from 1; 0 when the error concerns the whole file.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Element names from the root of that file, joined by `/`; may be empty.
+    pub element: String,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file)?;
+        if self.line > 0 {
+            write!(f, ":{}:{}", self.line, self.column)?;
+        }
+        if !self.element.is_empty() {
+            write!(f, ": {}", self.element)?;
+        }
+        Ok(())
+    }
+}
+
+/// A document that cannot be loaded: what is wrong and where.
+///
+/// Prints as `babybench/mimo_v1.xml:12:5: mujoco/body/geom: unknown attribute "foo"`.
+#[derive(Debug, thiserror::Error)]
+#[error("{place}: {kind}")]
+pub struct LoadError {
+    /// Where.
+    pub place: Box<Place>,
+    /// What.
+    pub kind: ErrorKind,
+}
+
+impl LoadError {
+    pub(super) fn in_file(file: &str, kind: impl Into<ErrorKind>) -> Self {
+        let place = Place {
+            file: file.to_owned(),
+            ..Place::default()
+        };
+        LoadError {
+            place: Box::new(place),
+            kind: kind.into(),
+        }
+    }
+}
+
+/// What is wrong with a document.
+#[derive(Debug, thiserror::Error)]
+pub enum ErrorKind {
+    /// A file cannot be had from the source.
+    #[error(transparent)]
+    Asset(#[from] AssetError),
+    /// The file is not UTF-8.
+    #[error("not UTF-8 text")]
+    NotUtf8,
+    /// The text breaks the rules of XML.
+    #[error("malformed XML: {0}")]
+    Xml(String),
+    /// XML that is legal but has no place in MJCF: document types, text, CDATA, processing instructions.
+    #[error("{0} is not allowed; remove it")]
+    Forbidden(&'static str),
+    /// A limit on untrusted input.
+    #[error("more than {limit} {what}")]
+    TooMuch {
+        /// What there is too much of.
+        what: &'static str,
+        /// The limit.
+        limit: usize,
+    },
+    /// The root of the main document is not `mujoco`.
+    #[error("the root element is \"{0}\", not \"mujoco\"")]
+    WrongRoot(String),
+    /// A file is included twice, or includes itself.
+    #[error("file \"{0}\" is already included")]
+    RepeatedInclude(String),
+    /// An element that is unknown, unsupported or in the wrong place.
+    #[error("unknown element \"{0}\"")]
+    UnknownElement(String),
+    /// An attribute that is unknown or unsupported.
+    #[error("unknown attribute \"{0}\"")]
+    UnknownAttribute(String),
+    /// An attribute given twice.
+    #[error("attribute \"{0}\" is given twice")]
+    DuplicateAttribute(String),
+    /// A required attribute is missing.
+    #[error("attribute \"{0}\" is required")]
+    MissingAttribute(&'static str),
+    /// Attributes that contradict each other.
+    #[error("attributes \"{0}\" and \"{1}\" exclude each other")]
+    Conflict(&'static str, &'static str),
+    /// A word that is not one of those allowed here.
+    #[error("{attribute}=\"{text}\": not one of {}", .allowed.join(", "))]
+    BadWord {
+        /// The attribute.
+        attribute: &'static str,
+        /// What it says.
+        text: String,
+        /// What it may say.
+        allowed: &'static [&'static str],
+    },
+    /// A value that is not a finite number.
+    #[error("{attribute}: \"{text}\" is not a finite number")]
+    BadNumber {
+        /// The attribute.
+        attribute: &'static str,
+        /// The offending word.
+        text: String,
+    },
+    /// A number that is out of bounds.
+    #[error("{attribute}: {value} must be {want}")]
+    OutOfRange {
+        /// The attribute.
+        attribute: &'static str,
+        /// The number.
+        value: f64,
+        /// What is allowed.
+        want: &'static str,
+    },
+    /// Too few or too many values.
+    #[error("{attribute}: {found} values, expected {min} to {max}")]
+    WrongCount {
+        /// The attribute.
+        attribute: &'static str,
+        /// How many there are.
+        found: usize,
+        /// Fewest.
+        min: usize,
+        /// Most.
+        max: usize,
+    },
+    /// A default class that was not declared.
+    #[error("unknown default class \"{0}\"")]
+    UnknownClass(String),
+    /// A default class declared twice.
+    #[error("default class \"{0}\" is declared twice")]
+    DuplicateClass(String),
+    /// Two elements of a kind with the same name.
+    #[error("{kind} name \"{name}\" is used twice")]
+    DuplicateName {
+        /// Kind of element.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A name that no element has.
+    #[error("{attribute}: there is no {kind} \"{name}\"")]
+    UnknownName {
+        /// The attribute that refers.
+        attribute: &'static str,
+        /// Kind of element.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Valid syntax that makes no valid model.
+    #[error("{0}")]
+    Invalid(&'static str),
+}

@@ -1,0 +1,513 @@
+//! Every kind of error with its message, paths and limits.
+
+use super::*;
+
+fn source(files: &[(&str, &str)]) -> MemoryAssets {
+    let mut assets = MemoryAssets::new();
+    for (path, text) in files {
+        assets.insert(path, *text).unwrap();
+    }
+    assets
+}
+
+/// What loading `text` as `m.xml` says; empty when it loads. `other.xml` and `t.png` exist beside it.
+fn outcome(text: &str) -> String {
+    let other = "<mujocoinclude><worldbody><geom name=\"other\" size='1'/></worldbody></mujocoinclude>";
+    let assets = source(&[("other.xml", other), ("t.png", "")]);
+    load_str(text, "m.xml", &assets).map_or_else(|error| error.to_string(), |_| String::new())
+}
+
+/// `input` holds the sections of a document; `expect` is the message without file and position.
+fn check(input: &str, expect: &str) {
+    let message = outcome(&format!("<mujoco>{input}</mujoco>"));
+    let told = message.split_once(": ").map_or("", |(_, told)| told);
+    assert_eq!(told, expect, "{input}");
+}
+
+/// `input` holds the content of the world.
+fn check_world(input: &str, expect: &str) {
+    let expect = if expect.is_empty() {
+        String::new()
+    } else {
+        format!("mujoco/worldbody/{expect}")
+    };
+    check(&format!("<worldbody>{input}</worldbody>"), &expect);
+}
+
+/// `input` follows a world with a free ball `b`, a hinged body `h` with joint `j`, geoms `g1` and `g2` and site `s`.
+fn check_with_bodies(input: &str, expect: &str) {
+    let world = "<worldbody><body name='b'><freejoint name='f'/><geom name='g1' size='1'/></body>\
+                 <body name='h'><joint name='j'/><geom name='g2' size='1'/><site name='s'/></body></worldbody>";
+    check(&format!("{world}{input}"), expect);
+}
+
+#[test]
+fn message_has_file_line_column_and_path() {
+    let text = "<mujoco>\n  <worldbody>\n    <geom size='1'/> <geom foo='1'/></worldbody></mujoco>";
+    assert_eq!(
+        outcome(text),
+        "m.xml:3:22: mujoco/worldbody/geom: unknown attribute \"foo\""
+    );
+    let included = "<mujoco>\n<body><geom foo='1'/></body></mujoco>";
+    let text = "<mujoco><worldbody><include file='in/i.xml'/></worldbody></mujoco>";
+    let error = load_str(text, "kit/m.xml", &source(&[("kit/in/i.xml", included)])).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "kit/in/i.xml:2:7: mujoco/body/geom: unknown attribute \"foo\""
+    );
+    let text = "<mujoco><!-- \u{e4}\u{20ac} --><geom/></mujoco>";
+    assert_eq!(outcome(text), "m.xml:1:20: mujoco/geom: unknown element \"geom\"");
+}
+
+#[test]
+fn broken_xml_is_an_error() {
+    for text in [
+        "",
+        " ",
+        "text",
+        "<mujoco>",
+        "<mujoco><a></mujoco>",
+        "<mujoco/><mujoco/>",
+        "<mujoco/></mujoco>",
+    ] {
+        assert!(!outcome(text).is_empty(), "{text}");
+    }
+    for text in [
+        "<mujoco a=b/>",
+        "<mujoco model='&unknown;'/>",
+        "<mujoco model=\"x/>",
+        "<mujoco <a/>",
+        "<!--",
+    ] {
+        assert!(outcome(text).contains("XML"), "{text}: {}", outcome(text));
+    }
+    assert_eq!(
+        outcome("<mujoco>"),
+        "m.xml:1:9: mujoco: malformed XML: the file ends inside an element"
+    );
+    assert_eq!(
+        outcome("<mujoco/><a/>"),
+        "m.xml:1:10: malformed XML: there is a second root element"
+    );
+    assert_eq!(outcome(""), "m.xml:1:1: malformed XML: there is no root element");
+    assert_eq!(
+        outcome("<urdf/>"),
+        "m.xml:1:1: urdf: the root element is \"urdf\", not \"mujoco\""
+    );
+    let dtd = "<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco/>";
+    assert_eq!(outcome(dtd), "m.xml:1:1: a document type is not allowed; remove it");
+    check("some text", "mujoco: text is not allowed; remove it");
+    check("&amp;", "mujoco: text is not allowed; remove it");
+    check("<![CDATA[x]]>", "mujoco: a CDATA section is not allowed; remove it");
+    check("<?php ?>", "mujoco: a processing instruction is not allowed; remove it");
+    check(
+        "<option timestep='1' timestep='2'/>",
+        "mujoco/option: attribute \"timestep\" is given twice",
+    );
+    assert_eq!(
+        outcome("\u{feff}<?xml version='1.0'?><!-- a --><mujoco model='&lt;&#65;'/>"),
+        ""
+    );
+}
+
+#[test]
+fn values_are_checked() {
+    check_world("<geom size='a'/>", "geom: size: \"a\" is not a finite number");
+    check_world("<geom size='nan'/>", "geom: size: \"nan\" is not a finite number");
+    check_world("<geom size='1e999'/>", "geom: size: \"1e999\" is not a finite number");
+    check_world("<geom pos='0 0 -inf'/>", "geom: pos: \"-inf\" is not a finite number");
+    check_world("<geom size='-1'/>", "geom: size: -1 must be at least 0");
+    check_world("<geom size='0'/>", "geom: size: 0 must be positive");
+    check_world("<geom size=''/>", "geom: size: 0 values, expected 1 to 3");
+    check_world("<geom size='1 1 1 1'/>", "geom: size: 4 values, expected 1 to 3");
+    check_world("<geom size='1' pos='1 2'/>", "geom: pos: 2 values, expected 3 to 3");
+    check_world(
+        "<geom size='1' rgba='1 1 1 2'/>",
+        "geom: rgba: 2 must be between 0 and 1",
+    );
+    check_world("<geom size='1' contype='-1'/>", "geom: contype: -1 must be at least 0");
+    check_world(
+        "<geom size='1' contype='1.5'/>",
+        "geom: contype: \"1.5\" is not a finite number",
+    );
+    check_world("<geom size='1' condim='2'/>", "geom: condim must be 1, 3, 4 or 6");
+    check_world("<geom size='1' type='box'/>", "geom: size: 0 must be positive");
+    check_world(
+        "<geom pos='0 0 -2e30'/>",
+        &format!("geom: pos: {} must be at most 1e30 in magnitude", -2e30),
+    );
+    check_world(
+        "<body><joint/><geom size='1e30 1e30 1e30' type='box' density='1e30' quat='1e30 0 0 1e-30'/></body>",
+        "",
+    );
+    check_world(
+        "<geom type='mesh'/>",
+        "geom: type=\"mesh\": not one of plane, sphere, capsule, ellipsoid, cylinder, box",
+    );
+    check("<option timestep='0'/>", "mujoco/option: timestep: 0 must be positive");
+    check(
+        "<option cone='pyramidal'/>",
+        "mujoco/option: cone=\"pyramidal\": not one of elliptic",
+    );
+    check(
+        "<compiler autolimits='1'/>",
+        "mujoco/compiler: autolimits=\"1\": not one of false, true",
+    );
+    check(
+        "<compiler eulerseq='xya'/>",
+        "mujoco/compiler: eulerseq must be three letters of xyzXYZ",
+    );
+    check(
+        "<size nuser_actuator='65'/>",
+        "mujoco/size: nuser_actuator: 65 must be within the limits of the loader",
+    );
+    check("<keyframe/>", "mujoco/keyframe: unknown element \"keyframe\"");
+}
+
+#[test]
+fn orientations_are_checked() {
+    check_world(
+        "<geom size='1' quat='0 0 0 0'/>",
+        "geom: a zero quaternion is not an orientation",
+    );
+    check_world(
+        "<geom size='1' quat='1 0 0 0' euler='1 2 3'/>",
+        "geom: attributes \"quat\" and \"euler\" exclude each other",
+    );
+    check_world(
+        "<geom size='1' axisangle='0 0 0 1'/>",
+        "geom: the axis of axisangle is too short",
+    );
+    check_world("<geom size='1' zaxis='0 0 0'/>", "geom: zaxis is too short");
+    check_world(
+        "<geom size='1' xyaxes='0 0 0 1 0 0'/>",
+        "geom: the x axis of xyaxes is too short",
+    );
+    check_world(
+        "<geom size='1' xyaxes='1 0 0 1 0 0'/>",
+        "geom: the y axis of xyaxes is too short or parallel to the x axis",
+    );
+    check_world(
+        "<geom size='1' fromto='0 0 0 1 1 1'/>",
+        "geom: fromto needs a capsule, cylinder, box or ellipsoid",
+    );
+    check_world(
+        "<geom type='box' size='1' fromto='0 0 0 0 0 0'/>",
+        "geom: the points of fromto are too close",
+    );
+}
+
+#[test]
+fn bodies_are_checked() {
+    check_world(
+        "<body><joint/></body>",
+        "body: a moving body must have mass and inertia",
+    );
+    check_world("<body><joint/><body><geom size='1'/></body></body>", "");
+    check_world(
+        "<body><body><freejoint/><geom size='1'/></body></body>",
+        "body/body/freejoint: a free joint can only be in a child of the world",
+    );
+    check_world(
+        "<body><joint/><freejoint/><geom size='1'/></body>",
+        "body/freejoint: a free joint must be the only joint of its body",
+    );
+    check_world(
+        &format!("<body>{}<geom size='1'/></body>", "<joint/>".repeat(7)),
+        "body: a body can have at most 6 degrees of freedom",
+    );
+    check_world(
+        "<body><joint/><geom size='1'/><body><geom type='plane' size='1 1 1'/></body></body>",
+        "body/body/geom: a plane can only be in a body that does not move",
+    );
+    check_world("<joint/>", "joint: unknown element \"joint\"");
+    check_world(
+        "<body><joint axis='0 0 0'/><geom size='1'/></body>",
+        "body/joint: the axis is too short",
+    );
+    check_world(
+        "<body><joint limited='true' range='2 1'/><geom size='1'/></body>",
+        "body/joint: range: 1 must be greater than the lower end of the range",
+    );
+    check(
+        "<compiler autolimits='false'/><worldbody><body><joint range='1 2'/><geom size='1'/></body></worldbody>",
+        "mujoco/worldbody/body/joint: a range is given but not whether it limits, and autolimits is off",
+    );
+    check_world(
+        "<body><inertial pos='0 0 0'/></body>",
+        "body/inertial: attribute \"mass\" is required",
+    );
+    check_world(
+        "<body><inertial pos='0 0 0' mass='1' diaginertia='1 1 3'/></body>",
+        "body: the principal moments must satisfy A + B >= C",
+    );
+    check_world(
+        "<body><inertial pos='0 0 0' mass='1' fullinertia='1 1 -1 0 0 0'/></body>",
+        "body/inertial: the inertia must have positive principal moments",
+    );
+    check_world(
+        "<body><inertial pos='0 0 0' mass='1'/><inertial pos='0 0 0' mass='1'/></body>",
+        "body/inertial: the body has an inertial already",
+    );
+    check_world(
+        "<camera mode='targetbody'/>",
+        "camera: attribute \"target\" is required",
+    );
+    check_world("<camera fovy='180'/>", "camera: fovy: 180 must be below 180 degrees");
+    check_world("<light dir='0 0 0'/>", "light: the direction is too short");
+}
+
+#[test]
+fn names_and_classes_are_resolved() {
+    check_world(
+        "<body name='a'/><body name='a'/>",
+        "body: body name \"a\" is used twice",
+    );
+    check_world("<body name='world'/>", "body: body name \"world\" is used twice");
+    check_world("<geom size='1' class='c'/>", "geom: unknown default class \"c\"");
+    check_world("<body childclass='c'/>", "body: unknown default class \"c\"");
+    check_world(
+        "<geom size='1' material='m'/>",
+        "geom: material: there is no material \"m\"",
+    );
+    check_world(
+        "<camera mode='targetbody' target='x'/>",
+        "camera: target: there is no body \"x\"",
+    );
+    check(
+        "<default><default class='a'/><default class='a'/></default>",
+        "mujoco/default/default: default class \"a\" is declared twice",
+    );
+    check(
+        "<default><default/></default>",
+        "mujoco/default/default: attribute \"class\" is required",
+    );
+    check(
+        "<default class='x'/>",
+        "mujoco/default: the top default class is \"main\"",
+    );
+    check(
+        "<default><geom name='x'/></default>",
+        "mujoco/default/geom: unknown attribute \"name\"",
+    );
+    check(
+        "<asset><material name='m' texture='t'/></asset>",
+        "mujoco/asset/material: texture: there is no texture \"t\"",
+    );
+    let two = "<sensor><gyro name='a' site='s'/><torque name='a' site='s'/></sensor>";
+    check_with_bodies(two, "mujoco/sensor/torque: sensor name \"a\" is used twice");
+}
+
+#[test]
+fn constraints_are_checked() {
+    let pair = "mujoco/contact/pair: ";
+    check_with_bodies(
+        "<contact><pair geom1='g1'/></contact>",
+        &format!("{pair}attribute \"geom2\" is required"),
+    );
+    let input = "<contact><pair geom1='g1' geom2='x'/></contact>";
+    check_with_bodies(input, &format!("{pair}geom2: there is no geom \"x\""));
+    let input = "<contact><pair geom1='g1' geom2='g1'/></contact>";
+    check_with_bodies(input, &format!("{pair}a geom cannot pair with itself"));
+    let free = "a free joint cannot be used here, only hinge and slide";
+    check_with_bodies(
+        "<equality><joint joint1='f'/></equality>",
+        &format!("mujoco/equality/joint: {free}"),
+    );
+    let input = "<tendon><fixed><joint joint='f' coef='1'/></fixed></tendon>";
+    check_with_bodies(input, &format!("mujoco/tendon/fixed/joint: {free}"));
+    check_with_bodies(
+        "<actuator><motor joint='f'/></actuator>",
+        &format!("mujoco/actuator/motor: {free}"),
+    );
+    check_with_bodies(
+        "<tendon><fixed/></tendon>",
+        "mujoco/tendon/fixed: the tendon has no joints",
+    );
+    let input = "<size nuser_actuator='1'/><actuator><motor joint='j' user='1 2'/></actuator>";
+    check_with_bodies(input, "mujoco/actuator/motor: user has more values than nuser_actuator");
+    check_with_bodies(
+        "<sensor><gyro site='x'/></sensor>",
+        "mujoco/sensor/gyro: site: there is no site \"x\"",
+    );
+    check_with_bodies(
+        "<equality><weld body1='h'/></equality><sensor><gyro site='s'/></sensor>",
+        "",
+    );
+}
+
+#[test]
+fn textures_are_recipes_with_normalised_paths() {
+    let texture = |attributes: &str| {
+        let text = format!("<mujoco><asset><texture {attributes}/></asset></mujoco>");
+        let assets = source(&[("tex/a.png", ""), ("kit/b.png", "")]);
+        load_str(&text, "kit/m.xml", &assets)
+            .map(|model| model.textures[0].clone())
+            .map_err(|e| e.kind.to_string())
+    };
+    let found = texture("name='t' fileup='../tex/a.png' filedown='b.png'").unwrap();
+    assert_eq!(found.cube_files[2].as_deref(), Some("tex/a.png"));
+    assert_eq!(found.cube_files[3].as_deref(), Some("kit/b.png"));
+    assert_eq!(texture("type='2d' file='./b.png'").unwrap().name, "b");
+    let error = |attributes| texture(attributes).unwrap_err();
+    assert_eq!(error("name='t' file='a.png'"), "file \"kit/a.png\" does not exist");
+    let outside = "path \"../../a.png\" is not a relative path inside the asset source";
+    assert_eq!(error("name='t' file='../../a.png'"), outside);
+    assert_eq!(error("name='t'"), "the texture has neither a builtin nor a file");
+    assert_eq!(
+        error("name='t' builtin='flat'"),
+        "a builtin texture needs a width and a height"
+    );
+    assert_eq!(
+        error("type='2d' builtin='flat' width='1' height='1'"),
+        "attribute \"name\" is required"
+    );
+    assert_eq!(
+        error("name='t' width='20000'"),
+        "width: 20000 must be within the limits of the loader"
+    );
+}
+
+#[test]
+fn includes_splice_and_are_bounded() {
+    assert_eq!(outcome("<mujoco><include file='other.xml'/></mujoco>"), "");
+    check(
+        "<include file='m.xml'/>",
+        "mujoco/include: file \"m.xml\" is already included",
+    );
+    check(
+        "<include file='other.xml'/><include file='./other.xml'/>",
+        "mujoco/include: file \"other.xml\" is already included",
+    );
+    check(
+        "<include file='none.xml'/>",
+        "mujoco/include: file \"none.xml\" does not exist",
+    );
+    check("<include/>", "mujoco/include: attribute \"file\" is required");
+    check(
+        "<include file='other.xml' a='b'/>",
+        "mujoco/include: unknown attribute \"a\"",
+    );
+    check(
+        "<include file='other.xml'><geom/></include>",
+        "mujoco/include/geom: unknown element \"geom\"",
+    );
+    for path in ["/etc/passwd", "../m.xml", "a/../../m.xml", "c:/x", "a\\b", ""] {
+        let message = format!("mujoco/include: path \"{path}\" is not a relative path inside the asset source");
+        check(&format!("<include file='{path}'/>"), &message);
+    }
+    let chain: Vec<(String, String)> = (0..20)
+        .map(|k| (format!("{k}.xml"), format!("<a><include file='{}.xml'/></a>", k + 1)))
+        .collect();
+    let files: Vec<(&str, &str)> = chain
+        .iter()
+        .map(|(path, text)| (path.as_str(), text.as_str()))
+        .collect();
+    let error = load_str("<mujoco><include file='0.xml'/></mujoco>", "m.xml", &source(&files)).unwrap_err();
+    assert_eq!(error.to_string(), "15.xml:1:4: a/include: more than 16 nested includes");
+    let broken = source(&[("a.xml", "<a model='x' b='c'/>"), ("b.xml", "<a>")]);
+    let error = |file: &str| {
+        let text = format!("<mujoco><include file='{file}'/></mujoco>");
+        load_str(&text, "m.xml", &broken).unwrap_err().to_string()
+    };
+    assert_eq!(error("a.xml"), "a.xml:1:1: a: unknown attribute \"b\"");
+    assert_eq!(
+        error("b.xml"),
+        "b.xml:1:4: a: malformed XML: the file ends inside an element"
+    );
+}
+
+#[test]
+fn limits_hold() {
+    let nested = |depth: usize| {
+        let body = format!("{}{}", "<body>".repeat(depth - 2), "</body>".repeat(depth - 2));
+        outcome(&format!("<mujoco><worldbody>{body}</worldbody></mujoco>"))
+    };
+    assert_eq!(nested(MAX_DEPTH), "");
+    assert!(nested(MAX_DEPTH + 1).ends_with(": more than 100 nested elements"));
+    assert!(nested(100_000).ends_with(": more than 100 nested elements"));
+    assert!(outcome(&"<a>".repeat(1_000_000)).ends_with(": more than 100 nested elements"));
+    let many = format!(
+        "<mujoco><worldbody>{}</worldbody></mujoco>",
+        "<body/>".repeat(MAX_ELEMENTS)
+    );
+    assert!(outcome(&many).ends_with(": more than 100000 elements"));
+    let long = format!("<mujoco>{}</mujoco>", " ".repeat(MAX_DOCUMENT_BYTES));
+    assert_eq!(outcome(&long), "m.xml: more than 4194304 bytes of XML in all");
+    let attributes: String = (0..=MAX_ATTRIBUTES).map(|k| format!(" a{k}='1'")).collect();
+    assert_eq!(
+        outcome(&format!("<mujoco{attributes}/>")),
+        "m.xml:1:1: mujoco: more than 64 attributes of an element"
+    );
+    let name = "x".repeat(MAX_TEXT_BYTES + 1);
+    check(
+        &format!("<asset><texture name='{name}'/></asset>"),
+        "mujoco/asset/texture: more than 256 bytes in a name or path",
+    );
+    let classes: String = (0..=MAX_CLASSES).map(|k| format!("<default class='{k}'/>")).collect();
+    let message = "mujoco/default/default: more than 1000 default classes";
+    check(&format!("<default>{classes}</default>"), message);
+}
+
+#[test]
+fn deep_documents_fit_a_small_stack() {
+    let bodies = format!("{}{}", "<body>".repeat(MAX_DEPTH - 2), "</body>".repeat(MAX_DEPTH - 2));
+    let classes: String = (0..MAX_DEPTH - 2).map(|k| format!("<default class='{k}'>")).collect();
+    let classes = format!("<default>{classes}{}", "</default>".repeat(MAX_DEPTH - 1));
+    let text = format!("<mujoco>{classes}<worldbody>{bodies}</worldbody></mujoco>");
+    let run = move || {
+        load_str(&text, "m.xml", &MemoryAssets::new())
+            .map(|model| model.nbody())
+            .unwrap()
+    };
+    // Frames are largest without optimisation; 256 KiB passes there, half of what is given here.
+    let thread = std::thread::Builder::new().stack_size(512 << 10).spawn(run).unwrap();
+    assert_eq!(thread.join().unwrap(), MAX_DEPTH - 1);
+}
+
+#[test]
+fn layers_and_embedded_files_are_found() {
+    static FILES: &[(&str, &[u8])] = &[("kit/a.xml", b"<mujoco model='embedded'/>"), ("b.xml", b"\xff")];
+    let below = EmbeddedAssets(FILES);
+    let above = source(&[("kit/c.xml", "<mujoco model='above'/>")]);
+    let both = Overlay::new(vec![&above, &below]);
+    assert_eq!(load(&both, "kit/./a.xml").unwrap().name, "embedded");
+    assert_eq!(load(&both, "x/../kit/c.xml").unwrap().name, "above");
+    assert_eq!(load(&both, "b.xml").unwrap_err().to_string(), "b.xml: not UTF-8 text");
+    assert_eq!(
+        load(&both, "d.xml").unwrap_err().to_string(),
+        "d.xml: file \"d.xml\" does not exist"
+    );
+    assert!(both.contains("b.xml") && !both.contains("d.xml"));
+}
+
+#[cfg(unix)]
+#[test]
+fn directories_do_not_leak() {
+    let base = std::env::temp_dir().join(format!("babybench-assets-{}", std::process::id()));
+    let root = base.join("root");
+    std::fs::create_dir_all(root.join("kit")).unwrap();
+    std::fs::write(base.join("secret.xml"), "<mujoco/>").unwrap();
+    std::fs::write(root.join("kit/a.xml"), "<mujoco/>").unwrap();
+    std::os::unix::fs::symlink(base.join("secret.xml"), root.join("kit/link.xml")).unwrap();
+    std::os::unix::fs::symlink(root.join("kit/a.xml"), root.join("inner.xml")).unwrap();
+    let assets = DirAssets::new(&root).unwrap();
+    let outcomes = [
+        "kit/a.xml",
+        "inner.xml",
+        "kit/link.xml",
+        "../secret.xml",
+        "kit",
+        "none.xml",
+        "kit/a.xml/b",
+    ]
+    .map(|path| assets.read(path).map(|bytes| bytes.len()).map_err(|e| e.to_string()));
+    std::fs::remove_dir_all(&base).unwrap();
+    assert_eq!(outcomes[..2], [Ok(9), Ok(9)]);
+    for (outcome, word) in outcomes[2..]
+        .iter()
+        .zip(["inside", "inside", "exist", "exist", "exist"])
+    {
+        assert!(outcome.as_ref().unwrap_err().contains(word), "{outcome:?}");
+    }
+}

@@ -1,0 +1,122 @@
+//! Soft constraints in MuJoCo's formulation: rows and the Newton solver.
+//!
+//! A constraint row `i` has a Jacobian row `J_i`, a reference acceleration `aref_i = -b vel_i - k imp pos_i`, and a
+//! regularisation `R_i = (1 - imp)/imp * diagApprox_i`, with impedance `imp` from `solimp` and stiffness `k`, damping `b`
+//! from `solref`. The solver minimises `1/2 (a - a_smooth)' M (a - a_smooth) + sum s_i(J a - aref)` over accelerations
+//! `a`, where `s_i` is a quadratic on the active side of each constraint and, for contacts, that of the elliptic friction
+//! cone ("Computation" chapter of MuJoCo's documentation).
+
+mod cone;
+mod hessian;
+mod impedance;
+mod line_search;
+mod newton;
+mod rows;
+
+pub use impedance::{Impedance, impedance};
+pub use newton::Newton;
+pub use rows::{Weld, make_constraints, weld_points};
+
+/// What a block of rows constrains; blocks stand in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum RowKind {
+    /// Equality: force of either sign.
+    #[default]
+    Equality,
+    /// Dry friction: force within plus and minus `frictionloss`.
+    FrictionLoss,
+    /// Limit of a joint or tendon: force not negative.
+    Limit,
+    /// Contact without friction: force not negative.
+    Frictionless,
+    /// Contact with an elliptic friction cone.
+    Elliptic,
+}
+
+/// Rows that belong together and share their columns.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Block {
+    /// What it is.
+    pub kind: RowKind,
+    /// Equality, degree of freedom, joint, tendon or contact that it comes from.
+    pub id: usize,
+    /// First row.
+    pub row: usize,
+    /// Number of rows.
+    pub dim: usize,
+    /// First column entry in [`Efc::cols`].
+    pub col: usize,
+    /// Number of columns.
+    pub ncol: usize,
+    /// First value in [`Efc::jac`]; row-major, `dim` by `ncol`.
+    pub jac: usize,
+    /// Bound of dry friction, N m.
+    pub frictionloss: f64,
+    /// Slope of the regularised friction cone.
+    pub mu: f64,
+    /// Friction coefficients of a contact.
+    pub friction: [f64; 5],
+}
+
+/// The constraint rows of a step ("efc" in MuJoCo).
+#[derive(Clone, Debug, Default)]
+pub struct Efc {
+    /// Blocks, in row order.
+    pub blocks: Vec<Block>,
+    /// Degrees of freedom of each block's columns, ascending.
+    pub cols: Vec<u32>,
+    /// Jacobian values.
+    pub jac: Vec<f64>,
+    /// Constraint violation of each row, m or rad.
+    pub pos: Vec<f64>,
+    /// Margin of each row.
+    pub margin: Vec<f64>,
+    /// Approximation of the diagonal of `J M^-1 J'`.
+    pub diag_approx: Vec<f64>,
+    /// Regularisation.
+    pub r: Vec<f64>,
+    /// Inverse of `r`.
+    pub d: Vec<f64>,
+    /// Velocity `J qvel`.
+    pub vel: Vec<f64>,
+    /// Reference acceleration.
+    pub aref: Vec<f64>,
+    /// Constraint force, N or N m.
+    pub force: Vec<f64>,
+}
+
+impl Efc {
+    /// Number of rows.
+    pub fn nefc(&self) -> usize {
+        self.pos.len()
+    }
+
+    /// Drops all rows, keeps the memory.
+    pub fn clear(&mut self) {
+        self.blocks.clear();
+        self.cols.clear();
+        for v in [
+            &mut self.jac,
+            &mut self.pos,
+            &mut self.margin,
+            &mut self.diag_approx,
+            &mut self.r,
+            &mut self.d,
+            &mut self.vel,
+            &mut self.aref,
+            &mut self.force,
+        ] {
+            v.clear();
+        }
+    }
+
+    /// Columns of a block.
+    pub fn columns(&self, b: &Block) -> &[u32] {
+        &self.cols[b.col..b.col + b.ncol]
+    }
+
+    /// Jacobian of a block, row-major.
+    pub fn jacobian(&self, b: &Block) -> &[f64] {
+        &self.jac[b.jac..b.jac + b.dim * b.ncol]
+    }
+}

@@ -1,0 +1,252 @@
+//! Contact geometry: where, how deep and in which direction two geoms touch.
+//!
+//! The results are those of MuJoCo 3.3.0 with its native convex collision detection, to the bit: the same contacts in
+//! the same order with the same distance, position and frame. To that end every routine keeps MuJoCo's order of
+//! operations and uses nothing but `+ - * /` and square roots, so the bits are also the same on every target.
+//!
+//! Conventions, for all pairs:
+//!
+//! - In a pair the geom of the lower [`GeomType`] comes first. The normal points from the first geom to the second.
+//! - `dist` is negative in penetration; `pos` lies midway between the two surfaces.
+//! - A contact is reported when `dist <= margin`.
+//! - Lengths are metres; everything is in the frame the [`Placed`] geoms are given in, normally the world.
+//!
+//! | pair | method | contacts |
+//! |---|---|---|
+//! | plane with sphere, capsule, cylinder, box | deepest points | up to 1, 2, 4, 4 |
+//! | sphere with sphere, capsule, cylinder, box | nearest points | up to 1 |
+//! | capsule with capsule, box | nearest points, a second one along the capsule | up to 2 |
+//! | box with box | separating axes, then clipping | up to 24 |
+//! | capsule with cylinder, cylinder with cylinder, cylinder with box | GJK and EPA | up to 1 |
+//!
+//! Planes with planes and everything with an ellipsoid touch nothing.
+//!
+//! ```
+//! use babybench::math::MAT3_ID;
+//! use babybench::model::GeomType;
+//! use babybench::physics::contact::{Options, Placed, Scratch, collide};
+//!
+//! let floor = Placed { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID };
+//! let ball = Placed { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID };
+//! let mut contacts = Vec::new();
+//! collide(&floor, &ball, 0.0, &Options::default(), &mut Scratch::new(), &mut contacts);
+//! assert_eq!(contacts[0].dist, -0.25);
+//! assert_eq!(contacts[0].pos, [0.0, 0.0, -0.125]);
+//! assert_eq!(contacts[0].normal(), [0.0, 0.0, 1.0]);
+//! ```
+
+mod box_box;
+mod box_edge;
+mod box_face;
+mod capsule_box;
+mod convex;
+mod epa;
+mod frame;
+mod gjk;
+mod nearest;
+mod plane;
+mod polytope;
+mod round;
+mod support;
+#[cfg(test)]
+mod tests;
+
+use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
+use crate::model::GeomType;
+
+/// Distances from here on count as infinite (MuJoCo's `mjMAXVAL`).
+const BIG: f64 = 1e10;
+
+/// A geom at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed<'a> {
+    /// Shape.
+    pub kind: GeomType,
+    /// Size, m; see [`GeomType`].
+    pub size: Vec3,
+    /// Centre, m.
+    pub pos: Vec3,
+    /// Orientation; the columns are the local axes.
+    pub mat: &'a Mat3,
+}
+
+impl Placed<'_> {
+    /// Local z axis: the axis of a capsule or cylinder, the normal of a plane.
+    #[inline(always)]
+    fn axis(&self) -> Vec3 {
+        column(self.mat, 2)
+    }
+}
+
+/// One point where two geoms touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Distance between the surfaces, m; negative in penetration.
+    pub dist: f64,
+    /// Position, m.
+    pub pos: Vec3,
+    /// Contact frame; its rows are the normal (from the first geom to the second) and the two tangents.
+    pub frame: Mat3,
+}
+
+impl ContactPoint {
+    /// The normal: first row of the frame.
+    pub fn normal(&self) -> Vec3 {
+        [self.frame[0], self.frame[1], self.frame[2]]
+    }
+}
+
+/// A contact before its tangents are known.
+#[derive(Clone, Copy, Debug)]
+struct Touch {
+    dist: f64,
+    pos: Vec3,
+    normal: Vec3,
+}
+
+/// Appends a contact, if there is one, with the tangents of its normal.
+#[inline(always)]
+fn push(touch: Option<Touch>, out: &mut Vec<ContactPoint>) {
+    if let Some(Touch { dist, pos, normal }) = touch {
+        let frame = frame::from_normal(normal);
+        out.push(ContactPoint { dist, pos, frame });
+    }
+}
+
+/// What the routines need to know besides the geoms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Tolerance of the convex routines, m (MuJoCo's `ccd_tolerance`).
+    pub ccd_tolerance: f64,
+    /// Greatest number of iterations of GJK and of EPA (MuJoCo's `ccd_iterations`).
+    pub ccd_iterations: usize,
+    /// Peculiarities to keep.
+    pub quirks: Quirks,
+}
+
+impl Default for Options {
+    /// MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, all quirks kept.
+    fn default() -> Self {
+        Options {
+            ccd_tolerance: 1e-6,
+            ccd_iterations: 50,
+            quirks: Quirks::default(),
+        }
+    }
+}
+
+/// Peculiarities of MuJoCo 3.3.0. The default keeps them all; a `false` switches one off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quirks {
+    /// Box on box face: `dist` is half of the depth. Off: the whole depth.
+    pub half_box_face_depth: bool,
+    /// Box edge on box edge: once a corner of the reference face has been looked at, its squared distance stands in for
+    /// the determinant by which the remaining corners are located. Off: the determinant is used throughout.
+    pub box_edge_determinant_reuse: bool,
+    /// Capsule on box: a box edge whose nearest point moved back off the corner is still treated as that corner when the
+    /// second contact is sought. Off: it is treated as an edge.
+    pub stale_box_corner: bool,
+    /// Convex pairs: geoms with the same centre do not touch. Off: they are treated like others.
+    pub same_centre_is_no_contact: bool,
+    /// Convex pairs: overlapping geoms for which EPA finds no depth do not touch. Off: the least overlap along the
+    /// geoms' axes and the line of centres is taken, an upper bound of the depth.
+    pub failed_depth_is_no_contact: bool,
+}
+
+impl Default for Quirks {
+    /// MuJoCo 3.3.0's behaviour.
+    fn default() -> Self {
+        Quirks {
+            half_box_face_depth: true,
+            box_edge_determinant_reuse: true,
+            stale_box_corner: true,
+            same_centre_is_no_contact: true,
+            failed_depth_is_no_contact: true,
+        }
+    }
+}
+
+impl Quirks {
+    /// None of the quirks: the sensible behaviour throughout.
+    pub fn none() -> Self {
+        Quirks {
+            half_box_face_depth: false,
+            box_edge_determinant_reuse: false,
+            stale_box_corner: false,
+            same_centre_is_no_contact: false,
+            failed_depth_is_no_contact: false,
+        }
+    }
+}
+
+/// Work space of [`collide`], allocated once and used for any number of calls.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    polytope: polytope::Polytope,
+    box_points: Vec<box_box::BoxPoint>,
+}
+
+impl Scratch {
+    /// Work space large enough for any pair at the default number of iterations.
+    pub fn new() -> Self {
+        Scratch {
+            polytope: polytope::Polytope::new(),
+            box_points: Vec::with_capacity(box_box::MAX_POINTS),
+        }
+    }
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Scratch::new()
+    }
+}
+
+/// Whether the bounding spheres of two geoms come within the margin, or a bounding sphere that of a plane.
+///
+/// MuJoCo makes this test before [`collide`], and it does decide whether some contacts exist. `radius_a` and `radius_b`
+/// are the bounding radii about the centres, 0 for a plane. Needs `a.kind <= b.kind`.
+#[inline]
+pub fn bounding_test(a: &Placed, radius_a: f64, b: &Placed, radius_b: f64, margin: f64) -> bool {
+    if a.kind == GeomType::Plane {
+        let height = dot(sub(b.pos, a.pos), a.axis());
+        let apart = height > margin + radius_b;
+        return !apart;
+    }
+    let between = sub(a.pos, b.pos);
+    let reach = radius_a + radius_b + margin;
+    let apart = dot(between, between) > reach * reach;
+    !apart
+}
+
+/// Appends the contacts of two geoms to `out`, in MuJoCo's order.
+///
+/// Needs `a.kind <= b.kind`; appends nothing otherwise, nor for pairs that do not collide. Contacts are those with
+/// `dist <= margin` (m). Any input is safe; poses that are not finite give an unspecified but finite number of contacts.
+pub fn collide(
+    a: &Placed,
+    b: &Placed,
+    margin: f64,
+    options: &Options,
+    scratch: &mut Scratch,
+    out: &mut Vec<ContactPoint>,
+) {
+    use GeomType::{Box, Capsule, Cylinder, Plane, Sphere};
+    match (a.kind, b.kind) {
+        (Plane, Sphere) => plane::plane_sphere(a, b, margin, out),
+        (Plane, Capsule) => plane::plane_capsule(a, b, margin, out),
+        (Plane, Cylinder) => plane::plane_cylinder(a, b, margin, out),
+        (Plane, Box) => plane::plane_box(a, b, margin, out),
+        (Sphere, Sphere) => push(round::sphere_sphere(a, b, margin), out),
+        (Sphere, Capsule) => push(round::sphere_capsule(a, b, margin), out),
+        (Sphere, Cylinder) => push(round::sphere_cylinder(a, b, margin), out),
+        (Sphere, Box) => push(round::ball_box(a.pos, a.size[0], b, margin), out),
+        (Capsule, Capsule) => round::capsule_capsule(a, b, margin, out),
+        (Capsule, Box) => capsule_box::capsule_box(a, b, margin, &options.quirks, out),
+        (Box, Box) => box_box::box_box(a, b, margin, &options.quirks, &mut scratch.box_points, out),
+        (Capsule, Cylinder) | (Cylinder, Cylinder) | (Cylinder, Box) => {
+            push(convex::convex(a, b, margin, options, &mut scratch.polytope), out);
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,124 @@
+//! A plane with a sphere, capsule, cylinder or box.
+
+use super::{ContactPoint, Placed, add_scaled, column, dot, frame, sub};
+use crate::math::{MINVAL, Vec3, add, cross, scale, unit};
+
+/// Plane (point and unit normal) and ball: distance and position.
+#[inline(always)]
+pub(super) fn plane_ball(plane: Vec3, normal: Vec3, centre: Vec3, radius: f64, margin: f64) -> Option<(f64, Vec3)> {
+    let height = dot(sub(centre, plane), normal);
+    if height > margin + radius {
+        return None;
+    }
+    let dist = height - radius;
+    Some((dist, add_scaled(centre, normal, -dist / 2.0 - radius)))
+}
+
+/// Plane and sphere: one contact.
+pub(super) fn plane_sphere(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+    let normal = a.axis();
+    if let Some((dist, pos)) = plane_ball(a.pos, normal, b.pos, b.size[0], margin) {
+        let frame = frame::from_normal(normal);
+        out.push(ContactPoint { dist, pos, frame });
+    }
+}
+
+/// Plane and capsule: the ball at either end, first the one at the positive end. The first tangent follows the capsule.
+pub(super) fn plane_capsule(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+    let (normal, axis) = (a.axis(), b.axis());
+    let mut frame = None;
+    for end in [b.size[1], -b.size[1]] {
+        if let Some((dist, pos)) = plane_ball(a.pos, normal, add_scaled(b.pos, axis, end), b.size[0], margin) {
+            let frame = *frame.get_or_insert_with(|| frame::with_hint(normal, axis));
+            out.push(ContactPoint { dist, pos, frame });
+        }
+    }
+}
+
+/// Plane and cylinder: the lowest point of the lower rim, the lowest of the upper rim, then two more points of the lower
+/// rim which complete an equilateral triangle.
+pub(super) fn plane_cylinder(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+    let normal = a.axis();
+    let (radius, half) = (b.size[0], b.size[1]);
+
+    // axis towards the plane, and its component along the normal
+    let mut axis = b.axis();
+    let mut drop = dot(normal, axis);
+    if drop > 0.0 {
+        axis = scale(axis, -1.0);
+        drop = -drop;
+    }
+    let height = dot(sub(b.pos, a.pos), normal);
+
+    // from the axis to the lowest point of a rim
+    let down = sub(scale(axis, drop), normal);
+    let length2 = dot(down, down);
+    let rim = if length2 >= MINVAL * MINVAL {
+        scale(down, radius / length2.sqrt())
+    } else {
+        scale(column(b.mat, 0), radius)
+    };
+    let rim_drop = dot(rim, normal);
+    axis = scale(axis, half);
+    drop *= half;
+
+    // lower rim: nothing else can be lower
+    let dist = height + drop + rim_drop;
+    if dist > margin || dist.is_nan() {
+        return;
+    }
+    let frame = frame::from_normal(normal);
+    let mut push = |dist: f64, point: Vec3| {
+        let pos = add_scaled(point, normal, -dist * 0.5);
+        out.push(ContactPoint { dist, pos, frame });
+    };
+    push(dist, add(add(b.pos, rim), axis));
+
+    // upper rim
+    let dist = height - drop + rim_drop;
+    if dist <= margin {
+        push(dist, sub(add(b.pos, rim), axis));
+    }
+
+    // the triangle's other corners
+    let dist = height + drop - rim_drop * 0.5;
+    if dist <= margin {
+        let side = scale(unit(cross(rim, axis)).0, radius * 3f64.sqrt() / 2.0);
+        for sign in [1.0, -1.0] {
+            let corner = add_scaled(add(add_scaled(b.pos, side, sign), axis), rim, -0.5);
+            push(dist, corner);
+        }
+    }
+}
+
+/// Plane and box: the first four corners below the box centre that reach the plane.
+pub(super) fn plane_box(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+    const MOST: usize = 4;
+    let normal = a.axis();
+    let height = dot(sub(b.pos, a.pos), normal);
+    // half edges of the box; a corner is the sum of one of either direction for each axis
+    let edge = |k: usize| scale(column(b.mat, k), b.size[k]);
+    let edges = [edge(0), edge(1), edge(2)];
+    let mut frame = None;
+    let mut count = 0;
+    for corner in 0..8 {
+        let sign = |k: usize| if corner >> k & 1 == 1 { 1.0 } else { -1.0 };
+        let arm = add_scaled(
+            add_scaled(scale(edges[0], sign(0)), edges[1], sign(1)),
+            edges[2],
+            sign(2),
+        );
+        let rise = dot(normal, arm);
+        let dist = height + rise;
+        if dist > margin || rise > 0.0 {
+            continue;
+        }
+        let frame = *frame.get_or_insert_with(|| frame::from_normal(normal));
+        let pos = add_scaled(add(arm, b.pos), normal, -dist / 2.0);
+        out.push(ContactPoint { dist, pos, frame });
+        count += 1;
+        if count == MOST {
+            return;
+        }
+    }
+}

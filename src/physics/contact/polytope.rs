@@ -1,0 +1,206 @@
+//! The polytope that EPA expands: vertices, triangular faces with their neighbours, and the faces still to be looked at.
+
+use super::nearest::foot_on_plane;
+use super::support::Vertex;
+use super::{dot, sub};
+use crate::math::{Vec3, norm};
+
+/// Greatest number of faces ever made, deleted ones included.
+pub(super) const MAX_FACES: usize = 1000;
+
+/// A triangle of the polytope. Edge k runs from vertex k to vertex k + 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Vertex numbers.
+    pub(super) vertices: [u16; 3],
+    /// Face across each edge.
+    pub(super) neighbours: [u16; 3],
+    state: State,
+    /// Foot of the perpendicular from the origin to the plane of the face.
+    pub(super) foot: Vec3,
+    /// Distance of the plane from the origin.
+    pub(super) distance: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    /// Only there as a neighbour.
+    Unlisted,
+    /// At this place of the open list.
+    Listed(u16),
+    Deleted,
+}
+
+/// The next edge or vertex of a face.
+#[inline(always)]
+pub(super) fn after(edge: u8) -> u8 {
+    if edge == 2 { 0 } else { edge + 1 }
+}
+
+/// The previous edge or vertex of a face.
+#[inline(always)]
+fn before(edge: u8) -> u8 {
+    if edge == 0 { 2 } else { edge - 1 }
+}
+
+/// An entry of the open list.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Open {
+    pub(super) distance: f64,
+    pub(super) face: u16,
+}
+
+/// An edge, as seen from one of its faces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) face: u16,
+    pub(super) edge: u8,
+}
+
+/// The polytope. Its buffers keep their memory from one use to the next.
+#[derive(Clone, Debug)]
+pub(super) struct Polytope {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) faces: Vec<Face>,
+    /// Faces that may be the nearest one.
+    pub(super) open: Vec<Open>,
+    /// Edges between what the newest vertex sees and what it does not, in order.
+    pub(super) horizon: Vec<Edge>,
+    /// Edges still to be crossed while looking for the horizon.
+    pending: Vec<Edge>,
+}
+
+impl Polytope {
+    /// Empty, with room for the most faces.
+    pub(super) fn new() -> Self {
+        Polytope {
+            vertices: Vec::with_capacity(128),
+            faces: Vec::with_capacity(MAX_FACES),
+            open: Vec::with_capacity(MAX_FACES),
+            horizon: Vec::with_capacity(2 * MAX_FACES + 8),
+            pending: Vec::with_capacity(2 * MAX_FACES + 8),
+        }
+    }
+
+    /// Removes everything.
+    pub(super) fn clear(&mut self) {
+        self.vertices.clear();
+        self.faces.clear();
+        self.open.clear();
+    }
+
+    /// Appends a vertex and gives its number.
+    #[inline(always)]
+    pub(super) fn add_vertex(&mut self, vertex: Vertex) -> u16 {
+        self.vertices.push(vertex);
+        (self.vertices.len() - 1) as u16
+    }
+
+    /// Appends a vertex of a simplex: its point is formed anew from its two sources.
+    pub(super) fn add_simplex_vertex(&mut self, vertex: &Vertex) -> u16 {
+        let point = sub(vertex.a, vertex.b);
+        self.add_vertex(Vertex { point, ..*vertex })
+    }
+
+    /// Point of the Minkowski difference at a vertex.
+    #[inline(always)]
+    pub(super) fn point(&self, vertex: u16) -> Vec3 {
+        self.vertices[vertex as usize].point
+    }
+
+    /// Appends a face and gives its distance, 0 when its vertices are on a line.
+    #[inline(always)]
+    pub(super) fn add_face(&mut self, vertices: [u16; 3], neighbours: [u16; 3]) -> f64 {
+        let (a, b, c) = (
+            self.point(vertices[0]),
+            self.point(vertices[1]),
+            self.point(vertices[2]),
+        );
+        let (foot, distance) = match foot_on_plane(c, b, a) {
+            Some(foot) => (foot, norm(foot)),
+            None => ([0.0; 3], 0.0),
+        };
+        self.faces.push(Face {
+            vertices,
+            neighbours,
+            state: State::Unlisted,
+            foot,
+            distance,
+        });
+        distance
+    }
+
+    /// Puts a face at the end of the open list, if `wanted`.
+    #[inline(always)]
+    pub(super) fn list(&mut self, face: u16, wanted: bool) {
+        // without a branch, since for most faces of EPA it is hard to predict
+        let entry = &mut self.faces[face as usize];
+        let place = self.open.len();
+        entry.state = if wanted {
+            State::Listed(place as u16)
+        } else {
+            State::Unlisted
+        };
+        let distance = entry.distance;
+        self.open.push(Open { distance, face });
+        self.open.truncate(place + wanted as usize);
+    }
+
+    /// Deletes a face. The last entry of the open list takes its place there.
+    #[inline]
+    fn delete(&mut self, face: u16) {
+        if let State::Listed(place) = self.faces[face as usize].state {
+            self.open.swap_remove(place as usize);
+            if let Some(moved) = self.open.get(place as usize) {
+                self.faces[moved.face as usize].state = State::Listed(place);
+            }
+        }
+        self.faces[face as usize].state = State::Deleted;
+    }
+
+    /// Which edge of `face` starts at the vertex.
+    #[inline(always)]
+    fn edge_from(&self, face: u16, vertex: u16) -> u8 {
+        let [first, second, _] = self.faces[face as usize].vertices;
+        (first != vertex) as u8 * (1 + (second != vertex) as u8)
+    }
+
+    /// Deletes the faces that see the point `w`, from the face `seed` outwards, depth first, and collects the horizon.
+    pub(super) fn carve(&mut self, seed: u16, w: Vec3) {
+        self.horizon.clear();
+        self.pending.clear();
+        self.delete(seed);
+        self.pending.push(Edge { face: seed, edge: 2 });
+        self.pending.push(Edge { face: seed, edge: 1 });
+        // the neighbour across the first edge is looked at even if it is deleted
+        self.cross_edge(Edge { face: seed, edge: 0 }, w);
+        while let Some(next) = self.pending.pop() {
+            let neighbour = self.faces[next.face as usize].neighbours[next.edge as usize];
+            if self.faces[neighbour as usize].state != State::Deleted {
+                self.cross_edge(next, w);
+            }
+        }
+    }
+
+    /// Looks at the face across an edge: it is deleted and its other two edges are noted, or the edge is of the horizon.
+    #[inline(always)]
+    fn cross_edge(&mut self, from: Edge, w: Vec3) {
+        let here = &self.faces[from.face as usize];
+        let face = here.neighbours[from.edge as usize];
+        let edge = self.edge_from(face, here.vertices[after(from.edge) as usize]);
+        let there = &self.faces[face as usize];
+        if dot(there.foot, w) < there.distance * there.distance {
+            self.horizon.push(Edge { face, edge });
+            return;
+        }
+        self.delete(face);
+        self.pending.push(Edge {
+            face,
+            edge: before(edge),
+        });
+        self.pending.push(Edge {
+            face,
+            edge: after(edge),
+        });
+    }
+}

@@ -1,0 +1,217 @@
+//! Support points of convex geoms, and of the Minkowski difference of two.
+
+use super::{Placed, add_scaled, sub};
+use crate::math::{Mat3, Vec3, add, mat_t_vec, mat_vec, scale};
+
+/// A convex shape, known by its farthest points.
+pub(super) trait Support {
+    /// Farthest point in the unit direction `dir`.
+    fn support(&self, dir: Vec3) -> Vec3;
+}
+
+/// Pose of a shape and how far it is grown on all sides.
+#[derive(Clone, Copy)]
+struct Pose<'a> {
+    pos: Vec3,
+    mat: &'a Mat3,
+    grown: f64,
+}
+
+impl<'a> Pose<'a> {
+    /// Half the margin goes to either geom of a pair.
+    fn new(geom: &Placed<'a>, margin: f64) -> Self {
+        Pose {
+            pos: geom.pos,
+            mat: geom.mat,
+            grown: 0.5 * margin,
+        }
+    }
+
+    #[inline(always)]
+    fn place(&self, local: Vec3, dir: Vec3) -> Vec3 {
+        let point = add(mat_vec(self.mat, local), self.pos);
+        if self.grown > 0.0 {
+            add_scaled(point, dir, self.grown)
+        } else {
+            point
+        }
+    }
+}
+
+/// `half` with the sign of the component; a component of either zero counts as positive. Without a branch, since the
+/// sign is hard to predict.
+#[inline(always)]
+fn along(component: f64, half: f64) -> f64 {
+    half.copysign(component + 0.0)
+}
+
+/// The segment inside a capsule.
+pub(super) struct Segment<'a> {
+    pose: Pose<'a>,
+    half: f64,
+}
+
+impl<'a> Segment<'a> {
+    /// The segment of a capsule; never grown.
+    pub(super) fn new(geom: &Placed<'a>) -> Self {
+        Segment {
+            pose: Pose::new(geom, 0.0),
+            half: geom.size[1],
+        }
+    }
+}
+
+impl Support for Segment<'_> {
+    #[inline(always)]
+    fn support(&self, dir: Vec3) -> Vec3 {
+        let local = mat_t_vec(self.pose.mat, dir);
+        self.pose.place([0.0, 0.0, along(local[2], self.half)], dir)
+    }
+}
+
+/// A capsule.
+pub(super) struct Capsule<'a> {
+    pose: Pose<'a>,
+    radius: f64,
+    half: f64,
+}
+
+impl<'a> Capsule<'a> {
+    /// A capsule grown by half the margin.
+    pub(super) fn new(geom: &Placed<'a>, margin: f64) -> Self {
+        Capsule {
+            pose: Pose::new(geom, margin),
+            radius: geom.size[0],
+            half: geom.size[1],
+        }
+    }
+}
+
+impl Support for Capsule<'_> {
+    #[inline(always)]
+    fn support(&self, dir: Vec3) -> Vec3 {
+        let local = mat_t_vec(self.pose.mat, dir);
+        let mut point = scale(local, self.radius);
+        point[2] += along(local[2], self.half);
+        self.pose.place(point, dir)
+    }
+}
+
+/// A cylinder.
+pub(super) struct Cylinder<'a> {
+    pose: Pose<'a>,
+    radius: f64,
+    half: f64,
+}
+
+impl<'a> Cylinder<'a> {
+    /// A cylinder grown by half the margin.
+    pub(super) fn new(geom: &Placed<'a>, margin: f64) -> Self {
+        Cylinder {
+            pose: Pose::new(geom, margin),
+            radius: geom.size[0],
+            half: geom.size[1],
+        }
+    }
+}
+
+impl Support for Cylinder<'_> {
+    /// A direction along the axis gives the middle of the end disc, one exactly across it the middle of the side.
+    #[inline(always)]
+    fn support(&self, dir: Vec3) -> Vec3 {
+        const RADIAL_MIN: f64 = crate::math::MINVAL * crate::math::MINVAL;
+        let local = mat_t_vec(self.pose.mat, dir);
+        let radial2 = local[0] * local[0] + local[1] * local[1];
+        let z = if local[2] == 0.0 {
+            0.0
+        } else {
+            along(local[2], self.half)
+        };
+        let point = if radial2 > RADIAL_MIN {
+            let factor = self.radius / radial2.sqrt();
+            [local[0] * factor, local[1] * factor, z]
+        } else {
+            [0.0, 0.0, z]
+        };
+        self.pose.place(point, dir)
+    }
+}
+
+/// A box.
+pub(super) struct Cuboid<'a> {
+    pose: Pose<'a>,
+    size: Vec3,
+}
+
+impl<'a> Cuboid<'a> {
+    /// A box grown by half the margin.
+    pub(super) fn new(geom: &Placed<'a>, margin: f64) -> Self {
+        Cuboid {
+            pose: Pose::new(geom, margin),
+            size: geom.size,
+        }
+    }
+}
+
+impl Support for Cuboid<'_> {
+    #[inline(always)]
+    fn support(&self, dir: Vec3) -> Vec3 {
+        let local = mat_t_vec(self.pose.mat, dir);
+        let point = [
+            along(local[0], self.size[0]),
+            along(local[1], self.size[1]),
+            along(local[2], self.size[2]),
+        ];
+        self.pose.place(point, dir)
+    }
+}
+
+/// A point of the Minkowski difference and where it comes from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Vertex {
+    /// `a - b`
+    pub(super) point: Vec3,
+    /// Point of the first shape.
+    pub(super) a: Vec3,
+    /// Point of the second shape.
+    pub(super) b: Vec3,
+}
+
+/// The Minkowski difference of two shapes, first minus second: it holds the origin when they overlap.
+pub(super) struct Difference<A, B> {
+    /// First shape.
+    pub(super) a: A,
+    /// Second shape.
+    pub(super) b: B,
+}
+
+impl<A: Support, B: Support> Difference<A, B> {
+    /// Farthest vertex in the unit direction `dir`.
+    #[inline(always)]
+    pub(super) fn support(&self, dir: Vec3) -> Vertex {
+        let a = self.a.support(dir);
+        let b = self.b.support(scale(dir, -1.0));
+        Vertex { point: sub(a, b), a, b }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::MAT3_ID;
+    use crate::model::GeomType;
+
+    #[test]
+    fn a_cylinder_has_no_corner_across_or_along_its_axis() {
+        let geom = Placed {
+            kind: GeomType::Cylinder,
+            size: [0.5, 2.0, 0.0],
+            pos: [1.0, 0.0, 0.0],
+            mat: &MAT3_ID,
+        };
+        let cylinder = Cylinder::new(&geom, 0.0);
+        assert_eq!(cylinder.support([0.0, 0.0, 1.0]), [1.0, 0.0, 2.0]);
+        assert_eq!(cylinder.support([-1.0, 0.0, 0.0]), [0.5, 0.0, 0.0]);
+        assert_eq!(Cylinder::new(&geom, 0.5).support([0.0, 0.0, -1.0]), [1.0, 0.0, -2.25]);
+    }
+}

@@ -1,0 +1,40 @@
+//! From controls to joint forces and unconstrained acceleration.
+
+use crate::model::{BiasType, Model};
+use crate::physics::dynamics::inertia::solve_packed;
+use crate::physics::state::State;
+use crate::physics::topology::Topology;
+
+/// Computes `actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
+///
+/// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint; its length and velocity are gear times those
+/// of the joint. Controls out of range are clamped.
+pub fn fwd_actuation(model: &Model, topology: &Topology, s: &mut State) {
+    s.qfrc_actuator.fill(0.0);
+    for i in 0..model.nu() {
+        let j = model.actuator_trnid[i];
+        let (d, q) = (model.jnt_dofadr[j], model.jnt_qposadr[j]);
+        let gear = s.params.actuator_gear[i];
+        let mut ctrl = s.ctrl[i];
+        if model.actuator_ctrllimited[i] {
+            let [lo, hi] = model.actuator_ctrlrange[i];
+            ctrl = ctrl.max(lo).min(hi);
+        }
+        let mut force = model.actuator_gainprm[i][0] * ctrl;
+        if model.actuator_biastype[i] == BiasType::Affine {
+            let p = model.actuator_biasprm[i];
+            force += p[0] + p[1] * (gear * s.qpos[q]) + p[2] * (gear * s.qvel[d]);
+        }
+        if s.params.actuator_forcelimited[i] {
+            let [lo, hi] = model.actuator_forcerange[i];
+            force = force.max(lo).min(hi);
+        }
+        s.actuator_force[i] = force;
+        s.qfrc_actuator[d] += gear * force;
+    }
+    for d in 0..model.nv {
+        s.qfrc_smooth[d] = s.qfrc_passive[d] - s.qfrc_bias[d] + s.qfrc_applied[d] + s.qfrc_actuator[d];
+    }
+    s.qacc_smooth.copy_from_slice(&s.qfrc_smooth);
+    solve_packed(topology, &s.qld, &s.qld_diag_inv, &mut s.qacc_smooth);
+}

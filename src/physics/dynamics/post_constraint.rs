@@ -1,0 +1,82 @@
+//! Body accelerations and internal wrenches after the constraint solver: what accelerometers and torque sensors read.
+
+use crate::math::*;
+use crate::model::{EqualityKind, Model};
+use crate::physics::constraint::{RowKind, weld_points};
+use crate::physics::spatial::*;
+use crate::physics::state::State;
+
+/// Computes `cacc, cfrc_ext, cfrc_int` from `qacc` and the constraint forces (recursive Newton-Euler with the joint
+/// accelerations known).
+///
+/// `cfrc_ext` holds contacts and welds; joint limits, friction loss, springs and actuators act inside joints and so show
+/// in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
+/// although their Jacobian is about half the angular one: the wrench is then about twice the true one.
+pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: bool) {
+    let nb = model.nbody();
+    s.cfrc_ext.fill([0.0; 6]);
+    for i in 0..s.contacts.len() {
+        let c = &s.contacts[i];
+        if c.efc_address.is_none() {
+            continue;
+        }
+        let force = mat_t_vec(&c.frame, [c.force[0], c.force[1], c.force[2]]);
+        let torque = mat_t_vec(&c.frame, [c.force[3], c.force[4], c.force[5]]);
+        let (pos, geom) = (c.pos, c.geom);
+        for (g, sign) in [(geom[0], -1.0), (geom[1], 1.0)] {
+            apply(model, s, model.geom_bodyid[g], torque, force, pos, sign);
+        }
+    }
+    for k in 0..s.efc.blocks.len() {
+        let block = s.efc.blocks[k];
+        if block.kind != RowKind::Equality || block.dim != 6 {
+            continue;
+        }
+        let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[block.id] else {
+            continue;
+        };
+        let Some(weld) = weld_points(model, s, block.id) else {
+            continue;
+        };
+        let f: [f64; 6] = std::array::from_fn(|r| s.efc.force[block.row + r]);
+        let force = [f[0], f[1], f[2]];
+        let rows = [f[3], f[4], f[5]];
+        let torque = if double_weld_torque {
+            rows
+        } else {
+            weld.torque_of_rows(rows)
+        };
+        apply(model, s, body1.0, torque, force, weld.point1, 1.0);
+        apply(model, s, body2.0, torque, force, weld.point2, -1.0);
+    }
+    let g = model.opt.gravity;
+    s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
+    s.cfrc_int[0] = [0.0; 6];
+    for b in 1..nb {
+        let mut a = s.cacc[model.body_parentid[b]];
+        for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
+            axpy6(&mut a, s.qvel[d], &s.cdof_dot[d]);
+            axpy6(&mut a, s.qacc[d], &s.cdof[d]);
+        }
+        s.cacc[b] = a;
+        let mut f = inertia_mul(&s.cinert[b], &a);
+        axpy6(
+            &mut f,
+            1.0,
+            &cross_force(&s.cvel[b], &inertia_mul(&s.cinert[b], &s.cvel[b])),
+        );
+        axpy6(&mut f, -1.0, &s.cfrc_ext[b]);
+        s.cfrc_int[b] = f;
+    }
+    for b in (1..nb).rev() {
+        let f = s.cfrc_int[b];
+        axpy6(&mut s.cfrc_int[model.body_parentid[b]], 1.0, &f);
+    }
+}
+
+fn apply(model: &Model, s: &mut State, body: usize, torque: Vec3, force: Vec3, point: Vec3, sign: f64) {
+    if body > 0 {
+        let offset = sub(point, s.subtree_com[model.body_rootid[body]]);
+        axpy6(&mut s.cfrc_ext[body], sign, &wrench_from(torque, force, offset));
+    }
+}

@@ -1,0 +1,83 @@
+//! Velocities, bias forces and passive forces.
+
+use crate::model::{JointType, Model};
+use crate::physics::spatial::*;
+use crate::physics::state::State;
+
+/// Computes `cvel` and `cdof_dot` from `qvel`.
+pub fn com_vel(model: &Model, s: &mut State) {
+    s.cvel[0] = [0.0; 6];
+    for b in 1..model.nbody() {
+        let mut v = s.cvel[model.body_parentid[b]];
+        for j in model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b] {
+            let d = model.jnt_dofadr[j];
+            if model.jnt_type[j] == JointType::Free {
+                for k in 0..3 {
+                    s.cdof_dot[d + k] = [0.0; 6];
+                    axpy6(&mut v, s.qvel[d + k], &s.cdof[d + k]);
+                }
+                for k in 3..6 {
+                    s.cdof_dot[d + k] = cross_motion(&v, &s.cdof[d + k]);
+                }
+                for k in 3..6 {
+                    axpy6(&mut v, s.qvel[d + k], &s.cdof[d + k]);
+                }
+            } else {
+                s.cdof_dot[d] = cross_motion(&v, &s.cdof[d]);
+                axpy6(&mut v, s.qvel[d], &s.cdof[d]);
+            }
+        }
+        s.cvel[b] = v;
+    }
+}
+
+/// Working memory of the recursive Newton-Euler pass.
+#[derive(Clone, Debug, Default)]
+pub struct BiasScratch {
+    acc: Vec<Spatial>,
+    force: Vec<Spatial>,
+}
+
+/// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`: springs `-k (q - springref)`, dampers `-d v`, and the recursive
+/// Newton-Euler algorithm at zero joint acceleration.
+pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
+    com_vel(model, s);
+    let nb = model.nbody();
+    scratch.acc.resize(nb, [0.0; 6]);
+    scratch.force.resize(nb, [0.0; 6]);
+    let g = model.opt.gravity;
+    scratch.acc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
+    scratch.force[0] = [0.0; 6];
+    for b in 1..nb {
+        let mut a = scratch.acc[model.body_parentid[b]];
+        for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
+            axpy6(&mut a, s.qvel[d], &s.cdof_dot[d]);
+        }
+        scratch.acc[b] = a;
+        let mut f = inertia_mul(&s.cinert[b], &a);
+        axpy6(
+            &mut f,
+            1.0,
+            &cross_force(&s.cvel[b], &inertia_mul(&s.cinert[b], &s.cvel[b])),
+        );
+        scratch.force[b] = f;
+    }
+    for b in (1..nb).rev() {
+        let p = model.body_parentid[b];
+        if p > 0 {
+            let f = scratch.force[b];
+            axpy6(&mut scratch.force[p], 1.0, &f);
+        }
+    }
+    for d in 0..model.nv {
+        s.qfrc_bias[d] = dot6(&s.cdof[d], &scratch.force[model.dof_bodyid[d]]);
+        s.qfrc_passive[d] = -s.params.dof_damping[d] * s.qvel[d];
+    }
+    for j in 0..model.njnt() {
+        let k = s.params.jnt_stiffness[j];
+        if k != 0.0 && model.jnt_type[j] != JointType::Free {
+            let q = model.jnt_qposadr[j];
+            s.qfrc_passive[model.jnt_dofadr[j]] -= k * (s.qpos[q] - model.qpos_spring[q]);
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! `Model` + `State` -> next `State`.
+//!
+//! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space, on a scene that lives in Rapier.
+
+pub mod constraint;
+pub mod contact;
+pub mod dynamics;
+mod engine;
+mod soft;
+pub mod spatial;
+mod state;
+mod topology;
+pub mod world;
+
+pub use dynamics::set_const;
+pub use engine::{Engine, EngineError, Probe, Stage};
+pub use soft::{SoftEngine, SoftOptions};
+pub use state::{Contact, Params, State};
+pub use topology::Topology;

@@ -1,0 +1,221 @@
+//! The contact routines behind Rapier's query-dispatcher interface.
+
+use parry3d_f64::math::{Mat3 as ParryMat3, Pose, Vector};
+use parry3d_f64::query::details::NormalConstraints;
+use parry3d_f64::query::{
+    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, NonlinearRigidMotion,
+    PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection,
+    TrackedContact, Unsupported,
+};
+use parry3d_f64::shape::{PackedFeatureId, Shape, TypedShape};
+
+use crate::math::{MAT3_ID, Mat3, Vec3, add_scaled};
+use crate::model::GeomType;
+use crate::physics::contact::{ContactPoint, Options, Placed, Scratch, bounding_test, collide};
+
+/// Gives Rapier the contact manifolds of [`crate::physics::contact`]; everything else is Parry's.
+///
+/// It keeps no memory of earlier steps, unlike Parry's own manifolds, and ignores the prediction distance: a contact is
+/// a contact when the shapes touch. Points come in the same order as from [`collide`]; those of one normal share a manifold.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactDispatcher {
+    options: Options,
+}
+
+impl ContactDispatcher {
+    /// With the given options.
+    pub fn new(options: Options) -> Self {
+        Self { options }
+    }
+}
+
+/// A shape as the contact routines see it: type, size, bounding radius, and its frame in the collider's (Parry's cylinders
+/// stand along y).
+fn describe(shape: &dyn Shape) -> Option<(GeomType, Vec3, f64, bool)> {
+    Some(match shape.as_typed_shape() {
+        TypedShape::HalfSpace(_) => (GeomType::Plane, [0.0; 3], 0.0, false),
+        TypedShape::Ball(b) => (GeomType::Sphere, [b.radius, 0.0, 0.0], b.radius, false),
+        TypedShape::Capsule(c) => {
+            let half = c.segment.b.z;
+            (GeomType::Capsule, [c.radius, half, 0.0], c.radius + half, false)
+        }
+        TypedShape::Cylinder(c) => {
+            let (r, h) = (c.radius, c.half_height);
+            (GeomType::Cylinder, [r, h, 0.0], (r * r + h * h).sqrt(), true)
+        }
+        TypedShape::Cuboid(c) => {
+            let h = c.half_extents;
+            (GeomType::Box, [h.x, h.y, h.z], h.length(), false)
+        }
+        _ => return None,
+    })
+}
+
+/// Rotation of a collider as the geom's: columns are the local axes. A cylinder's z axis is the collider's y axis.
+fn geom_mat(m: ParryMat3, upright: bool) -> Mat3 {
+    let (x, y, z) = if upright {
+        (m.x_axis, -m.z_axis, m.y_axis)
+    } else {
+        (m.x_axis, m.y_axis, m.z_axis)
+    };
+    [x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z]
+}
+
+fn vector(v: Vec3) -> Vector {
+    Vector::new(v[0], v[1], v[2])
+}
+
+impl ContactDispatcher {
+    /// Contacts in the frame of the first shape; `None` when a shape is not one of the model's.
+    fn points(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Option<(Vec<ContactPoint>, bool)> {
+        let (kind1, size1, radius1, upright1) = describe(g1)?;
+        let (kind2, size2, radius2, upright2) = describe(g2)?;
+        let mat1 = if upright1 {
+            geom_mat(ParryMat3::IDENTITY, true)
+        } else {
+            MAT3_ID
+        };
+        let mat2 = geom_mat(ParryMat3::from_quat(pos12.rotation), upright2);
+        let t = pos12.translation;
+        let first = Placed {
+            kind: kind1,
+            size: size1,
+            pos: [0.0; 3],
+            mat: &mat1,
+        };
+        let second = Placed {
+            kind: kind2,
+            size: size2,
+            pos: [t.x, t.y, t.z],
+            mat: &mat2,
+        };
+        let flipped = kind1 > kind2;
+        let ((a, ra), (b, rb)) = if flipped {
+            ((second, radius2), (first, radius1))
+        } else {
+            ((first, radius1), (second, radius2))
+        };
+        let mut points = Vec::new();
+        if bounding_test(&a, ra, &b, rb, 0.0) {
+            collide(&a, &b, 0.0, &self.options, &mut Scratch::new(), &mut points);
+        }
+        Some((points, flipped))
+    }
+}
+
+impl<M: Default + Clone, C: Default + Copy> PersistentQueryDispatcher<M, C> for ContactDispatcher
+where
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: f64,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        let Some((points, flipped)) = self.points(pos12, g1, g2) else {
+            return DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+        };
+        for m in manifolds.iter_mut() {
+            m.points.clear();
+            (m.local_n1, m.local_n2) = (Vector::ZERO, Vector::ZERO);
+        }
+        let mut used = 0;
+        let mut last_normal = None;
+        for p in &points {
+            let normal = if flipped { p.normal().map(|v| -v) } else { p.normal() };
+            if last_normal != Some(normal) {
+                if manifolds.len() == used {
+                    manifolds.push(ContactManifold::with_data(0, 1, M::default()));
+                }
+                let m = &mut manifolds[used];
+                m.local_n1 = vector(normal);
+                m.local_n2 = pos12.rotation.inverse() * -vector(normal);
+                last_normal = Some(normal);
+                used += 1;
+            }
+            let on1 = vector(add_scaled(p.pos, normal, -0.5 * p.dist));
+            let on2 = pos12.inverse_transform_point(vector(add_scaled(p.pos, normal, 0.5 * p.dist)));
+            let id = PackedFeatureId::UNKNOWN;
+            manifolds[used - 1]
+                .points
+                .push(TrackedContact::new(on1, on2, id, id, p.dist));
+        }
+        Ok(())
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normals1: Option<&dyn NormalConstraints>,
+        normals2: Option<&dyn NormalConstraints>,
+        prediction: f64,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        DefaultQueryDispatcher.contact_manifold_convex_convex(pos12, g1, g2, normals1, normals2, prediction, manifold)
+    }
+}
+
+impl QueryDispatcher for ContactDispatcher {
+    fn intersection_test(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        DefaultQueryDispatcher.intersection_test(pos12, g1, g2)
+    }
+
+    fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
+        DefaultQueryDispatcher.distance(pos12, g1, g2)
+    }
+
+    fn contact(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: f64,
+    ) -> Result<Option<Contact>, Unsupported> {
+        DefaultQueryDispatcher.contact(pos12, g1, g2, prediction)
+    }
+
+    fn closest_points(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: f64,
+    ) -> Result<ClosestPoints, Unsupported> {
+        DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist)
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        velocity: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        DefaultQueryDispatcher.cast_shapes(pos12, velocity, g1, g2, options)
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start: f64,
+        end: f64,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        DefaultQueryDispatcher.cast_shapes_nonlinear(motion1, g1, motion2, g2, start, end, stop_at_penetration)
+    }
+}

@@ -1,0 +1,16 @@
+//! The scene in Rapier, and the contacts that come out of it.
+//!
+//! Rapier holds every body and geom, with its pose written back each step, so ray casts, shape queries and debug
+//! rendering work on the live scene. Contacts for the solver come from a sweep over the same geoms with the contact
+//! routines of [`crate::physics::contact`] on world poses; the same routines are behind Rapier's query-dispatcher
+//! interface, so Rapier's own collision pipeline finds the same contacts on demand.
+
+mod dispatcher;
+mod pairs;
+mod scene;
+mod sweep;
+
+pub use dispatcher::ContactDispatcher;
+pub use pairs::{Pair, PairTable};
+pub use scene::{Scene, SceneContact};
+pub use sweep::Sweep;

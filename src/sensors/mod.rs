@@ -1,0 +1,12 @@
+//! MIMo's senses: plain functions from [`crate::Model`] and [`crate::physics::State`] to observations.
+//!
+//! Positions and velocities are read as they are; everything else in the state describes the start of the last physics
+//! step, so torques, accelerations, contacts and images lag by one step, as in the reference.
+
+mod proprioception;
+mod sensordata;
+mod vestibular;
+
+pub use proprioception::{Component, Proprioception, limit_activation};
+pub use sensordata::{sensor_value, sensordata};
+pub use vestibular::Vestibular;

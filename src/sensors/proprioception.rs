@@ -1,0 +1,185 @@
+//! The sense of the own body: joint angles, velocities, torques, limits and the state of the actuators.
+
+use std::ops::Range;
+
+use crate::actuation::Actuation;
+use crate::config::{Compat, Config};
+use crate::mimo::MimoJoints;
+use crate::model::{Model, SensorType};
+use crate::physics::State;
+use crate::sensors::sensor_value;
+
+/// Width of the band before a joint limit in which the limit is felt, rad.
+const LIMIT_THRESHOLD: f64 = 0.035;
+
+/// Parts of the proprioceptive vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Component {
+    /// Joint angles, rad.
+    Angles,
+    /// Joint velocities, rad/s.
+    Velocities,
+    /// Torque sensors, N m, three values each.
+    Torques,
+    /// How far each joint is into the band around its limits, see [`limit_activation`].
+    Limits,
+    /// State of the actuators, as the actuation model defines it.
+    Actuation,
+}
+
+impl Component {
+    /// Name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Angles => "angles",
+            Self::Velocities => "velocities",
+            Self::Torques => "torques",
+            Self::Limits => "limits",
+            Self::Actuation => "actuation",
+        }
+    }
+}
+
+/// The proprioceptive vector: which components, in which order.
+///
+/// Under `compat: api` the order is angles, velocities, torques, limits, actuation, of which all but the angles can be
+/// switched off; under `compat: reference` all are on, in the order actuation, limits, angles, velocities, torques.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proprioception {
+    joints: MimoJoints,
+    torque_sensors: Vec<usize>,
+    layout: Vec<(Component, Range<usize>)>,
+}
+
+impl Proprioception {
+    /// For `model`, whose actuation contributes `actuation_len` values.
+    pub fn new(model: &Model, config: &Config, actuation_len: usize) -> Self {
+        use Component::*;
+        let joints = MimoJoints::new(model);
+        let is_torque = |i: &usize| model.sensor_type[*i] == SensorType::Torque;
+        let torque_sensors: Vec<usize> = (0..model.nsensor()).filter(is_torque).collect();
+        let components: Vec<Component> = match config.compat {
+            Compat::Reference => vec![Actuation, Limits, Angles, Velocities, Torques],
+            Compat::Api => [
+                (Angles, true),
+                (Velocities, config.proprio_velocity),
+                (Torques, config.proprio_torque),
+                (Limits, config.proprio_limits),
+                (Actuation, config.proprio_actuation),
+            ]
+            .into_iter()
+            .filter_map(|(c, on)| on.then_some(c))
+            .collect(),
+        };
+        let mut start = 0;
+        let layout = components
+            .into_iter()
+            .map(|c| {
+                let len = match c {
+                    Angles | Velocities | Limits => joints.len(),
+                    Torques => 3 * torque_sensors.len(),
+                    Actuation => actuation_len,
+                };
+                start += len;
+                (c, start - len..start)
+            })
+            .collect();
+        Self {
+            joints,
+            torque_sensors,
+            layout,
+        }
+    }
+
+    /// Length of the vector.
+    pub fn len(&self) -> usize {
+        self.layout.last().map_or(0, |l| l.1.end)
+    }
+
+    /// Whether the vector is empty.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Components and their ranges, in order.
+    pub fn layout(&self) -> &[(Component, Range<usize>)] {
+        &self.layout
+    }
+
+    /// Range of one component, if it is on.
+    pub fn range(&self, component: Component) -> Option<Range<usize>> {
+        self.layout.iter().find(|l| l.0 == component).map(|l| l.1.clone())
+    }
+
+    /// MIMo's joints, in the order of angles, velocities and limits.
+    pub fn joints(&self) -> &MimoJoints {
+        &self.joints
+    }
+
+    /// Names of the joints.
+    pub fn joint_names<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = &'a str> {
+        self.joints.joint.iter().map(|&j| model.jnt_name[j].as_str())
+    }
+
+    /// Names of the torque sensors.
+    pub fn sensor_names<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = &'a str> {
+        self.torque_sensors.iter().map(|&i| model.sensor_name[i].as_str())
+    }
+
+    /// Writes the vector, of length [`Self::len`]. `out` in other lengths is filled as far as it goes.
+    pub fn observe(&self, model: &Model, s: &State, actuation: &dyn Actuation, out: &mut [f64]) {
+        for (component, range) in &self.layout {
+            let Some(out) = out.get_mut(range.clone()) else {
+                return;
+            };
+            match component {
+                Component::Angles => gather(&s.qpos, &self.joints.qpos, out),
+                Component::Velocities => gather(&s.qvel, &self.joints.dof, out),
+                Component::Torques => {
+                    for (values, &i) in out.chunks_exact_mut(3).zip(&self.torque_sensors) {
+                        values.copy_from_slice(&sensor_value(model, s, i));
+                    }
+                }
+                Component::Limits => {
+                    for ((v, &j), &q) in out.iter_mut().zip(&self.joints.joint).zip(&self.joints.qpos) {
+                        *v = limit_activation(s.qpos[q], model.jnt_range[j]);
+                    }
+                }
+                Component::Actuation => actuation.observe(model, s, out),
+            }
+        }
+    }
+}
+
+fn gather(from: &[f64], at: &[usize], out: &mut [f64]) {
+    for (v, &k) in out.iter_mut().zip(at) {
+        *v = from[k];
+    }
+}
+
+/// How strongly a joint limit is felt at angle `q` (rad): 0 inside the range, rising linearly to 1 over the last
+/// 0.035 rad before either limit, and on beyond it.
+pub fn limit_activation(q: f64, range: [f64; 2]) -> f64 {
+    let inside = (q - (range[0] + LIMIT_THRESHOLD)).min((range[1] - LIMIT_THRESHOLD) - q);
+    (-(inside / LIMIT_THRESHOLD)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_of_the_elbow_are_felt_as_specified() {
+        let range @ [lo, hi] = [-146f64.to_radians(), 5f64.to_radians()];
+        for (q, expect) in [
+            (lo + 0.0175, 0.5),
+            (lo, 1.0),
+            (lo - 0.0175, 1.5),
+            (hi - 0.02, 0.428_571_428_571_428_6),
+            (hi + 0.01, 1.285_714_285_714_285_7),
+            (-1.0, 0.0),
+        ] {
+            assert!((limit_activation(q, range) - expect).abs() < 1e-12, "{q}");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! What the integration tests share.
+#![allow(dead_code)] // each test binary uses its part
+
+use babybench::config::{Behavior, BodyParts, Scene};
+use babybench::physics::State;
+use babybench::{Blueprint, Config, Env};
+
+/// The example configurations: name, text.
+pub const EXAMPLES: [(&str, &str); 3] = [
+    ("self_touch", include_str!("../../configs/config_selftouch.yml")),
+    ("hand_regard", include_str!("../../configs/config_handregard.yml")),
+    (
+        "test_installation",
+        include_str!("../../configs/config_test_installation.yml"),
+    ),
+];
+
+/// Models: MIMo's version by its behavior, and the scene.
+pub const MODELS: [(Behavior, Scene); 6] = [
+    (Behavior::None, Scene::Base),
+    (Behavior::None, Scene::Crib),
+    (Behavior::None, Scene::Cubes),
+    (Behavior::HandRegard, Scene::Base),
+    (Behavior::HandRegard, Scene::Crib),
+    (Behavior::HandRegard, Scene::Cubes),
+];
+
+/// An example configuration as it stands in its file.
+pub fn example(name: &str) -> Config {
+    let (_, text) = EXAMPLES.iter().find(|e| e.0 == name).expect("the name of an example");
+    Config::from_yaml(text, name).expect("the examples are valid")
+}
+
+/// An example configuration with proprioception and balance as its only senses.
+pub fn body_only(name: &str) -> Config {
+    Config {
+        vision_active: false,
+        touch_active: false,
+        ..example(name)
+    }
+}
+
+/// Everything actuated, nothing locked, proprioception and balance as the only senses.
+pub fn free(behavior: Behavior, scene: Scene) -> Config {
+    Config {
+        behavior,
+        scene,
+        vision_active: false,
+        touch_active: false,
+        act: BodyParts::all(true),
+        lock: BodyParts::all(false),
+        ..Config::default()
+    }
+}
+
+/// A fresh environment, not reset.
+pub fn env(config: Config) -> Env {
+    Env::new(config).expect("the configuration is available")
+}
+
+/// A blueprint.
+pub fn blueprint(config: Config) -> Blueprint {
+    Blueprint::new(config).expect("the configuration is available")
+}
+
+/// `n` steps with random actions.
+pub fn random_steps(env: &mut Env, n: usize) {
+    let mut action = Vec::new();
+    for _ in 0..n {
+        env.sample_action(&mut action);
+        env.step(&action).expect("no divergence");
+    }
+}
+
+/// `n` steps with random actions, each held for `hold` steps.
+pub fn held_steps(env: &mut Env, n: usize, hold: usize) {
+    let mut action = Vec::new();
+    for _ in 0..n / hold {
+        env.sample_action(&mut action);
+        repeat(env, &action, hold);
+    }
+}
+
+/// `n` steps with the same action.
+pub fn repeat(env: &mut Env, action: &[f32], n: usize) {
+    for _ in 0..n {
+        env.step(action).expect("no divergence");
+    }
+}
+
+/// Everything in a state, to the bit: `Debug` prints numbers so that they read back equal.
+pub fn bits(s: &State) -> String {
+    format!("{s:?}")
+}
+
+/// Fails with a short message, unlike `assert_eq!` on two long texts.
+pub fn assert_same_bits(a: &State, b: &State, what: &str) {
+    let (a, b) = (bits(a), bits(b));
+    if a != b {
+        let at = a.bytes().zip(b.bytes()).position(|(x, y)| x != y).unwrap_or(0);
+        let field = a[..at]
+            .rfind(": [")
+            .map_or("", |i| &a[a[..i].rfind(' ').map_or(0, |k| k + 1)..i]);
+        panic!("{what}: states differ, first in or near `{field}`");
+    }
+}
+
+/// FNV-1a over the bits of numbers.
+#[derive(Clone, Copy)]
+pub struct Fnv(pub u64);
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fnv {
+    pub fn add(&mut self, values: &[f64]) {
+        for byte in values.iter().flat_map(|v| v.to_bits().to_le_bytes()) {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+/// Largest absolute value, NaN if there is one.
+pub fn max_abs<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    values
+        .into_iter()
+        .fold(0.0, |m, v| if v.is_nan() || v.abs() > m { v.abs() } else { m })
+}
+
+/// A line of `/proc/self/status` in MiB, such as `VmHWM`; `None` off Linux.
+pub fn proc_status_mib(key: &str) -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|l| l.split(':').next() == Some(key))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib / 1024.0)
+}
