@@ -78,7 +78,7 @@ fn report(name: &str, ns: Vec<f64>, baseline: Vec<f64>) {
     let ratio = quartiles(ns.iter().zip(&baseline).map(|(a, b)| a / b).collect());
     let ns = quartiles(ns);
     println!(
-        "{name:44} {:>9}  ({} .. {})   {:8.2} products ({:.2} .. {:.2})",
+        "{name:52} {:>9}  ({} .. {})   {:8.2} products ({:.2} .. {:.2})",
         human(ns[1]),
         human(ns[0]),
         human(ns[2]),

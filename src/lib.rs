@@ -14,7 +14,7 @@
 //! ```
 //!
 //! The way of the data: [`config`] -> [`mimo`] chooses assets -> [`mjcf_loader`] compiles them -> [`Model`]. An action
-//! goes through [`actuation`] to the [`physics`] engine, which advances a [`physics::State`]; [`sensors`] read it; [`env`]
+//! goes through [`actuation`] to the [`physics`] engine, which advances a [`physics::State`]; [`sensors`] read it; [`mod@env`]
 //! holds it all together. Each part works alone, without the environment.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -23,6 +23,7 @@ pub mod actuation;
 pub mod config;
 pub mod env;
 pub mod eval;
+mod files;
 pub mod math;
 pub mod mimo;
 pub mod mjcf_loader;
@@ -30,8 +31,10 @@ pub mod model;
 #[cfg(feature = "npz")]
 pub mod npz;
 pub mod physics;
+pub mod render;
 pub mod sensors;
 
 pub use config::Config;
 pub use env::{Blueprint, Env, EnvError, Info, Observation, Step};
+pub use eval::make_env;
 pub use model::Model;

@@ -77,10 +77,13 @@ fn invariant_4_a_step_allocates_nothing_after_warm_up() {
             contacts = contacts.max(env.state().contacts.len());
             rows = rows.max(env.state().efc.nefc());
         }
+        let calls = CALLS.load(Relaxed);
+        env.reset(Some(1)).expect("no divergence");
+        let reset = CALLS.load(Relaxed) - calls;
         let late = seen.iter().filter(|s| s.0 >= COUNTED - STRICT).count();
         println!(
             "{name:18} {} of {COUNTED} steps allocate ({late} of the last {STRICT}): {} calls, {} bytes; up to {contacts} \
-             contacts, {rows} rows",
+             contacts, {rows} rows; a reset takes {reset} calls",
             seen.len(),
             seen.iter().map(|s| s.1).sum::<usize>(),
             seen.iter().map(|s| s.2).sum::<usize>(),

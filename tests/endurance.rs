@@ -17,12 +17,16 @@ const STEPS: usize = 100_000;
 
 fn endure(behavior: Behavior, scene: Scene, unoptimised_steps: usize) {
     let long = std::env::var_os("BABYBENCH_LONG").is_some_and(|v| v == "1");
-    let steps = if long || !cfg!(debug_assertions) { STEPS } else { unoptimised_steps };
+    let steps = if long || !cfg!(debug_assertions) {
+        STEPS
+    } else {
+        unoptimised_steps
+    };
     let mut env = env(free(behavior, scene));
     env.reset(Some(0)).expect("no divergence");
     let limit = env.config().max_episode_steps as usize;
     let mut action = Vec::new();
-    let (mut fastest, mut contacts, mut truncated) = (0.0_f64, 0, 0);
+    let (mut fastest, mut contacts, mut truncated) = ((0.0_f64, 0), 0, 0);
     let start = Instant::now();
     for k in 0..steps {
         if k < steps - steps / 3 || k % HELD == 0 {
@@ -40,17 +44,22 @@ fn endure(behavior: Behavior, scene: Scene, unoptimised_steps: usize) {
                 .all(|v| v.is_finite()),
             "step {k}"
         );
-        fastest = fastest.max(max_abs(&env.state().qvel));
+        let speeds = env.state().qvel.iter().map(|v| v.abs()).enumerate();
+        fastest = speeds.fold(fastest, |m, (d, v)| if v > m.0 { (v, d) } else { m });
         contacts = contacts.max(env.state().contacts.len());
     }
     let rate = steps as f64 / start.elapsed().as_secs_f64();
+    let (speed, dof) = fastest;
+    let joint = env.model().dof_jntid[dof];
     println!(
-        "{behavior}/{scene}: {steps} steps{}, {rate:.0} steps/s, max |qvel| {fastest:.1}, at most {contacts} contacts",
-        if steps == 100_000 {
+        "{behavior}/{scene}: {steps} steps{}, {rate:.0} steps/s, max |qvel| {speed:.1} at dof {dof} (joint {joint} {:?}), at \
+         most {contacts} contacts",
+        if steps == STEPS {
             ""
         } else {
             " (BABYBENCH_LONG=1 for 100000)"
-        }
+        },
+        env.model().jnt_name[joint],
     );
     assert_eq!(truncated, (steps + 1).saturating_sub(limit));
 }
@@ -67,5 +76,5 @@ fn random_actions_do_not_diverge_in_the_crib() {
 
 #[test]
 fn random_actions_do_not_diverge_among_the_cubes() {
-    endure(Behavior::HandRegard, Scene::Cubes, 20_000);
+    endure(Behavior::HandRegard, Scene::Cubes, 5_000);
 }

@@ -1,6 +1,6 @@
 //! Torque motors that respond at once; springs and dampers are in the joints.
 
-use crate::actuation::Actuation;
+use crate::actuation::{Actuation, named};
 use crate::config::Compat;
 use crate::env::BoxSpace;
 use crate::model::Model;
@@ -13,6 +13,7 @@ use crate::physics::State;
 #[derive(Clone, Debug)]
 pub struct SpringDamper {
     space: BoxSpace,
+    compat: Compat,
 }
 
 impl SpringDamper {
@@ -26,6 +27,19 @@ impl SpringDamper {
         let high = (0..model.nu()).map(|i| bounds(i)[1] as f32).collect();
         Self {
             space: BoxSpace::new(low, high),
+            compat,
+        }
+    }
+
+    /// Control before the gear: after the limits of the motor, or under `compat: reference` as it stands, where single
+    /// precision exceeds the limits in the last digits.
+    fn effective(&self, model: &Model, state: &State, i: usize) -> f64 {
+        let u = state.ctrl[i];
+        if self.compat == Compat::Api && state.params.actuator_forcelimited[i] {
+            let [lo, hi] = model.actuator_forcerange[i];
+            u.max(lo).min(hi)
+        } else {
+            u
         }
     }
 }
@@ -33,6 +47,10 @@ impl SpringDamper {
 impl Actuation for SpringDamper {
     fn action_space(&self) -> &BoxSpace {
         &self.space
+    }
+
+    fn action_names(&self, model: &Model) -> Vec<String> {
+        named(model, " control")
     }
 
     fn set_action(&mut self, _model: &Model, state: &mut State, action: &[f32]) {
@@ -54,47 +72,29 @@ impl Actuation for SpringDamper {
     }
 
     fn observation_names(&self, model: &Model) -> Vec<String> {
-        let named = |what: &str| {
-            model
-                .actuator_name
-                .iter()
-                .map(|n| format!("{n} {what}"))
-                .collect::<Vec<_>>()
-        };
-        [named("control"), named("torque")].concat()
+        [named(model, " control"), named(model, " torque")].concat()
     }
 
-    /// Controls, then torques (N m) after the limits of the motor.
+    /// Controls, then torques (N m): gear times the control within the motor's limits.
     fn observe(&self, model: &Model, state: &State, out: &mut [f64]) {
         let (controls, torques) = out.split_at_mut(model.nu());
         controls.copy_from_slice(&state.ctrl);
         for (i, t) in torques.iter_mut().enumerate() {
-            *t = state.params.actuator_gear[i] * limited(model, state, i);
+            *t = state.params.actuator_gear[i] * self.effective(model, state, i);
         }
     }
 
-    /// `sum |u^2 T| / (n sum T)` over the limited controls `u` and the gears `T`.
+    /// `sum |u^2 T| / (n sum T)` over the controls `u` within the motors' limits and the gears `T`.
     fn cost(&self, model: &Model, state: &State) -> f64 {
         let gears = &state.params.actuator_gear;
         let total: f64 = gears.iter().sum();
         let spent: f64 = (0..model.nu())
-            .map(|i| (limited(model, state, i).powi(2) * gears[i]).abs())
+            .map(|i| (self.effective(model, state, i).powi(2) * gears[i]).abs())
             .sum();
         if total == 0.0 {
             0.0
         } else {
             spent / (model.nu() as f64 * total)
         }
-    }
-}
-
-/// Control after the limits of the motor, before the gear.
-fn limited(model: &Model, state: &State, i: usize) -> f64 {
-    let u = state.ctrl[i];
-    if state.params.actuator_forcelimited[i] {
-        let [lo, hi] = model.actuator_forcerange[i];
-        u.max(lo).min(hi)
-    } else {
-        u
     }
 }

@@ -1,11 +1,16 @@
 //! `babybench inspect`
 
 use std::error::Error;
+use std::path::{Path, PathBuf};
 
+use babybench::Blueprint;
 use babybench::config::Compat;
+use babybench::eval::{Recording, replay};
 use babybench::mimo::joint_part;
 use babybench::model::JointId;
+use babybench::npz::Npz;
 use babybench::sensors::Component;
+use babybench::sensors::touch::draw_skin;
 use clap::Args;
 
 use super::Source;
@@ -15,11 +20,26 @@ use super::Source;
 pub struct Inspect {
     #[command(flatten)]
     source: Source,
+    /// Draw the touch sensors on the body, in the settled state, as a PNG image, instead of printing.
+    #[arg(long, value_name = "PNG")]
+    touch: Option<PathBuf>,
+    /// Draw them in a step of this recording (as for replay), with the forces that are felt.
+    #[arg(long, value_name = "FILE", requires = "touch")]
+    state: Option<PathBuf>,
+    /// The step of the recording; the last one if not given.
+    #[arg(long, value_name = "T", requires = "state")]
+    step: Option<usize>,
 }
+
+/// Height of the picture of the skin, pixels.
+const PICTURE_HEIGHT: usize = 900;
 
 impl Inspect {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let blueprint = self.source.blueprint(Compat::Api)?;
+        if let Some(path) = &self.touch {
+            return self.draw_touch(&blueprint, path);
+        }
         let env = blueprint.env()?;
         let (config, model) = (blueprint.config(), &**blueprint.model());
         println!(
@@ -82,12 +102,8 @@ impl Inspect {
 
         let space = env.action_space();
         println!("\nAction: {} numbers (f32)", space.len());
-        for i in 0..space.len() {
-            let name = model
-                .actuator_name
-                .get(i % model.nu().max(1))
-                .map_or("", String::as_str);
-            println!("{i:>4} {name:34} {:>9} {:>9}", space.low()[i], space.high()[i]);
+        for (i, name) in env.actuation().action_names(model).iter().enumerate() {
+            println!("{i:>4} {name:44} {:>12} {:>12}", space.low()[i], space.high()[i]);
         }
 
         println!("\nObservation");
@@ -109,23 +125,53 @@ impl Inspect {
             };
             println!("    {:4}..{:4} {:10} {what}", range.start, range.end, component.name());
         }
-        if let Some(r) = proprioception.range(Component::Torques) {
-            println!("  torque sensors");
-            for (k, name) in proprioception.sensor_names(model).enumerate() {
-                println!("    {:4}..{:4} {name}", r.start + 3 * k, r.start + 3 * k + 3);
-            }
-        }
-        if let Some(r) = proprioception.range(Component::Actuation) {
-            println!("  actuation");
-            for (k, name) in env.actuation().observation_names(model).iter().enumerate() {
-                println!("    {:4} {name}", r.start + k);
-            }
+        println!("  in detail");
+        for entry in proprioception.entries(model, env.actuation()) {
+            let (range, component) = (entry.range, entry.component.name());
+            println!("    {:4}..{:4} {component:10} {}", range.start, range.end, entry.name);
         }
         if let Some(v) = env.vestibular() {
             println!("  vestibular is made of");
             for (name, range) in v.layout(model) {
                 println!("    {:4}..{:4} {name}", range.start, range.end);
             }
+        }
+        Ok(())
+    }
+
+    /// Writes the picture of the skin.
+    fn draw_touch(&self, blueprint: &Blueprint, path: &Path) -> Result<(), Box<dyn Error>> {
+        let Some(skin) = blueprint.skin() else {
+            return Err("touch is off in this configuration: set touch_active and a touch_scale > 0".into());
+        };
+        let mut env = blueprint.env()?;
+        if let Some(file) = &self.state {
+            let mut recording = Recording::read(&Npz::open(file)?, &env)?;
+            let step = self.step.unwrap_or(recording.len.saturating_sub(1));
+            if step >= recording.len {
+                return Err(format!("step {step}: the recording has {} steps, from 0", recording.len).into());
+            }
+            recording.len = step + 1;
+            let one_step = !recording.qpos.is_empty();
+            replay(&mut env, &recording, one_step)?;
+        } else {
+            env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
+        }
+        let s = env.state();
+        let felt = if self.state.is_some() { env.touch() } else { None };
+        let picture = draw_skin(env.model(), skin, &s.xpos, &s.xmat, felt, PICTURE_HEIGHT);
+        let (width, height) = (picture.width as u32, picture.height as u32);
+        image::save_buffer(path, &picture.rgb, width, height, image::ExtendedColorType::Rgb8)?;
+        println!(
+            "{} sensors on {} bodies: {}",
+            skin.len(),
+            skin.bodies().len(),
+            path.display()
+        );
+        for c in felt.map_or(&[][..], |t| t.contacts()) {
+            let body = &env.model().body_name[c.body.0];
+            let other = &env.model().body_name[env.model().geom_bodyid[c.other.0]];
+            println!("  {body:20} touched by {other:20} with {:8.3} N", c.normal);
         }
         Ok(())
     }

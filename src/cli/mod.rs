@@ -1,8 +1,13 @@
 //! Arguments of the command line; each subcommand calls the library.
 
+mod evaluate;
 mod inspect;
+mod render;
 mod replay;
 mod run;
+mod score;
+mod test_installation;
+mod train;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -11,6 +16,7 @@ use babybench::Blueprint;
 use babybench::config::{Compat, Config};
 use babybench::mjcf_loader::DirAssets;
 use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
 
 /// BabyBench in Rust: MIMo, its scenes and senses.
 #[derive(Parser)]
@@ -26,8 +32,18 @@ enum Command {
     Run(run::Run),
     /// Prints what a configuration contains: sizes, joints, actuators, action space, observation.
     Inspect(inspect::Inspect),
+    /// Draws a picture of the scene, or what an eye sees.
+    Render(render::Render),
     /// Replays a recording (.npz) from its start with its actions.
     Replay(replay::ReplayArgs),
+    /// Checks that everything works here, and writes a scene, a log and a short video.
+    TestInstallation(test_installation::TestInstallation),
+    /// Trains the random policy: episodes with random actions, logged in the configuration's save_dir.
+    Train(train::Train),
+    /// Prints the score of a training log and what it is made of.
+    Score(score::ScoreArgs),
+    /// Runs evaluation episodes of a policy, with logs and videos in the configuration's save_dir.
+    Evaluate(evaluate::Evaluate),
 }
 
 /// What an environment is built from.
@@ -71,11 +87,29 @@ impl Source {
     }
 }
 
+/// A progress bar over steps.
+fn progress_bar(steps: u64, quiet: bool) -> Result<ProgressBar, Box<dyn Error>> {
+    let bar = if quiet {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new(steps)
+    };
+    bar.set_style(ProgressStyle::with_template(
+        "{bar:40} {pos}/{len} steps, {per_sec}, {eta} left",
+    )?);
+    Ok(bar)
+}
+
 /// Runs the command line of the process.
 pub fn main() -> Result<(), Box<dyn Error>> {
     match Cli::parse().command {
         Command::Run(c) => c.run(),
         Command::Inspect(c) => c.run(),
+        Command::Render(c) => c.run(),
         Command::Replay(c) => c.run(),
+        Command::TestInstallation(c) => c.run(),
+        Command::Train(c) => c.run(),
+        Command::Score(c) => c.run(),
+        Command::Evaluate(c) => c.run(),
     }
 }

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use babybench::config::Compat;
-use babybench::eval::{Recording, replay};
+use babybench::eval::{Recording, replay_with_images};
 use babybench::npz::Npz;
 use clap::Args;
 
@@ -24,13 +24,16 @@ pub struct ReplayArgs {
     /// Start each step from the recording's previous row.
     #[arg(long)]
     one_step: bool,
+    /// Write what both eyes see in every K-th step, as eye_steps, eye_left and eye_right.
+    #[arg(long, value_name = "K")]
+    images_every: Option<usize>,
 }
 
 impl ReplayArgs {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let mut env = self.source.blueprint(Compat::Reference)?.env()?;
         let recording = Recording::read(&Npz::open(&self.recording)?, &env)?;
-        let result = replay(&mut env, &recording, self.one_step)?;
+        let result = replay_with_images(&mut env, &recording, self.one_step, self.images_every)?;
         result.write(&self.out, &recording)?;
         let (n, dir) = (result.len, self.out.display());
         println!("replayed {n} steps: {dir}/replay.npz, {dir}/info.jsonl");

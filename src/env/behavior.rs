@@ -76,6 +76,54 @@ pub enum BehaviorInfo {
     },
 }
 
+impl BehaviorInfo {
+    /// Keys of the counters of [`BehaviorInfo::regards`].
+    pub const REGARDS: [&str; 4] = [
+        "right_eye_right_hand",
+        "right_eye_left_hand",
+        "left_eye_right_hand",
+        "left_eye_left_hand",
+    ];
+
+    /// Name of the behavior.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::SelfTouch { .. } => "self_touch",
+            Self::HandRegard { .. } => "hand_regard",
+        }
+    }
+
+    /// Parts touched by the right and by the left hand, if this is `self_touch`.
+    pub fn touches(&self) -> Option<[&[usize]; 2]> {
+        match self {
+            Self::SelfTouch {
+                right_hand_touches,
+                left_hand_touches,
+            } => Some([right_hand_touches, left_hand_touches]),
+            _ => None,
+        }
+    }
+
+    /// The four counters, in the order of [`BehaviorInfo::REGARDS`], if this is `hand_regard`.
+    pub fn regards(&self) -> Option<[u64; 4]> {
+        match *self {
+            Self::HandRegard {
+                right_eye_right_hand,
+                right_eye_left_hand,
+                left_eye_right_hand,
+                left_eye_left_hand,
+            } => Some([
+                right_eye_right_hand,
+                right_eye_left_hand,
+                left_eye_right_hand,
+                left_eye_left_hand,
+            ]),
+            _ => None,
+        }
+    }
+}
+
 /// Watches the state for a behavior.
 #[derive(Clone, Debug)]
 pub(crate) enum Watcher {
@@ -122,6 +170,14 @@ impl Watcher {
                     left_eye_left_hand: 0,
                 };
             }
+        }
+    }
+
+    /// Angles between the axes of the eyes and the hands, rad, in the order of [`BehaviorInfo::REGARDS`].
+    pub fn gaze_angles(&self, s: &State) -> Option<[f64; 4]> {
+        match self {
+            Self::HandRegard(w) => Some(w.angles(s)),
+            _ => None,
         }
     }
 
@@ -239,9 +295,15 @@ impl HandRegard {
         })
     }
 
-    /// Whether the origin of a hand lies less than 15 degrees off the axis of an eye's camera; under `compat: reference`
-    /// off the -z axis of the eye's body, which points down the face.
+    /// Whether the origin of a hand lies less than 15 degrees off the axis of an eye.
     fn sees(&self, s: &State, eye: usize, hand: usize) -> bool {
+        let (axis, direction) = self.axis_and_direction(s, eye, hand);
+        within_cone(axis, direction, self.cos_half_angle)
+    }
+
+    /// The axis of an eye's camera and the way from it to the origin of a hand; under `compat: reference` the -z axis of the
+    /// eye's body, which points down the face.
+    fn axis_and_direction(&self, s: &State, eye: usize, hand: usize) -> (Vec3, Vec3) {
         let (origin, axis) = match self.compat {
             Compat::Api => (
                 s.cam_xpos[self.cameras[eye]],
@@ -249,7 +311,19 @@ impl HandRegard {
             ),
             Compat::Reference => (s.xpos[self.eyes[eye]], scale(column(&s.xmat[self.eyes[eye]], 2), -1.0)),
         };
-        within_cone(axis, sub(s.xpos[hand], origin), self.cos_half_angle)
+        (axis, sub(s.xpos[hand], origin))
+    }
+
+    /// Angles between the axes and the hands, rad, in the order of [`BehaviorInfo::REGARDS`].
+    fn angles(&self, s: &State) -> [f64; 4] {
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(eye, hand)| {
+            let (axis, direction) = self.axis_and_direction(s, eye, self.hands[hand]);
+            let length = norm(direction);
+            if length == 0.0 {
+                return f64::INFINITY;
+            }
+            pxfm::f_acos((dot(axis, direction) / length).clamp(-1.0, 1.0))
+        })
     }
 }
 

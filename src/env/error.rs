@@ -2,9 +2,14 @@
 
 use thiserror::Error;
 
-use crate::config::ConfigError;
+use crate::actuation::ActuationError;
+use crate::config::{ActuationModel, ConfigError};
+use crate::env::SnapshotError;
+use crate::mimo::LockError;
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
+use crate::render::RenderError;
+use crate::sensors::touch::SkinError;
 
 /// Why an environment cannot be built, reset or stepped.
 #[derive(Debug, Error)]
@@ -15,6 +20,32 @@ pub enum EnvError {
     /// The assets cannot be loaded.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
+    /// The touch sensors cannot be placed.
+    #[error(transparent)]
+    Skin(#[from] SkinError),
+    /// The scene cannot be drawn.
+    #[error("cannot draw the scene: {0}")]
+    Render(#[from] RenderError),
+    /// An actuator does not fit the actuation model.
+    #[error(transparent)]
+    Actuation(#[from] ActuationError),
+    /// The actuation model needs actuators that the scene does not have, and its assets are not at hand.
+    #[error(
+        "actuation_model {wanted} needs other actuators than {present}, and the scene is not from the embedded assets: \
+         build it with Blueprint::with_assets"
+    )]
+    OtherActuators {
+        /// Actuation model of the scene.
+        present: ActuationModel,
+        /// Actuation model asked for.
+        wanted: ActuationModel,
+    },
+    /// Something cannot be locked or unlocked.
+    #[error(transparent)]
+    Lock(#[from] LockError),
+    /// A snapshot cannot be restored.
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
     /// Part of the configuration is allowed but not available in this build.
     #[error("{key}: {value} is not available; use {}", available.join(" or "))]
     NotAvailable {
@@ -66,7 +97,19 @@ pub enum EnvError {
     /// `step` before the first `reset`.
     #[error("call reset before step")]
     NotReset,
+    /// A log cannot be read or written.
+    #[error(transparent)]
+    Log(#[from] crate::eval::LogError),
+    /// The scene cannot be written.
+    #[error(transparent)]
+    SceneFile(Box<crate::eval::SceneFileError>),
     /// The engine cannot go on.
     #[error(transparent)]
     Engine(#[from] EngineError),
+}
+
+impl From<crate::eval::SceneFileError> for EnvError {
+    fn from(e: crate::eval::SceneFileError) -> Self {
+        Self::SceneFile(Box::new(e))
+    }
 }

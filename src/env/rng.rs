@@ -5,7 +5,11 @@ use rand_pcg::rand_core::Rng;
 
 /// PCG64 seeded as `numpy.random.default_rng(seed)` does it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NumpyRng(Pcg64);
+pub struct NumpyRng {
+    generator: Pcg64,
+    seed: u64,
+    drawn: u64,
+}
 
 impl NumpyRng {
     /// The generator for a seed.
@@ -16,12 +20,35 @@ impl NumpyRng {
             // 64-bit values are little end first, 128-bit values high half first
             (part(i) | part(i + 1) << 32) << 64 | part(i + 2) | part(i + 3) << 32
         };
-        Self(Pcg64::new(wide(0), wide(4)))
+        Self {
+            generator: Pcg64::new(wide(0), wide(4)),
+            seed,
+            drawn: 0,
+        }
+    }
+
+    /// The generator for a seed after `drawn` numbers.
+    pub fn at(seed: u64, drawn: u64) -> Self {
+        let mut rng = Self::seed(seed);
+        rng.generator.advance(u128::from(drawn));
+        rng.drawn = drawn;
+        rng
+    }
+
+    /// The seed it was made from.
+    pub fn seed_value(&self) -> u64 {
+        self.seed
+    }
+
+    /// How many numbers were drawn.
+    pub fn drawn(&self) -> u64 {
+        self.drawn
     }
 
     /// A number in [0, 1) with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+        self.drawn = self.drawn.wrapping_add(1);
+        (self.generator.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 }
 
@@ -82,8 +109,17 @@ mod tests {
     }
 
     #[test]
+    fn a_generator_can_be_continued() {
+        let mut rng = NumpyRng::seed(3);
+        for _ in 0..1000 {
+            rng.uniform();
+        }
+        assert_eq!(NumpyRng::at(rng.seed_value(), rng.drawn()), rng);
+    }
+
+    #[test]
     fn large_seeds_use_all_bits() {
         // numpy.random.default_rng(2**40 + 7).random()
-        assert_ne!(NumpyRng::seed((1 << 40) + 7).uniform(), NumpyRng::seed(7).uniform());
+        assert_eq!(NumpyRng::seed((1 << 40) + 7).uniform(), 0.829812891829413);
     }
 }

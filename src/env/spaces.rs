@@ -98,7 +98,7 @@ mod tests {
         let mut rng = NumpyRng::seed(0);
         let mut x = Vec::new();
         for expect in [
-            [0.12423737_f32, -0.23223493, -0.9328034],
+            [0.124_237_366_f32, -0.23223493, -0.9328034],
             [-0.9708287, 0.68489355, 0.49691913],
         ] {
             space.sample(&mut rng, &mut x);
@@ -107,6 +107,6 @@ mod tests {
         }
         let space = BoxSpace::new(vec![-1.0; 4], vec![1.0; 4]);
         space.sample(&mut NumpyRng::seed(42), &mut x);
-        assert_eq!(x, [0.5479121, -0.12224313, 0.71719587, 0.39473606]);
+        assert_eq!(x, [0.5479121, -0.122_243_12, 0.71719587, 0.394_736_05]);
     }
 }

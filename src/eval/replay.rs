@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::env::{Env, EnvError, Info};
 use crate::npz::{Npz, NpzError, NpzWriter};
-use crate::sensors::sensordata;
+use crate::sensors::{EYES, sensordata};
 
 /// Why a recording cannot be read or replayed.
 #[derive(Debug, Error)]
@@ -30,7 +30,7 @@ pub enum ReplayError {
         /// Environment step.
         step: usize,
         /// What failed.
-        source: EnvError,
+        source: Box<EnvError>,
     },
     /// A file cannot be written.
     #[error("cannot write {path}: {source}")]
@@ -49,6 +49,8 @@ pub struct Recording {
     pub qpos0: Vec<f64>,
     /// Velocities at the start (nv).
     pub qvel0: Vec<f64>,
+    /// Activities of the muscles at the start, in the order of an action; empty for models without.
+    pub activity0: Vec<f64>,
     /// Actions (T, na), row-major.
     pub actions: Vec<f32>,
     /// Steps.
@@ -62,7 +64,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads `qpos0, qvel0, actions` and, if they are there, `qpos, qvel, qacc`, for `env`.
+    /// Reads `qpos0, qvel0, actions` and, if they are there, `activity0, qpos, qvel, qacc`, for `env`. Without `activity0`
+    /// muscles start inactive.
     ///
     /// # Errors
     /// Arrays that are missing, unreadable or of a shape that does not fit the environment.
@@ -79,6 +82,11 @@ impl Recording {
                     expected: format!("({n})"),
                 })
             }
+        };
+        let muscles = env.actuation().activity().len();
+        let activity0 = match archive.arrays().any(|a| a.name == "activity0") {
+            true => vector("activity0", muscles)?,
+            false => vec![0.0; muscles],
         };
         let actions = archive.get_f64("actions")?;
         if actions.shape.len() != 2 || actions.shape[1] != na {
@@ -107,12 +115,36 @@ impl Recording {
         Ok(Self {
             qpos0: vector("qpos0", nq)?,
             qvel0: vector("qvel0", nv)?,
+            activity0,
             actions: actions.data.iter().map(|&v| v as f32).collect(),
             len,
             qpos: rows("qpos", nq)?,
             qvel: rows("qvel", nv)?,
             qacc: rows("qacc", nv)?,
         })
+    }
+}
+
+/// Touch values that are not zero, step by step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TouchRows {
+    /// First entry of each step (T + 1).
+    pub ptr: Vec<i64>,
+    /// Positions in the touch observation, ascending within a step.
+    pub idx: Vec<i32>,
+    /// Values, N.
+    pub val: Vec<f32>,
+    /// Length of the touch observation.
+    pub len: i64,
+}
+
+impl TouchRows {
+    fn push(&mut self, values: &[f32]) {
+        for (i, v) in (0..).zip(values).filter(|(_, v)| **v != 0.0) {
+            self.idx.push(i);
+            self.val.push(*v);
+        }
+        self.ptr.push(self.idx.len() as i64);
     }
 }
 
@@ -135,6 +167,8 @@ pub struct Replay {
     pub sensordata: Vec<f64>,
     /// Proprioception (T, no).
     pub observation: Vec<f64>,
+    /// Touch, if active.
+    pub touch: Option<TouchRows>,
     /// Vestibular sense (T, 6), if active.
     pub vestibular: Option<Vec<f64>>,
     /// First contact of each step (T + 1).
@@ -149,6 +183,14 @@ pub struct Replay {
     pub contact_dist: Vec<f64>,
     /// Force and torque in the contact frame (C, 6), N and N m.
     pub contact_force: Vec<f64>,
+    /// Steps whose pictures were taken (K).
+    pub eye_steps: Vec<i64>,
+    /// What the left eye saw in them (K, H, W, 3).
+    pub eye_left: Vec<u8>,
+    /// What the right eye saw in them.
+    pub eye_right: Vec<u8>,
+    /// Width and height of those pictures, pixels.
+    pub eye_size: usize,
     /// Information of each step.
     pub info: Vec<Info>,
 }
@@ -159,6 +201,19 @@ pub struct Replay {
 /// # Errors
 /// A recording without the rows that `one_step` needs; an environment that fails.
 pub fn replay(env: &mut Env, recording: &Recording, one_step: bool) -> Result<Replay, ReplayError> {
+    replay_with_images(env, recording, one_step, None)
+}
+
+/// [`replay`] that also takes pictures of both eyes in every `images_every`-th step, beginning with the first.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_with_images(
+    env: &mut Env,
+    recording: &Recording,
+    one_step: bool,
+    images_every: Option<usize>,
+) -> Result<Replay, ReplayError> {
     let (nq, nv, na) = (env.model().nq, env.model().nv, env.action_space().len());
     if one_step && (recording.qpos.is_empty() || recording.qvel.is_empty()) && recording.len > 0 {
         let (name, found) = ("qpos", vec![0]);
@@ -168,10 +223,21 @@ pub fn replay(env: &mut Env, recording: &Recording, one_step: bool) -> Result<Re
             expected: "one row per step, with qvel".to_string(),
         });
     }
-    let at = |step: usize| move |source| ReplayError::Env { step, source };
+    let at = |step: usize| {
+        move |e: EnvError| ReplayError::Env {
+            step,
+            source: Box::new(e),
+        }
+    };
     env.reset_to(&recording.qpos0, &recording.qvel0).map_err(at(0))?;
+    env.set_activity(&recording.activity0).map_err(at(0))?;
     let mut out = Replay {
         len: recording.len,
+        touch: env.touch().map(|t| TouchRows {
+            ptr: vec![0],
+            len: t.len() as i64,
+            ..TouchRows::default()
+        }),
         vestibular: env.vestibular().map(|_| Vec::new()),
         contact_ptr: vec![0],
         ..Replay::default()
@@ -197,6 +263,9 @@ pub fn replay(env: &mut Env, recording: &Recording, one_step: bool) -> Result<Re
         out.sensordata.extend_from_slice(&sensors);
         let observation = env.observation();
         out.observation.extend_from_slice(observation.observation);
+        if let (Some(all), Some(v)) = (&mut out.touch, observation.touch) {
+            all.push(v);
+        }
         if let (Some(all), Some(v)) = (&mut out.vestibular, observation.vestibular) {
             all.extend_from_slice(v);
         }
@@ -208,6 +277,13 @@ pub fn replay(env: &mut Env, recording: &Recording, one_step: bool) -> Result<Re
             out.contact_force.extend(c.force);
         }
         out.contact_ptr.push(out.contact_dist.len() as i64);
+        if images_every.is_some_and(|every| every > 0 && t % every == 0) {
+            out.eye_size = env.config().vision_resolution as usize;
+            out.eye_steps.push(t as i64);
+            for (key, all) in EYES.into_iter().zip([&mut out.eye_left, &mut out.eye_right]) {
+                all.extend_from_slice(env.render_camera(key, out.eye_size, out.eye_size).map_err(at(t))?);
+            }
+        }
         out.info.push(env.info().clone());
     }
     Ok(out)
@@ -226,11 +302,11 @@ impl Replay {
         };
         std::fs::create_dir_all(dir).map_err(write_error(dir))?;
         let t = self.len;
-        let columns = |n: usize| if t == 0 { 0 } else { n / t };
+        let columns = |n: usize| n.checked_div(t).unwrap_or(0);
         let mut npz = NpzWriter::new();
         npz.add("qpos0", &[recording.qpos0.len()], &recording.qpos0)?;
         npz.add("qvel0", &[recording.qvel0.len()], &recording.qvel0)?;
-        npz.add::<f64>("activity0", &[0], &[])?;
+        npz.add("activity0", &[recording.activity0.len()], &recording.activity0)?;
         npz.add("actions", &[t, columns(recording.actions.len())], &recording.actions)?;
         let tables = [
             ("ctrl", &self.ctrl),
@@ -246,6 +322,18 @@ impl Replay {
         }
         if let Some(v) = &self.vestibular {
             npz.add("vestibular", &[t, columns(v.len())], v)?;
+        }
+        if let Some(touch) = &self.touch {
+            npz.add("touch_idx", &[touch.idx.len()], &touch.idx)?;
+            npz.add("touch_val", &[touch.val.len()], &touch.val)?;
+            npz.add("touch_ptr", &[touch.ptr.len()], &touch.ptr)?;
+            npz.add("touch_len", &[], &[touch.len])?;
+        }
+        let (k, side) = (self.eye_steps.len(), self.eye_size);
+        if k > 0 {
+            npz.add("eye_steps", &[k], &self.eye_steps)?;
+            npz.add("eye_left", &[k, side, side, 3], &self.eye_left)?;
+            npz.add("eye_right", &[k, side, side, 3], &self.eye_right)?;
         }
         let n = self.contact_dist.len();
         npz.add("contact_ptr", &[self.contact_ptr.len()], &self.contact_ptr)?;

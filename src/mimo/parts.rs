@@ -1,8 +1,7 @@
 //! Which body belongs to which part.
 
 use crate::config::Part;
-use crate::model::{EqualityId, EqualityKind, JointId, JointType, Model};
-use crate::physics::Params;
+use crate::model::{JointId, JointType, Model};
 
 /// Bodies of the parts, without their `left_` and `right_`. A body that is not listed is a finger.
 const BODIES: [(&str, Part); 13] = [
@@ -70,30 +69,4 @@ pub fn joint_part(model: &Model, joint: JointId) -> Option<Part> {
         .unwrap_or(body);
     let listed = BODIES.iter().find(|b| b.0 == plain);
     Some(listed.map_or(Part::Fingers, |b| b.1))
-}
-
-/// Locks the joints of a part at angle 0, by activating the lock equalities that carry their names; joints that another
-/// active equality holds are left to it. Returns the equalities that were activated.
-pub fn lock_group(model: &Model, params: &mut Params, part: Part) -> Vec<EqualityId> {
-    let mut locked = Vec::new();
-    for j in 0..model.njnt() {
-        if joint_part(model, JointId(j)) != Some(part) {
-            continue;
-        }
-        let Some(lock) = model.equality(&model.jnt_name[j]) else {
-            continue;
-        };
-        let held_by_another = (0..model.neq()).any(|e| {
-            e != lock.0
-                && params.eq_active[e]
-                && matches!(model.eq_kind[e], EqualityKind::Joint { joint1, joint2, .. }
-                    if joint1.0 == j || joint2 == Some(JointId(j)))
-        });
-        if !held_by_another {
-            params.eq_active[lock.0] = true;
-            params.eq_offset[lock.0] = 0.0;
-            locked.push(lock);
-        }
-    }
-    locked
 }

@@ -138,13 +138,11 @@ impl AssetSource for Overlay<'_> {
 }
 
 /// A directory of the file system. Nothing outside it can be read, through links neither.
-#[cfg(not(target_family = "wasm"))]
 #[derive(Clone, Debug)]
 pub struct DirAssets {
     root: std::path::PathBuf,
 }
 
-#[cfg(not(target_family = "wasm"))]
 impl DirAssets {
     /// The directory must exist.
     pub fn new(root: impl AsRef<std::path::Path>) -> Result<Self, AssetError> {
@@ -174,7 +172,6 @@ impl DirAssets {
     }
 }
 
-#[cfg(not(target_family = "wasm"))]
 fn io_error(path: &str, error: &std::io::Error) -> AssetError {
     match error.kind() {
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => AssetError::NotFound(path.to_owned()),
@@ -185,7 +182,6 @@ fn io_error(path: &str, error: &std::io::Error) -> AssetError {
     }
 }
 
-#[cfg(not(target_family = "wasm"))]
 impl AssetSource for DirAssets {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         use std::io::Read;

@@ -38,7 +38,6 @@ mod tables;
 mod tests;
 mod xml;
 
-#[cfg(not(target_family = "wasm"))]
 pub use assets::DirAssets;
 pub use assets::{AssetError, AssetSource, EmbeddedAssets, MAX_ASSET_BYTES, MemoryAssets, Overlay, resolve};
 pub use error::{ErrorKind, LoadError, Place};

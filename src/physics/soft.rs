@@ -8,7 +8,7 @@ use crate::physics::constraint::{Newton, make_constraints};
 use crate::physics::contact::{Options, Quirks};
 use crate::physics::dynamics::*;
 use crate::physics::engine::{Engine, EngineError, Probe, Stage};
-use crate::physics::state::State;
+use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
 use crate::physics::world::{PairTable, Scene, Sweep};
 
@@ -60,10 +60,10 @@ impl SoftEngine {
             sweep: Sweep::new(&model, &pairs, contact),
             scene: Scene::new(&model, &pairs, contact),
             pairs,
-            newton: Newton::default(),
+            newton: Newton::with_capacity(model.nv, RESERVED_CONTACTS),
             integrator: Integrator::default(),
             bias: BiasScratch::default(),
-            columns: Vec::new(),
+            columns: Vec::with_capacity(model.nv),
             probe: None,
             model,
         }
@@ -138,12 +138,28 @@ impl SoftEngine {
 
     fn check_input(&self, s: &State) -> Result<(), EngineError> {
         let m = &*self.model;
-        let fields: [(&'static str, &[f64], usize); 4] = [
+        let p = &s.params;
+        let fields: [(&'static str, &[f64], usize); 8] = [
             ("qpos", &s.qpos, m.nq),
             ("qvel", &s.qvel, m.nv),
             ("ctrl", &s.ctrl, m.nu()),
             ("qfrc_applied", &s.qfrc_applied, m.nv),
+            ("params.eq_offset", &p.eq_offset, m.neq()),
+            ("params.jnt_stiffness", &p.jnt_stiffness, m.njnt()),
+            ("params.dof_damping", &p.dof_damping, m.nv),
+            ("params.actuator_gear", &p.actuator_gear, m.nu()),
         ];
+        // the solver does without a warm start that is no use
+        let lengths = [
+            ("qacc_warmstart", s.qacc_warmstart.len(), m.nv),
+            ("params.eq_active", p.eq_active.len(), m.neq()),
+            ("params.actuator_forcelimited", p.actuator_forcelimited.len(), m.nu()),
+        ];
+        for (what, found, expected) in lengths {
+            if found != expected {
+                return Err(EngineError::Shape { what, found, expected });
+            }
+        }
         for (what, values, expected) in fields {
             if values.len() != expected {
                 return Err(EngineError::Shape {
@@ -159,24 +175,27 @@ impl SoftEngine {
         Ok(())
     }
 
-    /// Finds the first coordinate that left the bounds of the representable.
+    /// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
     fn check_output(&self, s: &State) -> Result<(), EngineError> {
         let model = &*self.model;
-        let bad = |v: &f64| !v.is_finite() || v.abs() > MAXVAL;
-        let diverged = |joint: usize, what, value| EngineError::Diverged {
-            step: s.step,
-            joint: model.jnt_name[joint].clone(),
-            what,
-            value,
-        };
-        for (what, values) in [("qvel", &s.qvel), ("qacc", &s.qacc)] {
-            if let Some(d) = values.iter().position(bad) {
-                return Err(diverged(model.dof_jntid[d], what, values[d]));
+        for (what, values) in [("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)] {
+            if values.iter().all(|v| v.abs() <= MAXVAL) {
+                continue;
             }
-        }
-        if let Some(q) = s.qpos.iter().position(bad) {
-            let joint = model.jnt_qposadr.iter().rposition(|&adr| adr <= q).unwrap_or(0);
-            return Err(diverged(joint, "qpos", s.qpos[q]));
+            let size = |v: f64| if v.is_nan() { f64::INFINITY } else { v.abs() };
+            let worst = (0..values.len())
+                .max_by(|&i, &k| size(values[i]).total_cmp(&size(values[k])))
+                .unwrap_or(0);
+            let joint = match what {
+                "qpos" => model.jnt_qposadr.iter().rposition(|&adr| adr <= worst).unwrap_or(0),
+                _ => model.dof_jntid[worst],
+            };
+            return Err(EngineError::Diverged {
+                step: s.step,
+                joint: model.jnt_name[joint].clone(),
+                what,
+                value: values[worst],
+            });
         }
         Ok(())
     }

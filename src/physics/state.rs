@@ -6,6 +6,9 @@ use crate::physics::constraint::Efc;
 use crate::physics::spatial::{Inertia, Spatial};
 use crate::physics::topology::Topology;
 
+/// Contacts for which memory is reserved, so that steps need not allocate. The cubes scene reaches about 100.
+pub(crate) const RESERVED_CONTACTS: usize = 192;
+
 /// A detected contact between two geoms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -36,7 +39,7 @@ pub struct Contact {
 }
 
 /// Parameters that a program may change while the scene runs; copied from the model at construction.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Params {
     /// Which equality constraints hold (neq).
     pub eq_active: Vec<bool>,
@@ -50,6 +53,29 @@ pub struct Params {
     pub actuator_gear: Vec<f64>,
     /// Whether the actuator force is limited (nu).
     pub actuator_forcelimited: Vec<bool>,
+}
+
+impl Clone for Params {
+    fn clone(&self) -> Self {
+        Self {
+            eq_active: self.eq_active.clone(),
+            eq_offset: self.eq_offset.clone(),
+            jnt_stiffness: self.jnt_stiffness.clone(),
+            dof_damping: self.dof_damping.clone(),
+            actuator_gear: self.actuator_gear.clone(),
+            actuator_forcelimited: self.actuator_forcelimited.clone(),
+        }
+    }
+
+    /// Keeps the memory, so that a reset does not allocate.
+    fn clone_from(&mut self, other: &Self) {
+        self.eq_active.clone_from(&other.eq_active);
+        self.eq_offset.clone_from(&other.eq_offset);
+        self.jnt_stiffness.clone_from(&other.jnt_stiffness);
+        self.dof_damping.clone_from(&other.dof_damping);
+        self.actuator_gear.clone_from(&other.actuator_gear);
+        self.actuator_forcelimited.clone_from(&other.actuator_forcelimited);
+    }
 }
 
 impl Params {
@@ -207,8 +233,8 @@ impl State {
             qm: vec![0.0; topology.nm()],
             qld: vec![0.0; topology.nm()],
             qld_diag_inv: vec![0.0; nv],
-            contacts: Vec::with_capacity(64),
-            efc: Efc::default(),
+            contacts: Vec::with_capacity(RESERVED_CONTACTS),
+            efc: Efc::with_capacity(nv, RESERVED_CONTACTS),
             cvel: vec![[0.0; 6]; nb],
             cdof_dot: vec![[0.0; 6]; nv],
             qfrc_bias: vec![0.0; nv],

@@ -20,8 +20,6 @@ pub struct Topology {
     pub chain: Vec<u32>,
     /// The last degree of freedom that moves a body, if any does.
     pub body_last_dof: Vec<Option<usize>>,
-    /// Whether any degree of freedom of the model is damped.
-    pub damped: bool,
 }
 
 impl Topology {
@@ -49,14 +47,12 @@ impl Topology {
                 n => Some(model.body_dofadr[b] + n - 1),
             };
         }
-        let damped = model.dof_damping.iter().any(|&d| d > 0.0);
         Self {
             tree_adr,
             dof_tree,
             row_adr,
             chain,
             body_last_dof,
-            damped,
         }
     }
 

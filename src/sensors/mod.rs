@@ -5,8 +5,12 @@
 
 mod proprioception;
 mod sensordata;
+pub mod touch;
 mod vestibular;
+mod vision;
 
-pub use proprioception::{Component, Proprioception, limit_activation};
+pub use proprioception::{Component, Entry, Proprioception, limit_activation};
 pub use sensordata::{sensor_value, sensordata};
+pub use touch::{SkinLayout, Touch};
 pub use vestibular::Vestibular;
+pub use vision::{EYES, Vision};

@@ -40,6 +40,17 @@ impl Component {
     }
 }
 
+/// What a stretch of the proprioceptive vector is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Where it stands.
+    pub range: Range<usize>,
+    /// The component it is part of.
+    pub component: Component,
+    /// The joint for angles, velocities and limits; the torque sensor; what the actuation model calls it.
+    pub name: String,
+}
+
 /// The proprioceptive vector: which components, in which order.
 ///
 /// Under `compat: api` the order is angles, velocities, torques, limits, actuation, of which all but the angles can be
@@ -109,6 +120,42 @@ impl Proprioception {
     /// Range of one component, if it is on.
     pub fn range(&self, component: Component) -> Option<Range<usize>> {
         self.layout.iter().find(|l| l.0 == component).map(|l| l.1.clone())
+    }
+
+    /// Every stretch of the vector in order: single numbers, and three for each torque sensor. `actuation` is the model
+    /// that the vector was laid out for.
+    pub fn entries(&self, model: &Model, actuation: &dyn Actuation) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        for (component, range) in &self.layout {
+            let names: Vec<String> = match component {
+                Component::Angles | Component::Velocities | Component::Limits => {
+                    self.joint_names(model).map(str::to_string).collect()
+                }
+                Component::Torques => self.sensor_names(model).map(str::to_string).collect(),
+                Component::Actuation => actuation.observation_names(model),
+            };
+            let width = if *component == Component::Torques { 3 } else { 1 };
+            entries.extend(names.into_iter().enumerate().map(|(k, name)| Entry {
+                range: range.start + width * k..range.start + width * (k + 1),
+                component: *component,
+                name,
+            }));
+        }
+        entries
+    }
+
+    /// Where the number of a joint stands in angles, velocities or limits, or those of a torque sensor in torques, by
+    /// name. `None` for a component that is off, for [`Component::Actuation`] (see [`Self::entries`]) and unknown names.
+    pub fn find(&self, model: &Model, component: Component, name: &str) -> Option<Range<usize>> {
+        let start = self.range(component)?.start;
+        let (k, width) = match component {
+            Component::Angles | Component::Velocities | Component::Limits => {
+                (self.joint_names(model).position(|n| n == name)?, 1)
+            }
+            Component::Torques => (self.sensor_names(model).position(|n| n == name)?, 3),
+            Component::Actuation => return None,
+        };
+        Some(start + width * k..start + width * (k + 1))
     }
 
     /// MIMo's joints, in the order of angles, velocities and limits.

@@ -1,6 +1,6 @@
 //! Invariant 8: a bad action leaves the state untouched, a diverged state is an error and never an observation.
 
-use babybench::physics::{EngineError, State};
+use babybench::physics::{Engine, EngineError, State};
 use babybench::{Env, EnvError};
 
 use crate::common::*;
@@ -87,6 +87,9 @@ fn actions_out_of_range_are_clipped() {
     }
 }
 
+/// Something done to a state.
+type Change = Box<dyn Fn(&mut State)>;
+
 /// Spoils a running environment; returns the error of the next step, after checking that the environment then wants a
 /// reset and is as good as new after it.
 fn spoil(name: &str, change: impl FnOnce(&mut State)) -> EngineError {
@@ -132,6 +135,12 @@ fn invariant_8_numbers_that_are_not_finite_are_typed_errors() {
                 "{error:?}"
             );
         }
+        let error = spoil("self_touch", |s| s.params.jnt_stiffness[27] = value);
+        let what = "params.jnt_stiffness";
+        assert!(
+            matches!(error, EngineError::NotFinite { what: w, index: 27, .. } if w == what),
+            "{error:?}"
+        );
         let error = spoil("self_touch", |s| s.qfrc_applied[9] = value);
         assert!(
             matches!(
@@ -153,11 +162,10 @@ fn invariant_8_divergence_names_step_and_joint() {
     let model = blueprint(body_only("self_touch")).model().clone();
     let joint = model.joint("robot:left_elbow").expect("MIMo has elbows").0;
     let (q, d) = (model.jnt_qposadr[joint], model.jnt_dofadr[joint]);
-    let changes: [(&str, Box<dyn Fn(&mut State)>); 4] = [
+    let changes: [(&str, Change); 3] = [
         ("qvel", Box::new(move |s| s.qvel[d] = 1e11)),
         ("qpos", Box::new(move |s| s.qpos[q] = -1e11)),
         ("force", Box::new(move |s| s.qfrc_applied[d] = 1e30)),
-        ("stiffness", Box::new(move |s| s.params.jnt_stiffness[joint] = f64::NAN)),
     ];
     for (what, change) in changes {
         match spoil("self_touch", change) {
@@ -170,8 +178,8 @@ fn invariant_8_divergence_names_step_and_joint() {
                 println!("{what:10} -> step {step}, joint {joint}, {quantity} = {value:e}");
                 assert_eq!(step, steps_before);
                 assert!(model.joint(&joint).is_some(), "{joint:?} is no joint");
-                if what == "qvel" {
-                    assert_eq!((joint.as_str(), quantity), ("robot:left_elbow", "qvel"));
+                if what != "force" {
+                    assert_eq!((joint.as_str(), quantity), ("robot:left_elbow", what));
                 }
             }
             other => panic!("{what}: {other:?}"),
@@ -197,16 +205,44 @@ fn a_state_of_another_shape_is_a_typed_error() {
         ("qvel", |s| s.qvel.push(0.0)),
         ("ctrl", |s| s.ctrl.clear()),
         ("qfrc_applied", |s| s.qfrc_applied.truncate(1)),
+        ("qacc_warmstart", |s| s.qacc_warmstart.clear()),
+        ("params.eq_active", |s| s.params.eq_active.clear()),
+        ("params.eq_offset", |s| s.params.eq_offset.clear()),
+        ("params.jnt_stiffness", |s| s.params.jnt_stiffness.push(0.0)),
+        ("params.dof_damping", |s| s.params.dof_damping.clear()),
+        ("params.actuator_gear", |s| s.params.actuator_gear.clear()),
+        ("params.actuator_forcelimited", |s| {
+            s.params.actuator_forcelimited.clear()
+        }),
     ] {
         let mut engine = blueprint(body_only("self_touch")).engine();
-        let mut state = babybench::physics::Engine::new_state(&engine);
+        let mut state = engine.new_state();
         change(&mut state);
-        let error = babybench::physics::Engine::step(&mut engine, &mut state).expect_err("wrong shape");
+        let error = engine.step(&mut state).expect_err("wrong shape");
         assert!(
             matches!(error, EngineError::Shape { what: w, .. } if w == what),
             "{error:?}"
         );
     }
+}
+
+#[test]
+fn a_control_that_is_not_finite_is_a_typed_error() {
+    let mut engine = blueprint(body_only("self_touch")).engine();
+    let mut state = engine.new_state();
+    state.ctrl[5] = f64::NAN;
+    let error = engine.forward(&mut state).expect_err("not finite");
+    assert!(
+        matches!(
+            error,
+            EngineError::NotFinite {
+                what: "ctrl",
+                index: 5,
+                ..
+            }
+        ),
+        "{error:?}"
+    );
 }
 
 #[test]

@@ -224,6 +224,45 @@ fn joints_held_by_the_scene_keep_their_targets_when_locked() {
 }
 
 #[test]
+fn a_seed_of_reset_counts_and_in_reference_only_that_of_the_action_space() {
+    let start = |env: &mut babybench::Env, seed, space| {
+        if let Some(s) = space {
+            env.seed_action_space(s);
+        }
+        env.reset(seed).expect("no divergence");
+        env.state().qpos.clone()
+    };
+    for (compat, seed_counts) in [(Compat::Api, true), (Compat::Reference, false)] {
+        let mut env = env(Config {
+            compat,
+            ..body_only("self_touch")
+        });
+        let first = start(&mut env, Some(3), Some(9));
+        assert_eq!(
+            start(&mut env, Some(3), None) == first,
+            seed_counts,
+            "{compat}: the seed of a reset"
+        );
+        assert_eq!(
+            start(&mut env, None, Some(9)) == first,
+            !seed_counts,
+            "{compat}: the seed of the action space"
+        );
+    }
+}
+
+#[test]
+fn without_actuators_the_action_is_empty() {
+    let mut env = env(Config {
+        act: BodyParts::all(false),
+        ..body_only("self_touch")
+    });
+    env.reset(Some(0)).expect("no divergence");
+    let step = env.step(&[]).expect("no divergence");
+    assert_eq!(step.observation.observation.len(), 3 * 47 + 3 * 21);
+}
+
+#[test]
 fn random_actions_equal_those_of_the_same_seed_and_stay_in_the_space() {
     let shared = blueprint(body_only("self_touch"));
     let [mut a, mut b] = [0, 1].map(|_| shared.env().expect("available"));

@@ -4,10 +4,10 @@ use babybench::Model;
 use babybench::config::{Behavior, Compat, Scene};
 use babybench::math::mat_t_vec;
 use babybench::model::JointType;
-use babybench::physics::dynamics::mul_m;
-use babybench::physics::{State, Topology};
 use babybench::physics::constraint::RowKind;
+use babybench::physics::dynamics::mul_m;
 use babybench::physics::spatial::dot6;
+use babybench::physics::{State, Topology};
 
 use crate::common::*;
 
@@ -55,7 +55,11 @@ fn torque_sensors_feel_exactly_what_acts_through_the_joint() {
         env.reset(Some(0)).expect("no divergence");
         let model = env.model().clone();
         let topology = Topology::new(&model);
-        let hinge: Vec<bool> = model.dof_jntid.iter().map(|&j| model.jnt_type[j] == JointType::Hinge).collect();
+        let hinge: Vec<bool> = model
+            .dof_jntid
+            .iter()
+            .map(|&j| model.jnt_type[j] == JointType::Hinge)
+            .collect();
         // residual at hinges and free joints; what remains without the solver's share; that share; the largest torque
         let (mut at, mut rest, mut solver, mut largest) = ([0.0_f64; 2], 0.0_f64, 0.0_f64, 0.0_f64);
         let worse = |a: &mut f64, b: f64| *a = if b.is_nan() { f64::INFINITY } else { a.max(b.abs()) };

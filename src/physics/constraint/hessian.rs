@@ -4,33 +4,62 @@ use crate::physics::constraint::cone::{Zone, cone_hessian};
 use crate::physics::constraint::{Block, Efc};
 use crate::physics::topology::Topology;
 
-/// Consecutive columns of a block: first and one past the last entry, and local index of the first.
-type ColumnRun = (u32, u32, u32);
+/// Where the entries of a block's row go in a row of the Hessian.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    /// To consecutive places from here on.
+    Run(u32),
+    /// To the places listed from here on.
+    List(u32),
+}
 
-/// A symmetric positive matrix over the degrees of freedom of an island, dense rows (lower triangle) with known zeros.
+/// A symmetric positive matrix over the degrees of freedom of an island; of each row the nonzeros up to the diagonal.
 ///
-/// The zeros are those of `L' D L` elimination from the last row to the first: a limb touches only its own chain, so the
-/// pattern of the inertia survives contacts with fixed things, and self-contact couples two chains.
+/// The pattern is that of `L' D L` elimination from the last row to the first. A limb touches only its own chain, so the
+/// pattern of the inertia survives contacts with fixed things: the columns of an ancestor's row are then the first columns
+/// of its descendant's, and elimination runs on consecutive memory. Self-contact couples two chains, whose rows have more.
 #[derive(Clone, Debug, Default)]
 pub struct Hessian {
-    n: usize,
     /// Local index of each degree of freedom of the island (nv).
     local: Vec<u32>,
     /// Degree of freedom of each local index.
     dofs: Vec<u32>,
+    /// Pattern as bits, while it is found.
     bits: Vec<u64>,
-    /// Runs (start, length) of nonzeros left of the diagonal.
-    runs: Vec<(u32, u32)>,
-    run_adr: Vec<usize>,
-    block_runs: Vec<ColumnRun>,
-    block_run_adr: Vec<usize>,
+    /// Columns of each row, ascending, the diagonal last.
+    cols: Vec<u32>,
+    row_adr: Vec<usize>,
+    /// Values, laid out like `cols`.
     h: Vec<f64>,
     diag_inv: Vec<f64>,
+    /// For each row of each block with several columns.
+    targets: Vec<Target>,
+    target_adr: Vec<usize>,
+    places: Vec<u32>,
     x: Vec<f64>,
     weighted: Vec<f64>,
 }
 
 impl Hessian {
+    /// With memory for `nv` degrees of freedom and `contacts` contacts.
+    pub fn with_capacity(nv: usize, contacts: usize) -> Self {
+        let values = nv * (nv + 1) / 2;
+        Self {
+            local: Vec::with_capacity(nv),
+            dofs: Vec::with_capacity(nv),
+            bits: Vec::with_capacity(nv * nv.div_ceil(64)),
+            cols: Vec::with_capacity(values),
+            row_adr: Vec::with_capacity(nv + 1),
+            h: Vec::with_capacity(values),
+            diag_inv: Vec::with_capacity(nv),
+            targets: Vec::with_capacity(16 * contacts),
+            target_adr: Vec::with_capacity(4 * nv + contacts),
+            places: Vec::with_capacity(64 * contacts),
+            x: Vec::with_capacity(nv),
+            weighted: Vec::with_capacity(6 * nv),
+        }
+    }
+
     /// Finds the pattern for the island made of `trees` and `blocks` (indices into `efc.blocks`).
     pub fn analyse(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc) {
         self.local.resize(topology.dof_tree.len(), 0);
@@ -41,82 +70,94 @@ impl Hessian {
                 self.dofs.push(d as u32);
             }
         }
-        self.n = self.dofs.len();
-        let (n, words) = (self.n, self.n.div_ceil(64));
+        let n = self.dofs.len();
+        let words = n.div_ceil(64);
         self.bits.clear();
         self.bits.resize(n * words, 0);
-        let mut set = |i: usize, j: usize| self.bits[i * words + j / 64] |= 1 << (j % 64);
         for i in 0..n {
             for &a in topology.dof_chain(self.dofs[i] as usize) {
-                set(i, self.local[a as usize] as usize);
+                set(&mut self.bits, words, i, self.local[a as usize] as usize);
             }
         }
-        self.block_runs.clear();
-        self.block_run_adr.clear();
         for &k in blocks {
             let cols = efc.columns(&efc.blocks[k as usize]);
-            self.block_run_adr.push(self.block_runs.len());
-            let mut c = 0;
-            while c < cols.len() {
-                let (start, first) = (c, self.local[cols[c] as usize]);
-                while c < cols.len() && self.local[cols[c] as usize] == first + (c - start) as u32 {
-                    c += 1;
-                }
-                self.block_runs.push((start as u32, c as u32, first));
-            }
             for (a, &col) in cols.iter().enumerate().skip(1) {
                 let i = self.local[col as usize] as usize;
                 for &other in &cols[..a] {
-                    set(i, self.local[other as usize] as usize);
+                    set(&mut self.bits, words, i, self.local[other as usize] as usize);
                 }
             }
         }
-        self.block_run_adr.push(self.block_runs.len());
-        self.fill_in(words);
-        self.h.clear();
-        self.h.resize(n * n, 0.0);
+        self.eliminate(words);
+        self.h.resize(self.cols.len(), 0.0);
         self.diag_inv.resize(n, 0.0);
         self.x.resize(n, 0.0);
+        self.place_blocks(blocks, efc);
     }
 
-    /// Symbolic elimination, then runs of each row.
-    fn fill_in(&mut self, words: usize) {
-        let n = self.n;
+    /// Symbolic elimination, then the columns of each row.
+    fn eliminate(&mut self, words: usize) {
+        let n = self.dofs.len();
         for i in (0..n).rev() {
-            let row = i * words;
-            // drop the diagonal, then hand the row to its last nonzero column
-            self.bits[row + i / 64] &= !(1 << (i % 64));
-            let last = (0..words).rev().find(|&w| self.bits[row + w] != 0);
-            if let Some(w) = last {
-                let j = w * 64 + 63 - self.bits[row + w].leading_zeros() as usize;
-                for w in 0..words {
-                    let mut v = self.bits[row + w];
-                    if w == j / 64 {
-                        v &= !(1 << (j % 64));
-                    }
-                    self.bits[j * words + w] |= v;
+            let (head, row) = self.bits.split_at_mut(i * words);
+            row[i / 64] &= !(1 << (i % 64));
+            // a row hands its pattern to its last nonzero column
+            if let Some(w) = (0..words).rev().find(|&w| row[w] != 0) {
+                let j = w * 64 + 63 - row[w].leading_zeros() as usize;
+                let target = &mut head[j * words..(j + 1) * words];
+                for (t, r) in target.iter_mut().zip(&row[..words]) {
+                    *t |= r;
                 }
             }
         }
-        self.runs.clear();
-        self.run_adr.clear();
+        self.cols.clear();
+        self.row_adr.clear();
         for i in 0..n {
-            self.run_adr.push(self.runs.len());
-            let has = |j: usize| self.bits[i * words + j / 64] >> (j % 64) & 1 == 1;
-            let mut j = 0;
-            while j < i {
-                if !has(j) {
-                    j += 1;
-                    continue;
+            self.row_adr.push(self.cols.len());
+            for w in 0..words {
+                let mut bits = self.bits[i * words + w];
+                while bits != 0 {
+                    self.cols.push((w * 64) as u32 + bits.trailing_zeros());
+                    bits &= bits - 1;
                 }
-                let start = j;
-                while j < i && has(j) {
-                    j += 1;
+            }
+            self.cols.push(i as u32);
+        }
+        self.row_adr.push(self.cols.len());
+    }
+
+    /// Finds where the entries of each block go.
+    fn place_blocks(&mut self, blocks: &[u32], efc: &Efc) {
+        self.targets.clear();
+        self.target_adr.clear();
+        self.places.clear();
+        for &k in blocks {
+            self.target_adr.push(self.targets.len());
+            let cols = efc.columns(&efc.blocks[k as usize]);
+            if cols.len() == 1 {
+                continue;
+            }
+            for (a, &col) in cols.iter().enumerate() {
+                let i = self.local[col as usize] as usize;
+                let row = &self.cols[self.row_adr[i]..self.row_adr[i + 1]];
+                let start = self.places.len();
+                let mut p = 0;
+                for &c in &cols[..=a] {
+                    let c = self.local[c as usize];
+                    while row[p] != c {
+                        p += 1;
+                    }
+                    self.places.push(p as u32);
                 }
-                self.runs.push((start as u32, (j - start) as u32));
+                let first = self.places[start];
+                self.targets.push(if p as u32 - first == a as u32 {
+                    self.places.truncate(start);
+                    Target::Run(first)
+                } else {
+                    Target::List(start as u32)
+                });
             }
         }
-        self.run_adr.push(self.runs.len());
     }
 
     /// Assembles the Hessian at `jar`, with the zone of each block.
@@ -129,15 +170,23 @@ impl Hessian {
         efc: &Efc,
         jar: &[f64],
     ) {
-        let n = self.n;
-        for i in 0..n {
-            for &(start, len) in &self.runs[self.run_adr[i]..self.run_adr[i + 1]] {
-                self.h[i * n + start as usize..][..len as usize].fill(0.0);
-            }
-            let d = self.dofs[i] as usize;
-            let row = &mut self.h[i * n..(i + 1) * n];
-            for (k, &a) in topology.dof_chain(d).iter().enumerate() {
-                row[self.local[a as usize] as usize] = qm[topology.row_adr[d] + k];
+        for (i, &d) in self.dofs.iter().enumerate() {
+            let d = d as usize;
+            let range = self.row_adr[i]..self.row_adr[i + 1];
+            let (row, cols) = (&mut self.h[range.clone()], &self.cols[range]);
+            let inertia = &qm[topology.row_adr[d]..topology.row_adr[d + 1]];
+            if row.len() == inertia.len() {
+                row.copy_from_slice(inertia);
+            } else {
+                row.fill(0.0);
+                let mut p = 0;
+                for (&a, &m) in topology.dof_chain(d).iter().zip(inertia) {
+                    let c = self.local[a as usize];
+                    while cols[p] != c {
+                        p += 1;
+                    }
+                    row[p] = m;
+                }
             }
         }
         for (index, &k) in blocks.iter().enumerate() {
@@ -149,7 +198,7 @@ impl Hessian {
             if b.dim == 1 && b.ncol == 1 {
                 let i = self.local[efc.cols[b.col] as usize] as usize;
                 let j = efc.jac[b.jac];
-                self.h[i * n + i] += efc.d[b.row] * j * j;
+                self.h[self.row_adr[i + 1] - 1] += efc.d[b.row] * j * j;
                 continue;
             }
             self.weigh(b, zone, efc, jar);
@@ -161,20 +210,18 @@ impl Hessian {
     fn weigh(&mut self, b: &Block, zone: Zone, efc: &Efc, jar: &[f64]) {
         let (n, jac, rows) = (b.ncol, efc.jacobian(b), b.row..b.row + b.dim);
         self.weighted.clear();
-        self.weighted.resize(b.dim * n, 0.0);
         if zone == Zone::Quadratic {
-            for (r, &d) in efc.d[rows].iter().enumerate() {
-                for (w, j) in self.weighted[r * n..(r + 1) * n].iter_mut().zip(&jac[r * n..]) {
-                    *w = d * j;
-                }
+            for (jac, &d) in jac.chunks_exact(n).zip(&efc.d[rows]) {
+                self.weighted.extend(jac.iter().map(|j| d * j));
             }
         } else {
+            self.weighted.resize(b.dim * n, 0.0);
             let mut c = [0.0; 36];
             cone_hessian(b, &jar[rows.clone()], &efc.d[rows], &mut c);
-            for r in 0..b.dim {
-                for q in 0..b.dim {
+            for (r, weighted) in self.weighted.chunks_exact_mut(n).enumerate() {
+                for (q, jac) in jac.chunks_exact(n).enumerate() {
                     let v = c[r * b.dim + q];
-                    for (w, j) in self.weighted[r * n..(r + 1) * n].iter_mut().zip(&jac[q * n..]) {
+                    for (w, j) in weighted.iter_mut().zip(jac) {
                         *w += v * j;
                     }
                 }
@@ -184,31 +231,37 @@ impl Hessian {
 
     /// Adds `J' weighted` of one block to the lower triangle.
     fn add_block(&mut self, index: usize, b: &Block, efc: &Efc) {
-        let (n, m, jac) = (self.n, b.ncol, efc.jacobian(b));
-        let runs = &self.block_runs[self.block_run_adr[index]..self.block_run_adr[index + 1]];
+        let (m, jac) = (b.ncol, efc.jacobian(b));
         for (a, &col) in efc.columns(b).iter().enumerate() {
             let i = self.local[col as usize] as usize;
-            let row = &mut self.h[i * n..i * n + i + 1];
-            for &(start, end, first) in runs {
-                let start = start as usize;
-                if start > a {
-                    break;
-                }
-                let len = (end as usize).min(a + 1) - start;
-                let target = &mut row[first as usize..first as usize + len];
-                if b.dim == 3 {
-                    let (j0, j1, j2) = (jac[a], jac[m + a], jac[2 * m + a]);
-                    let w0 = &self.weighted[start..start + len];
-                    let w1 = &self.weighted[m + start..m + start + len];
-                    let w2 = &self.weighted[2 * m + start..2 * m + start + len];
-                    for k in 0..len {
-                        target[k] += j0 * w0[k] + j1 * w1[k] + j2 * w2[k];
+            let row = &mut self.h[self.row_adr[i]..self.row_adr[i + 1]];
+            match self.targets[self.target_adr[index] + a] {
+                Target::Run(first) => {
+                    let target = &mut row[first as usize..first as usize + a + 1];
+                    let mut r = 0;
+                    // three rows at a time: most contacts have three or six
+                    while r + 3 <= b.dim {
+                        let (j0, j1, j2) = (jac[r * m + a], jac[(r + 1) * m + a], jac[(r + 2) * m + a]);
+                        let w = &self.weighted[r * m..(r + 3) * m];
+                        let (w0, w1, w2) = (&w[..a + 1], &w[m..m + a + 1], &w[2 * m..2 * m + a + 1]);
+                        for (k, t) in target.iter_mut().enumerate() {
+                            *t += j0 * w0[k] + j1 * w1[k] + j2 * w2[k];
+                        }
+                        r += 3;
                     }
-                } else {
+                    for r in r..b.dim {
+                        let j = jac[r * m + a];
+                        for (t, w) in target.iter_mut().zip(&self.weighted[r * m..]) {
+                            *t += j * w;
+                        }
+                    }
+                }
+                Target::List(start) => {
+                    let places = &self.places[start as usize..start as usize + a + 1];
                     for r in 0..b.dim {
                         let j = jac[r * m + a];
-                        for (t, w) in target.iter_mut().zip(&self.weighted[r * m + start..]) {
-                            *t += j * w;
+                        for (&p, w) in places.iter().zip(&self.weighted[r * m..]) {
+                            row[p as usize] += j * w;
                         }
                     }
                 }
@@ -218,38 +271,42 @@ impl Hessian {
 
     /// Factorises in place, `H = L' D L`.
     pub fn factor(&mut self) {
-        let n = self.n;
-        for i in (0..n).rev() {
-            let (head, tail) = self.h.split_at_mut(i * n);
-            let row = &mut tail[..=i];
-            let inv = 1.0 / row[i];
+        for i in (0..self.dofs.len()).rev() {
+            let (head, tail) = self.h.split_at_mut(self.row_adr[i]);
+            let n = self.row_adr[i + 1] - self.row_adr[i] - 1;
+            let cols = &self.cols[self.row_adr[i]..][..n];
+            let inv = 1.0 / tail[n];
             self.diag_inv[i] = inv;
-            let runs = &self.runs[self.run_adr[i]..self.run_adr[i + 1]];
-            for (k, &(start, len)) in runs.iter().enumerate() {
-                let (start, end) = (start as usize, (start + len) as usize);
-                for j in start..end {
-                    let t = row[j] * inv;
-                    if t == 0.0 {
-                        continue;
+            let row = &mut tail[..n];
+            for (k, &j) in cols.iter().enumerate() {
+                let t = row[k] * inv;
+                let range = self.row_adr[j as usize]..self.row_adr[j as usize + 1];
+                let target = &mut head[range.clone()];
+                if target.len() == k + 1 {
+                    // the columns of row j are the first of row i
+                    for (a, b) in target.iter_mut().zip(&row[..k + 1]) {
+                        *a -= t * b;
                     }
-                    let target = &mut head[j * n..j * n + j + 1];
-                    for &(s, l) in &runs[..k] {
-                        subtract(&mut target[s as usize..(s + l) as usize], &row[s as usize..], t);
+                } else if t != 0.0 {
+                    let target_cols = &self.cols[range];
+                    let mut p = 0;
+                    for (&c, b) in cols[..k + 1].iter().zip(&row[..k + 1]) {
+                        while target_cols[p] != c {
+                            p += 1;
+                        }
+                        target[p] -= t * b;
                     }
-                    subtract(&mut target[start..], &row[start..], t);
                 }
             }
-            for &(start, len) in runs {
-                for v in &mut row[start as usize..(start + len) as usize] {
-                    *v *= inv;
-                }
+            for v in row {
+                *v *= inv;
             }
         }
     }
 
     /// `out = -H^-1 gradient` on the island's degrees of freedom (both nv).
     pub fn descend(&mut self, gradient: &[f64], out: &mut [f64]) {
-        let n = self.n;
+        let n = self.dofs.len();
         let x = &mut self.x;
         for (v, &d) in x.iter_mut().zip(&self.dofs) {
             *v = -gradient[d as usize];
@@ -257,9 +314,9 @@ impl Hessian {
         for i in (0..n).rev() {
             let xi = x[i];
             if xi != 0.0 {
-                for &(s, l) in &self.runs[self.run_adr[i]..self.run_adr[i + 1]] {
-                    let (s, e) = (s as usize, (s + l) as usize);
-                    subtract(&mut x[s..e], &self.h[i * n + s..], xi);
+                let range = self.row_adr[i]..self.row_adr[i + 1] - 1;
+                for (&c, v) in self.cols[range.clone()].iter().zip(&self.h[range]) {
+                    x[c as usize] -= v * xi;
                 }
             }
         }
@@ -267,12 +324,10 @@ impl Hessian {
             *v *= inv;
         }
         for i in 0..n {
+            let range = self.row_adr[i]..self.row_adr[i + 1] - 1;
             let mut sum = 0.0;
-            for &(s, l) in &self.runs[self.run_adr[i]..self.run_adr[i + 1]] {
-                let (s, e) = (s as usize, (s + l) as usize);
-                for (a, b) in x[s..e].iter().zip(&self.h[i * n + s..]) {
-                    sum += a * b;
-                }
+            for (&c, v) in self.cols[range.clone()].iter().zip(&self.h[range]) {
+                sum += v * x[c as usize];
             }
             x[i] -= sum;
         }
@@ -282,10 +337,7 @@ impl Hessian {
     }
 }
 
-/// `a -= t b`, over the length of `a`.
-#[inline(always)]
-fn subtract(a: &mut [f64], b: &[f64], t: f64) {
-    for (x, y) in a.iter_mut().zip(b) {
-        *x -= t * y;
-    }
+#[inline]
+fn set(bits: &mut [u64], words: usize, i: usize, j: usize) {
+    bits[i * words + j / 64] |= 1 << (j % 64);
 }

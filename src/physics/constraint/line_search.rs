@@ -41,6 +41,15 @@ pub struct LineSearch {
 }
 
 impl LineSearch {
+    /// With memory for the rows of `nv` degrees of freedom and `contacts` contacts.
+    pub fn with_capacity(nv: usize, contacts: usize) -> Self {
+        Self {
+            kinks: Vec::with_capacity(4 * nv),
+            cones: Vec::with_capacity(contacts),
+            ..Self::default()
+        }
+    }
+
     /// `slope` and `curvature` are those of the inertial part at 0; `jar` and `jv` are the rows' values and rates.
     pub fn prepare(&mut self, slope: f64, curvature: f64, blocks: &[u32], efc: &Efc, jar: &[f64], jv: &[f64]) {
         self.slope = slope;

@@ -91,6 +91,25 @@ impl Efc {
         self.pos.len()
     }
 
+    /// With memory for `contacts` contacts and the rows of `nv` degrees of freedom.
+    pub fn with_capacity(nv: usize, contacts: usize) -> Self {
+        let rows = 4 * contacts + 3 * nv;
+        let reserved = || Vec::with_capacity(rows);
+        Self {
+            blocks: Vec::with_capacity(contacts + 3 * nv),
+            cols: Vec::with_capacity(16 * contacts + 3 * nv),
+            jac: Vec::with_capacity(64 * contacts + 9 * nv),
+            pos: reserved(),
+            margin: reserved(),
+            diag_approx: reserved(),
+            r: reserved(),
+            d: reserved(),
+            vel: reserved(),
+            aref: reserved(),
+            force: reserved(),
+        }
+    }
+
     /// Drops all rows, keeps the memory.
     pub fn clear(&mut self) {
         self.blocks.clear();

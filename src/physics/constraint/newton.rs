@@ -34,6 +34,21 @@ pub struct Newton {
 }
 
 impl Newton {
+    /// With memory for `nv` degrees of freedom and `contacts` contacts, so that solving need not allocate.
+    pub fn with_capacity(nv: usize, contacts: usize) -> Self {
+        let (blocks, rows) = (contacts + 4 * nv, 4 * contacts + 4 * nv);
+        Self {
+            hessian: Hessian::with_capacity(nv, contacts),
+            line: LineSearch::with_capacity(nv, contacts),
+            blocks: Vec::with_capacity(blocks),
+            block_root: Vec::with_capacity(blocks),
+            zones: Vec::with_capacity(blocks),
+            jar: Vec::with_capacity(rows),
+            jv: Vec::with_capacity(rows),
+            ..Self::default()
+        }
+    }
+
     /// Computes `qacc, qfrc_constraint`, the row forces and the contact forces. Starts from `qacc_warmstart` or
     /// `qacc_smooth`, whichever costs less, and stops when the improvement or the gradient, scaled by the mean inertia,
     /// falls below `opt.tolerance`.
@@ -120,12 +135,14 @@ impl Newton {
         let mut force = std::mem::take(&mut efc.force);
         let (ma, jar, zones) = (&mut self.ma, &mut self.jar, &mut self.zones);
 
-        let smooth_cost = problem.cost_at(efc, qacc_smooth, ma, jar, &mut force, zones);
+        let smooth_cost = problem.cost_at(efc, qacc_smooth, qfrc_smooth, jar, &mut force, zones);
+        problem.mul_m(qacc_warmstart, ma);
         let mut cost = problem.cost_at(efc, qacc_warmstart, ma, jar, &mut force, zones);
         if cost < smooth_cost {
             problem.for_dofs(|d| qacc[d] = qacc_warmstart[d]);
         } else {
-            problem.for_dofs(|d| qacc[d] = qacc_smooth[d]);
+            // M qacc_smooth is qfrc_smooth
+            problem.for_dofs(|d| (qacc[d], ma[d]) = (qacc_smooth[d], qfrc_smooth[d]));
             cost = problem.cost_at(efc, qacc_smooth, ma, jar, &mut force, zones);
         }
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
@@ -261,17 +278,16 @@ impl Problem<'_> {
         }
     }
 
-    /// Cost at `x`; fills `ma`, `jar`, the forces and the zones.
+    /// Cost at `x` with `ma` up to date; fills `jar`, the forces and the zones.
     fn cost_at(
         &self,
         efc: &Efc,
         x: &[f64],
-        ma: &mut [f64],
+        ma: &[f64],
         jar: &mut [f64],
         force: &mut [f64],
         zones: &mut Vec<Zone>,
     ) -> f64 {
-        self.mul_m(x, ma);
         self.mul_j(efc, x, jar);
         self.for_rows(efc, |i| jar[i] -= efc.aref[i]);
         self.cost(efc, x, ma, jar, force, zones)

@@ -18,7 +18,7 @@ impl Integrator {
     /// `v+ = v + h (M + h D)^-1 (qfrc_smooth + qfrc_constraint)`, then `q+ = q (+) h v+`; without damping `v+ = v + h qacc`.
     pub fn advance(&mut self, model: &Model, topology: &Topology, s: &mut State) {
         let h = model.opt.timestep;
-        if topology.damped {
+        if s.params.dof_damping.iter().any(|&d| d > 0.0) {
             self.damped.resize(s.qm.len(), 0.0);
             self.diag_inv.resize(model.nv, 0.0);
             self.acc.resize(model.nv, 0.0);

@@ -32,12 +32,14 @@ pub struct PairTable {
 
 const NONE: u32 = u32::MAX;
 
+/// Lower body, higher body, whether the pair is not explicit, order among those.
+type Order = (usize, usize, bool, usize, usize);
+
 impl PairTable {
     /// Derives the table of `model`.
     pub fn new(model: &Model) -> Self {
         let ngeom = model.ngeom();
-        // (lower body, higher body, dynamic, order within, pair)
-        let mut found: Vec<((usize, usize, bool, usize, usize), Pair)> = Vec::new();
+        let mut found: Vec<(Order, Pair)> = Vec::new();
         let bodies = |a: usize, b: usize| {
             let (x, y) = (model.geom_bodyid[a], model.geom_bodyid[b]);
             (x.min(y), x.max(y))

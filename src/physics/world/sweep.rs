@@ -3,7 +3,7 @@
 use crate::math::{Mat3, Vec3};
 use crate::model::{GeomType, Model};
 use crate::physics::contact::{ContactPoint, Options, Placed, Scratch, bounding_test, collide};
-use crate::physics::state::State;
+use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::world::PairTable;
 
 /// Boxes are enlarged by this, m: more than rounding, so that the exact routines decide.
@@ -31,8 +31,8 @@ impl Sweep {
             scratch: Scratch::new(),
             order: (0..model.ngeom()).filter(|&g| in_pair(g)).collect(),
             aabb: vec![[[0.0; 3]; 2]; model.ngeom()],
-            candidates: Vec::new(),
-            points: Vec::new(),
+            candidates: Vec::with_capacity(2 * RESERVED_CONTACTS),
+            points: Vec::with_capacity(64),
         }
     }
 

@@ -1,0 +1,30 @@
+//! Why an actuation model does not fit a scene.
+
+use thiserror::Error;
+
+/// An actuator that an actuation model cannot drive.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ActuationError {
+    /// The actuator is of the wrong kind.
+    #[error("actuator {actuator:?} is not a {needs}, which actuation_model {model} needs")]
+    Kind {
+        /// Its name.
+        actuator: String,
+        /// The actuation model.
+        model: &'static str,
+        /// What it should be.
+        needs: &'static str,
+    },
+    /// A number of the actuator or of its joint is not allowed.
+    #[error("actuator {actuator:?}: {what} is {value}, but must be {allowed}")]
+    Parameter {
+        /// Its name.
+        actuator: String,
+        /// Which number.
+        what: &'static str,
+        /// Its value; NaN when it is missing.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+}

@@ -1,0 +1,141 @@
+//! Evaluation episodes with a policy, several at a time.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use thiserror::Error;
+
+use super::evaluation::{Evaluation, EvaluationError};
+use super::film::RoomFilm;
+use super::make::for_evaluation;
+use super::policy::{Policy, PolicyError};
+use crate::config::Compat;
+use crate::env::{Blueprint, EnvError, Info};
+
+/// What is to be evaluated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Number of episodes; episode k is seeded with the configuration's seed + k.
+    pub episodes: u64,
+    /// Most steps of an episode; it also ends when it is truncated.
+    pub duration: u64,
+    /// Whether videos are made.
+    pub render: bool,
+    /// Episodes at the same time. Results do not depend on it.
+    pub jobs: usize,
+}
+
+/// Why episodes fail.
+#[derive(Debug, Error)]
+pub enum EpisodeError {
+    /// Counters that go on from episode to episode need one after the other.
+    #[error(
+        "under compat: reference episodes continue each other's counters and run one after the other: use --jobs 1"
+    )]
+    Jobs,
+    /// The environment fails.
+    #[error("episode {episode}: {source}")]
+    Env {
+        /// The episode.
+        episode: u64,
+        /// Why.
+        source: Box<EnvError>,
+    },
+    /// The policy fails.
+    #[error(transparent)]
+    Policy(#[from] PolicyError),
+    /// A log or a video cannot be written.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+}
+
+/// Runs evaluation episodes into the configuration's `save_dir` and returns the last information of each. `progress` is
+/// told after every step; each job has a policy of its own.
+///
+/// # Errors
+/// The first that occurs; the others are given up.
+pub fn run_episodes(
+    blueprint: &Blueprint,
+    plan: &Plan,
+    policy: &(dyn Fn() -> Result<Box<dyn Policy>, PolicyError> + Sync),
+    progress: &(dyn Fn() + Sync),
+) -> Result<Vec<Info>, EpisodeError> {
+    let jobs = plan
+        .jobs
+        .clamp(1, usize::try_from(plan.episodes.max(1)).unwrap_or(usize::MAX));
+    if jobs > 1 && blueprint.config().compat == Compat::Reference {
+        return Err(EpisodeError::Jobs);
+    }
+    let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
+    let done: Mutex<Vec<(u64, Info)>> = Mutex::default();
+    let job = || {
+        let result = episodes(blueprint, plan, policy, progress, &|| {
+            let episode = next.fetch_add(1, Ordering::Relaxed);
+            (episode < plan.episodes && !failed.load(Ordering::Relaxed)).then_some(episode)
+        });
+        match result {
+            Ok(mut infos) => done.lock().unwrap_or_else(PoisonError::into_inner).append(&mut infos),
+            Err(e) => {
+                failed.store(true, Ordering::Relaxed);
+                return Err(e);
+            }
+        }
+        Ok(())
+    };
+    let results: Vec<Result<(), EpisodeError>> = match jobs {
+        1 => vec![job()],
+        _ => std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..jobs).map(|_| scope.spawn(job)).collect();
+            let join =
+                |t: std::thread::ScopedJoinHandle<'_, _>| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
+            threads.into_iter().map(join).collect()
+        }),
+    };
+    results.into_iter().collect::<Result<(), _>>()?;
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    done.sort_by_key(|(episode, _)| *episode);
+    Ok(done.into_iter().map(|(_, info)| info).collect())
+}
+
+/// The episodes of one job, in its own environment.
+fn episodes(
+    blueprint: &Blueprint,
+    plan: &Plan,
+    policy: &dyn Fn() -> Result<Box<dyn Policy>, PolicyError>,
+    progress: &dyn Fn(),
+    next: &dyn Fn() -> Option<u64>,
+) -> Result<Vec<(u64, Info)>, EpisodeError> {
+    let env_error = |episode: u64| {
+        move |e: EnvError| EpisodeError::Env {
+            episode,
+            source: Box::new(e),
+        }
+    };
+    let mut policy = policy()?;
+    let mut env = for_evaluation(blueprint).map_err(env_error(0))?;
+    let mut evaluation = Evaluation::new(&env);
+    if plan.render {
+        let folder = evaluation.video_path(0).with_file_name("");
+        let film = RoomFilm::new(&env, folder.clone());
+        evaluation = evaluation.with_film(film.map_err(|source| EvaluationError::Video { path: folder, source })?);
+    }
+    let (mut action, mut infos) = (Vec::new(), Vec::new());
+    while let Some(episode) = next() {
+        let seed = blueprint.config().seed.wrapping_add(episode);
+        env.reset(Some(seed)).map_err(env_error(episode))?;
+        policy.begin(&mut env)?;
+        evaluation.reset();
+        for _ in 0..plan.duration {
+            policy.act(&mut env, &mut action)?;
+            let truncated = env.step(&action).map_err(env_error(episode))?.truncated;
+            evaluation.eval_step(&env)?;
+            progress();
+            if truncated {
+                break;
+            }
+        }
+        evaluation.end(episode)?;
+        infos.push((episode, env.info().clone()));
+    }
+    Ok(infos)
+}

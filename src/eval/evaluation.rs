@@ -1,0 +1,208 @@
+//! Evaluation of a training run and of a learned policy.
+
+use std::error::Error as StdError;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::logs::{EvaluationLog, LogError, read_training, training_path};
+use super::scores::{Score, ScoreError};
+use crate::config::Behavior;
+use crate::env::Env;
+
+/// Why an evaluation fails.
+#[derive(Debug, Error)]
+pub enum EvaluationError {
+    /// A log cannot be read or written.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// The training log has no score.
+    #[error("{}: {source}", path.display())]
+    Score {
+        /// The log.
+        path: PathBuf,
+        /// Why.
+        source: ScoreError,
+    },
+    /// The training log is of another behavior.
+    #[error("{}: the log is of behavior {found}, but the environment's is {expected}", path.display())]
+    Behavior {
+        /// The log.
+        path: PathBuf,
+        /// Its behavior.
+        found: &'static str,
+        /// The environment's.
+        expected: Behavior,
+    },
+    /// An episode ends without steps.
+    #[error("evaluation episode {episode} has no steps: call eval_step after every step of the environment")]
+    NoSteps {
+        /// The episode.
+        episode: u64,
+    },
+    /// The video cannot be made.
+    #[error("cannot make the video {}: {source}", path.display())]
+    Video {
+        /// The file.
+        path: PathBuf,
+        /// What went wrong.
+        source: FilmError,
+    },
+}
+
+/// Why a film fails.
+pub type FilmError = Box<dyn StdError + Send + Sync>;
+
+/// Makes the videos of evaluation episodes.
+pub trait Film {
+    /// Adds the frame of the environment's present step; the first one begins a video.
+    ///
+    /// # Errors
+    /// What the drawing, the coding or the file system says.
+    fn frame(&mut self, env: &Env) -> Result<(), FilmError>;
+
+    /// Ends the video: it is complete at `path`, replacing what was there. Its folder exists.
+    ///
+    /// # Errors
+    /// As [`Film::frame`].
+    fn end(&mut self, path: &Path) -> Result<(), FilmError>;
+
+    /// Drops the video that was begun.
+    fn discard(&mut self);
+}
+
+/// The score of the training log in the folder of a run.
+///
+/// # Errors
+/// No log, a damaged one, one without score.
+pub fn eval_logs(save_dir: impl AsRef<Path>) -> Result<Score, EvaluationError> {
+    let records = read_training(&save_dir)?;
+    let path = training_path(save_dir);
+    Score::new(&records).map_err(|source| EvaluationError::Score { path, source })
+}
+
+/// Evaluates a behavior: the training log, and episodes with a learned policy.
+///
+/// ```
+/// use babybench::eval::Evaluation;
+/// use babybench::{Config, make_env};
+/// # let save_dir = std::env::temp_dir().join("babybench_evaluation_example").display().to_string();
+///
+/// let text = "behavior: self_touch\nscene: crib\ntouch_active: False\nvision_active: False\nmax_episode_steps: 5";
+/// let config = Config { save_dir, ..Config::from_yaml(text, "my.yml")? };
+/// let mut env = make_env(config, false)?;
+/// let mut evaluation = Evaluation::new(&env);
+/// let mut action = Vec::new();
+///
+/// env.reset(Some(0))?;
+/// loop {
+///     env.sample_action(&mut action); // here goes the policy
+///     let truncated = env.step(&action)?.truncated;
+///     evaluation.eval_step(&env)?;
+///     if truncated {
+///         break;
+///     }
+/// }
+/// let log = evaluation.end(0)?;
+/// assert!(log.ends_with("logs/evaluation_0.pkl"));
+/// # std::fs::remove_dir_all(&env.config().save_dir)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Evaluation<'f> {
+    behavior: Behavior,
+    save_dir: PathBuf,
+    log: EvaluationLog,
+    film: Option<Box<dyn Film + 'f>>,
+}
+
+impl<'f> Evaluation<'f> {
+    /// Without video, into the `save_dir` of the environment's configuration.
+    pub fn new(env: &Env) -> Self {
+        Self {
+            behavior: env.config().behavior,
+            save_dir: PathBuf::from(&env.config().save_dir),
+            log: EvaluationLog::default(),
+            film: None,
+        }
+    }
+
+    /// Also makes videos, `videos/evaluation_N.avi`.
+    #[must_use]
+    pub fn with_film(mut self, film: impl Film + 'f) -> Self {
+        self.film = Some(Box::new(film));
+        self
+    }
+
+    /// Into another folder.
+    #[must_use]
+    pub fn with_save_dir(mut self, save_dir: impl Into<PathBuf>) -> Self {
+        self.save_dir = save_dir.into();
+        self
+    }
+
+    /// Where the video of an episode goes.
+    pub fn video_path(&self, episode: u64) -> PathBuf {
+        self.save_dir.join("videos").join(format!("evaluation_{episode}.avi"))
+    }
+
+    /// The score of the training log.
+    ///
+    /// # Errors
+    /// No log, a damaged one, one of another behavior, one without score.
+    pub fn eval_logs(&self) -> Result<Score, EvaluationError> {
+        let records = read_training(&self.save_dir)?;
+        let path = training_path(&self.save_dir);
+        match records.first().map(|r| r.behavior.name()) {
+            Some(found) if found != self.behavior.name() => {
+                let expected = self.behavior;
+                Err(EvaluationError::Behavior { path, found, expected })
+            }
+            _ => Score::new(&records).map_err(|source| EvaluationError::Score { path, source }),
+        }
+    }
+
+    /// Forgets the steps since the last end.
+    pub fn reset(&mut self) {
+        self.log = EvaluationLog::default();
+        if let Some(film) = &mut self.film {
+            film.discard();
+        }
+    }
+
+    /// Takes note of a step of the environment: positions, information and, for a video, a frame.
+    ///
+    /// # Errors
+    /// The video fails.
+    pub fn eval_step(&mut self, env: &Env) -> Result<(), EvaluationError> {
+        if let Some(film) = &mut self.film {
+            film.frame(env).map_err(|source| {
+                let path = self.save_dir.join("videos");
+                EvaluationError::Video { path, source }
+            })?;
+        }
+        self.log.push(&env.state().qpos, env.info());
+        Ok(())
+    }
+
+    /// Ends an episode: writes `logs/evaluation_N.pkl`, the same as `.npz` where that is built in, and the video. Returns
+    /// the path of the log.
+    ///
+    /// # Errors
+    /// What the file system says; no steps since the last end.
+    pub fn end(&mut self, episode: u64) -> Result<PathBuf, EvaluationError> {
+        let log = std::mem::take(&mut self.log);
+        if log.is_empty() {
+            return Err(EvaluationError::NoSteps { episode });
+        }
+        let written = log.write(&self.save_dir, episode)?;
+        let path = self.video_path(episode);
+        if let Some(film) = &mut self.film {
+            let folder = self.save_dir.join("videos");
+            let done = std::fs::create_dir_all(folder).map_err(FilmError::from);
+            if let Err(source) = done.and_then(|()| film.end(&path)) {
+                return Err(EvaluationError::Video { path, source });
+            }
+        }
+        Ok(written)
+    }
+}

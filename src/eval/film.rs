@@ -1,0 +1,99 @@
+//! Videos of evaluation episodes, one composed frame for each step.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::evaluation::{Film, FilmError};
+use super::skin_panel::SkinPanel;
+use super::video::{AviWriter, DEFAULT_FPS, FRAME_HEIGHT, FRAME_WIDTH, FramePainter, Panel};
+use crate::config::Behavior;
+use crate::env::Env;
+use crate::render::{Poses, Visual};
+
+/// Draws the room, the view from above and what the behavior is about: the skin (if it feels) for `self_touch`, what both
+/// eyes see for `hand_regard`, the room from the side for `none`. Writes `.avi` files.
+pub struct RoomFilm {
+    painter: FramePainter,
+    skin: SkinPanel,
+    visual: Arc<Visual>,
+    folder: PathBuf,
+    frame: Vec<u8>,
+    writer: Option<(PathBuf, AviWriter<File>)>,
+}
+
+impl RoomFilm {
+    /// For environments of the scene of `env`. A video in work lies in `folder`, which must be on the file system that the
+    /// videos end up on; it is made if it is not there.
+    ///
+    /// # Errors
+    /// Textures that cannot be read, a scene without the cameras, a folder that cannot be made.
+    pub fn new(env: &Env, folder: impl Into<PathBuf>) -> Result<Self, FilmError> {
+        let folder = folder.into();
+        std::fs::create_dir_all(&folder)?;
+        Ok(Self {
+            painter: FramePainter::new(env.model())?,
+            skin: SkinPanel::new(),
+            visual: env.blueprint().visual()?,
+            folder,
+            frame: vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT],
+            writer: None,
+        })
+    }
+
+    /// A file of its own in the folder.
+    fn begin(&self) -> Result<(PathBuf, AviWriter<File>), FilmError> {
+        let mut number = 0;
+        let (path, file) = loop {
+            let path = self.folder.join(format!(".evaluation.{number}.tmp"));
+            match File::options().write(true).create_new(true).open(&path) {
+                Ok(file) => break (path, file),
+                Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists && number < 1000 => number += 1,
+                Err(e) => return Err(e.into()),
+            }
+        };
+        let writer = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, DEFAULT_FPS)?;
+        Ok((path, writer))
+    }
+}
+
+impl Film for RoomFilm {
+    fn frame(&mut self, env: &Env) -> Result<(), FilmError> {
+        let mut taken = match self.writer.take() {
+            Some(taken) => taken,
+            None => self.begin()?,
+        };
+        let panel = match env.config().behavior {
+            Behavior::HandRegard => Panel::Binocular,
+            Behavior::SelfTouch => self.skin.draw(env).map_or(Panel::Side, Panel::Picture),
+            Behavior::None => Panel::Side,
+        };
+        let painted = self
+            .painter
+            .paint(&self.visual, &Poses::from(env.state()), panel, &mut self.frame);
+        let written = painted.and_then(|()| taken.1.frame(&self.frame));
+        self.writer = Some(taken);
+        Ok(written?)
+    }
+
+    fn end(&mut self, path: &Path) -> Result<(), FilmError> {
+        if let Some((temporary, writer)) = self.writer.take() {
+            writer.into_inner().sync_all()?;
+            std::fs::rename(temporary, path)?;
+        }
+        Ok(())
+    }
+
+    fn discard(&mut self) {
+        if let Some((temporary, _)) = self.writer.take() {
+            // a leftover does no harm
+            let _ = std::fs::remove_file(temporary);
+        }
+    }
+}
+
+impl Drop for RoomFilm {
+    fn drop(&mut self) {
+        self.discard();
+    }
+}

@@ -1,0 +1,331 @@
+//! Types of the elements of a model.
+
+use crate::math::{QUAT_ID, Quat, Vec3};
+use crate::model::{BodyId, JointId};
+
+/// Joint types.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointType {
+    /// Six degrees of freedom; `qpos` is position (3) and quaternion (4), `qvel` linear velocity in the world frame (3)
+    /// and angular velocity in the body frame (3).
+    Free,
+    /// Translation along the axis, m.
+    Slide,
+    /// Rotation about the axis, rad.
+    Hinge,
+}
+
+impl JointType {
+    /// Number of position coordinates.
+    pub fn nq(self) -> usize {
+        if self == JointType::Free { 7 } else { 1 }
+    }
+    /// Number of degrees of freedom.
+    pub fn nv(self) -> usize {
+        if self == JointType::Free { 6 } else { 1 }
+    }
+}
+
+/// Geom and site shapes, with the meaning of `size`. The order is MuJoCo's, by which pairs are arranged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum GeomType {
+    /// Infinite for collision; `size` is half width, half length, grid spacing.
+    Plane,
+    /// `size` is the radius.
+    Sphere,
+    /// `size` is radius, half length of the segment along z.
+    Capsule,
+    /// `size` is the semi-axes. Drawn and touch-sensed only: it takes part in no collision.
+    Ellipsoid,
+    /// `size` is radius, half height along z.
+    Cylinder,
+    /// `size` is the half lengths.
+    Box,
+}
+
+/// Whether the frame of something in a body is one that is known already. MuJoCo copies such frames instead of composing
+/// them, which shows in the last bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SameFrame {
+    /// A frame of its own.
+    None,
+    /// The body's frame.
+    Body,
+    /// The inertial frame.
+    Inertia,
+    /// The body's orientation.
+    BodyRot,
+    /// The orientation of the inertial frame.
+    InertiaRot,
+}
+
+impl SameFrame {
+    /// Compares a pose in a body with the body's own frame and its inertial frame, to within 1e-6 in each number.
+    pub fn of(pos: Vec3, quat: Quat, ipos: Vec3, iquat: Quat) -> Self {
+        let close = |a: &[f64], b: &[f64], sign: f64| a.iter().zip(b).all(|(x, y)| (x - sign * y).abs() < 1e-6);
+        let same_quat = |other: Quat| close(&quat, &other, 1.0) || close(&quat, &other, -1.0);
+        let (level, aligned) = (same_quat(QUAT_ID), same_quat(iquat));
+        if level && close(&pos, &[0.0; 3], 1.0) {
+            Self::Body
+        } else if aligned && close(&pos, &ipos, 1.0) {
+            Self::Inertia
+        } else if level {
+            Self::BodyRot
+        } else if aligned {
+            Self::InertiaRot
+        } else {
+            Self::None
+        }
+    }
+}
+
+/// Camera modes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CameraMode {
+    /// Fixed in its body.
+    Fixed,
+    /// Fixed in its body, turned so that it looks at a target body.
+    TargetBody(BodyId),
+}
+
+/// What an equality constraint holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EqualityKind {
+    /// `y - y0 = polycoef(x - x0)` with `y` the first joint and `x` the second; without a second joint `y - y0 = polycoef[0]`.
+    Joint {
+        /// The constrained joint.
+        joint1: JointId,
+        /// The joint it follows.
+        joint2: Option<JointId>,
+        /// Coefficients of the quartic polynomial.
+        polycoef: [f64; 5],
+    },
+    /// Body 1 keeps its pose relative to body 2.
+    Weld {
+        /// First body.
+        body1: BodyId,
+        /// Second body; the world by default.
+        body2: BodyId,
+        /// Point of the constraint in body 2, m.
+        anchor: Vec3,
+        /// Position of body 2 relative to body 1 at the anchor, in body 1, m (MuJoCo's `relpose`).
+        relpos: Vec3,
+        /// Orientation of body 2 relative to body 1.
+        relquat: Quat,
+        /// Weight of the rotational rows.
+        torquescale: f64,
+    },
+}
+
+/// Actuator bias.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BiasType {
+    /// No bias (motor).
+    None,
+    /// `biasprm[0] + biasprm[1] length + biasprm[2] velocity` (position servo).
+    Affine,
+}
+
+/// Sensors of the models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SensorType {
+    /// Specific force at a site, m/s^2, site frame (3).
+    Accelerometer,
+    /// Angular velocity at a site, rad/s, site frame (3).
+    Gyro,
+    /// Torque that the parent exerts on the site's body, N m, site frame (3).
+    Torque,
+}
+
+/// Texture layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TextureType {
+    /// One image.
+    Flat2d,
+    /// Six images on a cube.
+    Cube,
+    /// Six images of the background.
+    Skybox,
+}
+
+/// A procedural texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Builtin {
+    /// None: from files, or `rgb1`.
+    None,
+    /// From `rgb1` to `rgb2`.
+    Gradient,
+    /// Two by two squares of `rgb1` and `rgb2`.
+    Checker,
+    /// `rgb1`; the lower side `rgb2`.
+    Flat,
+}
+
+/// Marks drawn over a procedural texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mark {
+    /// None.
+    None,
+    /// The edges of each tile.
+    Edge,
+    /// A cross.
+    Cross,
+    /// Random dots.
+    Random,
+}
+
+/// How a texture is made. Pixels are decoded by the renderer; the model keeps the recipe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// Name; may be empty (skybox).
+    pub name: String,
+    /// Layout.
+    pub kind: TextureType,
+    /// Procedure.
+    pub builtin: Builtin,
+    /// Marks.
+    pub mark: Mark,
+    /// First colour, 0..1.
+    pub rgb1: [f64; 3],
+    /// Second colour, 0..1.
+    pub rgb2: [f64; 3],
+    /// Colour of the marks, 0..1.
+    pub markrgb: [f64; 3],
+    /// Probability of a random dot.
+    pub random: f64,
+    /// Width of a procedural texture, pixels.
+    pub width: usize,
+    /// Height of a procedural texture, pixels.
+    pub height: usize,
+    /// Path of the single image file, in the asset source.
+    pub file: Option<String>,
+    /// Paths of the cube faces: right, left, up, down, front, back.
+    pub cube_files: [Option<String>; 6],
+}
+
+/// A surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Index into [`crate::Model::textures`].
+    pub texture: Option<usize>,
+    /// Colour and opacity, 0..1.
+    pub rgba: [f64; 4],
+    /// Specular strength, 0..1.
+    pub specular: f64,
+    /// Shininess, 0..1.
+    pub shininess: f64,
+    /// Reflectance, 0..1.
+    pub reflectance: f64,
+    /// Emission, 0..1.
+    pub emission: f64,
+    /// Repetitions of a 2d texture.
+    pub texrepeat: [f64; 2],
+    /// Repeat per unit length instead of per object.
+    pub texuniform: bool,
+}
+
+/// A light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Name; may be empty.
+    pub name: String,
+    /// Body that carries it.
+    pub bodyid: usize,
+    /// Parallel light.
+    pub directional: bool,
+    /// Casts shadows.
+    pub castshadow: bool,
+    /// Position in the body, m.
+    pub pos: Vec3,
+    /// Unit direction in the body.
+    pub dir: Vec3,
+    /// Colours, 0..1.
+    pub ambient: [f64; 3],
+    /// Colours, 0..1.
+    pub diffuse: [f64; 3],
+    /// Colours, 0..1.
+    pub specular: [f64; 3],
+    /// Constant, linear and quadratic attenuation.
+    pub attenuation: [f64; 3],
+    /// Cutoff angle of a spot light, degrees.
+    pub cutoff: f64,
+    /// Softness of a spot light.
+    pub exponent: f64,
+}
+
+/// Solver and integrator options (`<option>`).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Time step, s.
+    pub timestep: f64,
+    /// Gravity, m/s^2.
+    pub gravity: Vec3,
+    /// Most Newton iterations per step.
+    pub iterations: usize,
+    /// Newton stops when the scaled improvement or gradient is below this.
+    pub tolerance: f64,
+    /// Most line-search iterations per Newton iteration.
+    pub ls_iterations: usize,
+    /// Line-search tolerance.
+    pub ls_tolerance: f64,
+    /// Ratio of frictional to normal constraint impedance.
+    pub impratio: f64,
+    /// Most iterations of the convex collision routine.
+    pub ccd_iterations: usize,
+    /// Tolerance of the convex collision routine, m.
+    pub ccd_tolerance: f64,
+}
+
+/// Visual settings (`<visual>`), as the reference stores them (single precision where it does).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visual {
+    /// Vertical field of view of the free camera, degrees.
+    pub fovy: f64,
+    /// Near plane, times the extent.
+    pub znear: f64,
+    /// Far plane, times the extent.
+    pub zfar: f64,
+    /// Start of fog, times the extent.
+    pub fogstart: f64,
+    /// End of fog, times the extent.
+    pub fogend: f64,
+    /// Haze at the horizon, 0..1.
+    pub haze: f64,
+    /// Clip distance of shadows, times the extent.
+    pub shadowclip: f64,
+    /// Scale of drawn forces.
+    pub force: f64,
+    /// Size of the shadow map, pixels; 0 means no shadows.
+    pub shadowsize: usize,
+    /// Samples per pixel offscreen.
+    pub offsamples: usize,
+    /// Offscreen width, pixels.
+    pub offwidth: usize,
+    /// Offscreen height, pixels.
+    pub offheight: usize,
+    /// Headlight on.
+    pub headlight_active: bool,
+    /// Headlight colours, 0..1.
+    pub headlight_ambient: [f64; 3],
+    /// Headlight colours, 0..1.
+    pub headlight_diffuse: [f64; 3],
+    /// Headlight colours, 0..1.
+    pub headlight_specular: [f64; 3],
+}
+
+/// Statistics of the model (`<statistic>`).
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Statistic {
+    /// Mean diagonal of the joint-space inertia, kg m^2.
+    pub meaninertia: f64,
+    /// Mean body mass, kg.
+    pub meanmass: f64,
+    /// Mean body size, m.
+    pub meansize: f64,
+    /// Spatial extent, m.
+    pub extent: f64,
+    /// Centre of the model, m.
+    pub center: Vec3,
+}

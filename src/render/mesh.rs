@@ -1,0 +1,255 @@
+//! The tessellations that MuJoCo's classic renderer draws: 28 slices, 16 stacks, 4 quads per box edge. Silhouettes and
+//! shading depend on them. Vertices lie on unit shapes; a [`Part`] is placed by a matrix of its own.
+
+use std::f64::consts::PI;
+
+const SLICES: usize = 28;
+const STACKS: usize = 16;
+const QUADS: usize = 4;
+
+/// Which list of the shape a vertex belongs to: capsules put their caps at the ends of the scaled cylinder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Scaled by the size.
+    Body,
+    /// The upper cap of a capsule, z from 1 to 2.
+    Top,
+    /// The lower cap of a capsule, z from -1 to -2.
+    Bottom,
+}
+
+/// Triangles of a unit shape, counterclockwise from outside.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Coordinates of the vertices.
+    pub x: Vec<f32>,
+    /// See `x`.
+    pub y: Vec<f32>,
+    /// See `x`.
+    pub z: Vec<f32>,
+    /// Unit normals.
+    pub normal: Vec<[f32; 3]>,
+    /// Parts and the end of their range of vertices, in order.
+    pub parts: Vec<(Part, usize)>,
+    /// Vertices of each triangle.
+    pub triangles: Vec<[u16; 3]>,
+}
+
+type Point = ([f32; 3], [f32; 3]);
+
+impl Mesh {
+    /// Index of a vertex of the current part, adding it when it is new.
+    fn vertex(&mut self, (p, n): Point) -> u16 {
+        let first = self.parts.len().checked_sub(2).map_or(0, |k| self.parts[k].1);
+        let known = (first..self.x.len()).rev().find(|&i| {
+            let same = |a: f32, b: f32| a.to_bits() == b.to_bits();
+            same(self.x[i], p[0])
+                && same(self.y[i], p[1])
+                && same(self.z[i], p[2])
+                && (0..3).all(|k| same(self.normal[i][k], n[k]))
+        });
+        known.unwrap_or_else(|| {
+            self.x.push(p[0]);
+            self.y.push(p[1]);
+            self.z.push(p[2]);
+            self.normal.push(n);
+            if let Some(last) = self.parts.last_mut() {
+                last.1 = self.x.len();
+            }
+            self.x.len() - 1
+        }) as u16
+    }
+
+    fn part(&mut self, part: Part) {
+        self.parts.push((part, self.x.len()));
+    }
+
+    fn triangle(&mut self, corners: [Point; 3]) {
+        let t = corners.map(|p| self.vertex(p));
+        self.triangles.push(t);
+    }
+
+    /// Split along the diagonal that Mesa chooses.
+    fn quad(&mut self, corners: [Point; 4]) {
+        let [a, b, c, d] = corners.map(|p| self.vertex(p));
+        self.triangles.push([a, b, d]);
+        self.triangles.push([b, c, d]);
+    }
+
+    fn oriented_quad(&mut self, outward: bool, [a, b, c, d]: [Point; 4]) {
+        self.quad(if outward { [a, b, c, d] } else { [d, c, b, a] });
+    }
+
+    fn oriented_triangle(&mut self, outward: bool, [a, b, c]: [Point; 3]) {
+        self.triangle(if outward { [a, b, c] } else { [c, b, a] });
+    }
+
+    /// Half of a sphere, shifted along z by `shift`.
+    fn half_sphere(&mut self, sign: f64, shift: f64) {
+        let stacks = STACKS / 2;
+        let up = sign > 0.0;
+        let elevation = |i: usize| f64::from((0.5 * PI * sign * i as f64 / stacks as f64) as f32);
+        let at = |j: usize, i: usize| {
+            let (sin, cos) = pxfm::f_sincos(elevation(i));
+            let (s, c) = azimuth(j);
+            let n = [c * cos, s * cos, sin];
+            ([n[0] as f32, n[1] as f32, (n[2] + shift) as f32], n.map(|v| v as f32))
+        };
+        let pole = ([0.0, 0.0, (sign + shift) as f32], [0.0, 0.0, sign as f32]);
+        for j in 0..SLICES {
+            self.oriented_triangle(up, [at(j, stacks - 1), at(j + 1, stacks - 1), pole]);
+        }
+        for i in 0..stacks - 1 {
+            for j in 0..SLICES {
+                self.oriented_quad(up, [at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1)]);
+            }
+        }
+    }
+
+    fn open_cylinder(&mut self) {
+        let at = |j: usize, i: usize| {
+            let (s, c) = azimuth(j);
+            let (c, s) = (c as f32, s as f32);
+            ([c, s, (2.0 * i as f64 / STACKS as f64 - 1.0) as f32], [c, s, 0.0])
+        };
+        for i in 0..STACKS {
+            for j in 0..SLICES {
+                self.quad([at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1)]);
+            }
+        }
+    }
+
+    fn disk(&mut self, sign: f32) {
+        let rings = STACKS / 2;
+        let up = sign > 0.0;
+        let at = |j: usize, k: usize| {
+            let (s, c) = azimuth(j);
+            let r = f64::from(k as f32 / rings as f32);
+            ([(c * r) as f32, (s * r) as f32, sign], [0.0, 0.0, sign])
+        };
+        let centre = ([0.0, 0.0, sign], [0.0, 0.0, sign]);
+        for j in 0..SLICES {
+            self.oriented_triangle(up, [at(j, 1), at(j + 1, 1), centre]);
+        }
+        for k in 1..rings {
+            for j in 0..SLICES {
+                self.oriented_quad(up, [at(j, k + 1), at(j + 1, k + 1), at(j + 1, k), at(j, k)]);
+            }
+        }
+    }
+
+    fn face(&mut self, axis: usize, sign: f32) {
+        // the two other axes, such that u x v points outward
+        let (u, v) = match (axis, sign > 0.0) {
+            (0, _) => (1, 2),
+            (1, _) => (0, 2),
+            _ => (0, 1),
+        };
+        let outward = (sign > 0.0) != (axis == 1);
+        let step = 2.0 / QUADS as f32;
+        let mut n = [0.0; 3];
+        n[axis] = sign;
+        for i in 0..QUADS {
+            for j in 0..QUADS {
+                let at = |a: usize, b: usize| {
+                    let mut p = [sign; 3];
+                    p[u] = step * a as f32 - 1.0;
+                    p[v] = step * b as f32 - 1.0;
+                    (p, n)
+                };
+                let lower = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                let [a, b, c, d] = lower;
+                self.quad(if outward { [a, b, c, d] } else { [d, c, b, a] });
+            }
+        }
+    }
+
+    /// Sphere or ellipsoid.
+    pub fn sphere() -> Self {
+        let mut m = Self::default();
+        m.part(Part::Body);
+        m.half_sphere(-1.0, 0.0);
+        m.half_sphere(1.0, 0.0);
+        m
+    }
+
+    /// Cylinder with two half spheres.
+    pub fn capsule() -> Self {
+        let mut m = Self::default();
+        m.part(Part::Body);
+        m.open_cylinder();
+        m.part(Part::Top);
+        m.half_sphere(1.0, 1.0);
+        m.part(Part::Bottom);
+        m.half_sphere(-1.0, -1.0);
+        m
+    }
+
+    /// Closed cylinder.
+    pub fn cylinder() -> Self {
+        let mut m = Self::default();
+        m.part(Part::Body);
+        m.disk(-1.0);
+        m.open_cylinder();
+        m.disk(1.0);
+        m
+    }
+
+    /// Box.
+    pub fn cube() -> Self {
+        let mut m = Self::default();
+        m.part(Part::Body);
+        for axis in 0..3 {
+            m.face(axis, 1.0);
+            m.face(axis, -1.0);
+        }
+        m
+    }
+
+    /// Rectangle at z = 0. MuJoCo draws a fine grid, which looks the same under parallel light without highlights.
+    pub fn plane() -> Self {
+        let mut m = Self::default();
+        m.part(Part::Body);
+        let at = |x, y| ([x, y, 0.0], [0.0, 0.0, 1.0]);
+        m.quad([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+        m
+    }
+}
+
+/// Sine and cosine of the angle of a slice; the angle is rounded to single precision, as in MuJoCo.
+fn azimuth(j: usize) -> (f64, f64) {
+    pxfm::f_sincos(f64::from((2.0 * PI * j as f64 / SLICES as f64) as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(mesh: &Mesh, triangles: usize) {
+        assert_eq!(mesh.triangles.len(), triangles);
+        assert_eq!(mesh.parts.last().unwrap().1, mesh.x.len());
+        for t in &mesh.triangles {
+            let p = t.map(|i| [mesh.x[i as usize], mesh.y[i as usize], mesh.z[i as usize]]);
+            let (a, b): (Vec<_>, Vec<_>) = (0..3).map(|k| (p[1][k] - p[0][k], p[2][k] - p[0][k])).unzip();
+            let n = [
+                a[1] * b[2] - a[2] * b[1],
+                a[2] * b[0] - a[0] * b[2],
+                a[0] * b[1] - a[1] * b[0],
+            ];
+            let outward: f32 = t
+                .iter()
+                .map(|&i| (0..3).map(|k| n[k] * mesh.normal[i as usize][k]).sum::<f32>())
+                .sum();
+            assert!(outward > 0.0, "{t:?} faces inward");
+        }
+    }
+
+    #[test]
+    fn shapes_have_the_triangles_of_the_reference_all_facing_outward() {
+        check(&Mesh::sphere(), 840);
+        check(&Mesh::capsule(), 1736);
+        check(&Mesh::cylinder(), 1736);
+        check(&Mesh::cube(), 192);
+        check(&Mesh::plane(), 2);
+    }
+}

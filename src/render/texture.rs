@@ -1,0 +1,299 @@
+//! Textures: decoded or computed, with the mip levels that Mesa generates.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use image::{DynamicImage, ImageDecoder};
+
+use crate::mjcf_loader::AssetSource;
+use crate::model::{Builtin, Mark, Texture as Recipe, TextureType};
+use crate::render::RenderError;
+
+/// Images are halved while loading until they fit, so that the original's textures of 2500 and 5000 pixels stay small.
+pub const MAX_TEXTURE: usize = 1024;
+/// Largest image that is decoded.
+const MAX_DECODED: u32 = 8192;
+/// Most memory for the decoding of one image.
+const MAX_DECODED_BYTES: u64 = 160 << 20;
+
+/// One image of a texture, red, green, blue and an unused byte.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Level {
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// Rows from the top.
+    pub pixels: Vec<[u8; 4]>,
+}
+
+/// An image with its mip levels, each half the size of the one before, down to one pixel.
+pub type Face = Arc<Vec<Level>>;
+
+/// A texture ready for sampling.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Texture {
+    /// One image, repeated.
+    Flat(Face),
+    /// Images on the sides of a cube: +x, -x, +y, -y, +z, -z.
+    Cube([Face; 6]),
+}
+
+impl Level {
+    fn filled(width: usize, height: usize, rgb: [u8; 3]) -> Self {
+        let pixels = vec![[rgb[0], rgb[1], rgb[2], 255]; width * height];
+        Self { width, height, pixels }
+    }
+
+    fn from_fn(width: usize, height: usize, mut f: impl FnMut(usize, usize) -> [u8; 3]) -> Self {
+        let at = |i: usize| f(i / width, i % width);
+        let pixels = (0..width * height).map(at).map(|[r, g, b]| [r, g, b, 255]).collect();
+        Self { width, height, pixels }
+    }
+
+    /// The next mip level: a bilinear reduction with rounding to bytes.
+    fn halved(&self) -> Self {
+        let (w, h) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let mut pixels = Vec::with_capacity(w * h);
+        if self.width == 2 * w && self.height == 2 * h {
+            for y in 0..h {
+                let upper = &self.pixels[2 * y * self.width..][..self.width];
+                let lower = &self.pixels[(2 * y + 1) * self.width..][..self.width];
+                for (a, b) in upper.chunks_exact(2).zip(lower.chunks_exact(2)) {
+                    let sum =
+                        |c: usize| u16::from(a[0][c]) + u16::from(a[1][c]) + u16::from(b[0][c]) + u16::from(b[1][c]);
+                    pixels.push([0, 1, 2, 3].map(|c| ((sum(c) + 2) / 4) as u8));
+                }
+            }
+        } else {
+            let place = |i: usize, from: usize, to: usize| {
+                let x = ((i as f32 + 0.5) * (from as f32 / to as f32) - 0.5).max(0.0);
+                let low = (x as usize).min(from - 1);
+                (low, (low + 1).min(from - 1), x - low as f32)
+            };
+            for y in 0..h {
+                let (y0, y1, ty) = place(y, self.height, h);
+                for x in 0..w {
+                    let (x0, x1, tx) = place(x, self.width, w);
+                    let mix = |c: usize| {
+                        let at = |x: usize, y: usize| f32::from(self.pixels[y * self.width + x][c]);
+                        let upper = at(x0, y0) * (1.0 - tx) + at(x1, y0) * tx;
+                        let lower = at(x0, y1) * (1.0 - tx) + at(x1, y1) * tx;
+                        (upper * (1.0 - ty) + lower * ty + 0.5) as u8
+                    };
+                    pixels.push([0, 1, 2, 3].map(mix));
+                }
+            }
+        }
+        Self {
+            width: w,
+            height: h,
+            pixels,
+        }
+    }
+
+    fn face(mut self) -> Face {
+        while self.width.max(self.height) > MAX_TEXTURE {
+            self = self.halved();
+        }
+        let mut levels = vec![self];
+        while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > 1) {
+            levels.push(last.halved());
+        }
+        Arc::new(levels)
+    }
+}
+
+/// Reads textures; an image used by several is decoded once.
+pub struct Loader<'a> {
+    assets: &'a dyn AssetSource,
+    faces: BTreeMap<String, Face>,
+}
+
+impl<'a> Loader<'a> {
+    /// From `assets`.
+    pub fn new(assets: &'a dyn AssetSource) -> Self {
+        Self {
+            assets,
+            faces: BTreeMap::new(),
+        }
+    }
+
+    /// Makes a texture.
+    ///
+    /// # Errors
+    /// Images that are missing, broken, too large or of a shape that does not fit.
+    pub fn texture(&mut self, recipe: &Recipe) -> Result<Texture, RenderError> {
+        let wrong = |message: String| RenderError::Texture {
+            name: recipe.name.clone(),
+            message,
+        };
+        let size = |n: usize| {
+            if (1..=MAX_DECODED as usize).contains(&n) {
+                Ok(n)
+            } else {
+                Err(wrong(format!("its size is {n} pixels; allowed are 1 to {MAX_DECODED}")))
+            }
+        };
+        let flat = recipe.kind == TextureType::Flat2d;
+        if recipe.builtin != Builtin::None {
+            if recipe.mark == Mark::Random {
+                return Err(wrong("random marks are not supported".to_string()));
+            }
+            let width = size(recipe.width)?;
+            return Ok(if flat {
+                Texture::Flat(flat_builtin(recipe, width, size(recipe.height)?).face())
+            } else {
+                Texture::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side).face()))
+            });
+        }
+        if let Some(path) = &recipe.file {
+            if flat {
+                return Ok(Texture::Flat(self.image(path)?));
+            }
+            let face = self.image(path)?;
+            if face[0].width == face[0].height {
+                return Ok(Texture::Cube([0; 6].map(|_| face.clone())));
+            }
+            return Err(wrong(format!(
+                "\"{path}\" has {} x {} pixels (after reduction); a cube needs a square image",
+                face[0].width, face[0].height
+            )));
+        }
+        if flat {
+            return Err(wrong("it has neither an image nor a procedure".to_string()));
+        }
+        let mut faces: [Option<Face>; 6] = Default::default();
+        let mut side = None;
+        for (face, path) in faces.iter_mut().zip(&recipe.cube_files) {
+            let Some(path) = path else { continue };
+            let image = self.image(path)?;
+            let (w, h) = (image[0].width, image[0].height);
+            if w != h || side.is_some_and(|s| s != w) {
+                return Err(wrong(format!(
+                    "\"{path}\" has {w} x {h} pixels (after reduction); the faces of a cube are squares of the same size"
+                )));
+            }
+            side = Some(w);
+            *face = Some(image);
+        }
+        let Some(side) = side else {
+            return Err(wrong("it has neither an image nor a procedure".to_string()));
+        };
+        let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
+        Ok(Texture::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
+    }
+
+    /// Decodes an image with its mip levels.
+    fn image(&mut self, path: &str) -> Result<Face, RenderError> {
+        if let Some(face) = self.faces.get(path) {
+            return Ok(face.clone());
+        }
+        let bytes = self.assets.read(path)?;
+        let face = decode(path, bytes)?.face();
+        self.faces.insert(path.to_string(), face.clone());
+        Ok(face)
+    }
+}
+
+fn decode(path: &str, bytes: Cow<'_, [u8]>) -> Result<Level, RenderError> {
+    let broken = |source: image::ImageError| RenderError::Image {
+        path: path.to_string(),
+        message: source.to_string(),
+    };
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(MAX_DECODED);
+    limits.max_image_height = Some(MAX_DECODED);
+    limits.max_alloc = Some(MAX_DECODED_BYTES);
+    let reader = std::io::Cursor::new(&*bytes);
+    let mut decoder = image::codecs::png::PngDecoder::with_limits(reader, limits.clone()).map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    limits.check_dimensions(width, height).map_err(broken)?;
+    limits.reserve(decoder.total_bytes()).map_err(broken)?;
+    decoder.set_limits(limits).map_err(broken)?;
+    let image = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    drop(bytes);
+    let (width, height) = (width as usize, height as usize);
+    let rgb = image.into_rgb8();
+    let pixels = rgb.pixels().map(|p| [p[0], p[1], p[2], 255]).collect();
+    Ok(Level { width, height, pixels })
+}
+
+/// Bytes of a colour, cut off as MuJoCo does.
+fn truncated(rgb: [f64; 3]) -> [u8; 3] {
+    rgb.map(|v| (255.0 * v) as u8)
+}
+
+/// MuJoCo's soft step from `b` to `a`.
+fn interpolate(a: [f64; 3], b: [f64; 3], pos: f64) -> [u8; 3] {
+    let alpha = (0.5 * (1.0 + pos / (1.0 + pos * pos).sqrt() * std::f64::consts::SQRT_2)).clamp(0.0, 1.0);
+    [0, 1, 2].map(|k| (255.0 * (alpha * a[k] + (1.0 - alpha) * b[k])) as u8)
+}
+
+/// Draws marks.
+fn marked(recipe: &Recipe, mut level: Level) -> Level {
+    let (w, h) = (level.width, level.height);
+    let [r, g, b] = truncated(recipe.markrgb);
+    let colour = [r, g, b, 255];
+    for (i, pixel) in level.pixels.iter_mut().enumerate() {
+        let (row, column) = (i / w, i % w);
+        let on = match recipe.mark {
+            Mark::Edge => row == 0 || column == 0 || row == h - 1 || column == w - 1,
+            Mark::Cross => row == h / 2 || column == w / 2,
+            Mark::None | Mark::Random => false,
+        };
+        if on {
+            *pixel = colour;
+        }
+    }
+    level
+}
+
+/// From -1 to 1 along an edge.
+fn across(i: usize, n: usize) -> f64 {
+    2.0 * i as f64 / (n as f64 - 1.0).max(1.0) - 1.0
+}
+
+fn checker(w: usize, h: usize, row: usize, column: usize) -> bool {
+    (row < h / 2) == (column < w / 2)
+}
+
+fn flat_builtin(recipe: &Recipe, w: usize, h: usize) -> Level {
+    let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
+    let level = Level::from_fn(w, h, |row, column| match recipe.builtin {
+        Builtin::Gradient => {
+            let (x, y) = (across(column, w), -across(row, h));
+            interpolate(recipe.rgb2, recipe.rgb1, 2.0 * (x * x + y * y).sqrt() - 1.0)
+        }
+        Builtin::Checker if !checker(w, h, row, column) => two,
+        _ => one,
+    });
+    marked(recipe, level)
+}
+
+fn cube_builtin(recipe: &Recipe, w: usize, side: usize) -> Level {
+    use std::f64::consts::FRAC_PI_2;
+    let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
+    let level = match recipe.builtin {
+        Builtin::Gradient => Level::from_fn(w, w, |row, column| {
+            let (x, y) = (across(column, w), -across(row, w));
+            let steep = || 1.0 - pxfm::f_acos(1.0 / (1.0 + x * x + y * y).sqrt()) / FRAC_PI_2;
+            let elevation = match side {
+                2 => steep(),
+                3 => -steep(),
+                _ => pxfm::f_asin(y / (1.0 + x * x + y * y).sqrt()) / FRAC_PI_2,
+            };
+            interpolate(recipe.rgb1, recipe.rgb2, elevation)
+        }),
+        Builtin::Checker => Level::from_fn(w, w, |row, column| {
+            if checker(w, w, row, column) == (side < 4) {
+                one
+            } else {
+                two
+            }
+        }),
+        _ => Level::filled(w, w, if side == 3 { two } else { one }),
+    };
+    marked(recipe, level)
+}

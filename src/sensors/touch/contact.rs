@@ -1,0 +1,98 @@
+//! Contacts as the skin feels them.
+
+use crate::config::Compat;
+use crate::math::*;
+use crate::model::{BodyId, GeomId, Model};
+use crate::physics::Contact;
+use crate::sensors::touch::SkinLayout;
+
+/// Contacts with a smaller normal force (N) are not felt.
+const MIN_FORCE: f64 = 1e-9;
+
+/// One side of a contact: what a body that feels is touched by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchContact {
+    /// Index in the list of contacts.
+    pub contact: usize,
+    /// The body that feels.
+    pub body: BodyId,
+    /// Its geom.
+    pub geom: GeomId,
+    /// The geom that touches it.
+    pub other: GeomId,
+    /// Normal force, N, >= 0.
+    pub normal: f64,
+    /// Force that the other geom exerts on the body, N, world frame.
+    pub force: Vec3,
+    /// The same in the frame of the body.
+    pub force_body: Vec3,
+    /// Where it is touched, m, world frame.
+    pub point: Vec3,
+    /// The same in the frame of the body.
+    pub point_body: Vec3,
+    /// Index of the body in [`SkinLayout::bodies`].
+    pub(super) index: usize,
+    /// Which of the contact's geoms this is.
+    pub(super) side: usize,
+}
+
+impl TouchContact {
+    /// -1 for the first geom of the contact, 1 for the second: the sign of the contact's force on it.
+    pub(super) fn sign(&self) -> f64 {
+        2.0 * self.side as f64 - 1.0
+    }
+}
+
+/// The sides of `contacts` that the bodies of a skin feel, first geom first, appended to `out`.
+///
+/// `xpos` (m) and `xmat` are the poses of all bodies at the instant of the contacts. The point of a contact, halfway
+/// between the surfaces, is moved to the surface of the body that feels; under `compat: reference` both sides of a contact
+/// whose first body feels are at the first body's place, as the Python code turns the normal around in place.
+pub fn touch_contacts(
+    layout: &SkinLayout,
+    model: &Model,
+    contacts: &[Contact],
+    xpos: &[Vec3],
+    xmat: &[Mat3],
+    compat: Compat,
+    out: &mut Vec<TouchContact>,
+) {
+    for (k, c) in contacts.iter().enumerate() {
+        let body = c.geom.map(|g| model.geom_bodyid[g]);
+        let index = body.map(|b| layout.index(BodyId(b)));
+        if index == [None; 2] || c.force[0].abs() < MIN_FORCE {
+            continue;
+        }
+        let normal = row(&c.frame, 0);
+        let force = mat_t_vec(&c.frame, [c.force[0], c.force[1], c.force[2]]);
+        for side in 0..2 {
+            let Some(index) = index[side] else { continue };
+            let b = body[side];
+            let sign = 2.0 * side as f64 - 1.0;
+            let outward = match compat {
+                Compat::Api => sign,
+                Compat::Reference if side == 1 && layout.index(BodyId(body[0])).is_some() => -1.0,
+                Compat::Reference => sign,
+            };
+            let point = if c.dist < 0.0 {
+                add_scaled(c.pos, normal, outward * c.dist / 2.0)
+            } else {
+                c.pos
+            };
+            let force = scale(force, sign);
+            out.push(TouchContact {
+                contact: k,
+                body: BodyId(b),
+                geom: GeomId(c.geom[side]),
+                other: GeomId(c.geom[1 - side]),
+                normal: c.force[0].max(0.0),
+                force,
+                force_body: mat_t_vec(&xmat[b], force),
+                point,
+                point_body: mat_t_vec(&xmat[b], sub(point, xpos[b])),
+                index,
+                side,
+            });
+        }
+    }
+}

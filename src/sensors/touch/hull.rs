@@ -1,0 +1,209 @@
+//! Convex hulls of sensor points, to tell which sensors of a body lie inside another of its geoms.
+
+use crate::math::*;
+
+/// A face of the hull under construction.
+struct Face {
+    corner: [usize; 3],
+    /// Outward unit normal and offset: `normal . p + offset` is the distance of `p` from the face's plane.
+    normal: Vec3,
+    offset: f64,
+    /// Faces across the edges `corner[i]` to `corner[i + 1]`.
+    neighbor: [usize; 3],
+    /// Points above the face that are not yet in the hull.
+    above: Vec<usize>,
+    alive: bool,
+}
+
+impl Face {
+    fn new(points: &[Vec3], corner: [usize; 3]) -> Option<Self> {
+        let [a, b, c] = corner.map(|i| points[i]);
+        let (normal, area) = unit(cross(sub(b, a), sub(c, a)));
+        (area > MINVAL).then(|| Self {
+            corner,
+            normal,
+            offset: -dot(normal, a),
+            neighbor: [usize::MAX; 3],
+            above: Vec::new(),
+            alive: true,
+        })
+    }
+
+    fn distance(&self, p: Vec3) -> f64 {
+        dot(self.normal, p) + self.offset
+    }
+}
+
+/// The convex hull of a set of points, as half spaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    planes: Vec<(Vec3, f64)>,
+}
+
+impl Hull {
+    /// Of `points`, which may have any number of coplanar and cospherical ones. `None` if they span no volume.
+    ///
+    /// Points that leave the hull by less than 1e-12 times its size are taken to be on it, far below the spacing of
+    /// sensors and far above rounding, so that rings, walls and grids need no special treatment.
+    pub fn new(points: &[Vec3]) -> Option<Self> {
+        let extent = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        // a second and third try for points in an unlucky position
+        let faces = [1e-12, 1e-11, 1e-10]
+            .iter()
+            .find_map(|tolerance| quickhull(points, tolerance * extent))?;
+        let planes = faces.iter().filter(|f| f.alive).map(|f| (f.normal, f.offset)).collect();
+        Some(Self { planes })
+    }
+
+    /// Whether `p` is inside, or outside by less than `margin` (m) from the plane of every face.
+    pub fn contains(&self, p: Vec3, margin: f64) -> bool {
+        self.planes.iter().all(|(n, d)| dot(*n, p) + d < margin)
+    }
+}
+
+/// Four points that span a volume, the last below the face of the others.
+fn first_corners(points: &[Vec3], tolerance: f64) -> Option<[usize; 4]> {
+    let farthest = |measure: &dyn Fn(Vec3) -> f64| {
+        let mut best = (0, f64::NEG_INFINITY);
+        for (i, &p) in points.iter().enumerate() {
+            let m = measure(p);
+            if m > best.1 {
+                best = (i, m);
+            }
+        }
+        (best.1 > tolerance).then_some(best.0)
+    };
+    let origin = *points.first()?;
+    let a = farthest(&|p| norm(sub(p, origin)))?;
+    let b = farthest(&|p| norm(sub(p, points[a])))?;
+    let line = unit(sub(points[b], points[a])).0;
+    let c = farthest(&|p| norm(cross(line, sub(p, points[a]))))?;
+    let normal = unit(cross(sub(points[b], points[a]), sub(points[c], points[a]))).0;
+    let d = farthest(&|p| dot(normal, sub(p, points[a])).abs())?;
+    let above = dot(normal, sub(points[d], points[a])) > 0.0;
+    Some(if above { [a, c, b, d] } else { [a, b, c, d] })
+}
+
+/// Barber, Dobkin, Huhdanpaa: The Quickhull Algorithm for Convex Hulls (1996). `None` if it gets stuck.
+fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
+    let [a, b, c, d] = first_corners(points, tolerance)?;
+    let mut faces = Vec::new();
+    for (corner, neighbor) in [
+        ([a, b, c], [1, 2, 3]),
+        ([b, a, d], [0, 3, 2]),
+        ([c, b, d], [0, 1, 3]),
+        ([a, c, d], [0, 2, 1]),
+    ] {
+        let mut face = Face::new(points, corner)?;
+        face.neighbor = neighbor;
+        faces.push(face);
+    }
+    let assign = |i: usize, faces: &mut [Face]| {
+        if let Some(face) = faces.iter_mut().find(|f| f.distance(points[i]) > tolerance) {
+            face.above.push(i);
+        }
+    };
+    (0..points.len()).for_each(|i| assign(i, &mut faces));
+    let mut starting_at = vec![usize::MAX; points.len()];
+    let mut pending: Vec<usize> = vec![0, 1, 2, 3];
+    while let Some(f) = pending.pop() {
+        if !faces[f].alive || faces[f].above.is_empty() {
+            continue;
+        }
+        let height = |i: &usize| faces[f].distance(points[*i]);
+        let eye = *faces[f].above.iter().max_by(|i, j| height(i).total_cmp(&height(j)))?;
+
+        // what the new corner sees goes; the border of that is joined to the corner
+        let (mut stack, mut border, mut orphans) = (vec![f], Vec::new(), Vec::new());
+        faces[f].alive = false;
+        while let Some(k) = stack.pop() {
+            orphans.append(&mut faces[k].above);
+            for e in 0..3 {
+                let other = faces[k].neighbor[e];
+                if !faces[other].alive {
+                    continue;
+                }
+                if faces[other].distance(points[eye]) > tolerance {
+                    faces[other].alive = false;
+                    stack.push(other);
+                } else {
+                    border.push((faces[k].corner[e], faces[k].corner[(e + 1) % 3], other));
+                }
+            }
+        }
+        let first = faces.len();
+        for (n, &(from, to, other)) in border.iter().enumerate() {
+            let mut face = Face::new(points, [from, to, eye])?;
+            face.neighbor[0] = other;
+            if starting_at[from] != usize::MAX {
+                return None; // the border is not one closed line
+            }
+            starting_at[from] = first + n;
+            let edge = (0..3).find(|&e| faces[other].corner[e] == to && faces[other].corner[(e + 1) % 3] == from)?;
+            faces[other].neighbor[edge] = first + n;
+            faces.push(face);
+        }
+        for (n, &(_, to, _)) in border.iter().enumerate() {
+            let next = starting_at[to];
+            faces.get(next)?;
+            faces[first + n].neighbor[1] = next;
+            faces[next].neighbor[2] = first + n;
+        }
+        border.iter().for_each(|b| starting_at[b.0] = usize::MAX);
+        orphans
+            .into_iter()
+            .filter(|&i| i != eye)
+            .for_each(|i| assign(i, &mut faces[first..]));
+        pending.extend(first..faces.len());
+    }
+    Some(faces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::GeomType;
+    use crate::sensors::touch::points::surface_points;
+
+    /// The faces contain all points, each touches three of them, and together they close: Euler's formula.
+    #[test]
+    fn hulls_of_sensor_points_contain_them_all() {
+        let mut worst = 0.0_f64;
+        for (kind, size) in [
+            (GeomType::Box, [0.0228, 0.01, 0.0207]),
+            (GeomType::Cylinder, [0.0102, 0.023, 0.0]),
+            (GeomType::Sphere, [0.0735, 0.0, 0.0]),
+            (GeomType::Capsule, [0.052, 0.035, 0.0]),
+            (GeomType::Ellipsoid, [0.03, 0.05, 0.02]),
+        ] {
+            for n in 1..40 {
+                let spacing = 0.0015 + 0.0017 * f64::from(n);
+                let points = surface_points(kind, size, spacing);
+                if points.len() < 4 {
+                    continue;
+                }
+                let faces = quickhull(&points, 1e-12 * 0.1).expect("the first tolerance does");
+                let alive = faces.iter().filter(|f| f.alive);
+                let mut used: Vec<usize> = alive.clone().flat_map(|f| f.corner).collect();
+                used.sort_unstable();
+                used.dedup();
+                assert_eq!(alive.clone().count(), 2 * used.len() - 4, "{kind:?} at {spacing}");
+                for f in alive {
+                    for &p in &points {
+                        worst = worst.max(f.distance(p));
+                    }
+                }
+            }
+        }
+        println!("points leave their hull by up to {worst:.1e} m");
+        assert!(worst < 1e-12);
+    }
+
+    #[test]
+    fn flat_and_empty_sets_have_no_hull() {
+        assert_eq!(Hull::new(&[]), None);
+        assert_eq!(Hull::new(&[[0.1; 3]; 7]), None);
+        let flat: Vec<Vec3> = (0..20).map(|i| [f64::from(i % 5), f64::from(i / 5), 1.0]).collect();
+        assert_eq!(Hull::new(&flat), None);
+    }
+}

@@ -1,0 +1,320 @@
+//! Scenes written beside logs, evaluation episodes and the command line from a run to a result.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::Duration;
+
+use babybench::config::{ActuationModel, Behavior, Compat, Config, Scene};
+use babybench::env::NumpyRng;
+use babybench::eval::logs::evaluation_path;
+use babybench::eval::{
+    CommandPolicy, EpisodeError, Evaluation, EvaluationLog, Film, FilmError, Plan, Policy, PolicyError, RandomPolicy,
+    ZeroPolicy, read_config, read_scene, read_training, run_episodes, write_scene,
+};
+use babybench::mimo::{build_model, embedded};
+use babybench::{Blueprint, Env};
+use common::*;
+
+/// A folder of its own, gone at the end of the test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("babybench_evaluation_{name}_{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        Self(path)
+    }
+
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn text(&self) -> String {
+        self.0.display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn a_written_scene_loads_to_the_same_model() {
+    let folder = Folder::new("scene");
+    for (behavior, scene) in MODELS {
+        for actuation_model in [ActuationModel::SpringDamper, ActuationModel::Positional] {
+            let config = Config {
+                actuation_model,
+                save_dir: "results/--odd -- \"name\"/é--->".to_string(),
+                ..free(behavior, scene)
+            };
+            let path = write_scene(&config, folder.path()).expect("the folder can be made");
+            let model = read_scene(folder.path()).expect("the scene loads");
+            let direct = build_model(&config, &embedded()).expect("the scene loads");
+            assert!(model == direct, "{behavior} in {scene}, {actuation_model}");
+            let xml = std::fs::read_to_string(path).expect("the scene");
+            assert_eq!(read_config(&xml).expect("the configuration"), config);
+        }
+    }
+    let missing = read_scene(Path::new("no/such/folder"))
+        .expect_err("no folder")
+        .to_string();
+    assert!(missing.contains("no/such/folder"), "{missing}");
+}
+
+fn plan(episodes: u64, jobs: usize) -> Plan {
+    Plan {
+        episodes,
+        duration: 25,
+        render: false,
+        jobs,
+    }
+}
+
+fn crib(folder: &Folder) -> Blueprint {
+    let save_dir = folder.text();
+    blueprint(Config {
+        save_dir,
+        ..free(Behavior::SelfTouch, Scene::Crib)
+    })
+}
+
+fn random() -> Result<Box<dyn Policy>, PolicyError> {
+    Ok(Box::new(RandomPolicy))
+}
+
+#[test]
+fn episodes_do_not_depend_on_the_number_of_jobs() {
+    let folder = Folder::new("jobs");
+    let blueprint = crib(&folder);
+    let mut all = Vec::new();
+    for jobs in [1, 3] {
+        let infos = run_episodes(&blueprint, &plan(5, jobs), &random, &|| {}).expect("episodes");
+        let logs = (0..5).map(|k| EvaluationLog::read(evaluation_path(folder.path(), k)).expect("a log"));
+        let logs: Vec<EvaluationLog> = logs.collect();
+        assert_eq!(
+            logs.iter().map(|l| l.info.last().cloned()).collect::<Option<Vec<_>>>(),
+            Some(infos)
+        );
+        all.push(logs);
+    }
+    assert_eq!(all[0], all[1]);
+    assert_ne!(all[0][0], all[0][1], "episodes differ");
+    let config = Config {
+        compat: Compat::Reference,
+        ..blueprint.config().clone()
+    };
+    let refused = run_episodes(&Blueprint::new(config).expect("a scene"), &plan(2, 2), &random, &|| {});
+    assert!(matches!(refused, Err(EpisodeError::Jobs)));
+}
+
+/// Counts frames.
+struct Count<'c>(&'c mut Vec<String>);
+
+impl Film for Count<'_> {
+    fn frame(&mut self, env: &Env) -> Result<(), FilmError> {
+        self.0.push(env.info().steps.to_string());
+        Ok(())
+    }
+
+    fn end(&mut self, path: &Path) -> Result<(), FilmError> {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        self.0.push(name);
+        Ok(())
+    }
+
+    fn discard(&mut self) {
+        self.0.clear();
+    }
+}
+
+#[test]
+fn films_get_a_frame_for_each_step() {
+    let folder = Folder::new("film");
+    let mut env = crib(&folder).env().expect("an environment");
+    let mut frames = Vec::new();
+    let mut evaluation = Evaluation::new(&env).with_film(Count(&mut frames));
+    env.reset(Some(0)).expect("no divergence");
+    for _ in 0..3 {
+        random_steps(&mut env, 1);
+        evaluation.eval_step(&env).expect("a frame");
+    }
+    evaluation.end(4).expect("a log");
+    let empty = evaluation.end(5).expect_err("no steps").to_string();
+    assert!(empty.contains("call eval_step"), "{empty}");
+    drop(evaluation);
+    assert_eq!(frames, ["1", "2", "3", "evaluation_4.avi"]);
+}
+
+#[test]
+fn other_programs_can_be_policies() {
+    let folder = Folder::new("command");
+    let blueprint = crib(&folder);
+    let command = |text: &str| {
+        let policy = || -> Result<Box<dyn Policy>, PolicyError> { Ok(Box::new(CommandPolicy::start(text)?)) };
+        run_episodes(&blueprint, &plan(2, 2), &policy, &|| {})
+    };
+    let refused = |text: &str, part: &str| {
+        let error = command(text).expect_err(text).to_string();
+        println!("{error}");
+        assert!(error.contains(part), "{error}");
+    };
+    refused("no-such-program --at-all", "cannot start");
+    if cfg!(unix) {
+        refused("true", "does not answer");
+        refused("cat", "not a JSON list");
+        let zeros = vec!["0"; blueprint.env().expect("an environment").action_space().len()].join(",");
+        let script = folder.path().join("policy.sh");
+        std::fs::create_dir_all(folder.path()).expect("a folder");
+        std::fs::write(&script, format!("while read line; do echo '[{zeros}]'; done")).expect("a script");
+        let infos = command(&format!("sh {}", script.display())).expect("episodes");
+        let log = |k| EvaluationLog::read(evaluation_path(folder.path(), k)).expect("a log");
+        let piped = [log(0), log(1)];
+        let zero = || -> Result<Box<dyn Policy>, PolicyError> { Ok(Box::new(ZeroPolicy)) };
+        assert_eq!(
+            run_episodes(&blueprint, &plan(2, 1), &zero, &|| {}).expect("episodes"),
+            infos
+        );
+        assert_eq!(piped, [log(0), log(1)]);
+    }
+}
+
+fn babybench(dir: &Path, arguments: &[&str]) -> Output {
+    std::fs::create_dir_all(dir).expect("a folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_babybench"));
+    command
+        .args(arguments)
+        .current_dir(dir)
+        .output()
+        .expect("the program runs")
+}
+
+fn text(out: &Output) -> String {
+    String::from_utf8_lossy(&[&out.stdout[..], &out.stderr[..]].concat()).into_owned()
+}
+
+#[test]
+fn the_installation_test_passes() {
+    let folder = Folder::new("installation");
+    let out = babybench(folder.path(), &["test-installation"]);
+    println!("{}", text(&out));
+    assert!(out.status.success());
+    assert!(text(&out).contains("Installation test successful!"));
+    let results = folder.path().join("results/test_installation");
+    for file in ["scene.xml", "logs/training.pkl", "videos/test_installation.avi"] {
+        assert!(results.join(file).metadata().is_ok_and(|m| m.len() > 0), "{file}");
+    }
+    let blocked = folder.path().join("file");
+    std::fs::write(&blocked, "").expect("a file");
+    let out = babybench(folder.path(), &["test-installation", "--save-dir", "file"]);
+    assert!(!out.status.success());
+    assert!(text(&out).contains("choose one with --save-dir"), "{}", text(&out));
+}
+
+/// A configuration file whose episodes are short.
+fn short_config(folder: &Folder) -> String {
+    std::fs::create_dir_all(folder.path()).expect("a folder");
+    let path = folder.path().join("short.yml");
+    let config = Config {
+        save_dir: "run".to_string(),
+        max_episode_steps: 10,
+        save_logs_every: 1,
+        ..free(Behavior::SelfTouch, Scene::Crib)
+    };
+    std::fs::write(&path, config.to_yaml()).expect("a file");
+    path.display().to_string()
+}
+
+#[test]
+fn from_a_run_to_a_result() {
+    let folder = Folder::new("story");
+    let config = short_config(&folder);
+    let run = |arguments: &[&str]| {
+        let out = babybench(folder.path(), arguments);
+        println!("{}", text(&out));
+        assert!(out.status.success(), "{arguments:?}");
+        text(&out)
+    };
+    run(&["train", "--config", &config, "--train-for", "200", "--quiet"]);
+    assert_eq!(read_training(folder.path().join("run")).expect("a log").len(), 20);
+    let more = run(&[
+        "train",
+        "--config",
+        &config,
+        "--train-for",
+        "300",
+        "--resume",
+        "--quiet",
+    ]);
+    assert!(more.contains("going on after 20 episodes, 200 steps"));
+    assert_eq!(read_training(folder.path().join("run")).expect("a log").len(), 30);
+    assert!(run(&["score", "run"]).contains("of which 31 can be reached"));
+    assert!(run(&["score", "run", "--json"]).starts_with("{\"behavior\": \"self_touch\", \"score\": "));
+    let evaluate = [
+        "evaluate",
+        "--config",
+        &config,
+        "--episodes",
+        "2",
+        "--duration",
+        "3",
+        "--quiet",
+    ];
+    run(&evaluate);
+    for k in 0..2 {
+        assert_eq!(
+            EvaluationLog::read(evaluation_path(folder.path().join("run"), k))
+                .expect("a log")
+                .len(),
+            3
+        );
+        let video = folder.path().join(format!("run/videos/evaluation_{k}.avi"));
+        assert!(video.metadata().is_ok_and(|m| m.len() > 10_000));
+    }
+    let out = babybench(folder.path(), &["score", "elsewhere"]);
+    assert!(
+        !out.status.success() && text(&out).contains("train first"),
+        "{}",
+        text(&out)
+    );
+}
+
+#[test]
+fn a_killed_run_leaves_a_readable_log() {
+    let folder = Folder::new("kill");
+    let config = short_config(&folder);
+    let mut rng = NumpyRng::seed(3);
+    let (mut found, mut most) = (0, 0);
+    for _ in 0..20 {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_babybench"))
+            .args([
+                "train",
+                "--config",
+                &config,
+                "--train-for",
+                "1000000",
+                "--resume",
+                "--quiet",
+            ])
+            .current_dir(folder.path())
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .expect("the program runs");
+        std::thread::sleep(Duration::from_millis(100 + (rng.uniform() * 200.0) as u64));
+        child.kill().expect("it still runs");
+        child.wait().expect("it ends");
+        let path = folder.path().join("run/logs/training.pkl");
+        if path.exists() {
+            let records = read_training(folder.path().join("run")).expect("a whole log");
+            assert!(records.len() >= most, "episodes were lost");
+            most = records.len();
+            found += 1;
+        }
+    }
+    println!("{found} of 20 killed runs had begun to log; {most} episodes in the end");
+    assert!(found > 10 && most > 10);
+}

@@ -1,0 +1,298 @@
+//! The renderer: the same bytes every time, no allocation after warm-up, errors for what cannot be drawn.
+#![allow(unsafe_code)] // a global allocator cannot be written without
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::Arc;
+
+use babybench::config::{Behavior, Config, Scene};
+use babybench::mimo::{build_model, embedded};
+use babybench::mjcf_loader::{AssetSource, MemoryAssets};
+use babybench::model::CameraId;
+use babybench::render::{Poses, RenderError, Renderer, View, Visual};
+use babybench::{Blueprint, Env, Model};
+
+struct Counting;
+
+thread_local! {
+    static CALLS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: everything is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let _ = CALLS.try_with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn config(scene: Scene) -> Config {
+    Config {
+        scene,
+        behavior: if scene == Scene::Cubes {
+            Behavior::HandRegard
+        } else {
+            Behavior::None
+        },
+        touch_active: false,
+        ..Config::default()
+    }
+}
+
+fn env(scene: Scene) -> Env {
+    let mut env = Env::new(config(scene)).expect("embedded assets");
+    env.reset(Some(0)).expect("no divergence");
+    env
+}
+
+fn hash(bytes: &[u8]) -> u64 {
+    let mix = |h: u64, b: &u8| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
+}
+
+#[test]
+fn eyes_are_part_of_the_observation() {
+    let mut e = env(Scene::Cubes);
+    let keys: Vec<_> = e.observation_space().iter().map(|s| (s.key, s.shape.clone())).collect();
+    let place = |key: &str| keys.iter().position(|k| k.0 == key).expect("in the space");
+    assert!(place("observation") < place("eye_left") && place("eye_right") == place("eye_left") + 1);
+    assert!(place("eye_right") < place("vestibular"));
+    assert_eq!(keys[place("eye_left")].1, [64, 64, 3]);
+    let action = vec![0.0; e.action_space().len()];
+    let step = e.step(&action).expect("no divergence");
+    let (left, right) = (step.observation.eye_left.unwrap(), step.observation.eye_right.unwrap());
+    assert_eq!((left.len(), right.len()), (64 * 64 * 3, 64 * 64 * 3));
+    assert_ne!(left, right);
+    // what the observation shows is what the camera sees
+    let left = left.to_vec();
+    assert_eq!(e.render_camera("eye_left", 64, 64).unwrap(), left);
+    let mut blind = Env::new(Config {
+        vision_active: false,
+        ..config(Scene::Base)
+    })
+    .unwrap();
+    assert!(blind.reset(None).unwrap().eye_left.is_none());
+    assert_eq!(blind.render().unwrap().len(), 480 * 480 * 3);
+    assert!(blind.render_camera("nowhere", 8, 8).is_err());
+    assert!(blind.render_camera("top", 0, 8).is_err());
+}
+
+#[test]
+fn a_picture_is_the_same_every_time_and_from_every_renderer() {
+    let mut e = env(Scene::Cubes);
+    let first = e.render_camera("corner", 101, 67).unwrap().to_vec();
+    let _ = e.render_camera("eye_right", 64, 64).unwrap();
+    assert_eq!(e.render_camera("corner", 101, 67).unwrap(), first);
+    println!("corner 101 x 67 of cubes: {:016x}", hash(&first));
+    let mut other = env(Scene::Cubes);
+    assert_eq!(other.render_camera("corner", 101, 67).unwrap(), first);
+}
+
+#[test]
+fn drawing_allocates_nothing_after_warm_up() {
+    let mut e = env(Scene::Cubes);
+    let blueprint = e.blueprint().clone();
+    let visual = blueprint.visual().unwrap();
+    let mut renderer = Renderer::new();
+    let views = ["eye_left", "eye_right"].map(|name| View {
+        camera: e.model().camera(name).unwrap(),
+        width: 64,
+        height: 64,
+    });
+    let mut out = vec![0; views[0].rgb_len()];
+    let mut action = Vec::new();
+    let mut late = 0;
+    for k in 0..120 {
+        e.sample_action(&mut action);
+        e.step(&action).unwrap();
+        let before = CALLS.get();
+        for view in &views {
+            renderer.rgb(&visual, &Poses::from(e.state()), view, &mut out).unwrap();
+        }
+        late += if k < 60 { 0 } else { CALLS.get() - before };
+    }
+    // a vector may still grow when more comes into view than ever before
+    assert!(late <= 4, "{late} allocations");
+}
+
+#[test]
+fn depth_segmentation_and_gray_describe_the_same_picture() {
+    let mut e = env(Scene::Cubes);
+    let visual = e.blueprint().visual().unwrap();
+    let camera = e.model().camera("top").unwrap();
+    let view = View {
+        camera,
+        width: 60,
+        height: 40,
+    };
+    let mut renderer = Renderer::new();
+    let poses = Poses::from(e.state());
+    let (mut depth, mut ids) = (vec![0.0; view.pixels()], vec![0; view.pixels()]);
+    renderer.depth(&visual, &poses, &view, &mut depth).unwrap();
+    renderer.segmentation(&visual, &poses, &view, &mut ids).unwrap();
+    let (mut rgb, mut gray) = (vec![0; view.rgb_len()], vec![0; view.pixels()]);
+    renderer.gray(&visual, &poses, &view, &mut rgb, &mut gray).unwrap();
+    // the camera hangs 2 m above the floor and sees MIMo, the rug and the floor around it
+    let rug = e.model().geom("rug").unwrap().0 as i32;
+    let floor = e.model().geom("floor").unwrap().0 as i32;
+    for (z, id) in depth.iter().zip(&ids) {
+        match *id {
+            id if id == rug => assert!((z - 2.0005).abs() < 1e-3, "{z}"),
+            id if id == floor => assert!((z - 2.01).abs() < 1e-3, "{z}"),
+            id => assert!(id >= 0 && *z < 2.0, "{id} {z}"),
+        }
+    }
+    assert!(ids.contains(&rug) && ids.contains(&floor) && ids.iter().any(|&i| i != rug && i != floor));
+    assert_eq!(rgb, e.render_camera("top", 60, 40).unwrap());
+    assert!(gray.iter().any(|&g| g != gray[0]));
+}
+
+#[test]
+fn wrong_requests_are_errors() {
+    let e = env(Scene::Base);
+    let visual = e.blueprint().visual().unwrap();
+    let mut renderer = Renderer::new();
+    let poses = Poses::from(e.state());
+    let view = |camera, width| View {
+        camera: CameraId(camera),
+        width,
+        height: 8,
+    };
+    let mut out = [0; 8 * 8 * 3];
+    let mut draw = |poses: &Poses, view: View, n: usize| renderer.rgb(&visual, poses, &view, &mut out[..n]);
+    assert_eq!(draw(&poses, view(0, 8), 192), Ok(()));
+    assert!(matches!(
+        draw(&poses, view(99, 8), 192),
+        Err(RenderError::Camera(99, _))
+    ));
+    assert!(matches!(draw(&poses, view(0, 0), 0), Err(RenderError::Size(0, 8))));
+    assert!(matches!(draw(&poses, view(0, 8), 191), Err(RenderError::Buffer { .. })));
+    let short = Poses {
+        geom_xpos: &poses.geom_xpos[1..],
+        ..poses
+    };
+    assert!(matches!(
+        draw(&short, view(0, 8), 192),
+        Err(RenderError::Poses { what: "geoms", .. })
+    ));
+    // poses that are not numbers draw nothing, and do not panic
+    let (nan3, nan9) = ([f64::NAN; 3], [f64::NAN; 9]);
+    let (n, c) = (poses.geom_xpos.len(), poses.cam_xpos.len());
+    for bad in [nan3, [1e300; 3], [f64::INFINITY; 3]] {
+        let geoms = vec![bad; n];
+        let turned = vec![nan9; n];
+        assert_eq!(
+            draw(
+                &Poses {
+                    geom_xpos: &geoms,
+                    ..poses
+                },
+                view(0, 8),
+                192
+            ),
+            Ok(())
+        );
+        assert_eq!(
+            draw(
+                &Poses {
+                    geom_xmat: &turned,
+                    ..poses
+                },
+                view(0, 8),
+                192
+            ),
+            Ok(())
+        );
+        let eyes = vec![bad; c];
+        assert_eq!(
+            draw(
+                &Poses {
+                    cam_xpos: &eyes,
+                    ..poses
+                },
+                view(0, 8),
+                192
+            ),
+            Ok(())
+        );
+    }
+}
+
+/// The embedded assets with one file replaced.
+fn with_file(path: &str, bytes: Vec<u8>) -> (Model, MemoryAssets) {
+    let model = build_model(&config(Scene::Base), &embedded()).unwrap();
+    let mut assets = MemoryAssets::new();
+    for texture in &model.textures {
+        for file in texture.file.iter().chain(texture.cube_files.iter().flatten()) {
+            assets
+                .insert(file, embedded().read(file).unwrap().into_owned())
+                .unwrap();
+        }
+    }
+    assets.insert(path, bytes).unwrap();
+    (model, assets)
+}
+
+fn png(width: u32, height: u32) -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_fn(width, height, |x, y| image::Rgb([x as u8, y as u8, 7]));
+    image.write_to(&mut out, image::ImageFormat::Png).unwrap();
+    out.into_inner()
+}
+
+#[test]
+fn broken_images_are_errors_that_name_them() {
+    let rug = "tex/rug.png";
+    let good = embedded().read(rug).unwrap().into_owned();
+    let load = |bytes: Vec<u8>| {
+        let (model, assets) = with_file(rug, bytes);
+        Visual::new(&model, &assets)
+    };
+    assert!(load(good.clone()).is_ok());
+    assert!(load(png(300, 300)).is_ok(), "any square will do");
+    assert!(matches!(load(png(30, 31)), Err(RenderError::Texture { .. })));
+    for bytes in [vec![], b"not a png".to_vec(), good[..40].to_vec()] {
+        let error = load(bytes).unwrap_err();
+        assert!(
+            matches!(&error, RenderError::Image { path, .. } if path == rug),
+            "{error}"
+        );
+    }
+    // a header that promises 2^31 pixels a side
+    let mut huge = png(8, 8);
+    huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+    assert!(load(huge).is_err());
+    // no byte, changed, makes it panic
+    let mut state = 1u64;
+    for _ in 0..300 {
+        let mut bytes = good.clone();
+        for _ in 0..3 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let at = (state >> 33) as usize % bytes.len();
+            bytes[at] = (state >> 20) as u8;
+        }
+        if let Err(error) = load(bytes) {
+            assert!(error.to_string().contains("rug"), "{error}");
+        }
+    }
+}
+
+#[test]
+fn environments_of_a_blueprint_share_the_look() {
+    let blueprint = Blueprint::new(config(Scene::Base)).unwrap();
+    let (a, b) = (blueprint.env().unwrap(), blueprint.env().unwrap());
+    let look = |e: &Env| e.vision().unwrap().visual().clone();
+    assert!(Arc::ptr_eq(&look(&a), &look(&b)));
+    assert!(look(&a).texture_bytes() < 32 << 20);
+}
