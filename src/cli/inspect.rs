@@ -1,6 +1,7 @@
 //! `babybench inspect`
 
 use std::error::Error;
+use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
 use babybench::Blueprint;
@@ -40,13 +41,16 @@ impl Inspect {
         if let Some(path) = &self.touch {
             return self.draw_touch(&blueprint, path);
         }
+        let mut out = stdout().lock();
         let env = blueprint.env()?;
         let (config, model) = (blueprint.config(), &**blueprint.model());
-        println!(
+        writeln!(
+            out,
             "behavior {}, scene {}, actuation {}, compat {}",
             config.behavior, config.scene, config.actuation_model, config.compat
-        );
-        println!(
+        )?;
+        writeln!(
+            out,
             "nq {}  nv {}  nbody {}  njnt {}  ngeom {}  nsite {}  nu {}  neq {}  ntendon {}  nsensor {}",
             model.nq,
             model.nv,
@@ -58,20 +62,22 @@ impl Inspect {
             model.neq(),
             model.ntendon(),
             model.nsensor(),
-        );
-        println!(
+        )?;
+        writeln!(
+            out,
             "timestep {} s, {} per action; {} geom pairs may touch; mass of the bodies {:.4} kg",
             model.opt.timestep,
             config.frame_skip,
             env.engine().pairs().pairs().len(),
             model.body_mass.iter().sum::<f64>(),
-        );
+        )?;
 
-        println!("\nMIMo's joints (index in angles, velocities and limits)");
-        println!(
+        writeln!(out, "\nMIMo's joints (index in angles, velocities and limits)")?;
+        writeln!(
+            out,
             "{:>4} {:34} {:8} {:>9} {:>9} {:>9}  held",
             "", "name", "part", "low", "high", "settled"
-        );
+        )?;
         let joints = env.proprioception().joints();
         for (k, (&j, &q)) in joints.joint.iter().zip(&joints.qpos).enumerate() {
             let part = joint_part(model, JointId(j)).map_or("", |p| p.name());
@@ -80,40 +86,43 @@ impl Inspect {
                 blueprint.params().eq_active[e]
                     && matches!(model.eq_kind[e], babybench::model::EqualityKind::Joint { joint1, .. } if joint1.0 == j)
             });
-            println!(
+            writeln!(
+                out,
                 "{k:>4} {:34} {part:8} {low:>9.4} {high:>9.4} {:>9.4}  {}",
                 model.jnt_name[j],
                 blueprint.init_qpos()[q],
                 if held { "yes" } else { "" }
-            );
+            )?;
         }
 
-        println!("\nActuators");
-        println!(
+        writeln!(out, "\nActuators")?;
+        writeln!(
+            out,
             "{:>4} {:34} {:34} {:>9} {:>17}",
             "", "name", "joint", "gear", "force range"
-        );
+        )?;
         for i in 0..model.nu() {
             let joint = &model.jnt_name[model.actuator_trnid[i]];
             let [lo, hi] = model.actuator_forcerange[i];
             let (name, gear) = (&model.actuator_name[i], model.actuator_gear[i]);
-            println!("{i:>4} {name:34} {joint:34} {gear:>9} {lo:>8} {hi:>8}");
+            writeln!(out, "{i:>4} {name:34} {joint:34} {gear:>9} {lo:>8} {hi:>8}")?;
         }
 
         let space = env.action_space();
-        println!("\nAction: {} numbers (f32)", space.len());
+        writeln!(out, "\nAction: {} numbers (f32)", space.len())?;
         for (i, name) in env.actuation().action_names(model).iter().enumerate() {
-            println!("{i:>4} {name:44} {:>12} {:>12}", space.low()[i], space.high()[i]);
+            writeln!(out, "{i:>4} {name:44} {:>12} {:>12}", space.low()[i], space.high()[i])?;
         }
 
-        println!("\nObservation");
+        writeln!(out, "\nObservation")?;
         for s in env.observation_space() {
-            println!(
+            writeln!(
+                out,
                 "  {:12} shape {:?}, {:?}, {} to {}",
                 s.key, s.shape, s.dtype, s.low, s.high
-            );
+            )?;
         }
-        println!("  observation is made of");
+        writeln!(out, "  observation is made of")?;
         let proprioception = env.proprioception();
         for (component, range) in proprioception.layout() {
             let what = match component {
@@ -123,17 +132,27 @@ impl Inspect {
                 Component::Limits => "0 inside, 1 at a limit, joints as above",
                 Component::Actuation => "state of the actuators",
             };
-            println!("    {:4}..{:4} {:10} {what}", range.start, range.end, component.name());
+            writeln!(
+                out,
+                "    {:4}..{:4} {:10} {what}",
+                range.start,
+                range.end,
+                component.name()
+            )?;
         }
-        println!("  in detail");
+        writeln!(out, "  in detail")?;
         for entry in proprioception.entries(model, env.actuation()) {
             let (range, component) = (entry.range, entry.component.name());
-            println!("    {:4}..{:4} {component:10} {}", range.start, range.end, entry.name);
+            writeln!(
+                out,
+                "    {:4}..{:4} {component:10} {}",
+                range.start, range.end, entry.name
+            )?;
         }
         if let Some(v) = env.vestibular() {
-            println!("  vestibular is made of");
+            writeln!(out, "  vestibular is made of")?;
             for (name, range) in v.layout(model) {
-                println!("    {:4}..{:4} {name}", range.start, range.end);
+                writeln!(out, "    {:4}..{:4} {name}", range.start, range.end)?;
             }
         }
         Ok(())
@@ -141,6 +160,7 @@ impl Inspect {
 
     /// Writes the picture of the skin.
     fn draw_touch(&self, blueprint: &Blueprint, path: &Path) -> Result<(), Box<dyn Error>> {
+        let mut out = stdout().lock();
         let Some(skin) = blueprint.skin() else {
             return Err("touch is off in this configuration: set touch_active and a touch_scale > 0".into());
         };
@@ -162,16 +182,17 @@ impl Inspect {
         let picture = draw_skin(env.model(), skin, &s.xpos, &s.xmat, felt, PICTURE_HEIGHT);
         let (width, height) = (picture.width as u32, picture.height as u32);
         image::save_buffer(path, &picture.rgb, width, height, image::ExtendedColorType::Rgb8)?;
-        println!(
+        writeln!(
+            out,
             "{} sensors on {} bodies: {}",
             skin.len(),
             skin.bodies().len(),
             path.display()
-        );
+        )?;
         for c in felt.map_or(&[][..], |t| t.contacts()) {
             let body = &env.model().body_name[c.body.0];
             let other = &env.model().body_name[env.model().geom_bodyid[c.other.0]];
-            println!("  {body:20} touched by {other:20} with {:8.3} N", c.normal);
+            writeln!(out, "  {body:20} touched by {other:20} with {:8.3} N", c.normal)?;
         }
         Ok(())
     }

@@ -74,7 +74,7 @@ impl Run {
         let bar = if self.quiet {
             ProgressBar::hidden()
         } else {
-            ProgressBar::new(self.episodes * length)
+            ProgressBar::new(self.episodes.saturating_mul(length))
         };
         let style = "{bar:40} {pos}/{len} steps, {per_sec}, {eta} left";
         bar.set_style(ProgressStyle::with_template(style)?);
