@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use babybench::config::{Behavior, BodyParts, Scene};
-use babybench::physics::constraint::{Newton, make_constraints};
+use babybench::physics::constraint::{Newton, RowBuilder};
 use babybench::physics::contact::Options;
 use babybench::physics::dynamics::*;
 use babybench::physics::world::{PairTable, Scene as World, Sweep};
-use babybench::physics::{Engine, SoftEngine, State, Topology};
+use babybench::physics::{State, Topology};
 use babybench::{Blueprint, Config, Env, Model};
 
 const EXAMPLES: [(&str, &str); 3] = [
@@ -147,7 +147,7 @@ fn environment(bench: &mut Bench, name: &str, config: &Config) {
 /// The parts of a physics step, in their order.
 const PARTS: [&str; 10] = [
     "kinematics",
-    "inertia and its factor",
+    "inertias",
     "scene in Rapier",
     "contacts",
     "constraint rows",
@@ -165,10 +165,11 @@ struct Anatomy {
     pairs: PairTable,
     sweep: Sweep,
     world: World,
+    rows: RowBuilder,
     newton: Newton,
     integrator: Integrator,
     bias: BiasScratch,
-    columns: Vec<(u32, [f64; 3], [f64; 3])>,
+    bodies: Articulated,
     ns: [f64; PARTS.len()],
 }
 
@@ -180,16 +181,18 @@ impl Anatomy {
             ..Options::default()
         };
         let pairs = PairTable::new(&model);
+        let topology = Topology::new(&model);
         Self {
-            topology: Topology::new(&model),
             sweep: Sweep::new(&model, &pairs, options),
             world: World::new(&model, &pairs, options),
+            rows: RowBuilder::new(&model, &topology),
             newton: Newton::default(),
             integrator: Integrator::default(),
             bias: BiasScratch::default(),
-            columns: Vec::new(),
+            bodies: Articulated::default(),
             ns: [0.0; PARTS.len()],
             pairs,
+            topology,
             model,
         }
     }
@@ -208,23 +211,23 @@ impl Anatomy {
         com_pos(m, s);
         lap();
         crb(m, t, s);
-        factor_m(t, s);
+        self.bodies.update(m, s);
         lap();
         self.world.sync(s);
         lap();
         self.sweep.contacts(m, &self.pairs, s);
         lap();
-        make_constraints(m, t, s, &mut self.columns);
+        self.rows.build(m, t, s);
         lap();
         fwd_velocity(m, s, &mut self.bias);
         lap();
-        fwd_actuation(m, t, s);
+        fwd_actuation(m, &mut self.bodies, s);
         lap();
         self.newton.solve(m, t, s);
         lap();
         rne_post_constraint(m, s, false);
         lap();
-        self.integrator.advance(m, t, s);
+        self.integrator.advance(m, &mut self.bodies, s);
         lap();
     }
 }
@@ -256,7 +259,7 @@ fn anatomy(bench: &mut Bench, name: &str, config: &Config) {
             }
             parts.step(&mut s);
             let start = Instant::now();
-            SoftEngine::step(&mut whole, &mut reference).expect("no divergence");
+            whole.step(&mut reference).expect("no divergence");
             took += start.elapsed().as_nanos() as f64;
             for (sum, n) in size
                 .iter_mut()

@@ -1,12 +1,13 @@
 //! A tiny learner of self-touch: the cross-entropy method on slow swings of every joint, scored by how many body parts the
-//! hands touch. About a minute on two cores. `cargo run --release --example cross_entropy`
+//! hands touch. About a minute on two cores. `cargo run --release --example cross_entropy`, and then
+//! `cargo run --release -- report results/cross_entropy`
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use babybench::config::{Config, Scene};
-use babybench::env::{Info, NumpyRng};
-use babybench::eval::Score;
+use babybench::env::{Info, NumpyRng, PartNames};
+use babybench::eval::{Evaluation, Score, TrainingLog, write_scene};
 use babybench::{Blueprint, Env, EnvError};
 
 /// Steps of an episode; generations; policies tried in each; the best of them, which make the next generation.
@@ -52,21 +53,26 @@ impl Spread {
 fn episode(env: &mut Env, policy: Option<&[f64]>, seed: u64) -> Result<Info, EnvError> {
     env.reset(Some(seed))?;
     let mut action = Vec::new();
-    env.sample_action(&mut action);
     for step in 0..STEPS {
         match policy {
             None => env.sample_action(&mut action),
-            Some(genes) => {
-                let seconds = step as f64 * 0.005;
-                for (a, g) in action.iter_mut().zip(genes.chunks_exact(GENES)) {
-                    let swing = (std::f64::consts::TAU * 0.5 * g[2].exp() * seconds + 3.0 * g[3]).sin();
-                    *a = (0.3 * g[0] + 0.6 * g[1] * swing) as f32;
-                }
-            }
+            Some(genes) => act(genes, step, &mut action),
         }
         env.step(&action)?;
     }
     Ok(env.info().clone())
+}
+
+/// The action of a policy.
+fn act(genes: &[f64], step: usize, action: &mut Vec<f32>) {
+    let seconds = step as f64 * 0.005;
+    let swing = |g: &[f64]| (std::f64::consts::TAU * 0.5 * g[2].exp() * seconds + 3.0 * g[3]).sin();
+    action.clear();
+    action.extend(
+        genes
+            .chunks_exact(GENES)
+            .map(|g| (0.3 * g[0] + 0.6 * g[1] * swing(g)) as f32),
+    );
 }
 
 fn parts(info: &Info) -> usize {
@@ -108,8 +114,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let blueprint = Blueprint::new(Config {
         scene: Scene::Crib,
         touch_active: false, // the contacts are counted, not felt
+        save_dir: "results/cross_entropy".to_string(),
         ..Config::from_yaml(text, "config_selftouch.yml")?
     })?;
+    write_scene(blueprint.config(), blueprint.config().save_dir.as_ref())?;
+    let mut log = TrainingLog::create(blueprint.config())?.with_names(Some(PartNames::new(blueprint.model())));
     let genes = GENES * blueprint.env()?.action_space().len();
     let mut rng = NumpyRng::seed(0);
     let mut spread = Spread {
@@ -121,6 +130,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for generation in 0..GENERATIONS {
         let policies: Vec<_> = (0..POPULATION).map(|_| Some(spread.sample(&mut rng))).collect();
         let infos = run(&blueprint, &policies, (generation * POPULATION) as u64)?;
+        for info in &infos {
+            log.end_episode(info.steps, &info.behavior)?;
+        }
+        log.save()?;
         let mut order: Vec<usize> = (0..POPULATION).collect();
         order.sort_by_key(|&k| std::cmp::Reverse(parts(&infos[k])));
         let best: Vec<Vec<f64>> = order[..ELITE].iter().filter_map(|&k| policies[k].clone()).collect();
@@ -137,5 +150,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "learned policy: score {learned:.3} over {TRIALS} episodes, {:.1} times the random one's",
         learned / random
     );
+    evaluate(&blueprint, &spread.mean)
+}
+
+/// An evaluation episode of the learned policy. `Evaluation::new(&env).with_video(&env)?` would also make a video.
+fn evaluate(blueprint: &Blueprint, genes: &[f64]) -> Result<(), Box<dyn std::error::Error>> {
+    let mut env = blueprint.env()?;
+    let (mut evaluation, mut action) = (Evaluation::new(&env), Vec::new());
+    env.reset(Some(0))?;
+    for step in 0..STEPS {
+        act(genes, step, &mut action);
+        env.step(&action)?;
+        evaluation.eval_step(&env)?;
+    }
+    println!("{}", evaluation.end(0)?.display());
     Ok(())
 }

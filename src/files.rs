@@ -3,6 +3,12 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+/// Says on the standard error what a test leaves out; not by `eprintln`, which the test harness hides.
+#[cfg(test)]
+pub(crate) fn skipped(what: &str, missing: &Path) {
+    let _ = writeln!(io::stderr(), "SKIPPED {what}: {} is not here", missing.display());
+}
+
 /// Writes a new file beside `path` and renames it over it: `path` holds what it held before or all of `bytes`, whenever
 /// the process ends.
 pub(crate) fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {

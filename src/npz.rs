@@ -35,6 +35,7 @@ pub const MAX_ARRAY_BYTES: usize = 1 << 30;
 pub const MAX_FILE_BYTES: u64 = 1 << 32;
 /// What can be wrong with an archive; every message names the file and the array.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NpzError {
     /// The file cannot be read or written.
     #[error("{file}: {source}")]

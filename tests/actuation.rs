@@ -1,10 +1,9 @@
 //! The actuation models, locks, and the typed view of proprioception.
-#![allow(unsafe_code)] // a global allocator cannot be written without
 
+#[path = "common/allocations.rs"]
+mod allocations;
 mod common;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::sync::Arc;
 
 use babybench::actuation::{Actuation, ActuationError, Muscle, MuscleParams, Positional, SpringDamper, build};
@@ -14,30 +13,6 @@ use babybench::physics::{Engine, SoftEngine, SoftOptions, State};
 use babybench::sensors::Component;
 use babybench::{Blueprint, Config, Env, EnvError, Model};
 use common::*;
-
-/// The system's allocator, counting what each thread asks of it.
-struct Counting;
-
-thread_local! {
-    static CALLS: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: everything is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        CALLS.set(CALLS.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps the contract of `dealloc`.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 fn config(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, compat: Compat) -> Config {
     Config {
@@ -336,7 +311,7 @@ fn actuation_allocates_nothing() {
             let (model, mut actuation, mut state) = parts(kind, compat);
             let action = vec![0.3; actuation.action_space().len()];
             let mut seen = vec![0.0; actuation.observation_len()];
-            let calls = CALLS.get();
+            let calls = allocations::of_this_thread();
             for _ in 0..3 {
                 actuation.set_action(&model, &mut state, &action);
                 actuation.substep(&model, &mut state);
@@ -344,7 +319,7 @@ fn actuation_allocates_nothing() {
                 std::hint::black_box(actuation.cost(&model, &state));
                 actuation.reset(&model, &mut state);
             }
-            assert_eq!(CALLS.get() - calls, 0, "{kind} {compat}");
+            assert_eq!(allocations::of_this_thread() - calls, 0, "{kind} {compat}");
         }
     }
 }

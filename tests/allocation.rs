@@ -1,52 +1,10 @@
 //! Invariant 4: a step allocates nothing after warm-up.
-#![allow(unsafe_code)] // a global allocator cannot be written without
 
+#[path = "common/allocations.rs"]
+mod allocations;
 mod common;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-
 use common::*;
-
-/// The system's allocator, counting what is asked of it.
-struct Counting;
-
-static CALLS: AtomicUsize = AtomicUsize::new(0);
-static BYTES: AtomicUsize = AtomicUsize::new(0);
-
-fn count(size: usize) {
-    CALLS.fetch_add(1, Relaxed);
-    BYTES.fetch_add(size, Relaxed);
-}
-
-// SAFETY: everything is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size());
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        count(layout.size());
-        // SAFETY: the caller keeps the contract of `alloc_zeroed`.
-        unsafe { System.alloc_zeroed(layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count(size);
-        // SAFETY: the caller keeps the contract of `realloc`.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps the contract of `dealloc`.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 const WARM_UP: usize = 200;
 const COUNTED: usize = 300;
@@ -67,9 +25,10 @@ fn invariant_4_a_step_allocates_nothing_after_warm_up() {
         let (mut contacts, mut rows) = (0, 0);
         for k in 0..COUNTED {
             env.sample_action(&mut action);
-            let (calls, bytes) = (CALLS.load(Relaxed), BYTES.load(Relaxed));
+            let before = allocations::of_all_threads();
             let failed = env.step(&action).is_err();
-            let (calls, bytes) = (CALLS.load(Relaxed) - calls, BYTES.load(Relaxed) - bytes);
+            let after = allocations::of_all_threads();
+            let (calls, bytes) = (after[0] - before[0], after[1] - before[1]);
             assert!(!failed, "{name}: step {k} failed");
             if calls > 0 {
                 seen.push((k, calls, bytes));
@@ -77,9 +36,9 @@ fn invariant_4_a_step_allocates_nothing_after_warm_up() {
             contacts = contacts.max(env.state().contacts.len());
             rows = rows.max(env.state().efc.nefc());
         }
-        let calls = CALLS.load(Relaxed);
+        let [calls, _] = allocations::of_all_threads();
         env.reset(Some(1)).expect("no divergence");
-        let reset = CALLS.load(Relaxed) - calls;
+        let reset = allocations::of_all_threads()[0] - calls;
         let late = seen.iter().filter(|s| s.0 >= COUNTED - STRICT).count();
         println!(
             "{name:18} {} of {COUNTED} steps allocate ({late} of the last {STRICT}): {} calls, {} bytes; up to {contacts} \

@@ -226,8 +226,8 @@ fn trace(config: Config) -> u64 {
     hash.0
 }
 
-/// Keys whose effect is elsewhere: logs and videos, the other engine, and senses with tests of their own.
-const ELSEWHERE: [&str; 4] = ["save_dir", "save_logs_every", "render_size", "engine"];
+/// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, and senses with tests of their own.
+const ELSEWHERE: [&str; 5] = ["save_dir", "save_logs_every", "render_size", "engine", "renderer"];
 
 #[test]
 fn no_key_is_without_effect() {
@@ -262,6 +262,21 @@ fn no_key_is_without_effect() {
         }
     }
     println!("{checked} values checked");
+}
+
+/// A renderer that is not in this build is an error before anything is built.
+#[cfg(not(feature = "wgpu"))]
+#[test]
+fn without_the_feature_the_error_says_how_to_build() {
+    let config = Config {
+        renderer: babybench::config::RendererKind::Wgpu,
+        ..free(Behavior::None, Scene::Base)
+    };
+    let error = Env::new(config).expect_err("not in this build").to_string();
+    assert!(
+        error.contains("--features wgpu") && error.contains("renderer: cpu"),
+        "{error}"
+    );
 }
 
 fn cli(arguments: &[&str]) -> String {

@@ -1,46 +1,25 @@
 //! Scenes written beside logs, evaluation episodes and the command line from a run to a result.
 
 mod common;
+#[path = "common/program.rs"]
+mod program;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
 use babybench::config::{ActuationModel, Behavior, Compat, Config, Scene};
 use babybench::env::NumpyRng;
 use babybench::eval::logs::evaluation_path;
 use babybench::eval::{
-    CommandPolicy, EpisodeError, Evaluation, EvaluationLog, Film, FilmError, Plan, Policy, PolicyError, RandomPolicy,
-    ZeroPolicy, read_config, read_scene, read_training, run_episodes, write_scene,
+    EpisodeError, Evaluation, EvaluationLog, Film, FilmError, Plan, Policy, PolicyError, RandomPolicy, read_config,
+    read_scene, read_training, run_episodes, write_scene,
 };
 use babybench::mimo::{build_model, embedded};
 use babybench::{Blueprint, Env};
 use common::*;
-
-/// A folder of its own, gone at the end of the test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("babybench_evaluation_{name}_{}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        Self(path)
-    }
-
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn text(&self) -> String {
-        self.0.display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use program::*;
 
 #[test]
 fn a_written_scene_loads_to_the_same_model() {
@@ -71,6 +50,7 @@ fn plan(episodes: u64, jobs: usize) -> Plan {
         episodes,
         duration: 25,
         render: false,
+        fps: 60,
         jobs,
     }
 }
@@ -93,7 +73,7 @@ fn episodes_do_not_depend_on_the_number_of_jobs() {
     let blueprint = crib(&folder);
     let mut all = Vec::new();
     for jobs in [1, 3] {
-        let infos = run_episodes(&blueprint, &plan(5, jobs), &random, &|| {}).expect("episodes");
+        let infos = run_episodes(&blueprint, &plan(5, jobs), &random, &|| ControlFlow::Continue(())).expect("episodes");
         let logs = (0..5).map(|k| EvaluationLog::read(evaluation_path(folder.path(), k)).expect("a log"));
         let logs: Vec<EvaluationLog> = logs.collect();
         assert_eq!(
@@ -108,7 +88,9 @@ fn episodes_do_not_depend_on_the_number_of_jobs() {
         compat: Compat::Reference,
         ..blueprint.config().clone()
     };
-    let refused = run_episodes(&Blueprint::new(config).expect("a scene"), &plan(2, 2), &random, &|| {});
+    let refused = run_episodes(&Blueprint::new(config).expect("a scene"), &plan(2, 2), &random, &|| {
+        ControlFlow::Continue(())
+    });
     assert!(matches!(refused, Err(EpisodeError::Jobs)));
 }
 
@@ -151,53 +133,6 @@ fn films_get_a_frame_for_each_step() {
 }
 
 #[test]
-fn other_programs_can_be_policies() {
-    let folder = Folder::new("command");
-    let blueprint = crib(&folder);
-    let command = |text: &str| {
-        let policy = || -> Result<Box<dyn Policy>, PolicyError> { Ok(Box::new(CommandPolicy::start(text)?)) };
-        run_episodes(&blueprint, &plan(2, 2), &policy, &|| {})
-    };
-    let refused = |text: &str, part: &str| {
-        let error = command(text).expect_err(text).to_string();
-        println!("{error}");
-        assert!(error.contains(part), "{error}");
-    };
-    refused("no-such-program --at-all", "cannot start");
-    if cfg!(unix) {
-        refused("true", "does not answer");
-        refused("cat", "not a JSON list");
-        let zeros = vec!["0"; blueprint.env().expect("an environment").action_space().len()].join(",");
-        let script = folder.path().join("policy.sh");
-        std::fs::create_dir_all(folder.path()).expect("a folder");
-        std::fs::write(&script, format!("while read line; do echo '[{zeros}]'; done")).expect("a script");
-        let infos = command(&format!("sh {}", script.display())).expect("episodes");
-        let log = |k| EvaluationLog::read(evaluation_path(folder.path(), k)).expect("a log");
-        let piped = [log(0), log(1)];
-        let zero = || -> Result<Box<dyn Policy>, PolicyError> { Ok(Box::new(ZeroPolicy)) };
-        assert_eq!(
-            run_episodes(&blueprint, &plan(2, 1), &zero, &|| {}).expect("episodes"),
-            infos
-        );
-        assert_eq!(piped, [log(0), log(1)]);
-    }
-}
-
-fn babybench(dir: &Path, arguments: &[&str]) -> Output {
-    std::fs::create_dir_all(dir).expect("a folder");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_babybench"));
-    command
-        .args(arguments)
-        .current_dir(dir)
-        .output()
-        .expect("the program runs")
-}
-
-fn text(out: &Output) -> String {
-    String::from_utf8_lossy(&[&out.stdout[..], &out.stderr[..]].concat()).into_owned()
-}
-
-#[test]
 fn the_installation_test_passes() {
     let folder = Folder::new("installation");
     let out = babybench(folder.path(), &["test-installation"]);
@@ -213,20 +148,6 @@ fn the_installation_test_passes() {
     let out = babybench(folder.path(), &["test-installation", "--save-dir", "file"]);
     assert!(!out.status.success());
     assert!(text(&out).contains("choose one with --save-dir"), "{}", text(&out));
-}
-
-/// A configuration file whose episodes are short.
-fn short_config(folder: &Folder) -> String {
-    std::fs::create_dir_all(folder.path()).expect("a folder");
-    let path = folder.path().join("short.yml");
-    let config = Config {
-        save_dir: "run".to_string(),
-        max_episode_steps: 10,
-        save_logs_every: 1,
-        ..free(Behavior::SelfTouch, Scene::Crib)
-    };
-    std::fs::write(&path, config.to_yaml()).expect("a file");
-    path.display().to_string()
 }
 
 #[test]
@@ -265,6 +186,13 @@ fn from_a_run_to_a_result() {
         "--quiet",
     ];
     run(&evaluate);
+    let written = run(&["report", "run"]);
+    assert!(
+        written.contains("run/report.html") && !written.contains("note:"),
+        "{written}"
+    );
+    let page = std::fs::read_to_string(folder.path().join("run/report.html")).expect("a page");
+    assert!(page.contains("Self-touch in the crib") && page.ends_with("</html>"));
     for k in 0..2 {
         assert_eq!(
             EvaluationLog::read(evaluation_path(folder.path().join("run"), k))
@@ -275,12 +203,72 @@ fn from_a_run_to_a_result() {
         let video = folder.path().join(format!("run/videos/evaluation_{k}.avi"));
         assert!(video.metadata().is_ok_and(|m| m.len() > 10_000));
     }
-    let out = babybench(folder.path(), &["score", "elsewhere"]);
-    assert!(
-        !out.status.success() && text(&out).contains("train first"),
-        "{}",
-        text(&out)
+    let refused = |arguments: &[&str], part: &str| {
+        let out = babybench(folder.path(), arguments);
+        assert!(!out.status.success(), "{arguments:?}");
+        assert!(text(&out).contains(part), "{arguments:?}: {}", text(&out));
+    };
+    refused(&["score", "elsewhere"], "train first");
+    refused(&["report", "elsewhere"], "no such folder");
+    refused(
+        &["report", "run", "--out", "no/such/folder/a.html"],
+        "no/such/folder/a.html",
     );
+    refused(
+        &["evaluate", "--config", &config, "--policy", "no-such-program"],
+        "cannot start",
+    );
+    refused(
+        &["evaluate", "--config", &config, "--policy-timeout", "0"],
+        "expected seconds",
+    );
+    let again = run(&["train", "--config", &config, "--train-for", "10", "--quiet"]);
+    assert!(again.contains("replacing the training log of 30 records"), "{again}");
+}
+
+#[test]
+fn a_closed_pipe_ends_a_command_quietly() {
+    let folder = Folder::new("pipe");
+    let config = short_config(&folder);
+    let picture = folder.path().join("picture.png").display().to_string();
+    let train = ["train", "--config", &config, "--train-for", "30", "--quiet"];
+    assert!(babybench(folder.path(), &train).status.success());
+    let commands: [&[&str]; 9] = [
+        &["test-installation"],
+        &["run", "--config", &config, "--steps", "3", "--quiet"],
+        &["run", "--config", &config, "--steps", "3"],
+        &["inspect", "--config", &config],
+        &["render", "--config", &config, "--size", "16", "--out", &picture],
+        &["score", "run"],
+        &["score", "run", "--json"],
+        &[
+            "evaluate",
+            "--config",
+            &config,
+            "--episodes",
+            "1",
+            "--duration",
+            "2",
+            "--no-render",
+            "--quiet",
+        ],
+        &["report", "run"],
+    ];
+    for arguments in commands.into_iter().chain([&train[..]]) {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_babybench"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        drop(child.stdout.take());
+        let out = child.wait_with_output().expect("it ends");
+        let said = text(&out);
+        assert!(out.status.success(), "{arguments:?}: {said}");
+        let plain = |l: &str| l.starts_with("warning:") || l.starts_with("note:");
+        assert!(said.lines().all(plain), "{arguments:?}: {said}");
+    }
 }
 
 #[test]
@@ -317,4 +305,48 @@ fn a_killed_run_leaves_a_readable_log() {
     }
     println!("{found} of 20 killed runs had begun to log; {most} episodes in the end");
     assert!(found > 10 && most > 10);
+}
+
+#[test]
+fn a_killed_evaluation_leaves_whole_logs_and_videos() {
+    let folder = Folder::new("kill_evaluation");
+    let config = short_config(&folder);
+    let mut rng = NumpyRng::seed(4);
+    let mut found = 0;
+    for _ in 0..8 {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_babybench"))
+            .args([
+                "evaluate",
+                "--config",
+                &config,
+                "--episodes",
+                "1000",
+                "--duration",
+                "1",
+                "--quiet",
+            ])
+            .current_dir(folder.path())
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .expect("the program runs");
+        std::thread::sleep(Duration::from_millis(200 + (rng.uniform() * 600.0) as u64));
+        child.kill().expect("it still runs");
+        child.wait().expect("it ends");
+        let run = folder.path().join("run");
+        for k in 0..1000 {
+            let path = evaluation_path(&run, k);
+            if path.exists() {
+                assert_eq!(EvaluationLog::read(&path).expect("a whole log").len(), 1);
+                found += 1;
+            }
+            let video = run.join(format!("videos/evaluation_{k}.avi"));
+            if video.exists() {
+                let bytes = std::fs::read(&video).expect("a video");
+                let size = u32::from_le_bytes(bytes[4..8].try_into().expect("a size"));
+                assert_eq!(size as usize + 8, bytes.len(), "a whole video");
+            }
+        }
+    }
+    println!("{found} logs were whole");
+    assert!(found > 0);
 }

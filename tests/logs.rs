@@ -2,10 +2,8 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
-
 use babybench::config::{Behavior, Compat, Config, Scene};
-use babybench::env::{BehaviorInfo, Info};
+use babybench::env::{BehaviorInfo, Info, PartNames};
 use babybench::eval::logs::{evaluation_path, training_path};
 use babybench::eval::{
     EvaluationLog, LogError, Score, ScoreError, Touchables, TrainingLog, eval_logs, for_evaluation, read_training,
@@ -13,27 +11,6 @@ use babybench::eval::{
 };
 use babybench::{Blueprint, Env, make_env};
 use common::*;
-
-/// A folder of its own, gone at the end of the test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("babybench_logs_{name}_{}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        Self(path)
-    }
-
-    fn path(&self) -> &Path {
-        &self.0
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 fn config(folder: &Folder, behavior: Behavior, compat: Compat) -> Config {
     Config {
@@ -75,6 +52,7 @@ fn api_logs_episodes_and_saves_every_so_many() {
     let lines = std::fs::read_to_string(training_path(folder.path()).with_extension("jsonl")).expect("lines beside");
     assert_eq!(lines.lines().count(), 4);
     assert!(lines.ends_with("\"steps\": 1}\n"));
+    assert!(lines.lines().all(|l| l.contains("\"right_hand_parts\": [")));
 }
 
 #[test]
@@ -208,6 +186,7 @@ fn bad_logs_say_what_to_do() {
     let none = [Info {
         steps: 5,
         behavior: BehaviorInfo::None,
+        ..Info::default()
     }];
     assert_eq!(Score::new(&none), Err(ScoreError::NoBehavior));
     assert_eq!(Score::new(&[]), Err(ScoreError::Empty));
@@ -219,6 +198,7 @@ fn bad_logs_say_what_to_do() {
             left_eye_right_hand: 0,
             left_eye_left_hand: 0,
         },
+        ..Info::default()
     };
     assert_eq!(Score::new(&[regard(5)]), Err(ScoreError::NoSteps { records: 1 }));
     assert_eq!(
@@ -235,6 +215,7 @@ fn scores_are_those_of_the_specification() {
             right_hand_touches: right.to_vec(),
             left_hand_touches: left.to_vec(),
         },
+        ..Info::default()
     };
     let records = [touch(&[1, 2, 3], &[9]), touch(&[5, 6], &[7]), touch(&[6], &[])];
     assert_eq!(Score::new(&records).expect("a score").value, 3.0 / 68.0);
@@ -247,6 +228,7 @@ fn scores_are_those_of_the_specification() {
             left_eye_right_hand: n,
             left_eye_left_hand: n,
         },
+        ..Info::default()
     };
     let score = Score::new(&[regard(100, 100), regard(3, 10), regard(1, 30)]).expect("a score");
     assert_eq!(score.value, 0.1);
@@ -266,8 +248,8 @@ fn each_hand_can_reach_31_parts() {
         let blueprint = Blueprint::new(free(Behavior::SelfTouch, scene)).expect("a scene");
         let skin = Touchables::new(blueprint.model()).expect("MIMo");
         assert_eq!([0, 1].map(|hand| skin.reachable(hand).len()), [31, 31]);
-        assert_eq!(skin.name(13), "right_hand 1/2");
-        assert_eq!(skin.name(3), "hip");
+        assert_eq!(&*skin.name(13), "right_hand 1/2");
+        assert_eq!(&*skin.name(3), "hip");
     }
 }
 
@@ -288,4 +270,72 @@ fn gaze_angles_agree_with_the_counters() {
         }
         assert_eq!(env.info().behavior.regards(), Some(expected), "{compat}");
     }
+}
+
+#[test]
+fn details_name_what_is_touched() {
+    let folder = Folder::new("details");
+    let mut env = env(config(&folder, Behavior::SelfTouch, Compat::Api));
+    env.reset(Some(0)).expect("no divergence");
+    let start = env.snapshot();
+    let names = PartNames::new(env.model());
+    let check = |env: &Env| {
+        let parts = env.info().details.touched_parts.clone().expect("self_touch");
+        let geoms = env.info().behavior.touches().expect("self_touch");
+        let named = geoms.map(|list| list.iter().map(|&g| names.get(g)).collect::<Vec<_>>());
+        assert_eq!(parts, named);
+        parts.concat().len()
+    };
+    let mut most = 0;
+    for _ in 0..30 {
+        held_steps(&mut env, 60, 30);
+        most = check(&env);
+        if most >= 2 {
+            break;
+        }
+    }
+    assert!(most >= 2, "random actions touch something");
+    let end = env.snapshot();
+    let json = env.info().to_detailed_json();
+    assert!(
+        json.contains("_parts\": [\"") && !env.info().to_json().contains("_parts"),
+        "{json}"
+    );
+    env.restore(&start).expect("a snapshot");
+    assert_eq!(check(&env), 0);
+    env.restore(&end).expect("a snapshot");
+    assert_eq!(check(&env), most);
+    env.reset(Some(1)).expect("no divergence");
+    assert_eq!(check(&env), 0);
+}
+
+#[test]
+fn details_are_beside_the_pickles() {
+    let folder = Folder::new("beside");
+    let mut env = env(config(&folder, Behavior::HandRegard, Compat::Api));
+    env.reset(Some(0)).expect("no divergence");
+    assert_eq!(env.info().details.gaze_angles, None);
+    let mut log = EvaluationLog::default();
+    let mut angles = Vec::new();
+    for _ in 0..5 {
+        random_steps(&mut env, 1);
+        assert_eq!(env.info().details.gaze_angles, env.gaze_angles());
+        angles.extend(env.gaze_angles().expect("hand_regard"));
+        log.push(&env.state().qpos, env.info());
+    }
+    let path = log.write(folder.path(), 0).expect("the log can be written");
+    let npz = babybench::npz::Npz::open(path.with_extension("npz")).expect("an archive beside");
+    assert_eq!(npz.get_f64("gaze_angles").expect("angles").data, angles);
+    let lines = std::fs::read_to_string(path.with_extension("jsonl")).expect("lines beside");
+    assert_eq!(lines.lines().count(), 5);
+    assert!(
+        lines
+            .lines()
+            .all(|l| l.contains("\"gaze_angles\": {\"right_eye_right_hand\": "))
+    );
+    let read = EvaluationLog::read(&path).expect("a log");
+    assert!(
+        read.info.iter().all(|i| i.details.gaze_angles.is_none()),
+        "pickles are the kit's"
+    );
 }

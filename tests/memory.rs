@@ -8,7 +8,7 @@ use common::*;
 #[test]
 fn three_environments_fit_in_64_mib() {
     let Some(before) = proc_status_mib("VmRSS") else {
-        println!("skipped: this system has no /proc/self/status");
+        skipped("memory of environments", "this system has no /proc/self/status");
         return;
     };
     let mut environments: Vec<Env> = EXAMPLES.iter().map(|(name, _)| env(example(name))).collect();

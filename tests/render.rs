@@ -1,55 +1,21 @@
 //! The renderer: the same bytes every time, no allocation after warm-up, errors for what cannot be drawn.
-#![allow(unsafe_code)] // a global allocator cannot be written without
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "common/allocations.rs"]
+mod allocations;
+mod common;
+
 use std::sync::Arc;
 
-use babybench::config::{Behavior, Config, Scene};
+use babybench::config::{Config, Scene};
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::{AssetSource, MemoryAssets};
 use babybench::model::CameraId;
 use babybench::render::{Poses, RenderError, Renderer, View, Visual};
-use babybench::{Blueprint, Env, Model};
-
-struct Counting;
-
-thread_local! {
-    static CALLS: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: everything is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let _ = CALLS.try_with(|c| c.set(c.get() + 1));
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps the contract of `dealloc`.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-fn config(scene: Scene) -> Config {
-    Config {
-        scene,
-        behavior: if scene == Scene::Cubes {
-            Behavior::HandRegard
-        } else {
-            Behavior::None
-        },
-        touch_active: false,
-        ..Config::default()
-    }
-}
+use babybench::{Blueprint, Env, EnvError, Model};
+use common::seen;
 
 fn env(scene: Scene) -> Env {
-    let mut env = Env::new(config(scene)).expect("embedded assets");
+    let mut env = Env::new(seen(scene)).expect("embedded assets");
     env.reset(Some(0)).expect("no divergence");
     env
 }
@@ -77,7 +43,7 @@ fn eyes_are_part_of_the_observation() {
     assert_eq!(e.render_camera("eye_left", 64, 64).unwrap(), left);
     let mut blind = Env::new(Config {
         vision_active: false,
-        ..config(Scene::Base)
+        ..seen(Scene::Base)
     })
     .unwrap();
     assert!(blind.reset(None).unwrap().eye_left.is_none());
@@ -98,6 +64,27 @@ fn a_picture_is_the_same_every_time_and_from_every_renderer() {
 }
 
 #[test]
+fn a_halved_picture_has_the_pixels_of_the_whole() {
+    let e = env(Scene::Cubes);
+    let visual = e.blueprint().visual().unwrap();
+    let poses = Poses::from(e.state());
+    let mut renderer = Renderer::new();
+    for (camera, width, height) in [("corner", 64, 48), ("top", 33, 21)] {
+        let camera = e.model().camera(camera).unwrap();
+        let view = View { camera, width, height };
+        let (w, h) = (width.div_ceil(2), height.div_ceil(2));
+        let (mut whole, mut half) = (vec![0; view.rgb_len()], vec![0; 3 * w * h]);
+        renderer.rgb(&visual, &poses, &view, &mut whole).unwrap();
+        renderer.rgb_halved(&visual, &poses, &view, &mut half).unwrap();
+        for i in 0..w * h {
+            let at = 2 * (i / w) * width + 2 * (i % w);
+            assert_eq!(half[3 * i..3 * i + 3], whole[3 * at..3 * at + 3]);
+        }
+        assert!(renderer.rgb_halved(&visual, &poses, &view, &mut whole).is_err());
+    }
+}
+
+#[test]
 fn drawing_allocates_nothing_after_warm_up() {
     let mut e = env(Scene::Cubes);
     let blueprint = e.blueprint().clone();
@@ -114,11 +101,15 @@ fn drawing_allocates_nothing_after_warm_up() {
     for k in 0..120 {
         e.sample_action(&mut action);
         e.step(&action).unwrap();
-        let before = CALLS.get();
+        let before = allocations::of_this_thread();
         for view in &views {
             renderer.rgb(&visual, &Poses::from(e.state()), view, &mut out).unwrap();
         }
-        late += if k < 60 { 0 } else { CALLS.get() - before };
+        late += if k < 60 {
+            0
+        } else {
+            allocations::of_this_thread() - before
+        };
     }
     // a vector may still grow when more comes into view than ever before
     assert!(late <= 4, "{late} allocations");
@@ -154,6 +145,55 @@ fn depth_segmentation_and_gray_describe_the_same_picture() {
     assert!(ids.contains(&rug) && ids.contains(&floor) && ids.iter().any(|&i| i != rug && i != floor));
     assert_eq!(rgb, e.render_camera("top", 60, 40).unwrap());
     assert!(gray.iter().any(|&g| g != gray[0]));
+}
+
+#[test]
+fn eyes_see_distances_geoms_and_grey() {
+    let mut blind = Env::new(Config {
+        touch_active: false,
+        vision_active: false,
+        ..Config::default()
+    })
+    .unwrap();
+    assert!(matches!(blind.eye_gray([&mut [], &mut []]), Err(EnvError::NoVision)));
+    let mut e = Env::new(Config {
+        vision_active: true,
+        vision_resolution: 32,
+        ..seen(Scene::Cubes)
+    })
+    .unwrap();
+    e.reset(Some(0)).unwrap();
+    let visual = e.blueprint().visual().unwrap();
+    let mut gray = [vec![0; 32 * 32], vec![0; 32 * 32]];
+    let mut depth = gray.clone().map(|v| vec![0.0; v.len()]);
+    let mut geoms = gray.clone().map(|v| vec![0; v.len()]);
+    e.eye_gray(gray.each_mut().map(|v| &mut v[..])).unwrap();
+    e.eye_depth(depth.each_mut().map(|v| &mut v[..])).unwrap();
+    e.eye_segmentation(geoms.each_mut().map(|v| &mut v[..])).unwrap();
+    let mut renderer = Renderer::new();
+    for (k, eye) in babybench::sensors::EYES.iter().enumerate() {
+        let view = View {
+            camera: e.model().camera(eye).unwrap(),
+            width: 32,
+            height: 32,
+        };
+        let poses = Poses::from(e.state());
+        let (mut rgb, mut expected) = (vec![0; view.rgb_len()], vec![0; view.pixels()]);
+        renderer.gray(&visual, &poses, &view, &mut rgb, &mut expected).unwrap();
+        assert_eq!(gray[k], expected);
+        let mut expected = vec![0.0; view.pixels()];
+        renderer.depth(&visual, &poses, &view, &mut expected).unwrap();
+        assert_eq!(depth[k], expected);
+        let mut expected = vec![0; view.pixels()];
+        renderer.segmentation(&visual, &poses, &view, &mut expected).unwrap();
+        assert_eq!(geoms[k], expected);
+        assert!(geoms[k].iter().any(|&g| g >= 0));
+    }
+    let wrong = e.eye_gray([&mut [0; 3], &mut [0; 3]]);
+    assert!(
+        matches!(wrong, Err(EnvError::Render(RenderError::Buffer { .. }))),
+        "{wrong:?}"
+    );
 }
 
 #[test]
@@ -229,7 +269,7 @@ fn wrong_requests_are_errors() {
 
 /// The embedded assets with one file replaced.
 fn with_file(path: &str, bytes: Vec<u8>) -> (Model, MemoryAssets) {
-    let model = build_model(&config(Scene::Base), &embedded()).unwrap();
+    let model = build_model(&seen(Scene::Base), &embedded()).unwrap();
     let mut assets = MemoryAssets::new();
     for texture in &model.textures {
         for file in texture.file.iter().chain(texture.cube_files.iter().flatten()) {
@@ -290,7 +330,7 @@ fn broken_images_are_errors_that_name_them() {
 
 #[test]
 fn environments_of_a_blueprint_share_the_look() {
-    let blueprint = Blueprint::new(config(Scene::Base)).unwrap();
+    let blueprint = Blueprint::new(seen(Scene::Base)).unwrap();
     let (a, b) = (blueprint.env().unwrap(), blueprint.env().unwrap());
     let look = |e: &Env| e.vision().unwrap().visual().clone();
     assert!(Arc::ptr_eq(&look(&a), &look(&b)));

@@ -10,7 +10,6 @@ use babybench::config::Behavior;
 use babybench::env::NumpyRng;
 use babybench::math::{Vec3, column, norm, sub};
 use babybench::model::GeomType;
-use babybench::physics::Engine;
 use common::*;
 use parry3d_f64::query::Ray;
 use rapier3d_f64::prelude::{ColliderHandle, QueryFilter, Vector};

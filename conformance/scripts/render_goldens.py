@@ -13,8 +13,12 @@ turned and moved to look into the room (crib: at the rails). Arrays:
     views       (V, 480, 480, 3)    u8
 
 Pictures have row 0 at the top. So that they compress, each stores the difference to the pixel on the left, modulo 256.
-With --time nothing is written: the CPU time of drawing both eyes of the first states and the corner view is printed, to be
-laid beside `cargo bench --bench render`.
+With --time nothing is written: of the first states in DIR, the CPU time of drawing is printed, a line for each: scene, number
+of the state, `eyes` (both) or `corner`, ms. `conformance speed --pictures yes` lays ours beside it.
+Of data/glass.xml, a scene with transparent things, render_glass.npz has the views of all cameras:
+
+    views       (V, 120, 160, 3)    u8
+
 With --poses the poses of all geoms, sites and cameras of each state are written there too, as float64 without a header,
 in this order, each element's position (3) followed by its matrix (9).
 """
@@ -31,6 +35,7 @@ import numpy as np
 from check_assets import GROUPS, POSES, compile_model
 
 STATES = 24
+TIMED = 8
 VERSION = {"base": 1, "crib": 1, "cubes": 2}
 VIEWS = [("corner", 0), ("top", 3), ("side1", 1), ("side2", 2), ("closeup", 0), ("eye_left", 1)]
 
@@ -132,29 +137,36 @@ def draw(renderer, data, camera):
 
 
 def timed(model, maker, qpos, scene):
-    def cpu(renderer, cameras, data, repeat):
-        spent = []
-        for _ in range(repeat):
-            start = time.process_time()
-            for camera in cameras:
-                draw(renderer, data, camera)
-            spent.append(1e3 * (time.process_time() - start))
-        return np.median(spent)
-
-    small = mujoco.Renderer(model, 64, 64)
-    states = [("settled", maker.settled)] + [(f"state {k}", q) for k, q in enumerate(qpos[:4])]
-    eyes = [(name, cpu(small, ("eye_left", "eye_right"), maker.kinematics(q), 40)) for name, q in states]
+    small, large = mujoco.Renderer(model, 64, 64), mujoco.Renderer(model, 480, 480)
+    pictures = [("eyes", small, ("eye_left", "eye_right"), 40), ("corner", large, ("corner",), 10)]
+    for k, q in enumerate(qpos[:TIMED]):
+        data = maker.kinematics(q)
+        for name, renderer, cameras, repeat in pictures:
+            spent = []
+            for _ in range(repeat):
+                start = time.process_time()
+                for camera in cameras:
+                    draw(renderer, data, camera)
+                spent.append(1e3 * (time.process_time() - start))
+            print(scene, k, name, np.median(spent), flush=True)
     small.close()
-    large = mujoco.Renderer(model, 480, 480)
-    corner = cpu(large, ("corner",), maker.kinematics(maker.settled), 20)
     large.close()
-    print(f"{scene}: both eyes 64 x 64, ms of CPU: " + ", ".join(f"{n} {t:.2f}" for n, t in eyes) + f"; corner 480 x 480: {corner:.1f}")
 
 
 def packed(pictures):
     pictures = np.array(pictures)
     pictures[..., 1:, :] -= pictures[..., :-1, :].copy()
     return pictures
+
+
+def glass(directory, out):
+    model = mujoco.MjModel.from_xml_path(str(directory / "glass.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_camlight(model, data)
+    renderer = mujoco.Renderer(model, 120, 160)
+    np.savez_compressed(out / "render_glass.npz", views=packed([draw(renderer, data, c) for c in range(model.ncam)]))
+    renderer.close()
 
 
 def main():
@@ -171,10 +183,10 @@ def main():
         for seed, scene in enumerate(POSES):
             model = compile_model(directory / "babybench", VERSION[scene], scene, "motor", GROUPS)
             maker = Maker(model, seed)
-            qpos = maker.states()
             if args.time:
-                timed(model, maker, qpos, scene)
+                timed(model, maker, np.load(args.out / f"render_{scene}.npz")["qpos"], scene)
                 continue
+            qpos = maker.states()
             small, large = mujoco.Renderer(model, 64, 64), None
             eyes, poses = [], []
             for q in qpos:
@@ -198,6 +210,8 @@ def main():
             print(f"{path.name}: {path.stat().st_size / 1000:.0f} kB")
             if args.poses:
                 np.concatenate(poses).tofile(args.poses / f"{scene}.poses")
+    if not args.time:
+        glass(here / "data", args.out)
 
 
 if __name__ == "__main__":

@@ -3,14 +3,13 @@
 
 use std::fs::read_to_string;
 
-use babybench::actuation::AVAILABLE;
 use babybench::config::{ActuationModel, Compat, Config};
 use babybench::{Blueprint, Env};
 use serde_json::Value;
 
 use crate::measure::relative;
 use crate::motion::Drift;
-use crate::recordings::shared;
+use crate::recordings::{NO_SHARED, shared};
 use crate::statics::sensors;
 
 /// A recorded run.
@@ -34,10 +33,10 @@ pub struct Moment {
     pub counts: [(usize, usize); 2],
 }
 
-/// All runs with actuation models that are available. Says what it leaves out.
+/// All runs. Says so when there are none.
 pub fn example_runs() -> Vec<ExampleRun> {
     let Some(dir) = shared().map(|d| d.join("reference")) else {
-        eprintln!("SKIPPED example runs: no directory ../shared beside the repository");
+        crate::skipped("example runs", NO_SHARED);
         return Vec::new();
     };
     let mut names: Vec<String> = std::fs::read_dir(dir.join("mimo_tables"))
@@ -47,16 +46,12 @@ pub fn example_runs() -> Vec<ExampleRun> {
         .filter_map(|file| Some(file.strip_prefix("golden_")?.strip_suffix(".json")?.to_string()))
         .collect();
     names.sort();
+    assert!(!names.is_empty(), "{} holds no run", dir.display());
     let mut runs = Vec::new();
     for name in names {
         let text = read_to_string(dir.join("mimo_tables").join(format!("golden_{name}.json"))).expect("readable run");
         let json: Value = serde_json::from_str(&text).expect("valid JSON");
         let word = |key: &str| json[key].as_str().expect("a name").to_string();
-        let actuation = word("actuation");
-        if !AVAILABLE.contains(&actuation.as_str()) {
-            eprintln!("SKIPPED example run {name}: actuation model {actuation} is not available");
-            continue;
-        }
         let file = format!("config_{}.yml", word("config"));
         let text = read_to_string(dir.join("configs").join(&file)).expect("readable configuration");
         let base = Config {
@@ -66,7 +61,7 @@ pub fn example_runs() -> Vec<ExampleRun> {
         let config = Config {
             vision_active: false,
             touch_active: false,
-            actuation_model: ActuationModel::from_name(&actuation).expect("an available model"),
+            actuation_model: ActuationModel::from_name(&word("actuation")).expect("an actuation model"),
             ..base.overlay_yaml(&text, &file).expect("valid configuration")
         };
         runs.push(ExampleRun { name, config, json });

@@ -19,6 +19,9 @@ pub struct Golden {
     pub floor: Option<Vec<f64>>,
 }
 
+/// Why tests skip what they compare with companion material.
+pub const NO_SHARED: &str = "no directory ../shared beside the repository";
+
 /// The directory of companion material beside the repository, if it is there.
 pub fn shared() -> Option<PathBuf> {
     let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
@@ -28,7 +31,7 @@ pub fn shared() -> Option<PathBuf> {
 /// Recordings of an actuation model. Says so when there are none.
 pub fn golden(actuation: &str) -> Vec<Golden> {
     let Some(dir) = shared().map(|d| d.join("golden")) else {
-        eprintln!("SKIPPED recordings: no directory ../shared beside the repository");
+        crate::skipped("recordings", NO_SHARED);
         return Vec::new();
     };
     let mut names: Vec<String> = std::fs::read_dir(&dir)
@@ -46,6 +49,7 @@ pub fn golden(actuation: &str) -> Vec<Golden> {
         })
         .collect();
     names.sort();
+    assert!(!names.is_empty(), "{} holds no recording", dir.display());
     names
         .into_iter()
         .filter_map(|name| {

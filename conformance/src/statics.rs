@@ -1,6 +1,7 @@
 //! Quantities that follow from a state without advancing it, and one step.
 
 use babybench::Model;
+use babybench::physics::tiles::Tile;
 use babybench::physics::{Engine, SoftEngine, State, Topology};
 use babybench::sensors::sensordata;
 
@@ -149,15 +150,14 @@ pub fn sensors(model: &Model, s: &State) -> Vec<f64> {
     values
 }
 
-/// The packed symmetric matrix in full, row-major.
-pub fn full(topology: &Topology, packed: &[f64]) -> Vec<f64> {
+/// The symmetric matrix in tiles in full, row-major.
+pub fn full(topology: &Topology, tiles: &[Tile]) -> Vec<f64> {
     let nv = topology.dof_tree.len();
     let mut matrix = vec![0.0; nv * nv];
     for i in 0..nv {
-        let row = topology.row_adr[i]..topology.row_adr[i + 1];
-        for (&j, &value) in topology.dof_chain(i).iter().zip(&packed[row]) {
-            matrix[i * nv + j as usize] = value;
-            matrix[j as usize * nv + i] = value;
+        for (j, value) in topology.row(tiles, i) {
+            matrix[i * nv + j] = value;
+            matrix[j * nv + i] = value;
         }
     }
     matrix

@@ -1,74 +1,23 @@
-//! Muscles and position servos against the reference: replays, life cycle, parameters.
+//! Actuation models against the reference: life cycle, parameters of muscles. `replay.rs` has their steps.
 
 use std::fs::read_to_string;
 
 use babybench::actuation::{Actuation, Muscle, MuscleParams};
-use babybench::config::{ActuationModel, Behavior, Compat, Config};
+use babybench::config::{ActuationModel, Behavior, Compat, Config, Scene};
 use babybench::mimo::{Version, build_model, embedded};
 use conformance::example_runs::example_runs;
 use conformance::measure::{max_abs, only_print, relative};
-use conformance::recordings::{golden, shared};
-use conformance::replays::{one_step, open_loop};
+use conformance::recordings::{NO_SHARED, shared};
+use conformance::skipped;
 use serde_json::Value;
 
-const MODELS: [&str; 2] = ["muscle", "positional"];
-
-#[test]
-fn one_step_from_every_recorded_state() {
-    for g in MODELS.iter().flat_map(|m| golden(m)) {
-        let step = one_step(&g);
-        let (name, qvel) = (&g.name, step.qvel);
-        println!("{name:24} qvel {qvel}   qacc {}", step.qacc);
-        for (what, error) in step.controls {
-            println!("    {what:10} within {error:.1e}");
-            assert!(only_print() || error <= 1e-9, "{name}: {what} {error:e}");
-        }
-        match &step.contacts {
-            Some(c) => println!(
-                "    {} contacts, {} bit-identical, forces {}",
-                c.number, c.identical, c.force
-            ),
-            None => println!("    the contacts are not those recorded"),
-        }
-        for (part, s) in &step.outputs {
-            println!("    {part:10} {s}");
-        }
-        if only_print() {
-            continue;
-        }
-        assert!(step.contacts.is_some(), "{name}: contacts");
-        assert!(qvel.p50 <= 1e-8 && qvel.p90 <= 1e-6, "{name}: qvel {qvel}");
-        for (part, s) in step.outputs {
-            assert!(s.p90 <= 1e-5, "{name}: {part} {s}");
-        }
-    }
-}
-
-#[test]
-fn open_loop_stays_near_the_recording() {
-    for g in MODELS.iter().flat_map(|m| golden(m)) {
-        let rms = open_loop(&g);
-        let floor = g.floor.as_ref().expect("recorded floor");
-        let at = |k: usize| (rms[k.min(rms.len()) - 1], floor[k.min(floor.len()) - 1]);
-        let figures: String = [1, 10, 30, 100, 200, 300, 400]
-            .map(|k| format!("  {k}: {:.1e} ({:.1e})", at(k).0, at(k).1))
-            .concat();
-        println!("{:24}{figures}", g.name);
-        let (ours, floor) = at(100);
-        assert!(
-            only_print() || ours <= 10.0 * floor,
-            "{}: {ours:e} rad, floor {floor:e}",
-            g.name
-        );
-    }
-}
-
-/// Whole resets with seed 0 of the action space, from our own settled state: start actions, controls, observation.
+/// Whole resets with seed 0 of the action space, from our own settled state: start actions, controls, observation. The worst
+/// were 5e-15 for controls and, for observations and positions, 1.4e-8 on the floor and in the crib and 1.6e-6 among the cubes
+/// when written.
 #[test]
 fn resets_are_those_of_the_reference() {
     let Some(dir) = shared().map(|d| d.join("reference/mimo_tables")) else {
-        eprintln!("SKIPPED resets: no directory ../shared beside the repository");
-        return;
+        return skipped("resets", NO_SHARED);
     };
     for run in example_runs() {
         let text = read_to_string(dir.join(format!("golden_{}.json", run.name))).expect("readable run");
@@ -96,12 +45,14 @@ fn resets_are_those_of_the_reference() {
             continue;
         }
         assert!(
-            ctrl <= 1e-9 && time <= 1e-12,
+            ctrl <= 1e-12 && time <= 1e-12,
             "{}: ctrl {ctrl:e}, time {time:e}",
             run.name
         );
+        // resting cubes magnify the last bits
+        let limit = if run.config.scene == Scene::Cubes { 1e-4 } else { 1e-6 };
         assert!(
-            observation <= 1e-4 && qpos <= 1e-4,
+            observation <= limit && qpos <= limit,
             "{}: {observation:e} {qpos:e}",
             run.name
         );
@@ -111,8 +62,7 @@ fn resets_are_those_of_the_reference() {
 #[test]
 fn parameters_of_all_muscles() {
     let Some(dir) = shared().map(|d| d.join("reference/mimo_tables")) else {
-        eprintln!("SKIPPED muscle parameters: no directory ../shared beside the repository");
-        return;
+        return skipped("muscle parameters", NO_SHARED);
     };
     for behavior in [Behavior::None, Behavior::HandRegard] {
         let config = Config {

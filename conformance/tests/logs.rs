@@ -7,14 +7,14 @@ use babybench::config::{Behavior, Compat, Config, Scene};
 use babybench::eval::logs::{evaluation_path, read_records, training_path};
 use babybench::eval::{Evaluation, EvaluationLog, Score, for_evaluation, read_scene, start_training, write_scene};
 use babybench::{Blueprint, Env};
-use conformance::recordings::shared;
+use conformance::recordings::{NO_SHARED, shared};
+use conformance::skipped;
 use serde_json::Value;
 
 #[test]
 fn the_kits_logs_give_the_kits_scores() {
     let Some(dir) = shared().map(|d| d.join("golden/logs")).filter(|d| d.is_dir()) else {
-        eprintln!("SKIPPED the kit's logs: no directory ../shared/golden/logs beside the repository");
-        return;
+        return skipped("the kit's logs", NO_SHARED);
     };
     let text = std::fs::read_to_string(dir.join("expected_scores.json")).expect("scores");
     let expected: Value = serde_json::from_str(&text).expect("JSON");
@@ -61,7 +61,8 @@ fn python() -> Option<String> {
     if out.is_ok_and(|o| o.status.success()) {
         return Some(python);
     }
-    eprintln!("SKIPPED reading our logs with Python: {python} has no numpy here; set PYTHON to one that has");
+    let why = format!("{python} has no numpy here; set PYTHON to one that has");
+    skipped("reading our logs with Python", why);
     None
 }
 
@@ -177,8 +178,8 @@ fn mujoco_loads_our_scenes() {
     let Some(python) = python() else { return };
     let found = Command::new(&python).args(["-c", "import mujoco"]).output();
     if !found.is_ok_and(|o| o.status.success()) {
-        eprintln!("SKIPPED loading our scenes with MuJoCo: {python} has no mujoco here");
-        return;
+        let why = format!("{python} has no mujoco here");
+        return skipped("loading our scenes with MuJoCo", why);
     }
     let script = "import sys, json, mujoco; m = mujoco.MjModel.from_xml_path(sys.argv[1]); \
                   print(json.dumps([m.nq, m.nv, m.nbody, m.ngeom, m.nsite, m.nu, m.neq, m.ntex, float(m.body_mass.sum())]))";

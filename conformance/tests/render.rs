@@ -1,115 +1,20 @@
 //! Pictures against MuJoCo 3.3.0's own renderer (OSMesa): of the embedded assets from `data/render_*.npz`, which
-//! `scripts/render_goldens.py` writes and describes, and of the original files from the recordings.
+//! `scripts/render_goldens.py` writes and describes, of `data/glass.xml`, and of the original files from the recordings.
 
 use std::path::Path;
 
-use babybench::config::{Behavior, Config, Scene};
+use babybench::config::{Config, Scene};
 use babybench::mimo::{build_model, embedded};
-use babybench::mjcf_loader::{AssetSource, DirAssets};
+use babybench::mjcf_loader::{AssetSource, DirAssets, MemoryAssets, load_str};
 use babybench::model::CameraId;
 use babybench::npz::Npz;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State};
 use babybench::render::{Poses, Renderer, View, Visual};
 use babybench::{Blueprint, Env};
 use conformance::measure::only_print;
+use conformance::pictures::{Difference, config, pictures};
 use conformance::recordings::{golden, shared};
-
-/// Differences of two sets of pictures, bytes.
-#[derive(Default)]
-struct Difference {
-    values: usize,
-    sum: u64,
-    max: u8,
-    /// Pixels off by more than 2, and by more than 4, in some colour.
-    off: [usize; 2],
-    ssim: Vec<f64>,
-}
-
-impl Difference {
-    fn add(&mut self, ours: &[u8], theirs: &[u8], width: usize) {
-        assert_eq!(ours.len(), theirs.len());
-        for (a, b) in ours.chunks_exact(3).zip(theirs.chunks_exact(3)) {
-            let d = [0, 1, 2].map(|k| a[k].abs_diff(b[k]));
-            self.sum += d.iter().map(|&v| u64::from(v)).sum::<u64>();
-            let most = d.into_iter().max().unwrap();
-            self.max = self.max.max(most);
-            self.off[0] += usize::from(most > 2);
-            self.off[1] += usize::from(most > 4);
-        }
-        self.values += ours.len();
-        self.ssim.push(ssim(ours, theirs, width));
-    }
-
-    fn mean(&self) -> f64 {
-        self.sum as f64 / self.values as f64
-    }
-
-    /// Percentage of pixels off by more than 2, and by more than 4.
-    fn off(&self) -> [f64; 2] {
-        self.off.map(|n| 100.0 * n as f64 / (self.values / 3) as f64)
-    }
-
-    fn least_ssim(&self) -> f64 {
-        self.ssim.iter().copied().fold(1.0, f64::min)
-    }
-}
-
-impl std::fmt::Display for Difference {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let [two, four] = self.off();
-        write!(
-            f,
-            "mean {:.4}, max {}, {two:.4} % of pixels off by more than 2, {four:.4} % by more than 4, SSIM >= {:.5}",
-            self.mean(),
-            self.max,
-            self.least_ssim()
-        )
-    }
-}
-
-/// Mean structural similarity of the brightness over windows of 8 x 8 pixels, 4 apart.
-fn ssim(a: &[u8], b: &[u8], width: usize) -> f64 {
-    const C: [f64; 2] = [(0.01 * 255.0) * (0.01 * 255.0), (0.03 * 255.0) * (0.03 * 255.0)];
-    let gray = |v: &[u8]| -> Vec<f64> {
-        let luma = |p: &[u8]| 0.299 * f64::from(p[0]) + 0.587 * f64::from(p[1]) + 0.114 * f64::from(p[2]);
-        v.chunks_exact(3).map(luma).collect()
-    };
-    let (a, b) = (gray(a), gray(b));
-    let (mut sum, mut count) = (0.0, 0);
-    for y in (0..a.len() / width - 7).step_by(4) {
-        for x in (0..width - 7).step_by(4) {
-            let at = (0..64).map(|k| (y + k / 8) * width + x + k % 8);
-            let [mut ma, mut mb, mut aa, mut bb, mut ab] = [0.0; 5];
-            for i in at {
-                ma += a[i] / 64.0;
-                mb += b[i] / 64.0;
-                aa += a[i] * a[i] / 64.0;
-                bb += b[i] * b[i] / 64.0;
-                ab += a[i] * b[i] / 64.0;
-            }
-            let (va, vb, cov) = (aa - ma * ma, bb - mb * mb, ab - ma * mb);
-            sum += (2.0 * ma * mb + C[0]) * (2.0 * cov + C[1]) / ((ma * ma + mb * mb + C[0]) * (va + vb + C[1]));
-            count += 1;
-        }
-    }
-    sum / f64::from(count)
-}
-
-/// Pictures of an array of the data, each of which stores differences to the left.
-fn pictures(npz: &Npz, name: &str) -> (usize, Vec<Vec<u8>>) {
-    let a = npz.get_f64(name).expect("committed data");
-    let width = a.shape[a.shape.len() - 2];
-    let mut bytes: Vec<u8> = a.data.iter().map(|&v| v as u8).collect();
-    for row in bytes.chunks_exact_mut(3 * width) {
-        for i in 3..row.len() {
-            row[i] = row[i].wrapping_add(row[i - 3]);
-        }
-    }
-    (
-        width,
-        bytes.chunks_exact(3 * width * width).map(<[u8]>::to_vec).collect(),
-    )
-}
+use conformance::skipped;
 
 struct Stage {
     engine: SoftEngine,
@@ -156,15 +61,7 @@ impl Stage {
 #[test]
 fn eyes_and_room_cameras_show_what_mujoco_draws() {
     for &scene in Scene::ALL {
-        let config = Config {
-            scene,
-            behavior: if scene == Scene::Cubes {
-                Behavior::HandRegard
-            } else {
-                Behavior::None
-            },
-            ..Config::default()
-        };
+        let config = config(scene);
         let data = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/render_{scene}.npz"));
         let npz = Npz::open(data).expect("committed data");
         let mut stage = Stage::new(&config, &embedded());
@@ -173,7 +70,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
         let model = stage.engine.model().clone();
         let eyes = ["eye_left", "eye_right"].map(|name| model.camera(name).expect("MIMo has eyes"));
 
-        let (size, theirs) = pictures(&npz, "eyes");
+        let ([size, _], theirs) = pictures(&npz, "eyes");
         let mut difference = Difference::default();
         for (k, pair) in theirs.chunks_exact(2).enumerate() {
             stage.at(&qpos.data[k * nq..(k + 1) * nq]);
@@ -182,13 +79,13 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
             }
         }
         println!("{scene:6} eyes of {} states: {difference}", qpos.shape[0]);
-        // when written: mean 0.023, 0.022, 0.047 of 255; 0.01, 0.01, 0.03 % of pixels off by more than 4, at silhouettes
+        // when written: mean 0.021, 0.019, 0.042 of 255; max 2
         if !only_print() {
-            assert!(difference.mean() <= 0.1 && difference.least_ssim() >= 0.999);
-            assert!(difference.off()[1] <= 0.1, "{difference}");
+            assert!(difference.mean() <= 0.1 && difference.max <= 4, "{difference}");
+            assert!(difference.least_ssim() >= 0.999, "{difference}");
         }
 
-        let (size, theirs) = pictures(&npz, "views");
+        let ([size, _], theirs) = pictures(&npz, "views");
         let states = npz.get_f64("view_state").expect("committed data").data;
         let cameras = npz.get_f64("view_camera").expect("committed data").data;
         for ((state, camera), expect) in states.iter().zip(&cameras).zip(&theirs) {
@@ -197,6 +94,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
             let mut difference = Difference::default();
             difference.add(stage.draw(camera, size), expect, size);
             println!("{scene:6} {:10} {difference}", model.cam_name[camera.0]);
+            // when written: mean up to 0.030, max 3
             if !only_print() {
                 assert!(difference.mean() <= 0.1 && difference.off()[0] <= 0.2, "{difference}");
                 assert!(difference.least_ssim() >= 0.999, "{difference}");
@@ -205,13 +103,46 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
     }
 }
 
+/// Things one sees through, planes from behind, marks on textures.
+#[test]
+fn transparent_things_look_as_mujoco_draws_them() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let text = std::fs::read_to_string(data.join("glass.xml")).expect("committed data");
+    let model = load_str(&text, "glass.xml", &MemoryAssets::new()).expect("the scene compiles");
+    let visual = Visual::new(&model, &MemoryAssets::new()).expect("textures are procedures");
+    let mut engine = SoftEngine::new(model.into(), SoftOptions::default());
+    let mut state = engine.new_state();
+    engine.forward(&mut state).expect("positions are finite");
+    let npz = Npz::open(data.join("render_glass.npz")).expect("committed data");
+    let ([width, height], theirs) = pictures(&npz, "views");
+    let mut renderer = Renderer::new();
+    for (camera, expect) in theirs.iter().enumerate() {
+        let view = View {
+            camera: CameraId(camera),
+            width,
+            height,
+        };
+        let mut ours = vec![0; view.rgb_len()];
+        renderer
+            .rgb(&visual, &Poses::from(&state), &view, &mut ours)
+            .expect("the view is fine");
+        let mut difference = Difference::default();
+        difference.add(&ours, expect, width);
+        println!("glass {:8} {difference}", engine.model().cam_name[camera]);
+        // when written: mean 0.32 below the floor, where most is blended, otherwise up to 0.09; a pixel off by more than 2
+        if !only_print() {
+            assert!(difference.mean() <= 0.4 && difference.off()[0] <= 0.02, "{difference}");
+        }
+    }
+}
+
 /// The original files, whose textures need gigabytes elsewhere, against the pictures in the recordings.
 #[test]
 fn recorded_eyes_with_the_original_files() {
     let Some(assets) = shared().and_then(|d| DirAssets::new(d.join("reference/mjcf")).ok()) else {
-        eprintln!("SKIPPED recorded eyes: no original files beside the repository");
-        return;
+        return skipped("recorded eyes", "no original files beside the repository");
     };
+    let mut recordings = 0;
     for g in golden("spring_damper") {
         let Ok(steps) = g.npz.get_f64("eye_steps") else {
             continue;
@@ -254,6 +185,16 @@ fn recorded_eyes_with_the_original_files() {
             }
         }
         println!("{:24} {} pictures: {difference}", g.name, 2 * steps.data.len());
-        assert!(only_print() || difference.mean() <= 0.5, "{}: {difference}", g.name);
+        recordings += 1;
+        // when written: mean up to 0.017, max 2
+        if !only_print() {
+            assert!(
+                difference.mean() <= 0.1 && difference.max <= 4,
+                "{}: {difference}",
+                g.name
+            );
+            assert!(difference.least_ssim() >= 0.999, "{}: {difference}", g.name);
+        }
     }
+    assert!(recordings > 0, "no recording has pictures");
 }

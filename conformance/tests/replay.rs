@@ -1,56 +1,72 @@
-//! Replays of the reference's recordings with torque motors, one step at a time and open loop.
+//! Replays of the reference's recordings of every actuation model, one step at a time and open loop.
 
+use babybench::config::ActuationModel;
 use conformance::measure::only_print;
-use conformance::recordings::golden;
+use conformance::recordings::{Golden, golden};
 use conformance::replays::{one_step, open_loop};
 
+fn recordings() -> impl Iterator<Item = Golden> {
+    ActuationModel::NAMES.iter().flat_map(|model| golden(model))
+}
+
+/// Over all recordings the worst were, when written: qvel 1.3e-11 (median), 9.5e-9 (90 %), 1.0e-7; qacc 4.7e-10 (90 %), 2.0e-8;
+/// contact forces 2.3e-10 (90 %), 5.3e-8; parts of the observation 4.8e-10 (90 %), 1.1e-8; places of contacts 8.6e-10 m,
+/// their frames 3.1e-8 (both one contact of a muscle recording, all others 3.9e-16 and 4.5e-12); controls and gears 0.
 #[test]
 fn one_step_from_every_recorded_state() {
-    for g in golden("spring_damper") {
+    let mut missed = Vec::new();
+    for g in recordings() {
         let step = one_step(&g);
-        let (name, qvel) = (&g.name, step.qvel);
-        println!("{name:24} qvel {qvel}   qacc {}", step.qacc);
-        for (what, error) in step.controls {
-            assert!(error <= 1e-9, "{name}: {what} {error:e}");
-        }
-        let contacts = step.contacts.expect("the same contacts as recorded");
+        let (name, qvel, qacc) = (&g.name, step.qvel, step.qacc);
+        println!("{name:24} qvel {qvel}   qacc {qacc}");
+        let Some(contacts) = step.contacts else {
+            missed.push(format!("{name}: other contacts than recorded"));
+            continue;
+        };
         println!(
             "    {} contacts, {} distances bit-identical; positions within {:.1e}, frames within {:.1e}",
             contacts.number, contacts.identical, contacts.pos, contacts.frame
         );
         println!("    contact forces {}", contacts.force);
-        for (part, s) in &step.outputs {
-            println!("    {part:10} {s}");
-        }
-        if only_print() {
-            continue;
-        }
-        assert!(
-            qvel.p50 <= 1e-8 && qvel.p90 <= 1e-6 && qvel.max <= 1e-2,
-            "{name}: qvel {qvel}"
-        );
+        let mut figures = vec![
+            ("median of qvel", qvel.p50, 1e-9),
+            ("90th percentile of qvel", qvel.p90, 1e-7),
+            ("maximum of qvel", qvel.max, 1e-5),
+            ("90th percentile of qacc", qacc.p90, 1e-8),
+            ("maximum of qacc", qacc.max, 1e-6),
+            ("90th percentile of contact forces", contacts.force.p90, 1e-8),
+            ("maximum of contact forces", contacts.force.max, 1e-5),
+            ("places of contacts", contacts.pos, 1e-8),
+            ("frames of contacts", contacts.frame, 1e-6),
+        ];
+        figures.extend(step.controls.map(|(what, error)| (what, error, 1e-12)));
         for (part, s) in step.outputs {
-            assert!(s.p90 <= 1e-5, "{name}: {part} {s}");
+            println!("    {part:10} {s}");
+            figures.extend([(part, s.p90, 1e-8), (part, s.max, 1e-6)]);
         }
+        let over = figures.iter().filter(|(_, value, limit)| value > limit);
+        missed.extend(over.map(|(what, value, limit)| format!("{name}: {what} {value:e} > {limit:e}")));
     }
+    assert!(only_print() || missed.is_empty(), "{}", missed.join("\n"));
 }
 
+/// Up to step 100 the worst was 1.7 floors when written: torque motors among the cubes, where contacts are many.
 #[test]
 fn open_loop_stays_near_the_recording() {
-    for g in golden("spring_damper") {
+    for g in recordings() {
         let rms = open_loop(&g);
         let floor = g.floor.as_ref().expect("recorded floor");
+        let length = rms.len().min(floor.len());
         let mut line = format!("{:24}", g.name);
-        for k in [1, 10, 30, 100, 200, 300, 400].map(|k: usize| k.min(rms.len())) {
-            line += &format!("  {k}: {:.1e} ({:.1e})", rms[k - 1], floor[k - 1]);
-        }
-        println!("{line}");
-        if let (Some(rms), Some(floor), false) = (rms.get(99), floor.get(99), only_print()) {
+        for k in [1, 10, 30, 100, 200, 300, 400].into_iter().filter(|&k| k <= length) {
+            let (ours, floor) = (rms[k - 1], floor[k - 1]);
+            line += &format!("  {k}: {ours:.1e} ({floor:.1e})");
             assert!(
-                *rms <= 10.0 * floor,
-                "{}: {rms:e} rad after 100 steps, floor {floor:e}",
+                only_print() || k > 100 || ours <= 10.0 * floor,
+                "{}: {ours:e} rad after {k} steps, floor {floor:e}",
                 g.name
             );
         }
+        println!("{line}");
     }
 }

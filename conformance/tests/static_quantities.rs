@@ -22,7 +22,7 @@ fn quantities_without_constraints_equal_mujocos() {
         for q in States::new(&reference).smooth {
             print(name, &q);
             assert!(
-                only_print() || q.summary().max <= 1e-10,
+                only_print() || q.summary().max <= 1e-12,
                 "{name}: {} {}",
                 q.name,
                 q.summary()
@@ -38,7 +38,7 @@ fn constants_of_the_model_equal_mujocos() {
         let errors = constants(&reference);
         println!("{:9} {}", reference.name, line(&errors));
         for (name, error) in errors {
-            assert!(only_print() || error <= 1e-10, "{}: {name} {error:e}", reference.name);
+            assert!(only_print() || error <= 1e-12, "{}: {name} {error:e}", reference.name);
         }
     }
 }
@@ -62,9 +62,9 @@ fn quantities_with_constraints_are_near_mujocos() {
             print(name, &q);
             let s = q.summary();
             let good = if q.name == "next_qvel" {
-                s.max <= 1e-4
+                s.max <= 1e-6
             } else {
-                s.p50 <= 1e-6
+                s.p50 <= 1e-9
             };
             assert!(only_print() || good, "{name}: {} {s}", q.name);
         }

@@ -1,4 +1,4 @@
-//! Checksums of short episodes: the same bits on every target.
+//! Checksums of episodes: the same bits on every target.
 
 use babybench::{Config, Env};
 
@@ -11,6 +11,10 @@ pub const CONFIGURATIONS: [(&str, &str); 3] = [
         include_str!("../../configs/config_test_installation.yml"),
     ),
 ];
+
+/// Lengths of the episodes.
+#[allow(dead_code)] // the caller of the WebAssembly module chooses
+pub const STEPS: [usize; 4] = [0, 10, 100, 1000];
 
 /// Runs configuration `index` for `steps` random steps from seed 0 and folds the bits of positions, velocities and
 /// all senses into a number (FNV-1a on 64-bit words). 0 when something fails.

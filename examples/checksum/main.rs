@@ -1,17 +1,41 @@
-//! Prints checksums of short episodes, to compare with those of another target.
+//! Prints checksums of episodes, to compare with those of another target, profile or number of threads.
 //!
 //! ```sh
-//! cargo run --release --example checksum
+//! cargo run --release --example checksum               # optionally the number of threads
 //! cargo build --release --example checksum_wasm --target wasm32-unknown-unknown
 //! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/examples/checksum_wasm.wasm
 //! ```
 
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 mod episode;
 
-fn main() {
-    for (index, (name, _)) in episode::CONFIGURATIONS.iter().enumerate() {
-        for steps in [0, 10, 60] {
-            println!("{name} {steps} {:016x}", episode::checksum(index, steps));
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let threads: usize = std::env::args().nth(1).map_or(Ok(1), |n| n.parse())?;
+    let jobs = |job: usize| (job / episode::STEPS.len(), episode::STEPS[job % episode::STEPS.len()]);
+    let total = episode::CONFIGURATIONS.len() * episode::STEPS.len();
+    let (next, sums) = (AtomicUsize::new(0), Mutex::new(vec![0; total]));
+    std::thread::scope(|scope| {
+        for _ in 0..threads.max(1) {
+            scope.spawn(|| {
+                loop {
+                    let job = next.fetch_add(1, Ordering::Relaxed);
+                    if job >= total {
+                        break;
+                    }
+                    let (index, steps) = jobs(job);
+                    let sum = episode::checksum(index, steps);
+                    if let Ok(mut sums) = sums.lock() {
+                        sums[job] = sum;
+                    }
+                }
+            });
         }
+    });
+    for (job, sum) in sums.into_inner()?.into_iter().enumerate() {
+        let (index, steps) = jobs(job);
+        println!("{} {steps} {sum:016x}", episode::CONFIGURATIONS[index].0);
     }
+    Ok(())
 }

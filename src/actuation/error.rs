@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// An actuator that an actuation model cannot drive.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum ActuationError {
     /// The actuator is of the wrong kind.
     #[error("actuator {actuator:?} is not a {needs}, which actuation_model {model} needs")]

@@ -26,7 +26,7 @@ pub use positional::Positional;
 pub use spring_damper::SpringDamper;
 
 /// An actuation model: turns actions into controls of the model's actuators.
-pub trait Actuation: Send {
+pub trait Actuation: Send + Sync {
     /// Bounds of an action.
     fn action_space(&self) -> &BoxSpace;
 
@@ -88,9 +88,6 @@ pub fn build(model: &Model, config: &Config) -> Result<Box<dyn Actuation>, Actua
         ActuationModel::Positional => Box::new(Positional::new(model, config.compat)?),
     })
 }
-
-/// Names of the actuation models that [`build`] can make.
-pub const AVAILABLE: &[&str] = ActuationModel::NAMES;
 
 /// A name for each actuator, with an ending.
 fn named(model: &Model, ending: &str) -> Vec<String> {

@@ -1,15 +1,22 @@
 //! `babybench evaluate`
 
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::Duration;
 
+use babybench::Blueprint;
 use babybench::config::Compat;
 use babybench::eval::logs::training_path;
+use babybench::eval::video::DEFAULT_FPS;
 use babybench::eval::{
-    CommandPolicy, Evaluation, Plan, Policy, PolicyError, RandomPolicy, ZeroPolicy, read_scene, run_episodes,
+    DEFAULT_LIMIT, EpisodeError, Evaluation, EvaluationError, KeptScene, Plan, PolicySource, keep_scene, run_episodes,
 };
 use clap::Args;
 
+use super::arguments::{count, word};
+use super::interrupt::{Interrupt, Interrupted};
+use super::print::{note, say};
 use super::{Source, progress_bar};
 
 /// Arguments of `evaluate`.
@@ -18,67 +25,114 @@ pub struct Evaluate {
     #[command(flatten)]
     source: Source,
     /// Number of episodes.
-    #[arg(long, default_value_t = 10)]
+    #[arg(long, value_name = "N", default_value_t = 10, allow_negative_numbers = true, value_parser = count::<u64>)]
     episodes: u64,
     /// Most steps of an episode.
-    #[arg(long, value_name = "STEPS", default_value_t = 1000)]
+    #[arg(long, value_name = "STEPS", default_value_t = 1000, allow_negative_numbers = true, value_parser = count::<u64>)]
     duration: u64,
-    /// random, zero, or a command with its arguments that reads observations (a line of JSON each) from its standard
-    /// input and writes actions (a JSON list each) to its standard output.
+    /// random, zero, a model (FILE.onnx, if this program is built with the feature onnx), or a command with its arguments
+    /// that reads observations (a line of JSON each) from its standard input and writes actions (a JSON list each) to its
+    /// standard output. Quotes keep words with spaces together.
     #[arg(long, default_value = "random")]
     policy: String,
+    /// How long a command may take for an action, seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = DEFAULT_LIMIT.as_secs_f64(), allow_negative_numbers = true, value_parser = seconds)]
+    policy_timeout: f64,
     /// No videos.
     #[arg(long)]
     no_render: bool,
+    /// Frames per second of the videos; 200 / frame_skip shows them in real time.
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_FPS, allow_negative_numbers = true, value_parser = fps)]
+    fps: u32,
     /// Episodes at the same time.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<usize>)]
     jobs: usize,
     /// No progress bar.
     #[arg(long)]
     quiet: bool,
 }
 
+/// A time that can be waited for.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(s) if (0.001..=1e6).contains(&s) => Ok(s),
+        _ => Err("expected seconds, from 0.001 to 1000000".to_string()),
+    }
+}
+
+/// A frame rate.
+fn fps(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(n) if (1..=1000).contains(&n) => Ok(n),
+        _ => Err("expected frames per second, from 1 to 1000".to_string()),
+    }
+}
+
 impl Evaluate {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let interrupt = Interrupt::watch();
         let blueprint = self.source.blueprint(Compat::Api)?;
         let save_dir = Path::new(&blueprint.config().save_dir);
-        if save_dir.join("scene.xml").exists() && read_scene(save_dir).is_ok_and(|m| m != **blueprint.model()) {
-            eprintln!(
-                "warning: the scene.xml in {} is of another configuration",
-                save_dir.display()
-            );
-        }
         if training_path(save_dir).exists() {
             match Evaluation::new(&blueprint.env()?).eval_logs() {
-                Ok(score) => println!("{score}"),
-                Err(e) => println!("No training score: {e}"),
+                Ok(score) => say!("{score}")?,
+                Err(e @ EvaluationError::Behavior { .. }) => return Err(e.into()),
+                Err(e) => say!("No training score: {e}")?,
             }
         }
+        self.keep_scene(&blueprint)?;
         let plan = Plan {
             episodes: self.episodes,
             duration: self.duration,
             render: !self.no_render,
+            fps: self.fps,
             jobs: self.jobs,
         };
-        let policy = || -> Result<Box<dyn Policy>, PolicyError> {
-            Ok(match self.policy.as_str() {
-                "random" => Box::new(RandomPolicy),
-                "zero" => Box::new(ZeroPolicy),
-                command => Box::new(CommandPolicy::start(command)?),
-            })
-        };
+        let (source, limit) = (
+            PolicySource::new(&self.policy),
+            Duration::from_secs_f64(self.policy_timeout),
+        );
+        let policy = || source.open(limit);
         let length = self.duration.min(blueprint.config().max_episode_steps);
         let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;
-        let infos = run_episodes(&blueprint, &plan, &policy, &|| bar.inc(1))?;
+        let progress = || {
+            bar.inc(1);
+            match interrupt.wanted() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        let result = run_episodes(&blueprint, &plan, &policy, &progress);
         bar.finish_and_clear();
+        let infos = match result {
+            Err(e @ EpisodeError::Stopped { .. }) => return Err(Interrupted(e.to_string()).into()),
+            // a policy that is interrupted too may end first
+            Err(e @ EpisodeError::Policy(_)) if interrupt.wanted() => return Err(Interrupted(e.to_string()).into()),
+            result => result?,
+        };
         for (episode, info) in infos.iter().enumerate() {
-            println!("episode {episode}: {}", info.to_json());
+            say!("episode {episode}: {}", info.to_detailed_json())?;
         }
         let videos = if plan.render { ", videos/evaluation_N.avi" } else { "" };
-        println!(
-            "{}: logs/evaluation_N.pkl, logs/evaluation_N.npz{videos}",
-            save_dir.display()
-        );
+        say!(
+            "{dir}: logs/evaluation_N.pkl, .jsonl, .npz{videos}\nLook at it: babybench report {word}",
+            dir = save_dir.display(),
+            word = word(save_dir.display())
+        )?;
+        Ok(())
+    }
+
+    /// The scene beside the logs.
+    fn keep_scene(&self, blueprint: &Blueprint) -> Result<(), Box<dyn Error>> {
+        let dir = &blueprint.config().save_dir;
+        match keep_scene(blueprint, &*self.source.assets()?)? {
+            KeptScene::Written | KeptScene::Same => {}
+            KeptScene::Similar => note!(
+                "warning: the scene.xml in {dir} has the same bodies but other numbers: it is of other assets, another \
+                 actuation_model or another release"
+            ),
+            KeptScene::Foreign(e) => note!("note: the scene.xml in {dir} does not load here and stays as it is: {e}"),
+        }
         Ok(())
     }
 }

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 
 use babybench::Blueprint;
 use babybench::config::Compat;
-use babybench::eval::{Recording, replay};
+use babybench::eval::{replay, write_png};
 use babybench::mimo::joint_part;
 use babybench::model::JointId;
-use babybench::npz::Npz;
 use babybench::sensors::Component;
 use babybench::sensors::touch::draw_skin;
 use clap::Args;
 
-use super::Source;
+use super::arguments::{number, png};
+use super::{Source, read_recording};
 
 /// Arguments of `inspect`.
 #[derive(Args)]
@@ -22,13 +22,13 @@ pub struct Inspect {
     #[command(flatten)]
     source: Source,
     /// Draw the touch sensors on the body, in the settled state, as a PNG image, instead of printing.
-    #[arg(long, value_name = "PNG")]
+    #[arg(long, value_name = "PNG", value_parser = png())]
     touch: Option<PathBuf>,
     /// Draw them in a step of this recording (as for replay), with the forces that are felt.
     #[arg(long, value_name = "FILE", requires = "touch")]
     state: Option<PathBuf>,
     /// The step of the recording; the last one if not given.
-    #[arg(long, value_name = "T", requires = "state")]
+    #[arg(long, value_name = "T", requires = "state", allow_negative_numbers = true, value_parser = number::<usize>)]
     step: Option<usize>,
 }
 
@@ -166,10 +166,11 @@ impl Inspect {
         };
         let mut env = blueprint.env()?;
         if let Some(file) = &self.state {
-            let mut recording = Recording::read(&Npz::open(file)?, &env)?;
+            let mut recording = read_recording(file, &env)?;
             let step = self.step.unwrap_or(recording.len.saturating_sub(1));
             if step >= recording.len {
-                return Err(format!("step {step}: the recording has {} steps, from 0", recording.len).into());
+                let (file, n) = (file.display(), recording.len);
+                return Err(format!("{file}: it has {n} steps, from 0: there is no --step {step}").into());
             }
             recording.len = step + 1;
             let one_step = !recording.qpos.is_empty();
@@ -180,8 +181,7 @@ impl Inspect {
         let s = env.state();
         let felt = if self.state.is_some() { env.touch() } else { None };
         let picture = draw_skin(env.model(), skin, &s.xpos, &s.xmat, felt, PICTURE_HEIGHT);
-        let (width, height) = (picture.width as u32, picture.height as u32);
-        image::save_buffer(path, &picture.rgb, width, height, image::ExtendedColorType::Rgb8)?;
+        write_png(path, &picture.rgb, picture.width, picture.height)?;
         writeln!(
             out,
             "{} sensors on {} bodies: {}",

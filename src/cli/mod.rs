@@ -1,22 +1,33 @@
 //! Arguments of the command line; each subcommand calls the library.
 
+mod arguments;
 mod evaluate;
+mod hint;
 mod inspect;
+mod interrupt;
+mod print;
 mod render;
 mod replay;
+mod report;
 mod run;
 mod score;
 mod test_installation;
 mod train;
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use babybench::Blueprint;
-use babybench::config::{Compat, Config};
-use babybench::mjcf_loader::DirAssets;
+use babybench::config::{Compat, Config, RendererKind};
+use babybench::eval::{Recording, ReplayError};
+use babybench::mimo::embedded;
+use babybench::mjcf_loader::{AssetSource, DirAssets};
+use babybench::npz::Npz;
+use babybench::{Blueprint, Env};
 use clap::{Args, Parser, Subcommand};
+pub use hint::hint;
 use indicatif::{ProgressBar, ProgressStyle};
+pub use interrupt::{EXIT_CODE as INTERRUPTED, Interrupted};
+pub(crate) use print::note;
 
 /// BabyBench in Rust: MIMo, its scenes and senses.
 #[derive(Parser)]
@@ -42,6 +53,8 @@ enum Command {
     Train(train::Train),
     /// Prints the score of a training log and what it is made of.
     Score(score::ScoreArgs),
+    /// Writes one page about a run: score, learning curve, what was touched or seen, key frames of the video.
+    Report(report::ReportArgs),
     /// Runs evaluation episodes of a policy, with logs and videos in the configuration's save_dir.
     Evaluate(evaluate::Evaluate),
 }
@@ -65,9 +78,14 @@ fn parse_compat(text: &str) -> Result<Compat, String> {
 }
 
 impl Source {
-    /// Builds the environment's blueprint and prints its warnings to stderr. `compat` is that of a configuration that does
+    /// Builds the environment's blueprint. `compat` is that of a configuration that does
     /// not say.
     fn blueprint(&self, compat: Compat) -> Result<Blueprint, Box<dyn Error>> {
+        self.blueprint_with(compat, None)
+    }
+
+    /// As [`Self::blueprint`], with another renderer than that of the configuration.
+    fn blueprint_with(&self, compat: Compat, renderer: Option<RendererKind>) -> Result<Blueprint, Box<dyn Error>> {
         let base = Config {
             compat,
             ..Config::default()
@@ -76,14 +94,34 @@ impl Source {
         if let Some(compat) = self.compat {
             config.compat = compat;
         }
+        config.renderer = renderer.unwrap_or(config.renderer);
         let blueprint = match &self.assets {
-            Some(dir) => Blueprint::with_assets(config, &DirAssets::new(dir)?)?,
+            Some(dir) => Blueprint::with_assets(config, &*self.assets()?)
+                .map_err(|e| format!("--assets {}: {e}", dir.display()))?,
             None => Blueprint::new(config)?,
         };
-        for w in blueprint.warnings() {
-            eprintln!("warning: {w}");
-        }
         Ok(blueprint)
+    }
+
+    /// The assets that the blueprint is built from.
+    fn assets(&self) -> Result<Box<dyn AssetSource>, Box<dyn Error>> {
+        Ok(match &self.assets {
+            Some(dir) => Box::new(
+                DirAssets::new(dir)
+                    .map_err(|e| format!("--assets: {e}; it is a folder with babybench/*.xml and tex/*.png"))?,
+            ),
+            None => Box::new(embedded()),
+        })
+    }
+}
+
+/// A recording for an environment.
+fn read_recording(path: &Path, env: &Env) -> Result<Recording, Box<dyn Error>> {
+    match Recording::read(&Npz::open(path)?, env) {
+        // these name the file
+        Err(ReplayError::Npz(e)) => Err(e.into()),
+        Err(e) => Err(format!("{}: {e}; is it of another configuration?", path.display()).into()),
+        Ok(recording) => Ok(recording),
     }
 }
 
@@ -110,6 +148,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         Command::TestInstallation(c) => c.run(),
         Command::Train(c) => c.run(),
         Command::Score(c) => c.run(),
+        Command::Report(c) => c.run(),
         Command::Evaluate(c) => c.run(),
     }
 }

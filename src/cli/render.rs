@@ -1,15 +1,16 @@
 //! `babybench render`
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use babybench::Env;
-use babybench::config::Compat;
+use babybench::config::{Compat, RendererKind};
+use babybench::eval::write_png;
 use babybench::npz::Npz;
 use clap::Args;
-use image::ExtendedColorType;
 
 use super::Source;
+use super::arguments::{count, number, png};
+use super::print::say;
 
 /// Arguments of `render`.
 #[derive(Args)]
@@ -20,53 +21,71 @@ pub struct Render {
     #[arg(long, value_name = "NAME", default_value = "corner")]
     camera: String,
     /// Width and height in pixels; `render_size` of the configuration by default.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<usize>)]
     size: Option<usize>,
+    /// What draws: cpu, or wgpu (cargo feature `wgpu`). Overrides the configuration.
+    #[arg(long, value_name = "WHICH", value_parser = parse_renderer)]
+    renderer: Option<RendererKind>,
     /// Picture to write (.png).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = png())]
     out: PathBuf,
     /// Draw a state of this recording instead of the settled one: its rows of qpos and qvel.
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Row of the recording; without it, the recording's start (qpos0, qvel0).
-    #[arg(long, value_name = "T", requires = "state")]
+    #[arg(long, value_name = "T", requires = "state", allow_negative_numbers = true, value_parser = number::<usize>)]
     step: Option<usize>,
+}
+
+fn parse_renderer(text: &str) -> Result<RendererKind, String> {
+    RendererKind::from_name(text).ok_or_else(|| format!("expected one of {}", RendererKind::NAMES.join(", ")))
 }
 
 impl Render {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
-        let mut env = self.source.blueprint(Compat::Api)?.env()?;
-        let (qpos, qvel) = self.positions(&env)?;
-        env.reset_to(&qpos, &qvel)?;
+        let mut env = self.source.blueprint_with(Compat::Api, self.renderer)?.env()?;
+        let cameras = &env.model().cam_name;
+        if !cameras.contains(&self.camera) {
+            let (camera, all) = (&self.camera, cameras.join(", "));
+            return Err(format!("--camera {camera}: the scene has no such camera; it has {all}").into());
+        }
+        match &self.state {
+            Some(path) => {
+                let [qpos, qvel] = self.positions(path)?;
+                let misfit = |e| format!("{}: {e}; is it of another scene or behavior?", path.display());
+                env.reset_to(&qpos, &qvel).map_err(misfit)?;
+            }
+            None => {
+                let blueprint = env.blueprint().clone();
+                env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
+            }
+        }
         let size = self.size.unwrap_or(env.config().render_size as usize);
         let picture = env.render_camera(&self.camera, size, size)?;
-        let side = u32::try_from(size)?;
-        image::save_buffer(&self.out, picture, side, side, ExtendedColorType::Rgb8)?;
-        println!(
+        write_png(&self.out, picture, size, size)?;
+        say!(
             "{}: {size} x {size} pixels from camera {}",
             self.out.display(),
             self.camera
-        );
+        )?;
         Ok(())
     }
 
-    fn positions(&self, env: &Env) -> Result<(Vec<f64>, Vec<f64>), Box<dyn Error>> {
-        let Some(path) = &self.state else {
-            let blueprint = env.blueprint();
-            return Ok((blueprint.init_qpos().to_vec(), blueprint.init_qvel().to_vec()));
-        };
+    /// Positions and velocities in a recording.
+    fn positions(&self, path: &Path) -> Result<[Vec<f64>; 2], Box<dyn Error>> {
         let archive = Npz::open(path)?;
         let Some(step) = self.step else {
-            return Ok((archive.get_f64("qpos0")?.data, archive.get_f64("qvel0")?.data));
+            return Ok([archive.get_f64("qpos0")?.data, archive.get_f64("qvel0")?.data]);
         };
+        let file = path.display();
         let row = |name: &str| -> Result<Vec<f64>, Box<dyn Error>> {
             let a = archive.get_f64(name)?;
             match a.shape[..] {
                 [rows, columns] if step < rows => Ok(a.data[step * columns..(step + 1) * columns].to_vec()),
-                [rows, _] => Err(format!("{name} has {rows} rows: there is no step {step}").into()),
-                _ => Err(format!("{name} has shape {:?}, but needs one row per step", a.shape).into()),
+                [rows, _] => Err(format!("{file}: {name} has {rows} rows, from 0: there is no --step {step}").into()),
+                _ => Err(format!("{file}: {name} has shape {:?}, but needs one row per step", a.shape).into()),
             }
         };
-        Ok((row("qpos")?, row("qvel")?))
+        Ok([row("qpos")?, row("qvel")?])
     }
 }

@@ -4,11 +4,12 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use babybench::config::Compat;
-use babybench::eval::{Recording, replay_with_images};
-use babybench::npz::Npz;
+use babybench::eval::replay_with_images;
 use clap::Args;
 
-use super::Source;
+use super::arguments::count;
+use super::print::say;
+use super::{Source, read_recording};
 
 /// Arguments of `replay`. Recordings come from the reference, so its behavior is the default here.
 #[derive(Args)]
@@ -25,18 +26,18 @@ pub struct ReplayArgs {
     #[arg(long)]
     one_step: bool,
     /// Write what both eyes see in every K-th step, as eye_steps, eye_left and eye_right.
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count::<usize>)]
     images_every: Option<usize>,
 }
 
 impl ReplayArgs {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let mut env = self.source.blueprint(Compat::Reference)?.env()?;
-        let recording = Recording::read(&Npz::open(&self.recording)?, &env)?;
+        let recording = read_recording(&self.recording, &env)?;
         let result = replay_with_images(&mut env, &recording, self.one_step, self.images_every)?;
         result.write(&self.out, &recording)?;
         let (n, dir) = (result.len, self.out.display());
-        println!("replayed {n} steps: {dir}/replay.npz, {dir}/info.jsonl");
+        say!("replayed {n} steps: {dir}/replay.npz, {dir}/info.jsonl")?;
         if recording.qpos.len() == result.qpos.len() && n > 0 {
             let nq = env.model().nq;
             let last = (n - 1) * nq;
@@ -45,7 +46,7 @@ impl ReplayArgs {
                 .iter()
                 .map(|&q| (result.qpos[last + q] - recording.qpos[last + q]).powi(2));
             let rms = (squares.sum::<f64>() / joints.len().max(1) as f64).sqrt();
-            println!("joint angles differ from the recording by {rms:.1e} rad (rms) after the last step");
+            say!("joint angles differ from the recording by {rms:.1e} rad (rms) after the last step")?;
         }
         Ok(())
     }

@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 use babybench::config::Compat;
 use babybench::physics::Stage;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::Source;
+use super::arguments::{count, number};
+use super::print::say;
+use super::{Source, progress_bar};
 
 /// Arguments of `run`.
 #[derive(Args)]
@@ -17,13 +18,13 @@ pub struct Run {
     #[command(flatten)]
     source: Source,
     /// Number of episodes.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<u64>)]
     episodes: u64,
     /// Steps of an episode, if not those of the configuration.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>)]
     steps: Option<u64>,
     /// Seed of the random choices, if not that of the configuration.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
     /// No progress bar.
     #[arg(long)]
@@ -54,7 +55,7 @@ impl Run {
         let mut env = blueprint.env()?;
         let construction = started.elapsed();
         let config = blueprint.config();
-        println!(
+        say!(
             "{} in {}, {}: {} joints, {} actuators, {} numbers observed",
             config.behavior,
             config.scene,
@@ -65,19 +66,13 @@ impl Run {
                 .iter()
                 .map(|s| s.shape.iter().product::<usize>())
                 .sum::<usize>(),
-        );
+        )?;
         let clock = Arc::new(Mutex::new(Clock::default()));
         let probe = clock.clone();
         env.set_probe(Some(Box::new(move |stage| lock(&probe).enter(stage))));
 
         let length = self.steps.unwrap_or(config.max_episode_steps);
-        let bar = if self.quiet {
-            ProgressBar::hidden()
-        } else {
-            ProgressBar::new(self.episodes.saturating_mul(length))
-        };
-        let style = "{bar:40} {pos}/{len} steps, {per_sec}, {eta} left";
-        bar.set_style(ProgressStyle::with_template(style)?);
+        let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;
         let mut seed = self.seed;
         let mut action = Vec::new();
         let (mut steps, mut contacts, mut most, mut iterations) = (0_u64, 0_usize, 0_usize, 0_usize);
@@ -102,31 +97,31 @@ impl Run {
                     break;
                 }
             }
-            bar.suspend(|| println!("episode {episode}: {}", env.info().to_json()));
+            bar.suspend(|| say!("episode {episode}: {}", env.info().to_json()))?;
         }
         bar.finish_and_clear();
 
         let per_step = |d: Duration| d.as_secs_f64() * 1e6 / steps.max(1) as f64;
         let seconds = stepping.as_secs_f64();
         let simulated = steps as f64 * env.model().opt.timestep * f64::from(config.frame_skip);
-        println!("construction {:.0} ms", construction.as_secs_f64() * 1e3);
-        println!(
+        say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
+        say!(
             "{steps} steps in {seconds:.2} s: {:.0} steps/s, {:.0} us per step, {:.1} times real time",
             steps as f64 / seconds,
             per_step(stepping),
             simulated / seconds
-        );
+        )?;
         for (stage, spent) in Stage::ALL.iter().zip(lock(&clock).spent) {
             let share = 100.0 * spent.as_secs_f64() / seconds.max(f64::MIN_POSITIVE);
-            println!("  {:12} {:8.1} us {share:5.1} %", stage.name(), per_step(spent));
+            say!("  {:12} {:8.1} us {share:5.1} %", stage.name(), per_step(spent))?;
         }
-        println!(
+        say!(
             "contacts per step: mean {:.1}, most {most}; solver iterations per step: mean {:.1}",
             contacts as f64 / steps.max(1) as f64,
             iterations as f64 / steps.max(1) as f64
-        );
+        )?;
         if let Some(kib) = peak_memory() {
-            println!("peak memory of the process: {:.1} MiB", kib as f64 / 1024.0);
+            say!("peak memory of the process: {:.1} MiB", kib as f64 / 1024.0)?;
         }
         Ok(())
     }

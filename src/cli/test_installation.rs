@@ -1,6 +1,7 @@
 //! `babybench test-installation`
 
 use std::error::Error;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -8,6 +9,8 @@ use babybench::eval::{Film, FilmError, read_training, start_training};
 use babybench::mimo::{Version, build_model, embedded};
 use babybench::{Blueprint, Config, Env};
 use clap::Args;
+
+use super::print::say;
 
 /// The configuration of the test.
 const CONFIG: &str = include_str!("../../configs/config_test_installation.yml");
@@ -19,7 +22,7 @@ const FRAMES: usize = 10;
 pub struct TestInstallation {
     /// Folder for the results, if not results/test_installation.
     #[arg(long, value_name = "DIR")]
-    save_dir: Option<PathBuf>,
+    save_dir: Option<String>,
 }
 
 /// Prints what is checked, then how it went; says what to do when it fails.
@@ -28,16 +31,18 @@ fn check<T>(
     hint: &str,
     run: impl FnOnce() -> Result<(T, String), Box<dyn Error>>,
 ) -> Result<T, Box<dyn Error>> {
-    print!("Checking {what}... ");
+    let mut out = std::io::stdout().lock();
+    write!(out, "Checking {what}... ")?;
     // a line without its end may stay in the buffer
-    std::io::Write::flush(&mut std::io::stdout())?;
+    out.flush()?;
+    drop(out);
     match run() {
         Ok((value, note)) => {
-            println!("OK{}{note}", if note.is_empty() { "" } else { ", " });
+            say!("OK{}{note}", if note.is_empty() { "" } else { ", " })?;
             Ok(value)
         }
         Err(e) => {
-            println!("FAILED");
+            say!("FAILED")?;
             Err(format!("{hint}: {e}").into())
         }
     }
@@ -46,7 +51,7 @@ fn check<T>(
 impl TestInstallation {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let started = Instant::now();
-        println!("Starting BabyBench installation test");
+        say!("Starting BabyBench installation test")?;
         check("libraries", "the program is damaged", || {
             let (version, os, arch) = (env!("CARGO_PKG_VERSION"), std::env::consts::OS, std::env::consts::ARCH);
             Ok(((), format!("babybench {version} on {os} {arch}")))
@@ -58,7 +63,7 @@ impl TestInstallation {
             ))
         })?;
         if let Some(dir) = &self.save_dir {
-            config.save_dir = dir.display().to_string();
+            config.save_dir = dir.clone();
         }
         check("MIMo", "the assets in the program are damaged", || {
             let model = build_model(&config, &embedded())?;
@@ -92,10 +97,10 @@ impl TestInstallation {
             let n = read_training(&save_dir)?.len();
             Ok(((), format!("{}/logs/training.pkl, {n} episode", save_dir.display())))
         })?;
-        println!(
+        say!(
             "Installation test successful! ({:.1} s)",
             started.elapsed().as_secs_f64()
-        );
+        )?;
         Ok(())
     }
 }

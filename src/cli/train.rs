@@ -3,11 +3,15 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
+use babybench::Config;
 use babybench::config::Compat;
-use babybench::eval::{Score, start_training, start_training_from};
-use babybench::mjcf_loader::DirAssets;
+use babybench::eval::logs::{read_records, training_path};
+use babybench::eval::{Score, start_training_from};
 use clap::Args;
 
+use super::arguments::{count, number, word};
+use super::interrupt::{Interrupt, Interrupted};
+use super::print::{note, say};
 use super::{Source, progress_bar};
 
 /// Training logs are saved at least this often, under `compat: api`.
@@ -19,13 +23,13 @@ pub struct Train {
     #[command(flatten)]
     source: Source,
     /// Steps in all, over all episodes.
-    #[arg(long, value_name = "STEPS", default_value_t = 10_000)]
+    #[arg(long, value_name = "STEPS", default_value_t = 10_000, allow_negative_numbers = true, value_parser = count::<u64>)]
     train_for: u64,
     /// Go on with the training log in save_dir, whose steps count, instead of overwriting it.
     #[arg(long)]
     resume: bool,
     /// Seed of the random choices, if not that of the configuration.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
     /// No progress bar.
     #[arg(long)]
@@ -34,16 +38,18 @@ pub struct Train {
 
 impl Train {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let interrupt = Interrupt::watch();
         let blueprint = self.source.blueprint(Compat::Api)?;
         let config = blueprint.config();
-        let mut env = match &self.source.assets {
-            Some(dir) => start_training_from(&blueprint, &DirAssets::new(dir)?, self.resume)?,
-            None => start_training(&blueprint, self.resume)?,
-        };
+        if !self.resume {
+            look_at_old_log(config)?;
+        }
+        let assets = self.source.assets()?;
+        let mut env = start_training_from(&blueprint, &*assets, self.resume)?;
         let before = env.training_log().map_or(&[][..], |log| log.records());
         let (episodes, done) = (before.len() as u64, before.iter().map(|r| r.steps).sum::<u64>());
         if self.resume && episodes > 0 {
-            println!("going on after {episodes} episodes, {done} steps");
+            say!("going on after {episodes} episodes, {done} steps")?;
         }
         let bar = progress_bar(self.train_for, self.quiet)?;
         bar.set_position(done);
@@ -53,7 +59,7 @@ impl Train {
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
         let mut action = Vec::new();
-        while steps < self.train_for {
+        while steps < self.train_for && !interrupt.wanted() {
             if over {
                 env.reset(None)?;
             }
@@ -75,11 +81,52 @@ impl Train {
         }
         env.finish_training()?;
         let records = env.training_log().map_or(&[][..], |log| log.records());
-        println!("{} records, {steps} steps: {}", records.len(), config.save_dir);
+        let (n, dir) = (records.len(), word(&config.save_dir));
+        if steps < self.train_for {
+            let goal = self.train_for;
+            let done = format!("{n} records, {steps} of {goal} steps are in {dir}; --resume goes on with them");
+            return Err(Interrupted(done).into());
+        }
+        say!("{n} records, {steps} steps: {}", config.save_dir)?;
         match Score::new(records) {
-            Ok(score) => println!("{score}\nDetails: babybench score {}", config.save_dir),
-            Err(e) => println!("No score yet: {e}"),
+            Ok(score) => {
+                say!("{score}")?;
+                if score.episodes == 0 {
+                    say!("No record counts yet: the oldest never does; train for at least two episodes")?;
+                }
+                say!("Details: babybench score {dir}, babybench report {dir}")?;
+            }
+            Err(e) => say!("No score yet: {e}")?,
         }
         Ok(())
     }
+}
+
+/// Refuses to replace the training log of another behavior, and warns before another is replaced.
+fn look_at_old_log(config: &Config) -> Result<(), Box<dyn Error>> {
+    let path = training_path(&config.save_dir);
+    if !path.exists() {
+        return Ok(());
+    }
+    let path = path.display();
+    match read_records(training_path(&config.save_dir)) {
+        Ok(records) => match records.first().map(|r| r.behavior.name()) {
+            Some(found) if found != config.behavior.name() => {
+                let wanted = config.behavior;
+                return Err(format!(
+                    "{path}: there is a training of {found}, but the configuration is of {wanted}; give it another \
+                     save_dir, or delete that log"
+                )
+                .into());
+            }
+            Some(_) => note!(
+                "warning: replacing the training log of {} records in {} (--resume goes on with it)",
+                records.len(),
+                config.save_dir
+            ),
+            None => {}
+        },
+        Err(e) => note!("warning: replacing a training log that cannot be read: {e}"),
+    }
+    Ok(())
 }

@@ -109,6 +109,17 @@ choices! {
 }
 
 choices! {
+    /// What draws images (`renderer`).
+    RendererKind {
+        /// The renderer in pure Rust: the same bytes everywhere, no GPU, no driver.
+        #[default]
+        Cpu = "cpu",
+        /// wgpu: GPUs, and many environments at once. Needs the cargo feature `wgpu`.
+        Wgpu = "wgpu",
+    }
+}
+
+choices! {
     /// What moves the bodies (`engine`).
     Engine {
         /// Joint-space dynamics with MuJoCo's soft constraints; Rapier holds the scene.

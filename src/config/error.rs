@@ -22,6 +22,7 @@ impl fmt::Display for Place {
 
 /// Why a configuration was refused. Every message names the place, the key, the value and what is allowed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConfigError {
     /// The file could not be read.
     #[error("{file}: {source}")]

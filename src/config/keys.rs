@@ -1,7 +1,8 @@
 //! The table of keys. Reading, writing, defaults, ranges and documentation all come from it.
 
-use super::choices::{ActuationModel, Behavior, Compat, Engine, Scene, TouchFunction, TouchResponse};
+use super::choices::{ActuationModel, Behavior, Compat, Engine, RendererKind, Scene, TouchFunction, TouchResponse};
 use super::{Config, error};
+use crate::render::MAX_SIZE;
 
 /// A value of a configuration, as the table of keys handles it.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +70,11 @@ impl Kind {
             Self::Whole { min, max } => format!("a whole number from {min} to {max}"),
             Self::ZeroOrAtLeast(least) => format!("0 or a finite number from {least}"),
             Self::Choice(names) => format!("one of {}", names.join(", ")),
-            Self::Text => "text (in quotes if it looks like a number, a boolean or null)".to_string(),
+            Self::Text => {
+                "text, at least one character and no control characters (in quotes if it looks like a number, a \
+                           boolean or null)"
+                    .to_string()
+            }
         }
     }
 
@@ -209,6 +214,7 @@ field! {
     TouchResponse, Choice, v => Self::from_name(v), |f| f.name();
     Compat, Choice, v => Self::from_name(v), |f| f.name();
     Engine, Choice, v => Self::from_name(v), |f| f.name();
+    RendererKind, Choice, v => Self::from_name(v), |f| f.name();
 }
 
 /// One key of the configuration.
@@ -268,8 +274,7 @@ const fn whole_from_1_to(max: u64) -> Kind {
 
 const COUNT: Kind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
 const FRAMES: Kind = whole_from_1_to(u32::MAX as u64);
-const PIXELS: Kind = whole_from_1_to(8192);
-const EYE_PIXELS: Kind = whole_from_1_to(4096);
+const PIXELS: Kind = whole_from_1_to(MAX_SIZE as u64);
 const SEED: Kind = Kind::Whole { min: 0, max: u64::MAX };
 const SCALE: Kind = Kind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
 
@@ -289,6 +294,7 @@ pub(super) static KEYS: &[Key] = keys! {
     "This implementation's own keys" {
         compat = compat, Choice(Compat::NAMES), "What holds where API page and Python code disagree.";
         engine = engine, Choice(Engine::NAMES), "What moves the bodies.";
+        renderer = renderer, Choice(RendererKind::NAMES), "What draws images.";
         seed = seed, SEED, "The seed of every random choice until a reset is given another.";
     }
     "Proprioception" {
@@ -302,7 +308,7 @@ pub(super) static KEYS: &[Key] = keys! {
     }
     "Vision" {
         vision_active = vision_active, Bool, "The images of both eyes are observed.";
-        vision_resolution = vision_resolution, EYE_PIXELS, "Width and height of an eye's image, pixels.";
+        vision_resolution = vision_resolution, PIXELS, "Width and height of an eye's image, pixels.";
     }
     "Touch" {
         touch_active = touch_active, Bool, "Touch is observed.";

@@ -25,7 +25,7 @@ mod yaml;
 #[cfg(test)]
 mod tests;
 
-pub use choices::{ActuationModel, Behavior, Compat, Engine, Scene, TouchFunction, TouchResponse};
+pub use choices::{ActuationModel, Behavior, Compat, Engine, RendererKind, Scene, TouchFunction, TouchResponse};
 pub use error::{ConfigError, Place};
 pub use keys::{Key, Kind, Value};
 pub use parts::{BodyParts, Part};
@@ -51,7 +51,7 @@ pub struct Config {
     pub max_episode_steps: u64,
     /// Physics steps per action, >= 1.
     pub frame_skip: u32,
-    /// Width and height of rendered images, 1 to 8192 pixels.
+    /// Width and height of rendered images, 1 to 4096 pixels.
     pub render_size: u32,
     /// Episodes between two saves of the training log, >= 1.
     pub save_logs_every: u64,
@@ -59,6 +59,8 @@ pub struct Config {
     pub compat: Compat,
     /// What moves the bodies.
     pub engine: Engine,
+    /// What draws images.
+    pub renderer: RendererKind,
     /// The seed of every random choice until a reset is given another.
     pub seed: u64,
     /// Joint velocities are observed.
@@ -105,6 +107,7 @@ impl Default for Config {
             save_logs_every: 1000,
             compat: Compat::Api,
             engine: Engine::Soft,
+            renderer: RendererKind::Cpu,
             seed: 0,
             proprio_velocity: true,
             proprio_torque: true,

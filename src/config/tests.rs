@@ -36,7 +36,7 @@ fn check_error(input: &str, expect: &str) {
 #[test]
 fn defaults_are_those_of_the_api_page() {
     let page = "save_dir=\"results/test_installation\" behavior=none scene=base max_episode_steps=1000 frame_skip=1 \
-                render_size=480 save_logs_every=1000 compat=api engine=soft seed=0 proprio_velocity=true \
+                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu seed=0 proprio_velocity=true \
                 proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
                 vision_active=true vision_resolution=64 touch_active=true touch_scale=1.0 touch_function=normal \
                 touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
@@ -220,8 +220,8 @@ fn errors_name_place_key_value_and_what_is_allowed() {
         ":1:7: `seed` is -1, expected a whole number from 0 to 18446744073709551615",
     );
     check_error(
-        "render_size: 8193",
-        ":1:14: `render_size` is 8193, expected a whole number from 1 to 8192",
+        "render_size: 4097",
+        ":1:14: `render_size` is 4097, expected a whole number from 1 to 4096",
     );
     check_error(
         "touch_scale: -2.5",
@@ -405,7 +405,7 @@ fn example_and_recorded_configurations_load() {
     let originals = root.join("../shared/reference/configs");
     for folder in [root.join("configs"), originals.clone(), root.join("../shared/golden")] {
         let Ok(entries) = std::fs::read_dir(&folder) else {
-            println!("skipped: {} is not here", folder.display());
+            crate::files::skipped("configurations", &folder);
             continue;
         };
         let files = entries

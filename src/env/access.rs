@@ -6,8 +6,8 @@ use crate::actuation::Actuation;
 use crate::config::Config;
 use crate::env::{Blueprint, BoxSpace, Dtype, Env, EnvError, Info, ObservationSpace, missing_camera};
 use crate::model::Model;
-use crate::physics::{Probe, SoftEngine, State};
-use crate::render::{Poses, View};
+use crate::physics::{Engine, Probe, State};
+use crate::render::{Poses, Shot, View};
 use crate::sensors::{EYES, Proprioception, Touch, Vestibular, Vision};
 
 impl Env {
@@ -87,13 +87,13 @@ impl Env {
     }
 
     /// The physics engine, with the live scene in Rapier.
-    pub fn engine(&self) -> &SoftEngine {
-        &self.engine
+    pub fn engine(&self) -> &dyn Engine {
+        &*self.engine
     }
 
     /// The physics engine, to run queries on the live scene.
-    pub fn engine_mut(&mut self) -> &mut SoftEngine {
-        &mut self.engine
+    pub fn engine_mut(&mut self) -> &mut dyn Engine {
+        &mut *self.engine
     }
 
     /// Installs or removes a probe that is told when each stage of a step begins and when the step is done.
@@ -116,6 +116,11 @@ impl Env {
         self.vision.as_ref()
     }
 
+    /// What the eyes see of the present state, left and right, to be drawn by any renderer, if vision is active.
+    pub fn eyes(&self) -> Option<[Shot<'_>; 2]> {
+        self.vision.as_ref().map(|v| v.shots(&self.state))
+    }
+
     /// A picture of the room, from the camera `corner`, of `render_size` by `render_size` pixels: red, green, blue of each
     /// pixel, rows from the top. Like the eyes it shows the start of the last physics step.
     ///
@@ -129,9 +134,8 @@ impl Env {
     /// A picture from a camera of the scene: `corner`, `top`, `side1`, `side2`, `closeup`, `eye_left` or `eye_right`.
     ///
     /// # Errors
-    /// A camera that does not exist, a size that is not allowed, textures that cannot be read.
+    /// A camera that does not exist, a size that is not allowed, textures that cannot be read, no graphics adapter.
     pub fn render_camera(&mut self, camera: &str, width: usize, height: usize) -> Result<&[u8], EnvError> {
-        let visual = self.blueprint.visual()?;
         let camera = self
             .model()
             .camera(camera)
@@ -139,8 +143,12 @@ impl Env {
         let view = View { camera, width, height };
         view.check()?;
         self.picture.resize(view.rgb_len(), 0);
-        self.renderer
-            .rgb(&visual, &Poses::from(&self.state), &view, &mut self.picture)?;
+        let painter = match &mut self.painter {
+            Some(painter) => painter,
+            None => self.painter.insert(self.blueprint.painter()?),
+        };
+        let poses = Poses::from(&self.state);
+        painter.rgb(&[Shot { poses, view }], [&mut self.picture[..]])?;
         Ok(&self.picture)
     }
 

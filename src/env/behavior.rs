@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::config::{Behavior, Compat};
-use crate::env::EnvError;
+use crate::env::{Details, EnvError, PartNames};
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::State;
@@ -11,18 +11,38 @@ use crate::physics::State;
 /// Half of the central field of view, degrees.
 const FIELD_OF_VIEW: f64 = 15.0;
 
-/// The information that comes with each step.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
+/// The information that comes with each step. Two are equal if what the reference has is: `details` follow from it and
+/// from the state.
+#[derive(Clone, Debug, Default)]
 pub struct Info {
     /// Steps done in this episode; under `compat: reference` one less.
     pub steps: u64,
     /// What the behavior adds.
     pub behavior: BehaviorInfo,
+    /// What the reference does not have: names of touched parts, angles of gaze.
+    pub details: Details,
 }
+
+impl PartialEq for Info {
+    fn eq(&self, other: &Self) -> bool {
+        (self.steps, &self.behavior) == (other.steps, &other.behavior)
+    }
+}
+
+impl Eq for Info {}
 
 impl Info {
     /// As one line of JSON, with the keys of the reference.
     pub fn to_json(&self) -> String {
+        self.json(None)
+    }
+
+    /// [`Info::to_json`] with the details: `right_hand_parts` and `left_hand_parts` (names), `gaze_angles` (rad).
+    pub fn to_detailed_json(&self) -> String {
+        self.json(Some(&self.details))
+    }
+
+    pub(crate) fn json(&self, details: Option<&Details>) -> String {
         let mut json = String::from("{");
         // writing to a string cannot fail
         let _ = match &self.behavior {
@@ -45,6 +65,9 @@ impl Info {
                  \"left_eye_right_hand\": {left_eye_right_hand}, \"left_eye_left_hand\": {left_eye_left_hand}, "
             ),
         };
+        if let Some(details) = details {
+            details.write_json(&mut json);
+        }
         let _ = write!(json, "\"steps\": {}}}", self.steps);
         json
     }
@@ -142,8 +165,19 @@ impl Watcher {
     }
 
     /// Counters and lists as at the start of an episode.
-    pub fn reset(&self, info: &mut BehaviorInfo) {
-        match (self, info) {
+    pub fn reset(&self, info: &mut Info) {
+        self.clear(&mut info.behavior);
+        match self {
+            Self::SelfTouch(w) if info.details.touched_parts.is_none() => {
+                info.details.reserve(&info.behavior, &w.names)
+            }
+            _ => {}
+        }
+        self.describe(None, info);
+    }
+
+    fn clear(&self, behavior: &mut BehaviorInfo) {
+        match (self, behavior) {
             (
                 Self::SelfTouch(_),
                 BehaviorInfo::SelfTouch {
@@ -182,8 +216,22 @@ impl Watcher {
     }
 
     /// Adds what the last step brought.
-    pub fn update(&self, s: &State, info: &mut BehaviorInfo) {
-        match (self, info) {
+    pub fn update(&self, s: &State, info: &mut Info) {
+        self.count(s, &mut info.behavior);
+        self.describe(Some(s), info);
+    }
+
+    /// Brings the details up to date; without a state whose poses hold, there are no angles.
+    pub fn describe(&self, s: Option<&State>, info: &mut Info) {
+        match self {
+            Self::None => {}
+            Self::SelfTouch(w) => info.details.name_parts(&info.behavior, &w.names),
+            Self::HandRegard(w) => info.details.gaze_angles = s.map(|s| w.angles(s)),
+        }
+    }
+
+    fn count(&self, s: &State, behavior: &mut BehaviorInfo) {
+        match (self, behavior) {
             (
                 Self::SelfTouch(w),
                 BehaviorInfo::SelfTouch {
@@ -228,6 +276,7 @@ pub(crate) struct SelfTouch {
     right_palm: Vec<bool>,
     left_palm: Vec<bool>,
     own: Vec<bool>,
+    names: PartNames,
 }
 
 impl SelfTouch {
@@ -240,6 +289,7 @@ impl SelfTouch {
             right_palm: of(&|b| b == right),
             left_palm: of(&|b| b == left),
             own: of(&|b| model.in_subtree(b, hip)),
+            names: PartNames::new(model),
         })
     }
 

@@ -3,13 +3,15 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::actuation;
-use crate::config::{ActuationModel, Compat, Config, Engine as EngineKind, Part};
+use crate::config::{ActuationModel, Compat, Config, Engine as EngineKind, Part, RendererKind};
 use crate::env::{Env, EnvError};
 use crate::mimo::{build_model, embedded, lock};
 use crate::mjcf_loader::AssetSource;
 use crate::model::Model;
-use crate::physics::{Engine, Params, SoftEngine, SoftOptions};
-use crate::render::Visual;
+use crate::physics::{Engine, Params, RapierModel, RapierOptions, SoftEngine, SoftOptions};
+use crate::render::{Painter, RenderError, Visual};
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+use crate::render::{SharedGpu, gpu::GpuRenderer};
 use crate::sensors::SkinLayout;
 
 /// Physics steps in which the scene settles before it is used.
@@ -31,6 +33,7 @@ const SETTLING_STEPS: usize = 100;
 pub struct Blueprint {
     config: Arc<Config>,
     model: Arc<Model>,
+    engines: Engines,
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
@@ -38,7 +41,9 @@ pub struct Blueprint {
     skin: Option<Arc<SkinLayout>>,
     /// The look of the scene; of embedded assets it is made when it is first needed.
     visual: Arc<OnceLock<Arc<Visual>>>,
-    warnings: Vec<String>,
+    /// The renderer on a GPU, opened when it is first needed.
+    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+    gpu: Arc<OnceLock<SharedGpu>>,
 }
 
 impl Blueprint {
@@ -58,27 +63,23 @@ impl Blueprint {
     /// steps from `qpos0` with the action 0.
     ///
     /// # Errors
-    /// A configuration that is not allowed or not available, assets that do not load, a scene that diverges.
+    /// A configuration that is not allowed, assets that do not load, a scene that the engine cannot simulate or that diverges.
     pub fn with_assets(config: Config, assets: &dyn AssetSource) -> Result<Self, EnvError> {
         Self::build(config, assets, false)
     }
 
     fn build(config: Config, assets: &dyn AssetSource, lazy: bool) -> Result<Self, EnvError> {
         config.validate()?;
-        if config.engine != EngineKind::Soft {
-            let value = config.engine.name().to_string();
-            return Err(EnvError::NotAvailable {
-                key: "engine",
-                value,
-                available: &["soft"],
-            });
+        if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
+            return Err(RenderError::NoWgpu.into());
         }
         let model = Arc::new(build_model(&config, assets)?);
         let skin = match config.touch_enabled() {
             true => Some(Arc::new(SkinLayout::new(&model, &config)?)),
             false => None,
         };
-        let settled = Settled::new(&config, &model)?;
+        let engines = Engines::new(&config, &model)?;
+        let settled = Settled::new(&config, &engines, &model)?;
         let visual = OnceLock::new();
         if config.vision_active || !lazy {
             let _ = visual.set(Arc::new(Visual::new(&model, assets)?));
@@ -86,13 +87,15 @@ impl Blueprint {
         Ok(Self {
             config: Arc::new(config),
             model,
+            engines,
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
             params: Arc::new(settled.params),
             embedded: false,
             skin,
             visual: Arc::new(visual),
-            warnings: Vec::new(),
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            gpu: Arc::default(),
         })
     }
 
@@ -118,10 +121,12 @@ impl Blueprint {
             let wanted = actuation_model;
             return Err(EnvError::OtherActuators { present, wanted });
         };
-        let settled = Settled::new(&config, &model)?;
+        let engines = Engines::new(&config, &model)?;
+        let settled = Settled::new(&config, &engines, &model)?;
         Ok(Self {
             config: Arc::new(config),
             model,
+            engines,
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
             params: Arc::new(settled.params),
@@ -137,20 +142,9 @@ impl Blueprint {
         Env::from_blueprint(self)
     }
 
-    /// The engine that the configuration asks for.
-    pub fn engine(&self) -> SoftEngine {
-        Self::engine_for(&self.config, &self.model)
-    }
-
-    fn engine_for(config: &Config, model: &Arc<Model>) -> SoftEngine {
-        let double_weld_torque = config.compat == Compat::Reference;
-        SoftEngine::new(
-            model.clone(),
-            SoftOptions {
-                double_weld_torque,
-                ..SoftOptions::default()
-            },
-        )
+    /// A new engine of the kind that the configuration asks for.
+    pub fn engine(&self) -> Box<dyn Engine> {
+        self.engines.make()
     }
 
     /// The configuration.
@@ -200,9 +194,71 @@ impl Blueprint {
         Ok(self.visual.get_or_init(|| made).clone())
     }
 
-    /// Parts of the configuration that are ignored, each naming its key.
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
+    /// The renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
+    ///
+    /// # Errors
+    /// Textures that cannot be read; for `renderer: wgpu` no graphics adapter, a build without it, a browser.
+    pub fn painter(&self) -> Result<Painter, EnvError> {
+        match self.config.renderer {
+            RendererKind::Cpu => Ok(Painter::cpu(self.visual()?)),
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            RendererKind::Wgpu => Ok(Painter::gpu(self.gpu()?)),
+            #[cfg(not(all(feature = "wgpu", not(target_arch = "wasm32"))))]
+            RendererKind::Wgpu if cfg!(feature = "wgpu") => Err(RenderError::CannotWait.into()),
+            #[cfg(not(all(feature = "wgpu", not(target_arch = "wasm32"))))]
+            RendererKind::Wgpu => Err(RenderError::NoWgpu.into()),
+        }
+    }
+
+    /// The renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
+    /// whatever renderer the configuration asks for.
+    ///
+    /// # Errors
+    /// Textures that cannot be read, no graphics adapter.
+    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+    pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
+        if let Some(gpu) = self.gpu.get() {
+            return Ok(gpu.clone());
+        }
+        let opened = GpuRenderer::new(self.visual()?).map_err(RenderError::from)?;
+        let opened = Arc::new(std::sync::Mutex::new(opened));
+        Ok(self.gpu.get_or_init(|| opened).clone())
+    }
+}
+
+/// Makes engines of one kind for one model.
+#[derive(Clone, Debug)]
+enum Engines {
+    Soft(Arc<Model>, SoftOptions),
+    Rapier(RapierModel),
+}
+
+impl Engines {
+    fn new(config: &Config, model: &Arc<Model>) -> Result<Self, EnvError> {
+        let (model, double_weld_torque) = (model.clone(), config.compat == Compat::Reference);
+        Ok(match config.engine {
+            EngineKind::Soft => {
+                let options = SoftOptions {
+                    double_weld_torque,
+                    ..SoftOptions::default()
+                };
+                Self::Soft(model, options)
+            }
+            EngineKind::Rapier => {
+                let options = RapierOptions {
+                    double_weld_torque,
+                    ..RapierOptions::default()
+                };
+                Self::Rapier(RapierModel::new(model, options)?)
+            }
+        })
+    }
+
+    fn make(&self) -> Box<dyn Engine> {
+        match self {
+            Self::Soft(model, options) => Box::new(SoftEngine::new(model.clone(), *options)),
+            Self::Rapier(shared) => Box::new(shared.engine()),
+        }
     }
 }
 
@@ -215,9 +271,9 @@ struct Settled {
 
 impl Settled {
     /// 100 steps from `qpos0` with the controls of the action 0, whose muscle forces are those at `qpos0` throughout.
-    fn new(config: &Config, model: &Arc<Model>) -> Result<Self, EnvError> {
+    fn new(config: &Config, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
         let mut actuation = actuation::build(model, config)?;
-        let mut engine = Blueprint::engine_for(config, model);
+        let mut engine = engines.make();
         let mut state = engine.new_state();
         actuation.prepare(model, &mut state.params);
         let mut params = state.params.clone();

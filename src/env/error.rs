@@ -7,12 +7,13 @@ use crate::config::{ActuationModel, ConfigError};
 use crate::env::SnapshotError;
 use crate::mimo::LockError;
 use crate::mjcf_loader::LoadError;
-use crate::physics::EngineError;
+use crate::physics::{EngineError, RapierError};
 use crate::render::RenderError;
 use crate::sensors::touch::SkinError;
 
 /// Why an environment cannot be built, reset or stepped.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum EnvError {
     /// The configuration is not allowed.
     #[error(transparent)]
@@ -26,6 +27,9 @@ pub enum EnvError {
     /// The scene cannot be drawn.
     #[error("cannot draw the scene: {0}")]
     Render(#[from] RenderError),
+    /// The eyes are asked for while vision is off.
+    #[error("the eyes see nothing: vision_active is False; set it to True")]
+    NoVision,
     /// An actuator does not fit the actuation model.
     #[error(transparent)]
     Actuation(#[from] ActuationError),
@@ -46,16 +50,9 @@ pub enum EnvError {
     /// A snapshot cannot be restored.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
-    /// Part of the configuration is allowed but not available in this build.
-    #[error("{key}: {value} is not available; use {}", available.join(" or "))]
-    NotAvailable {
-        /// Configuration key.
-        key: &'static str,
-        /// Its value.
-        value: String,
-        /// Values that are available.
-        available: &'static [&'static str],
-    },
+    /// The engine that the configuration asks for cannot simulate the scene.
+    #[error(transparent)]
+    Rapier(#[from] RapierError),
     /// The scene lacks something the environment needs.
     #[error("the scene has no {what} named {name:?}, which {purpose} needs")]
     Missing {

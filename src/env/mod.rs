@@ -3,13 +3,16 @@
 mod access;
 mod behavior;
 mod blueprint;
+mod details;
 mod error;
+mod eyes;
 mod rng;
 mod snapshot;
 mod spaces;
 
 pub use behavior::{BehaviorInfo, Info};
 pub use blueprint::Blueprint;
+pub use details::{Details, PartNames};
 pub use error::EnvError;
 pub use rng::NumpyRng;
 pub use snapshot::{Snapshot, SnapshotError};
@@ -20,8 +23,8 @@ use crate::config::{Behavior, Compat, Config};
 use crate::env::behavior::Watcher;
 use crate::eval::logs::{LogError, TrainingLog};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
-use crate::physics::{Engine, EngineError, Params, SoftEngine, Stage, State};
-use crate::render::Renderer;
+use crate::physics::{Engine, EngineError, Params, Stage, State};
+use crate::render::Painter;
 use crate::sensors::{EYES, Proprioception, Touch, Vestibular, Vision};
 
 /// Steps with random actions at the start of an episode of `self_touch` and `hand_regard`.
@@ -78,7 +81,7 @@ pub struct Step<'a> {
 /// ```
 pub struct Env {
     blueprint: Blueprint,
-    engine: SoftEngine,
+    engine: Box<dyn Engine>,
     state: State,
     /// Parameters after a reset: the blueprint's, with what [`Env::lock`] and [`Env::unlock`] changed.
     base: Params,
@@ -100,10 +103,21 @@ pub struct Env {
     proprioception_values: Vec<f64>,
     vestibular_values: Vec<f64>,
     eye_values: [Vec<u8>; 2],
-    /// For [`Env::render`].
-    renderer: Renderer,
+    /// Whether [`Env::draw_eyes`] draws what the eyes see, instead of each step.
+    vision_deferred: bool,
+    /// For [`Env::render`], made when it is first needed.
+    painter: Option<Painter>,
     picture: Vec<u8>,
     action: Vec<f32>,
+}
+
+impl std::fmt::Debug for Env {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Env")
+            .field("config", self.config())
+            .field("info", &self.info)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Env {
@@ -125,7 +139,7 @@ impl Env {
         let touch = blueprint.skin().map(|skin| Touch::configured(skin.clone(), config));
         let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
         let vision = if config.vision_active {
-            let eyes = Vision::new(model, blueprint.visual()?, config.vision_resolution as usize);
+            let eyes = Vision::with_painter(model, blueprint.painter()?, config.vision_resolution as usize);
             Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?)
         } else {
             None
@@ -133,12 +147,13 @@ impl Env {
         let pixels = vision.as_ref().map_or(0, Vision::len);
         let watcher = Watcher::new(model, config.behavior, config.compat)?;
         let mut info = Info::default();
-        watcher.reset(&mut info.behavior);
+        watcher.reset(&mut info);
         Ok(Self {
             proprioception_values: vec![0.0; proprioception.len()],
             vestibular_values: vec![0.0; vestibular.as_ref().map_or(0, Vestibular::len)],
             eye_values: [vec![0; pixels], vec![0; pixels]],
-            renderer: Renderer::new(),
+            vision_deferred: false,
+            painter: None,
             picture: Vec::new(),
             watcher,
             rng: NumpyRng::seed(config.seed),
@@ -313,7 +328,8 @@ impl Env {
 
     /// Logs episodes from now on, or no longer; [`crate::make_env`] does it for training.
     pub fn log_training(&mut self, log: Option<TrainingLog>) {
-        self.training = log;
+        let names = (self.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(self.model()));
+        self.training = log.map(|log| log.with_names(names));
     }
 
     /// The episodes logged so far, if this environment logs.
@@ -345,7 +361,7 @@ impl Env {
         self.steps = 0;
         self.info.steps = 0;
         if !self.accumulate {
-            self.watcher.reset(&mut self.info.behavior);
+            self.watcher.reset(&mut self.info);
         }
         self.ready = true;
         self.sense()
@@ -376,7 +392,7 @@ impl Env {
         }
         self.engine.mark(Some(Stage::Senses));
         self.sense()?;
-        self.watcher.update(&self.state, &mut self.info.behavior);
+        self.watcher.update(&self.state, &mut self.info);
         self.info.steps = match self.blueprint.config().compat {
             Compat::Api => self.steps + 1,
             Compat::Reference => self.steps,
@@ -418,7 +434,7 @@ impl Env {
         if let Some(v) = &self.vestibular {
             v.observe(model, &self.state, &mut self.vestibular_values);
         }
-        if let Some(v) = &mut self.vision {
+        if let (Some(v), false) = (&mut self.vision, self.vision_deferred) {
             let [left, right] = &mut self.eye_values;
             v.observe(&self.state, [left, right])?;
         }

@@ -30,6 +30,7 @@ pub struct Snapshot {
 
 /// Why bytes are no snapshot, or not one of this environment.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SnapshotError {
     /// The bytes are something else.
     #[error("these bytes are not a snapshot: they do not begin with its magic")]
@@ -316,6 +317,8 @@ impl Env {
         self.steps = steps;
         self.info.steps = info_steps;
         self.info.behavior = behavior;
+        self.info.details.clear();
+        self.watcher.describe(None, &mut self.info);
         self.ready = ready == 1;
         self.rng = NumpyRng::at(seed, drawn);
         Ok(())

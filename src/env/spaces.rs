@@ -47,9 +47,12 @@ impl BoxSpace {
                 .all(|((x, lo), hi)| lo <= x && x <= hi)
     }
 
-    /// Component `i`, clipped to its bounds.
+    /// `x` clipped to the bounds of component `i`; unchanged if there is no such component.
     pub fn clip(&self, i: usize, x: f32) -> f32 {
-        x.max(self.low[i]).min(self.high[i])
+        match (self.low.get(i), self.high.get(i)) {
+            (Some(low), Some(high)) => x.max(*low).min(*high),
+            _ => x,
+        }
     }
 
     /// Fills `out` with a uniform sample, the same that Gymnasium's `Box.sample` draws from the same generator.

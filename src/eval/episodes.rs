@@ -1,12 +1,12 @@
 //! Evaluation episodes with a policy, several at a time.
 
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use thiserror::Error;
 
 use super::evaluation::{Evaluation, EvaluationError};
-use super::film::RoomFilm;
 use super::make::for_evaluation;
 use super::policy::{Policy, PolicyError};
 use crate::config::Compat;
@@ -21,12 +21,15 @@ pub struct Plan {
     pub duration: u64,
     /// Whether videos are made.
     pub render: bool,
+    /// Frames per second of the videos.
+    pub fps: u32,
     /// Episodes at the same time. Results do not depend on it.
     pub jobs: usize,
 }
 
 /// Why episodes fail.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum EpisodeError {
     /// Counters that go on from episode to episode need one after the other.
     #[error(
@@ -41,6 +44,14 @@ pub enum EpisodeError {
         /// Why.
         source: Box<EnvError>,
     },
+    /// Whoever was told of the progress wanted no more.
+    #[error("stopped after {done} of {planned} episodes; the logs of these are whole")]
+    Stopped {
+        /// Episodes that are done and logged.
+        done: u64,
+        /// Episodes that were planned.
+        planned: u64,
+    },
     /// The policy fails.
     #[error(transparent)]
     Policy(#[from] PolicyError),
@@ -50,7 +61,7 @@ pub enum EpisodeError {
 }
 
 /// Runs evaluation episodes into the configuration's `save_dir` and returns the last information of each. `progress` is
-/// told after every step; each job has a policy of its own.
+/// told after every step and can break off the evaluation there; each job has a policy of its own.
 ///
 /// # Errors
 /// The first that occurs; the others are given up.
@@ -58,7 +69,7 @@ pub fn run_episodes(
     blueprint: &Blueprint,
     plan: &Plan,
     policy: &(dyn Fn() -> Result<Box<dyn Policy>, PolicyError> + Sync),
-    progress: &(dyn Fn() + Sync),
+    progress: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Info>, EpisodeError> {
     let jobs = plan
         .jobs
@@ -68,19 +79,21 @@ pub fn run_episodes(
     }
     let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));
     let done: Mutex<Vec<(u64, Info)>> = Mutex::default();
-    let job = || {
-        let result = episodes(blueprint, plan, policy, progress, &|| {
+    let schedule = Schedule {
+        next: &|| {
             let episode = next.fetch_add(1, Ordering::Relaxed);
             (episode < plan.episodes && !failed.load(Ordering::Relaxed)).then_some(episode)
-        });
-        match result {
-            Ok(mut infos) => done.lock().unwrap_or_else(PoisonError::into_inner).append(&mut infos),
-            Err(e) => {
-                failed.store(true, Ordering::Relaxed);
-                return Err(e);
-            }
-        }
-        Ok(())
+        },
+        step: progress,
+        done: &|episode, info| {
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            done.push((episode, info));
+        },
+    };
+    let job = || {
+        let result = episodes(blueprint, plan, policy, &schedule);
+        failed.fetch_or(result.is_err(), Ordering::Relaxed);
+        result
     };
     let results: Vec<Result<(), EpisodeError>> = match jobs {
         1 => vec![job()],
@@ -91,10 +104,25 @@ pub fn run_episodes(
             threads.into_iter().map(join).collect()
         }),
     };
-    results.into_iter().collect::<Result<(), _>>()?;
+    let result = results.into_iter().collect::<Result<(), _>>();
     let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if let Err(EpisodeError::Stopped { .. }) = result {
+        let (done, planned) = (done.len() as u64, plan.episodes);
+        return Err(EpisodeError::Stopped { done, planned });
+    }
+    result?;
     done.sort_by_key(|(episode, _)| *episode);
     Ok(done.into_iter().map(|(_, info)| info).collect())
+}
+
+/// What jobs ask and tell.
+struct Schedule<'a> {
+    /// The next episode, if there is one.
+    next: &'a (dyn Fn() -> Option<u64> + Sync),
+    /// A step was done; whether to go on.
+    step: &'a (dyn Fn() -> ControlFlow<()> + Sync),
+    /// An episode was done, with its last information.
+    done: &'a (dyn Fn(u64, Info) + Sync),
 }
 
 /// The episodes of one job, in its own environment.
@@ -102,9 +130,8 @@ fn episodes(
     blueprint: &Blueprint,
     plan: &Plan,
     policy: &dyn Fn() -> Result<Box<dyn Policy>, PolicyError>,
-    progress: &dyn Fn(),
-    next: &dyn Fn() -> Option<u64>,
-) -> Result<Vec<(u64, Info)>, EpisodeError> {
+    schedule: &Schedule<'_>,
+) -> Result<(), EpisodeError> {
     let env_error = |episode: u64| {
         move |e: EnvError| EpisodeError::Env {
             episode,
@@ -115,12 +142,10 @@ fn episodes(
     let mut env = for_evaluation(blueprint).map_err(env_error(0))?;
     let mut evaluation = Evaluation::new(&env);
     if plan.render {
-        let folder = evaluation.video_path(0).with_file_name("");
-        let film = RoomFilm::new(&env, folder.clone());
-        evaluation = evaluation.with_film(film.map_err(|source| EvaluationError::Video { path: folder, source })?);
+        evaluation = evaluation.with_video_at(&env, plan.fps)?;
     }
-    let (mut action, mut infos) = (Vec::new(), Vec::new());
-    while let Some(episode) = next() {
+    let mut action = Vec::new();
+    while let Some(episode) = (schedule.next)() {
         let seed = blueprint.config().seed.wrapping_add(episode);
         env.reset(Some(seed)).map_err(env_error(episode))?;
         policy.begin(&mut env)?;
@@ -129,13 +154,16 @@ fn episodes(
             policy.act(&mut env, &mut action)?;
             let truncated = env.step(&action).map_err(env_error(episode))?.truncated;
             evaluation.eval_step(&env)?;
-            progress();
+            if (schedule.step)().is_break() {
+                let (done, planned) = (0, plan.episodes);
+                return Err(EpisodeError::Stopped { done, planned });
+            }
             if truncated {
                 break;
             }
         }
         evaluation.end(episode)?;
-        infos.push((episode, env.info().clone()));
+        (schedule.done)(episode, env.info().clone());
     }
-    Ok(infos)
+    Ok(())
 }

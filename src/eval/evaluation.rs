@@ -5,13 +5,16 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::film::RoomFilm;
 use super::logs::{EvaluationLog, LogError, read_training, training_path};
 use super::scores::{Score, ScoreError};
+use super::video::DEFAULT_FPS;
 use crate::config::Behavior;
 use crate::env::Env;
 
 /// Why an evaluation fails.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum EvaluationError {
     /// A log cannot be read or written.
     #[error(transparent)]
@@ -25,7 +28,10 @@ pub enum EvaluationError {
         source: ScoreError,
     },
     /// The training log is of another behavior.
-    #[error("{}: the log is of behavior {found}, but the environment's is {expected}", path.display())]
+    #[error(
+        "{}: the log is of behavior {found}, but the environment's is {expected}: give its configuration the save_dir \
+         of a training of {expected}, or one of its own", path.display()
+    )]
     Behavior {
         /// The log.
         path: PathBuf,
@@ -115,6 +121,15 @@ pub struct Evaluation<'f> {
     film: Option<Box<dyn Film + 'f>>,
 }
 
+impl std::fmt::Debug for Evaluation<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Evaluation")
+            .field("behavior", &self.behavior)
+            .field("save_dir", &self.save_dir)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'f> Evaluation<'f> {
     /// Without video, into the `save_dir` of the environment's configuration.
     pub fn new(env: &Env) -> Self {
@@ -126,14 +141,34 @@ impl<'f> Evaluation<'f> {
         }
     }
 
-    /// Also makes videos, `videos/evaluation_N.avi`.
+    /// Also makes videos of its own kind, `videos/evaluation_N.avi`.
     #[must_use]
     pub fn with_film(mut self, film: impl Film + 'f) -> Self {
         self.film = Some(Box::new(film));
         self
     }
 
-    /// Into another folder.
+    /// Also makes videos of the room and what the behavior is about ([`RoomFilm`]), `videos/evaluation_N.avi`.
+    ///
+    /// # Errors
+    /// As [`RoomFilm::new`].
+    pub fn with_video(self, env: &Env) -> Result<Self, EvaluationError> {
+        self.with_video_at(env, DEFAULT_FPS)
+    }
+
+    /// [`Evaluation::with_video`] with another number of frames per second.
+    ///
+    /// # Errors
+    /// As [`RoomFilm::new`].
+    pub fn with_video_at(self, env: &Env, fps: u32) -> Result<Self, EvaluationError> {
+        let path = self.save_dir.join("videos");
+        match RoomFilm::new(env, &path) {
+            Ok(film) => Ok(self.with_film(film.with_fps(fps))),
+            Err(source) => Err(EvaluationError::Video { path, source }),
+        }
+    }
+
+    /// Into another folder; to be called before [`Evaluation::with_video`].
     #[must_use]
     pub fn with_save_dir(mut self, save_dir: impl Into<PathBuf>) -> Self {
         self.save_dir = save_dir.into();

@@ -19,7 +19,16 @@ pub struct RoomFilm {
     visual: Arc<Visual>,
     folder: PathBuf,
     frame: Vec<u8>,
+    fps: u32,
     writer: Option<(PathBuf, AviWriter<File>)>,
+}
+
+impl std::fmt::Debug for RoomFilm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RoomFilm")
+            .field("folder", &self.folder)
+            .finish_non_exhaustive()
+    }
 }
 
 impl RoomFilm {
@@ -37,8 +46,17 @@ impl RoomFilm {
             visual: env.blueprint().visual()?,
             folder,
             frame: vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT],
+            fps: DEFAULT_FPS,
             writer: None,
         })
+    }
+
+    /// With another number of frames per second than [`DEFAULT_FPS`]; as many as there are steps in a second of the scene
+    /// show it in real time.
+    #[must_use]
+    pub fn with_fps(mut self, fps: u32) -> Self {
+        self.fps = fps;
+        self
     }
 
     /// A file of its own in the folder.
@@ -52,7 +70,7 @@ impl RoomFilm {
                 Err(e) => return Err(e.into()),
             }
         };
-        let writer = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, DEFAULT_FPS)?;
+        let writer = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, self.fps)?;
         Ok((path, writer))
     }
 }

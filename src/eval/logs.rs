@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::pickle::{self, PickleError, Value};
 use crate::config::{Compat, Config};
-use crate::env::{BehaviorInfo, Info};
+use crate::env::{BehaviorInfo, Details, Info, PartNames};
 use crate::files::replace_file;
 
 /// Most touched parts in one list of a record.
@@ -21,6 +21,7 @@ pub const MAX_TOUCHES: usize = 4096;
 
 /// Why a log is not read or written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum LogError {
     /// There is no log.
     #[error("{}: no such log; train first (babybench train, or make_env with training), into this save_dir", path.display())]
@@ -135,6 +136,15 @@ fn to_value(info: &Info) -> Value {
     }
 }
 
+/// What the kit knows of an episode.
+fn record(steps: u64, behavior: BehaviorInfo) -> Info {
+    Info {
+        steps,
+        behavior,
+        ..Info::default()
+    }
+}
+
 /// A record; keys that are not known are ignored.
 fn from_value(value: &Value) -> Result<Info, String> {
     if !matches!(value, Value::Dict(_)) {
@@ -165,7 +175,7 @@ fn from_value(value: &Value) -> Result<Info, String> {
         BehaviorInfo::None
     };
     let steps = count("steps")?;
-    Ok(Info { steps, behavior })
+    Ok(record(steps, behavior))
 }
 
 /// Records of one behavior.
@@ -231,6 +241,8 @@ pub struct TrainingLog {
     save_every: u64,
     records: Vec<Info>,
     resumed: bool,
+    /// For the names of touched parts in the lines of JSON.
+    names: Option<PartNames>,
 }
 
 impl TrainingLog {
@@ -245,6 +257,7 @@ impl TrainingLog {
             save_every: config.save_logs_every.max(1),
             records: Vec::new(),
             resumed: false,
+            names: None,
         };
         make_folder(&log.save_dir)?;
         if log.compat == Compat::Api {
@@ -281,7 +294,14 @@ impl TrainingLog {
             save_every: config.save_logs_every.max(1),
             resumed: !records.is_empty(),
             records,
+            names: None,
         })
+    }
+
+    /// With names of the touched parts in `training.jsonl`.
+    #[must_use]
+    pub fn with_names(self, names: Option<PartNames>) -> Self {
+        Self { names, ..self }
     }
 
     /// The records so far.
@@ -294,14 +314,18 @@ impl TrainingLog {
         &self.save_dir
     }
 
-    /// Takes note of an episode that ended after `steps` steps, and saves if it is time to.
-    pub(crate) fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
+    /// Takes note of an episode that ended after `steps` steps, and saves if it is time to. An environment that logs
+    /// ([`crate::make_env`]) does so by itself; this is for programs that run many environments into one log.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
         let first = std::mem::take(&mut self.resumed);
         if steps == 0 && (first || self.compat == Compat::Api) {
             return Ok(());
         }
         let behavior = behavior.clone();
-        self.records.push(Info { steps, behavior });
+        self.records.push(record(steps, behavior));
         let count = match self.compat {
             Compat::Api => self.records.len() as u64,
             Compat::Reference => steps,
@@ -312,13 +336,18 @@ impl TrainingLog {
         }
     }
 
-    /// Writes `training.pkl` and `training.jsonl`.
+    /// Writes `training.pkl` and `training.jsonl`, in which touched parts also have names (`right_hand_parts`,
+    /// `left_hand_parts`).
     ///
     /// # Errors
     /// What the file system says.
     pub fn save(&self) -> Result<(), LogError> {
         let path = training_path(&self.save_dir);
-        let lines: String = self.records.iter().map(|r| r.to_json() + "\n").collect();
+        let line = |r: &Info| {
+            let details = self.names.as_ref().map(|names| Details::of(&r.behavior, names));
+            r.json(details.as_ref()) + "\n"
+        };
+        let lines: String = self.records.iter().map(line).collect();
         write(path.with_extension("jsonl"), lines.as_bytes())?;
         write_pickle(path, &Value::list(self.records.iter().map(to_value)))
     }

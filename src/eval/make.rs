@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::logs::TrainingLog;
-use super::scene_file::write_scene_from;
+use super::scene_file::{keep_scene, write_scene_from};
 use crate::config::{Compat, Config};
 use crate::env::{Blueprint, Env, EnvError};
 use crate::mimo::embedded;
@@ -58,7 +58,7 @@ pub fn make_env(config: Config, training: bool) -> Result<Env, EnvError> {
 /// one that is there.
 ///
 /// # Errors
-/// Files that cannot be written; to go on, a log that is damaged or of another behavior.
+/// Files that cannot be written; to go on, a log that is damaged or of another behavior, a scene with other bodies.
 pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<Env, EnvError> {
     start_training_from(blueprint, &embedded(), resume)
 }
@@ -74,12 +74,16 @@ pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resu
         true => TrainingLog::resume(config)?,
         false => TrainingLog::create(config)?,
     };
+    if resume {
+        keep_scene(blueprint, assets)?;
+    }
     write_scene_from(config, assets, Path::new(&config.save_dir))?;
     env.log_training(Some(log));
     Ok(env)
 }
 
-/// An environment that logs nothing; under `compat: reference`, information accumulates over episodes.
+/// An environment that logs nothing; under `compat: reference`, information accumulates over episodes. The folder of a run
+/// without training gets its scene from [`keep_scene`].
 ///
 /// # Errors
 /// As [`Blueprint::env`].

@@ -42,6 +42,7 @@ pub const MAX_DIMENSIONS: usize = 8;
 
 /// Why a pickle is not read or written.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum PickleError {
     /// It ends too early.
     #[error("byte {at}: the pickle ends too early; it was cut off or is still being written")]

@@ -5,11 +5,13 @@ use std::path::Path;
 use thiserror::Error;
 
 use crate::env::{Env, EnvError, Info};
+use crate::files::replace_file;
 use crate::npz::{Npz, NpzError, NpzWriter};
 use crate::sensors::{EYES, sensordata};
 
 /// Why a recording cannot be read or replayed.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ReplayError {
     /// The archive cannot be read, or the result not written.
     #[error(transparent)]
@@ -345,6 +347,6 @@ impl Replay {
         npz.write(dir.join("replay.npz"))?;
         let path = dir.join("info.jsonl");
         let lines: String = self.info.iter().map(|i| i.to_json() + "\n").collect();
-        std::fs::write(&path, lines).map_err(write_error(&path))
+        replace_file(&path, lines.as_bytes()).map_err(write_error(&path))
     }
 }

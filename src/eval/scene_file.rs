@@ -12,12 +12,15 @@ use quick_xml::reader::Reader;
 use thiserror::Error;
 
 use crate::config::{Config, ConfigError};
+use crate::env::Blueprint;
 use crate::files::replace_file;
-use crate::mimo::{DOCUMENT, embedded, scene_xml};
+use crate::mimo::{DOCUMENT, Version, embedded, scene_xml};
 use crate::mjcf_loader::{AssetSource, DirAssets, LoadError, MAX_INCLUDE_DEPTH, load, resolve};
 use crate::model::Model;
 use crate::physics::set_const;
 
+/// The document in the folder of a run.
+const SCENE: &str = "scene.xml";
 /// Folder of the images, beside the document.
 const IMAGES: &str = "tex";
 /// Attributes that name images.
@@ -33,6 +36,7 @@ const IMAGE_ATTRIBUTES: [&str; 7] = [
 
 /// Why a scene is not written or read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SceneFileError {
     /// The file system refuses.
     #[error("{}: {source}", path.display())]
@@ -53,6 +57,19 @@ pub enum SceneFileError {
     /// A scene that does not load.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
+    /// The folder's scene is another one.
+    #[error(
+        "{}: this is {found}, but the configuration is of {wanted}: positions and geoms in the logs would not be \
+         those of the scene; give the configuration a save_dir of its own", path.display()
+    )]
+    Different {
+        /// The document.
+        path: PathBuf,
+        /// What it is of.
+        found: String,
+        /// What is wanted.
+        wanted: String,
+    },
     /// A scene without a configuration in its comment, or with one that is not allowed.
     #[error("the configuration in the comment of the scene: {0}")]
     Config(#[from] ConfigError),
@@ -118,9 +135,59 @@ pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Pa
         let path = save_dir.join(name);
         replace_file(&path, bytes).map_err(io(&path))?;
     }
-    let path = save_dir.join("scene.xml");
+    let path = save_dir.join(SCENE);
     replace_file(&path, scene.xml.as_bytes()).map_err(io(&path))?;
     Ok(path)
+}
+
+/// What the folder of a run had as its scene, see [`keep_scene`].
+#[derive(Debug)]
+pub enum KeptScene {
+    /// Nothing: it was written.
+    Written,
+    /// The same scene.
+    Same,
+    /// The same bodies, joints and geoms with other numbers, such as masses: of other assets or another release.
+    Similar,
+    /// A document that does not load here, such as the Python kit's, which names files of its installation.
+    Foreign(Box<SceneFileError>),
+}
+
+/// Sees to it that the folder of a run holds the scene of an environment: writes it as training does if there is none, and
+/// never changes one that is there, which belongs to the logs beside it. `assets` are those of the blueprint.
+///
+/// # Errors
+/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; what the file system says.
+pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<KeptScene, SceneFileError> {
+    let (config, model) = (blueprint.config(), blueprint.model());
+    let save_dir = Path::new(&config.save_dir);
+    let path = save_dir.join(SCENE);
+    if !path.exists() {
+        write_scene_from(config, assets, save_dir)?;
+        return Ok(KeptScene::Written);
+    }
+    Ok(match read_scene(save_dir) {
+        Ok(found) if found == **model => KeptScene::Same,
+        Ok(found) if same_ids(&found, model) => KeptScene::Similar,
+        Ok(_) => {
+            let xml = std::fs::read_to_string(&path).unwrap_or_default();
+            let found = read_config(&xml).map_or_else(|_| "another scene".to_string(), |found| about(&found));
+            let wanted = about(config);
+            return Err(SceneFileError::Different { path, found, wanted });
+        }
+        Err(e) => KeptScene::Foreign(Box::new(e)),
+    })
+}
+
+/// Whether `qpos` and the ids of bodies, joints and geoms mean the same.
+fn same_ids(a: &Model, b: &Model) -> bool {
+    a.nq == b.nq && a.body_name == b.body_name && a.jnt_name == b.jnt_name && a.geom_bodyid == b.geom_bodyid
+}
+
+/// What makes the ids of a scene.
+fn about(config: &Config) -> String {
+    let version = Version::of(config.behavior).name();
+    format!("the scene {} with MIMo {version}", config.scene)
 }
 
 /// Loads and compiles the `scene.xml` of a run.
@@ -132,7 +199,7 @@ pub fn read_scene(save_dir: &Path) -> Result<Model, SceneFileError> {
         file: save_dir.display().to_string(),
         reason: e.to_string(),
     })?;
-    let mut model = load(&assets, "scene.xml")?;
+    let mut model = load(&assets, SCENE)?;
     set_const(&mut model);
     Ok(model)
 }

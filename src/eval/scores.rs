@@ -4,10 +4,11 @@
 //! at most 10,001 records the first one never counts (the kit starts its logs with an empty one).
 
 use std::fmt::{self, Write as _};
+use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::env::{BehaviorInfo, Info};
+use crate::env::{BehaviorInfo, Info, PartNames};
 use crate::model::Model;
 use crate::physics::world::PairTable;
 
@@ -18,6 +19,7 @@ const PARTS: usize = 34;
 
 /// Why a log has no score.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum ScoreError {
     /// There are no records.
     #[error("the training log has no records: train for at least two episodes, then score")]
@@ -65,7 +67,7 @@ impl Score {
     /// A log without records, steps or behavior.
     pub fn new(records: &[Info]) -> Result<Self, ScoreError> {
         let first = records.first().ok_or(ScoreError::Empty)?;
-        let chosen = &records[records.len().saturating_sub(MAX_EPISODES).max(1)..];
+        let chosen = Self::counted(records);
         let (episodes, steps) = (chosen.len(), chosen.iter().map(|r| r.steps).sum());
         let (value, parts) = match first.behavior {
             BehaviorInfo::None => return Err(ScoreError::NoBehavior),
@@ -99,6 +101,29 @@ impl Score {
             steps,
             parts,
         })
+    }
+
+    /// The records that count.
+    pub fn counted(records: &[Info]) -> &[Info] {
+        let first = records.len().saturating_sub(MAX_EPISODES).max(1);
+        records.get(first..).unwrap_or_default()
+    }
+
+    /// The score of so many touched parts, of both hands together.
+    #[cfg(feature = "report")]
+    pub(crate) fn of_parts(touched: usize) -> f64 {
+        touched as f64 / (2 * PARTS) as f64
+    }
+
+    /// The score that one episode of a number of steps has alone; `None` without steps or behavior.
+    pub fn of_episode(record: &Info, steps: u64) -> Option<f64> {
+        if steps == 0 {
+            return None;
+        }
+        let touches = record.behavior.touches();
+        let regards = record.behavior.regards();
+        let touched = touches.map(|[right, left]| (right.len() + left.len()) as f64 / (2 * PARTS) as f64);
+        touched.or_else(|| regards.map(|counts| counts.iter().map(|&c| c as f64).sum::<f64>() / (4.0 * steps as f64)))
     }
 
     /// Shares of the steps in which each eye had each hand in view, if this is `hand_regard`.
@@ -167,7 +192,8 @@ impl Score {
                     // writing to a string cannot fail
                     let _ = write!(out, ", \"{name}\": {{\"parts\": {PARTS}, \"touched\": {geoms:?}");
                     if let Some(skin) = skin {
-                        let names = |geoms: &[usize]| -> Vec<String> { geoms.iter().map(|&g| skin.name(g)).collect() };
+                        let names =
+                            |geoms: &[usize]| -> Vec<Arc<str>> { geoms.iter().map(|&g| skin.name(g)).collect() };
                         let reachable = skin.reachable(hand);
                         let _ = write!(out, ", \"reachable\": {reachable:?}");
                         let _ = write!(out, ", \"touched_names\": {:?}", names(geoms));
@@ -203,7 +229,7 @@ impl fmt::Display for Score {
 /// MIMo's geoms that hands can touch, with names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Touchables {
-    names: Vec<(usize, String)>,
+    names: PartNames,
     reachable: [Vec<usize>; 2],
 }
 
@@ -226,19 +252,7 @@ impl Touchables {
                 .filter(|&g| model.geom_bodyid[g] != hand && by(g))
                 .collect()
         });
-        let name = |g: usize| {
-            let body = model.geom_bodyid[g];
-            let of_body = model.body_geomnum[body];
-            match of_body {
-                1 => model.body_name[body].clone(),
-                _ => format!(
-                    "{} {}/{of_body}",
-                    model.body_name[body],
-                    1 + g - model.body_geomadr[body]
-                ),
-            }
-        };
-        let names = own.iter().map(|&g| (g, name(g))).collect();
+        let names = PartNames::new(model);
         Some(Self { names, reachable })
     }
 
@@ -247,9 +261,8 @@ impl Touchables {
         self.reachable.get(hand).map_or(&[], Vec::as_slice)
     }
 
-    /// Name of a geom: that of its body, with its number among the body's geoms if there are several.
-    pub fn name(&self, geom: usize) -> String {
-        let named = self.names.iter().find(|(g, _)| *g == geom);
-        named.map_or_else(|| format!("geom {geom}"), |(_, name)| name.clone())
+    /// Name of a geom as a part of the body, see [`PartNames`].
+    pub fn name(&self, geom: usize) -> Arc<str> {
+        self.names.get(geom)
     }
 }

@@ -54,6 +54,7 @@ pub struct LockReport {
 
 /// Why something cannot be locked.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum LockError {
     /// There is no such joint.
     #[error("the scene has no joint {joint:?}")]

@@ -57,9 +57,10 @@ impl MimoJoints {
     }
 }
 
-/// The part that one of MIMo's joints belongs to: that of the body it moves. `None` for joints that are not MIMo's.
+/// The part that one of MIMo's joints belongs to: that of the body it moves. `None` for joints that are not MIMo's or
+/// do not exist.
 pub fn joint_part(model: &Model, joint: JointId) -> Option<Part> {
-    if !model.jnt_name[joint.0].starts_with(JOINT_PREFIX) {
+    if !model.jnt_name.get(joint.0)?.starts_with(JOINT_PREFIX) {
         return None;
     }
     let body = model.body_name[model.jnt_bodyid[joint.0]].as_str();

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 /// A named file cannot be had.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AssetError {
     /// The source has no such file.
     #[error("file \"{0}\" does not exist")]
@@ -31,6 +32,9 @@ pub const MAX_ASSET_BYTES: u64 = 64 << 20;
 /// A set of files. Paths are normalised, relative to the root of the source and separated by `/`.
 pub trait AssetSource {
     /// The content of a file.
+    ///
+    /// # Errors
+    /// A path that leads out of the source, a file that does not exist, is too large or cannot be read.
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError>;
 
     /// Whether the file exists.
@@ -40,6 +44,9 @@ pub trait AssetSource {
 }
 
 /// Joins a directory of the source and a relative reference in a document. `..` may climb up to the root, not beyond.
+///
+/// # Errors
+/// [`AssetError::BadPath`]: empty, absolute, beyond the root, or with another separator than `/`.
 pub fn resolve(dir: &str, file: &str) -> Result<String, AssetError> {
     let bad = || AssetError::BadPath(file.to_owned());
     if file.is_empty() || file.starts_with('/') || file.contains(['\\', ':', '\0']) {
@@ -80,6 +87,9 @@ impl MemoryAssets {
     }
 
     /// Adds or replaces a file.
+    ///
+    /// # Errors
+    /// As [`resolve`].
     pub fn insert(&mut self, path: &str, bytes: impl Into<Vec<u8>>) -> Result<(), AssetError> {
         self.files.insert(resolve("", path)?, bytes.into());
         Ok(())
@@ -110,8 +120,17 @@ impl AssetSource for EmbeddedAssets {
 }
 
 /// Several sources; the first that has a file gives it.
+#[derive(Clone)]
 pub struct Overlay<'a> {
     layers: Vec<&'a dyn AssetSource>,
+}
+
+impl std::fmt::Debug for Overlay<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Overlay")
+            .field("layers", &self.layers.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl<'a> Overlay<'a> {
@@ -144,7 +163,10 @@ pub struct DirAssets {
 }
 
 impl DirAssets {
-    /// The directory must exist.
+    /// The directory `root`.
+    ///
+    /// # Errors
+    /// It does not exist or is no directory.
     pub fn new(root: impl AsRef<std::path::Path>) -> Result<Self, AssetError> {
         let root = root.as_ref();
         let canonical = root

@@ -159,6 +159,9 @@ fn place(
     let Some(fromto) = fromto else {
         return Ok((frame.pos, quat_of(context, at, frame)?, size));
     };
+    if frame.pos != [0.0; 3] {
+        return Err(context.invalid(at, "fromto and a pos that is not 0 exclude each other"));
+    }
     let (pos, quat, half) = segment(&fromto);
     match kind {
         GeomType::Capsule | GeomType::Cylinder => size[1] = half,

@@ -234,12 +234,18 @@ fn compile_texture(
         *to = from.as_ref().map(path).transpose()?;
     }
     let file = texture.file.as_ref().map(path).transpose()?;
-    if texture.builtin == model::Builtin::None {
+    // the faces of a builtin cube are as high as wide
+    let flat = texture.kind == model::TextureType::Flat2d;
+    let builtin = texture.builtin != model::Builtin::None;
+    if !builtin {
         if file.is_none() && cube_files.iter().all(Option::is_none) {
             return Err(context.invalid(texture.at, "the texture has neither a builtin nor a file"));
         }
-    } else if texture.width == 0 || texture.height == 0 {
-        return Err(context.invalid(texture.at, "a builtin texture needs a width and a height"));
+    } else if texture.width == 0 || flat && texture.height == 0 {
+        return Err(context.invalid(
+            texture.at,
+            "a builtin texture needs a width, and if it is flat a height",
+        ));
     }
     let mut name = texture.name.clone();
     if name.is_empty() {
@@ -266,7 +272,11 @@ fn compile_texture(
         markrgb: texture.markrgb,
         random: texture.random,
         width: texture.width,
-        height: texture.height,
+        height: if builtin && !flat {
+            6 * texture.width
+        } else {
+            texture.height
+        },
         file,
         cube_files,
     })
@@ -398,13 +408,20 @@ fn compile_equality(context: &Context, equality: &Equality, ids: &Ids, model: &m
     Ok(())
 }
 
+/// MuJoCo takes such a tendon, but lets its length depend on both coefficients and its force on the last alone.
+const JOINT_TWICE: &str = "the tendon names this joint twice";
+
 fn compile_tendon(context: &Context, tendon: &Tendon, ids: &Ids, model: &mut Model) -> Result<(), LoadError> {
     if tendon.wrap.is_empty() {
         return Err(context.invalid(tendon.at, "the tendon has no joints"));
     }
     let mut wrap = Vec::with_capacity(tendon.wrap.len());
     for (at, joint, coef) in &tendon.wrap {
-        wrap.push((scalar_joint(context, ids, model, *at, "joint", joint)?, *coef));
+        let joint = scalar_joint(context, ids, model, *at, "joint", joint)?;
+        if wrap.iter().any(|&(other, _)| other == joint) {
+            return Err(context.error(*at, ErrorKind::Invalid(JOINT_TWICE)));
+        }
+        wrap.push((joint, *coef));
     }
     model.tendon_name.push(tendon.name.clone());
     model.tendon_wrap.push(wrap);

@@ -62,7 +62,11 @@ impl Frame {
             .or_else(|| e.array("xyaxes").map(Orientation::XyAxes))
             .or_else(|| e.array("zaxis").map(Orientation::ZAxis))
             .or_else(|| e.array("euler").map(Orientation::Euler));
-        self.orientation = written.unwrap_or(self.orientation);
+        self.orientation = match (written, self.orientation) {
+            // a default class that turns by other means wins over a quaternion, as in MuJoCo
+            (Some(Orientation::Quat(_)), inherited) if !matches!(inherited, Orientation::Quat(_)) => inherited,
+            (written, inherited) => written.unwrap_or(inherited),
+        };
     }
 }
 

@@ -57,6 +57,7 @@ impl LoadError {
 
 /// What is wrong with a document.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ErrorKind {
     /// A file cannot be had from the source.
     #[error(transparent)]
@@ -87,6 +88,9 @@ pub enum ErrorKind {
     /// An element that is unknown, unsupported or in the wrong place.
     #[error("unknown element \"{0}\"")]
     UnknownElement(String),
+    /// An element that may stand here once only.
+    #[error("element \"{0}\" is given twice")]
+    RepeatedElement(&'static str),
     /// An attribute that is unknown or unsupported.
     #[error("unknown attribute \"{0}\"")]
     UnknownAttribute(String),
@@ -112,6 +116,14 @@ pub enum ErrorKind {
     /// A value that is not a finite number.
     #[error("{attribute}: \"{text}\" is not a finite number")]
     BadNumber {
+        /// The attribute.
+        attribute: &'static str,
+        /// The offending word.
+        text: String,
+    },
+    /// A number that is not zero but too near it for its digits to be kept.
+    #[error("{attribute}: \"{text}\" is too small a number; write 0")]
+    TooSmall {
         /// The attribute.
         attribute: &'static str,
         /// The offending word.

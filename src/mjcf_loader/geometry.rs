@@ -6,6 +6,7 @@ use crate::math::{Mat3, Quat, Vec3, cross, mat_mul, quat_mul, quat_to_mat, sub, 
 use crate::model::GeomType;
 
 use super::document::{Compiler, Orientation};
+use super::schema::ZERO_QUAT;
 
 /// Below this the compiler takes lengths, volumes and eigenvalues for zero.
 pub(super) const EPS: f64 = 1e-14;
@@ -32,12 +33,7 @@ pub(super) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
 pub(super) fn orientation(written: &Orientation, compiler: &Compiler) -> Result<Quat, &'static str> {
     let radians = |angle: f64| if compiler.degree { angle / 180.0 * PI } else { angle };
     let mut quat = match *written {
-        Orientation::Quat(quat) => {
-            if quat == [0.0; 4] {
-                return Err("a zero quaternion is not an orientation");
-            }
-            quat
-        }
+        Orientation::Quat(quat) => quat,
         Orientation::AxisAngle([x, y, z, angle]) => {
             let mut axis = [x, y, z];
             if normalize(&mut axis) < EPS {
@@ -88,7 +84,7 @@ pub(super) fn orientation(written: &Orientation, compiler: &Compiler) -> Result<
         }
     };
     if normalize(&mut quat) == 0.0 {
-        return Err("a zero quaternion is not an orientation");
+        return Err(ZERO_QUAT);
     }
     Ok(quat)
 }

@@ -153,7 +153,7 @@ fn mutations_of_a_small_document_never_panic() {
 fn mutations_of_the_original_files_never_panic() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference/mjcf");
     let Ok(originals) = DirAssets::new(&root) else {
-        println!("skipped: no original files at {}", root.display());
+        crate::files::skipped("mutations of the original files", &root);
         return;
     };
     let scene = "<mujoco><worldbody><body name='mimo_location'><freejoint/><include file='mimo_v2.xml'/>\

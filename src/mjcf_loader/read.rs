@@ -400,9 +400,6 @@ fn child(
 fn hang(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
     let body = &mut bodies[body];
     match e.name {
-        "inertial" if body.inertial.is_some() => {
-            return Err(classes.error(e, ErrorKind::Invalid("the body has an inertial already")));
-        }
         "inertial" => body.inertial = Some(inertial(e)),
         "freejoint" => {
             // Takes no defaults: only `<joint type="free">` has a class.

@@ -128,14 +128,30 @@ impl Element {
     }
 }
 
+/// Also where `fromto` or another orientation takes its place.
+pub(super) const ZERO_QUAT: &str = "a zero quaternion is not an orientation";
+
 /// Checks an element and all below it. Recursion is bounded by the depth limit of the parser.
 pub(super) fn check(tree: &Tree, at: usize, spec: &'static Spec) -> Result<Element, LoadError> {
     let mut element = check_one(tree, at, spec)?;
     for &child in &tree.nodes[at].children {
         let child_spec = child_spec(tree, child, spec)?;
+        if once(spec.name, child_spec.name) && element.children.iter().any(|c| c.name == child_spec.name) {
+            return Err(tree.error(child, ErrorKind::RepeatedElement(child_spec.name)));
+        }
         element.children.push(check(tree, child, child_spec)?);
     }
     Ok(element)
+}
+
+/// Whether an element may hold another once only.
+fn once(parent: &str, child: &str) -> bool {
+    match parent {
+        "visual" => true,
+        "default" => child != "default",
+        "body" => child == "inertial",
+        _ => false,
+    }
 }
 
 fn child_spec(tree: &Tree, child: usize, spec: &'static Spec) -> Result<&'static Spec, LoadError> {
@@ -219,7 +235,11 @@ fn parse(attr: &Attr, text: &str) -> Result<Value, ErrorKind> {
                 .split_ascii_whitespace()
                 .map(|word| real(attribute, word, sign))
                 .collect();
-            Ok(Value::Reals(values?))
+            let values = values?;
+            if attribute == "quat" && values.iter().all(|&v| v == 0.0) {
+                return Err(ErrorKind::Invalid(ZERO_QUAT));
+            }
+            Ok(Value::Reals(values))
         }
     }
 }
@@ -244,6 +264,14 @@ fn real(attribute: &'static str, text: &str, sign: Sign) -> Result<f64, ErrorKin
         attribute,
         text: excerpt(text),
     })?;
+    // digits of the mantissa that are lost, as in 1e-320 and 1e-400
+    let digits = text.split(['e', 'E']).next().unwrap_or_default();
+    if value.is_subnormal() || value == 0.0 && digits.contains(|c: char| ('1'..='9').contains(&c)) {
+        return Err(ErrorKind::TooSmall {
+            attribute,
+            text: excerpt(text),
+        });
+    }
     if value.abs() > MAX_REAL {
         return Err(ErrorKind::OutOfRange {
             attribute,

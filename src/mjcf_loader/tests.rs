@@ -247,7 +247,7 @@ fn bodies_are_checked() {
     );
     check_world(
         "<body><inertial pos='0 0 0' mass='1'/><inertial pos='0 0 0' mass='1'/></body>",
-        "body/inertial: the body has an inertial already",
+        "body/inertial: element \"inertial\" is given twice",
     );
     check_world(
         "<camera mode='targetbody'/>",
@@ -356,7 +356,7 @@ fn textures_are_recipes_with_normalised_paths() {
     assert_eq!(error("name='t'"), "the texture has neither a builtin nor a file");
     assert_eq!(
         error("name='t' builtin='flat'"),
-        "a builtin texture needs a width and a height"
+        "a builtin texture needs a width, and if it is flat a height"
     );
     assert_eq!(
         error("type='2d' builtin='flat' width='1' height='1'"),

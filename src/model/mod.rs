@@ -371,16 +371,16 @@ impl Model {
         3 * self.nsensor()
     }
 
-    /// Whether `body` is `ancestor` or lies below it.
+    /// Whether `body` is `ancestor` or lies below it; false for a body that does not exist.
     pub fn in_subtree(&self, mut body: usize, ancestor: usize) -> bool {
         loop {
             if body == ancestor {
                 return true;
             }
-            if body == 0 {
-                return false;
+            match self.body_parentid.get(body) {
+                Some(&parent) if body != 0 => body = parent,
+                _ => return false,
             }
-            body = self.body_parentid[body];
         }
     }
 }

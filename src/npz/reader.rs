@@ -54,7 +54,8 @@ impl Npz {
             file: file_name.to_string(),
             reason,
         };
-        let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(error.to_string()))?;
+        let archive = ZipArchive::from_slice(bytes)
+            .map_err(|error| broken(format!("{error} (it is cut off, or of another format)")))?;
         let mut entries: Vec<Entry> = Vec::new();
         let mut names = BTreeSet::new();
         let mut records = archive.entries();

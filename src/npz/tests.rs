@@ -343,7 +343,7 @@ fn damaged_files_never_panic_nor_read_wrong_numbers() {
 fn recordings_of_the_reference_are_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/golden");
     let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("skipped: {} is not here", folder.display());
+        crate::files::skipped("recordings of the reference", &folder);
         return;
     };
     let is_npz = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "npz");

@@ -6,20 +6,51 @@ use thiserror::Error;
 
 use crate::model::Model;
 use crate::physics::state::State;
+use crate::physics::topology::Topology;
+use crate::physics::world::{PairTable, Scene};
 
-/// Advances a [`State`] of a [`Model`].
-pub trait Engine {
-    /// The scene.
+/// Coordinates and velocities beyond this count as divergence (MuJoCo's `mjMAXVAL`).
+const MAXVAL: f64 = 1e10;
+
+/// Advances a [`State`] of a [`Model`]. The state is all there is: an engine remembers nothing that changes a later step.
+pub trait Engine: Send + Sync {
+    /// The compiled scene.
     fn model(&self) -> &Arc<Model>;
 
+    /// Derived structure of the model.
+    fn topology(&self) -> &Topology;
+
+    /// Geom pairs that may touch, in contact order.
+    fn pairs(&self) -> &PairTable;
+
+    /// The live scene in Rapier, with the poses of the last forward or step.
+    fn scene(&self) -> &Scene;
+
+    /// The live scene, to run Rapier's collision pipeline and queries on.
+    fn scene_mut(&mut self) -> &mut Scene;
+
     /// A state at `qpos0`, at rest, of which nothing has been computed.
-    fn new_state(&self) -> State;
+    fn new_state(&self) -> State {
+        State::new(self.model(), self.topology())
+    }
 
     /// Computes everything that follows from `qpos`, `qvel` and `ctrl`, without advancing.
+    ///
+    /// # Errors
+    /// Vectors that do not fit the model, numbers that are not finite, divergence.
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError>;
 
     /// Advances by one time step. The computed quantities stay those of the start of the step.
+    ///
+    /// # Errors
+    /// As [`Engine::forward`].
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
+
+    /// Installs or removes a probe that is told when each stage of a step begins.
+    fn set_probe(&mut self, probe: Option<Probe>);
+
+    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    fn mark(&mut self, stage: Option<Stage>);
 }
 
 /// A part of the work of a step.
@@ -76,10 +107,11 @@ impl Stage {
 }
 
 /// Called when a stage begins, and with `None` when a step is done; for timing, as the library has no clock.
-pub type Probe = Box<dyn FnMut(Option<Stage>) + Send>;
+pub type Probe = Box<dyn FnMut(Option<Stage>) + Send + Sync>;
 
 /// Why a state could not be advanced.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum EngineError {
     /// A vector of the state does not fit the model.
     #[error("state.{what} has {found} values but the model needs {expected}: build states with Engine::new_state")]
@@ -116,4 +148,81 @@ pub enum EngineError {
         /// Its value.
         value: f64,
     },
+}
+
+/// Checks sizes of what a step reads, and that it is finite.
+pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
+    let p = &s.params;
+    let fields: [(&'static str, &[f64], usize); 8] = [
+        ("qpos", &s.qpos, m.nq),
+        ("qvel", &s.qvel, m.nv),
+        ("ctrl", &s.ctrl, m.nu()),
+        ("qfrc_applied", &s.qfrc_applied, m.nv),
+        ("params.eq_offset", &p.eq_offset, m.neq()),
+        ("params.jnt_stiffness", &p.jnt_stiffness, m.njnt()),
+        ("params.dof_damping", &p.dof_damping, m.nv),
+        ("params.actuator_gear", &p.actuator_gear, m.nu()),
+    ];
+    // the solver does without a warm start that is no use
+    let lengths = [
+        ("qacc_warmstart", s.qacc_warmstart.len(), m.nv),
+        ("params.eq_active", p.eq_active.len(), m.neq()),
+        ("params.actuator_forcelimited", p.actuator_forcelimited.len(), m.nu()),
+    ];
+    for (what, found, expected) in lengths {
+        if found != expected {
+            return Err(EngineError::Shape { what, found, expected });
+        }
+    }
+    for (what, values, expected) in fields {
+        if values.len() != expected {
+            return Err(EngineError::Shape {
+                what,
+                found: values.len(),
+                expected,
+            });
+        }
+        // without branches first: numbers are nearly always finite
+        let finite = values.iter().fold(true, |all, v| all & (v.abs() <= f64::MAX));
+        if finite {
+            continue;
+        }
+        if let Some((index, &value)) = values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+            return Err(EngineError::NotFinite { what, index, value });
+        }
+    }
+    Ok(())
+}
+
+/// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
+pub(super) fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
+    check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
+}
+
+/// [`check_output`] of positions and velocities alone.
+pub(super) fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
+    check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel)])
+}
+
+fn check_bounds(model: &Model, s: &State, fields: &[(&'static str, &Vec<f64>)]) -> Result<(), EngineError> {
+    for &(what, values) in fields {
+        if values.iter().fold(true, |all, v| all & (v.abs() <= MAXVAL)) {
+            continue;
+        }
+        let size = |v: f64| if v.is_nan() { f64::INFINITY } else { v.abs() };
+        let worst = (0..values.len())
+            .max_by(|&i, &k| size(values[i]).total_cmp(&size(values[k])))
+            .unwrap_or(0);
+        let joint = match what {
+            "qpos" => model.jnt_qposadr.iter().rposition(|&adr| adr <= worst).unwrap_or(0),
+            _ => model.dof_jntid[worst],
+        };
+        return Err(EngineError::Diverged {
+            step: s.step,
+            joint: model.jnt_name[joint].clone(),
+            what,
+            value: values[worst],
+        });
+    }
+    Ok(())
 }

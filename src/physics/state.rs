@@ -4,6 +4,7 @@ use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3};
 use crate::model::{EqualityKind, Model};
 use crate::physics::constraint::Efc;
 use crate::physics::spatial::{Inertia, Spatial};
+use crate::physics::tiles::{Lanes, Tile};
 use crate::physics::topology::Topology;
 
 /// Contacts for which memory is reserved, so that steps need not allocate. The cubes scene reaches about 100.
@@ -154,12 +155,10 @@ pub struct State {
     pub cdof: Vec<Spatial>,
     /// Composite inertias of subtrees (nbody).
     pub crb: Vec<Inertia>,
-    /// Joint-space inertia, packed as [`Topology`] says.
-    pub qm: Vec<f64>,
-    /// `L` of its `L' D L` factorisation, packed.
-    pub qld: Vec<f64>,
-    /// Inverse of `D` (nv).
-    pub qld_diag_inv: Vec<f64>,
+    /// Motion axes by tile: six values for each lane, zeros where there is none.
+    pub cdof_lanes: Vec<[Lanes; 6]>,
+    /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal.
+    pub qm: Vec<Tile>,
     /// Contacts in MuJoCo's order.
     pub contacts: Vec<Contact>,
     /// Constraint rows.
@@ -230,9 +229,8 @@ impl State {
             cinert: vec![[0.0; 10]; nb],
             cdof: vec![[0.0; 6]; nv],
             crb: vec![[0.0; 10]; nb],
-            qm: vec![0.0; topology.nm()],
-            qld: vec![0.0; topology.nm()],
-            qld_diag_inv: vec![0.0; nv],
+            cdof_lanes: vec![[[0.0; 4]; 6]; topology.tiles.rows()],
+            qm: topology.new_tiles(),
             contacts: Vec::with_capacity(RESERVED_CONTACTS),
             efc: Efc::with_capacity(nv, RESERVED_CONTACTS),
             cvel: vec![[0.0; 6]; nb],

@@ -1,25 +1,36 @@
-//! What the dynamics derives from a model's tree once: ancestor chains, trees, and the packed layout of the inertia.
+//! What the dynamics derives from a model's tree once: ancestor chains, trees, the layout of the inertia.
 
 use crate::model::Model;
+use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 
 /// Derived structure of a [`Model`].
 ///
 /// A *tree* is a set of degrees of freedom that depend on each other, a consecutive range. Row `i` of the joint-space
-/// inertia is nonzero for `i` and its ancestors only. Rows are packed one after the other, ancestors ascending, the
-/// diagonal last; the chain of an ancestor is a prefix of the chain of its descendant, so factorisation works on
-/// consecutive memory.
+/// inertia is nonzero for `i` and its ancestors only; the chain of an ancestor is a prefix of the chain of its descendant.
+/// Matrices are stored in tiles of four by four ([`crate::physics::tiles`]).
 #[derive(Clone, Debug)]
 pub struct Topology {
     /// First degree of freedom of each tree, and one past the last: `ntree + 1` values.
     pub tree_adr: Vec<usize>,
     /// Tree of each degree of freedom.
     pub dof_tree: Vec<usize>,
-    /// Start of each row of the packed inertia; `nv + 1` values. Also the layout of `chain`.
-    pub row_adr: Vec<usize>,
+    /// Start of each degree of freedom in `chain`; `nv + 1` values.
+    row_adr: Vec<usize>,
     /// Ancestors of each degree of freedom, ascending, itself last.
-    pub chain: Vec<u32>,
+    chain: Vec<u32>,
     /// The last degree of freedom that moves a body, if any does.
     pub body_last_dof: Vec<Option<usize>>,
+    /// Lane of each degree of freedom: four times its tile, plus its place there. Those of a tile follow each other.
+    pub slot: Vec<u32>,
+    /// First degree of freedom of each tile, and one past the last.
+    pub tile_dof: Vec<usize>,
+    /// First tile of each tree, and one past the last: `ntree + 1` values.
+    pub tile_adr: Vec<usize>,
+    /// Tiles of the inertia: each row of tiles has the tiles of its ancestors, which are a prefix of its descendants'.
+    pub tiles: Pattern,
+    /// Tiles that move each body, with how many of their lanes do.
+    body_tiles: Vec<(u32, u32)>,
+    body_tile_adr: Vec<usize>,
 }
 
 impl Topology {
@@ -47,23 +58,135 @@ impl Topology {
                 n => Some(model.body_dofadr[b] + n - 1),
             };
         }
-        Self {
+        let mut topology = Self {
             tree_adr,
             dof_tree,
             row_adr,
             chain,
             body_last_dof,
+            slot: Vec::with_capacity(nv),
+            tile_adr: Vec::new(),
+            tile_dof: Vec::new(),
+            tiles: Pattern::with_capacity(nv, nv),
+            body_tiles: Vec::new(),
+            body_tile_adr: Vec::new(),
+        };
+        topology.deal_tiles(model);
+        topology
+    }
+
+    /// Deals degrees of freedom to tiles: as long as each is the child of the one before, four to a tile.
+    fn deal_tiles(&mut self, model: &Model) {
+        for d in 0..model.nv {
+            let slot = match model.dof_parentid[d] {
+                Some(p) if p + 1 == d && self.slot[p] % 4 < 3 => self.slot[p] + 1,
+                parent => {
+                    let tile = self.tile_dof.len();
+                    if parent.is_none() {
+                        self.tile_adr.push(tile);
+                    }
+                    self.tile_dof.push(d);
+                    4 * tile as u32
+                }
+            };
+            self.slot.push(slot);
+        }
+        self.tile_adr.push(self.tile_dof.len());
+        self.tile_dof.push(model.nv);
+        let lanes_of = |chain: &[u32], slot: &[u32]| {
+            let mut tiles: Vec<(u32, u32)> = Vec::new();
+            for &d in chain {
+                match (tiles.last_mut(), slot[d as usize] / 4) {
+                    (Some(last), tile) if last.0 == tile => last.1 += 1,
+                    (_, tile) => tiles.push((tile, 1)),
+                }
+            }
+            tiles
+        };
+        let mut tiles = Pattern::with_capacity(model.nv, model.nv);
+        for last in &self.tile_dof[1..] {
+            for (tile, _) in lanes_of(self.dof_chain(last - 1), &self.slot) {
+                tiles.push_col(tile);
+            }
+            tiles.end_row();
+        }
+        self.tiles = tiles;
+        for b in 0..model.nbody() {
+            self.body_tile_adr.push(self.body_tiles.len());
+            let tiles = lanes_of(self.body_chain(b), &self.slot);
+            self.body_tiles.extend(tiles);
+        }
+        self.body_tile_adr.push(self.body_tiles.len());
+    }
+
+    /// Tiles that move `body`, ascending, with how many of their lanes do: the first ones.
+    #[inline]
+    pub fn body_tiles(&self, body: usize) -> &[(u32, u32)] {
+        &self.body_tiles[self.body_tile_adr[body]..self.body_tile_adr[body + 1]]
+    }
+
+    /// Trace of the inverse of a tree's inertia at `qpos0`: how far unit forces accelerate it at most.
+    #[inline]
+    pub fn mobility(&self, model: &Model, tree: usize) -> f64 {
+        model.dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
+            .iter()
+            .sum()
+    }
+
+    /// Number of lanes of a tile that have a degree of freedom.
+    #[inline]
+    pub fn lanes(&self, tile: usize) -> usize {
+        self.tile_dof[tile + 1] - self.tile_dof[tile]
+    }
+
+    /// Tree of a tile.
+    #[inline]
+    pub fn tile_tree(&self, tile: usize) -> usize {
+        self.dof_tree[self.tile_dof[tile]]
+    }
+
+    /// Tiles of a matrix without entries: ones on the diagonal of the lanes that no degree of freedom has.
+    pub fn new_tiles(&self) -> Vec<Tile> {
+        let mut tiles = vec![ZERO; self.tiles.tiles()];
+        for row in 0..self.tiles.rows() {
+            let diagonal = &mut tiles[self.tiles.start(row + 1) - 1];
+            for k in self.lanes(row)..4 {
+                diagonal[k][k] = 1.0;
+            }
+        }
+        tiles
+    }
+
+    /// Row `dof` of a matrix in tiles, over the ancestors of `dof` and itself, ascending.
+    pub fn row<'a>(&'a self, tiles: &'a [Tile], dof: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let (row, r) = (self.slot[dof] as usize / 4, self.slot[dof] as usize % 4);
+        let cols = self.tiles.cols(row);
+        self.dof_chain(dof).iter().map(move |&a| {
+            let slot = self.slot[a as usize];
+            let place = cols.partition_point(|&c| c < slot / 4);
+            (a as usize, tiles[self.tiles.start(row) + place][r][slot as usize % 4])
+        })
+    }
+
+    /// `lanes` of a vector over the degrees of freedom; the lanes of none keep their values.
+    #[inline]
+    pub fn to_lanes(&self, x: &[f64], lanes: &mut [Lanes]) {
+        for (&slot, &v) in self.slot.iter().zip(x) {
+            lanes[slot as usize / 4][slot as usize % 4] = v;
+        }
+    }
+
+    /// The vector over the degrees of freedom in `lanes`.
+    #[inline]
+    pub fn from_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
+        for (&slot, v) in self.slot.iter().zip(x) {
+            *v = lanes[slot as usize / 4][slot as usize % 4];
         }
     }
 
     /// Number of trees.
     pub fn ntree(&self) -> usize {
         self.tree_adr.len() - 1
-    }
-
-    /// Number of values in the packed inertia.
-    pub fn nm(&self) -> usize {
-        self.chain.len()
     }
 
     /// Ancestors of `dof`, ascending, itself last.

@@ -18,10 +18,13 @@ pub enum Part {
     Bottom,
 }
 
+/// The number of vertices of each part is a multiple of this.
+pub const LANES: usize = 8;
+
 /// Triangles of a unit shape, counterclockwise from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Coordinates of the vertices.
+    /// Coordinates of the vertices. Those that fill up a part belong to no triangle.
     pub x: Vec<f32>,
     /// See `x`.
     pub y: Vec<f32>,
@@ -49,19 +52,34 @@ impl Mesh {
                 && (0..3).all(|k| same(self.normal[i][k], n[k]))
         });
         known.unwrap_or_else(|| {
-            self.x.push(p[0]);
-            self.y.push(p[1]);
-            self.z.push(p[2]);
-            self.normal.push(n);
-            if let Some(last) = self.parts.last_mut() {
-                last.1 = self.x.len();
-            }
+            self.push((p, n));
             self.x.len() - 1
         }) as u16
     }
 
+    fn push(&mut self, ([x, y, z], normal): Point) {
+        self.x.push(x);
+        self.y.push(y);
+        self.z.push(z);
+        self.normal.push(normal);
+        if let Some(last) = self.parts.last_mut() {
+            last.1 = self.x.len();
+        }
+    }
+
+    /// Begins a part.
     fn part(&mut self, part: Part) {
+        self.fill();
         self.parts.push((part, self.x.len()));
+    }
+
+    /// Fills up the current part.
+    fn fill(&mut self) {
+        while let Some(last) = self.x.len().checked_sub(1)
+            && !self.x.len().is_multiple_of(LANES)
+        {
+            self.push(([self.x[last], self.y[last], self.z[last]], self.normal[last]));
+        }
     }
 
     fn triangle(&mut self, corners: [Point; 3]) {
@@ -170,6 +188,7 @@ impl Mesh {
         m.part(Part::Body);
         m.half_sphere(-1.0, 0.0);
         m.half_sphere(1.0, 0.0);
+        m.fill();
         m
     }
 
@@ -182,6 +201,7 @@ impl Mesh {
         m.half_sphere(1.0, 1.0);
         m.part(Part::Bottom);
         m.half_sphere(-1.0, -1.0);
+        m.fill();
         m
     }
 
@@ -192,6 +212,7 @@ impl Mesh {
         m.disk(-1.0);
         m.open_cylinder();
         m.disk(1.0);
+        m.fill();
         m
     }
 
@@ -203,6 +224,7 @@ impl Mesh {
             m.face(axis, 1.0);
             m.face(axis, -1.0);
         }
+        m.fill();
         m
     }
 
@@ -212,6 +234,7 @@ impl Mesh {
         m.part(Part::Body);
         let at = |x, y| ([x, y, 0.0], [0.0, 0.0, 1.0]);
         m.quad([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+        m.fill();
         m
     }
 }
@@ -228,6 +251,7 @@ mod tests {
     fn check(mesh: &Mesh, triangles: usize) {
         assert_eq!(mesh.triangles.len(), triangles);
         assert_eq!(mesh.parts.last().unwrap().1, mesh.x.len());
+        assert!(mesh.parts.iter().all(|p| p.1.is_multiple_of(LANES)));
         for t in &mesh.triangles {
             let p = t.map(|i| [mesh.x[i as usize], mesh.y[i as usize], mesh.z[i as usize]]);
             let (a, b): (Vec<_>, Vec<_>) = (0..3).map(|k| (p[1][k] - p[0][k], p[2][k] - p[0][k])).unzip();

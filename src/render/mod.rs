@@ -26,15 +26,21 @@
 //! Not drawn: shadows, reflections, fog, haze. Planes without a size are drawn as far as the far plane.
 
 mod cpu;
+#[cfg(feature = "wgpu")]
+pub mod gpu;
 mod mesh;
+mod painter;
 mod texture;
 mod visual;
 
 pub use cpu::Renderer;
 pub(crate) use cpu::luma;
 pub use mesh::{Mesh, Part};
+pub use painter::Painter;
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+pub use painter::SharedGpu;
 pub use texture::{Face, Level, MAX_TEXTURE, Texture};
-pub use visual::{Camera, Drawable, Element, Lamp, Poses, Shape, View, Visual};
+pub use visual::{Camera, Drawable, Element, Lamp, Poses, Shape, Shot, View, Visual};
 
 use crate::mjcf_loader::AssetError;
 
@@ -43,6 +49,7 @@ pub const MAX_SIZE: usize = 4096;
 
 /// Why something cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// An image cannot be read.
     #[error(transparent)]
@@ -87,4 +94,20 @@ pub enum RenderError {
         /// Number of elements.
         expected: usize,
     },
+    /// The configuration asks for a renderer that this build does not have.
+    #[error(
+        "renderer: wgpu is not in this build; build with the cargo feature `wgpu` (cargo run --features wgpu), or use \
+         renderer: cpu, which needs nothing"
+    )]
+    NoWgpu,
+    /// An environment cannot wait for the GPU.
+    #[error(
+        "renderer: wgpu cannot be waited for in a browser; use renderer: cpu, or draw with GpuRenderer::begin and \
+         Pending::read"
+    )]
+    CannotWait,
+    /// The GPU cannot draw.
+    #[cfg(feature = "wgpu")]
+    #[error(transparent)]
+    Gpu(#[from] gpu::GpuError),
 }

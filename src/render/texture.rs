@@ -138,14 +138,12 @@ impl<'a> Loader<'a> {
         };
         let flat = recipe.kind == TextureType::Flat2d;
         if recipe.builtin != Builtin::None {
-            if recipe.mark == Mark::Random {
-                return Err(wrong("random marks are not supported".to_string()));
-            }
             let width = size(recipe.width)?;
             return Ok(if flat {
                 Texture::Flat(flat_builtin(recipe, width, size(recipe.height)?).face())
             } else {
-                Texture::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side).face()))
+                let mut dice = Mt19937::new(MARK_SEED);
+                Texture::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side, &mut dice).face()))
             });
         }
         if let Some(path) = &recipe.file {
@@ -231,8 +229,53 @@ fn interpolate(a: [f64; 3], b: [f64; 3], pos: f64) -> [u8; 3] {
     [0, 1, 2].map(|k| (255.0 * (alpha * a[k] + (1.0 - alpha) * b[k])) as u8)
 }
 
+/// Seed of random marks.
+const MARK_SEED: u64 = 42;
+
+/// The Mersenne Twister with 64-bit words (Matsumoto and Nishimura), with which MuJoCo throws random marks.
+struct Mt19937 {
+    words: [u64; 312],
+    next: usize,
+}
+
+impl Mt19937 {
+    fn new(seed: u64) -> Self {
+        let mut words = [seed; 312];
+        for i in 1..312 {
+            let last = words[i - 1];
+            words[i] = (last ^ last >> 62)
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(i as u64);
+        }
+        Self { words, next: 312 }
+    }
+
+    fn next(&mut self) -> u64 {
+        const UPPER: u64 = !0 << 31;
+        if self.next == 312 {
+            for i in 0..312 {
+                let x = self.words[i] & UPPER | self.words[(i + 1) % 312] & !UPPER;
+                let odd = if x & 1 == 1 { 0xb502_6f5a_a966_19e9 } else { 0 };
+                self.words[i] = self.words[(i + 156) % 312] ^ x >> 1 ^ odd;
+            }
+            self.next = 0;
+        }
+        let mut x = self.words[self.next];
+        self.next += 1;
+        x ^= x >> 29 & 0x5555_5555_5555_5555;
+        x ^= x << 17 & 0x71d6_7fff_eda6_0000;
+        x ^= x << 37 & 0xfff7_eee0_0000_0000;
+        x ^ x >> 43
+    }
+
+    /// From 0 to 1.
+    fn uniform(&mut self) -> f64 {
+        self.next() as f64 / 18_446_744_073_709_551_616.0
+    }
+}
+
 /// Draws marks.
-fn marked(recipe: &Recipe, mut level: Level) -> Level {
+fn marked(recipe: &Recipe, mut level: Level, dice: &mut Mt19937) -> Level {
     let (w, h) = (level.width, level.height);
     let [r, g, b] = truncated(recipe.markrgb);
     let colour = [r, g, b, 255];
@@ -241,7 +284,8 @@ fn marked(recipe: &Recipe, mut level: Level) -> Level {
         let on = match recipe.mark {
             Mark::Edge => row == 0 || column == 0 || row == h - 1 || column == w - 1,
             Mark::Cross => row == h / 2 || column == w / 2,
-            Mark::None | Mark::Random => false,
+            Mark::Random => dice.uniform() < recipe.random,
+            Mark::None => false,
         };
         if on {
             *pixel = colour;
@@ -269,10 +313,10 @@ fn flat_builtin(recipe: &Recipe, w: usize, h: usize) -> Level {
         Builtin::Checker if !checker(w, h, row, column) => two,
         _ => one,
     });
-    marked(recipe, level)
+    marked(recipe, level, &mut Mt19937::new(MARK_SEED))
 }
 
-fn cube_builtin(recipe: &Recipe, w: usize, side: usize) -> Level {
+fn cube_builtin(recipe: &Recipe, w: usize, side: usize, dice: &mut Mt19937) -> Level {
     use std::f64::consts::FRAC_PI_2;
     let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
     let level = match recipe.builtin {
@@ -295,5 +339,18 @@ fn cube_builtin(recipe: &Recipe, w: usize, side: usize) -> Level {
         }),
         _ => Level::filled(w, w, if side == 3 { two } else { one }),
     };
-    marked(recipe, level)
+    marked(recipe, level, dice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_twister_is_the_standard_one() {
+        // the C++ standard gives the 10,000th word of the default seed
+        let mut twister = Mt19937::new(5489);
+        let last = (0..10_000).map(|_| twister.next()).last();
+        assert_eq!(last, Some(9_981_545_732_273_789_042));
+    }
 }

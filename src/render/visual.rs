@@ -26,9 +26,9 @@ pub struct View {
 }
 
 impl View {
-    /// Number of pixels.
+    /// Number of pixels; of a size that [`View::check`] refuses it may be the largest number.
     pub fn pixels(&self) -> usize {
-        self.width * self.height
+        self.width.saturating_mul(self.height)
     }
 
     /// Whether the size is allowed.
@@ -46,7 +46,7 @@ impl View {
 
     /// Length of the buffer for red, green and blue.
     pub fn rgb_len(&self) -> usize {
-        3 * self.pixels()
+        self.pixels().saturating_mul(3)
     }
 }
 
@@ -70,6 +70,15 @@ pub struct Poses<'a> {
     pub xpos: &'a [Vec3],
     /// Orientations of the bodies.
     pub xmat: &'a [Mat3],
+}
+
+/// A picture to draw, of one environment.
+#[derive(Clone, Copy, Debug)]
+pub struct Shot<'a> {
+    /// Where everything is.
+    pub poses: Poses<'a>,
+    /// From where, and how large.
+    pub view: View,
 }
 
 /// Which element of the model a [`Drawable`] is.

@@ -1,6 +1,9 @@
 //! What the integration tests share.
 #![allow(dead_code)] // each test binary uses its part
 
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use babybench::config::{Behavior, BodyParts, Scene};
 use babybench::physics::State;
 use babybench::{Blueprint, Config, Env};
@@ -14,6 +17,26 @@ pub const EXAMPLES: [(&str, &str); 3] = [
         include_str!("../../configs/config_test_installation.yml"),
     ),
 ];
+
+/// Says on the standard error that something is left out; not by `eprintln`, which the test harness hides.
+pub fn skipped(what: &str, why: impl std::fmt::Display) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stderr(), "SKIPPED {what}: {why}");
+}
+
+/// What pictures are drawn of: all default senses but touch, MIMo v2 among the cubes and v1 elsewhere.
+pub fn seen(scene: Scene) -> Config {
+    Config {
+        scene,
+        behavior: if scene == Scene::Cubes {
+            Behavior::HandRegard
+        } else {
+            Behavior::None
+        },
+        touch_active: false,
+        ..Config::default()
+    }
+}
 
 /// Models: MIMo's version by its behavior, and the scene.
 pub const MODELS: [(Behavior, Scene); 6] = [
@@ -136,4 +159,40 @@ pub fn proc_status_mib(key: &str) -> Option<f64> {
     let line = text.lines().find(|l| l.split(':').next() == Some(key))?;
     let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kib / 1024.0)
+}
+
+/// A folder of its own, gone at the end of the test.
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// Not made yet; its name starts with `name`.
+    pub fn new(name: &str) -> Self {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let (process, number) = (std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(format!("babybench_{name}_{process}_{number}"));
+        let _ = std::fs::remove_dir_all(&path);
+        Self(path)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub fn text(&self) -> String {
+        self.0.display().to_string()
+    }
+
+    /// Writes a file, and returns its path.
+    pub fn file(&self, name: &str, contents: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        std::fs::write(&path, contents).expect("a file");
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
 }

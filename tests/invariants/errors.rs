@@ -1,6 +1,6 @@
 //! Invariant 8: a bad action leaves the state untouched, a diverged state is an error and never an observation.
 
-use babybench::physics::{Engine, EngineError, State};
+use babybench::physics::{EngineError, State};
 use babybench::{Env, EnvError};
 
 use crate::common::*;

@@ -11,3 +11,4 @@ mod mechanics;
 mod model;
 mod sensors;
 mod source;
+mod types;

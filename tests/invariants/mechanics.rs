@@ -12,7 +12,7 @@ use babybench::physics::{State, Topology};
 use crate::common::*;
 
 /// `J' f` of the constraints that act from outside a joint: contacts and welds.
-fn external(s: &State, nv: usize) -> Vec<f64> {
+fn external(topology: &Topology, s: &State, nv: usize) -> Vec<f64> {
     let mut out = vec![0.0; nv];
     for b in &s.efc.blocks {
         let outside = match b.kind {
@@ -21,10 +21,8 @@ fn external(s: &State, nv: usize) -> Vec<f64> {
             RowKind::FrictionLoss | RowKind::Limit => false,
         };
         if outside {
-            for (r, row) in s.efc.jacobian(b).chunks_exact(b.ncol).enumerate() {
-                for (&d, j) in s.efc.columns(b).iter().zip(row) {
-                    out[d as usize] += j * s.efc.force[b.row + r];
-                }
+            for (r, d, j) in s.efc.entries(topology, b) {
+                out[d] += j * s.efc.force[b.row + r];
             }
         }
     }
@@ -34,7 +32,7 @@ fn external(s: &State, nv: usize) -> Vec<f64> {
 /// Torque that reaches each degree of freedom through its joint, from the internal wrenches, minus the sum of its causes;
 /// and what the solver left of the equation of motion, `M qacc - qfrc_smooth - qfrc_constraint`.
 fn torque_residuals(model: &Model, topology: &Topology, s: &State) -> Vec<[f64; 2]> {
-    let external = external(s, model.nv);
+    let external = external(topology, s, model.nv);
     let mut inertial = vec![0.0; model.nv];
     mul_m(topology, &s.qm, &s.qacc, &mut inertial);
     (0..model.nv)

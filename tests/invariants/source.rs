@@ -14,8 +14,10 @@ use crate::common::*;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 #[test]
-fn invariant_5_the_library_forbids_unsafe_code() {
-    assert!(include_str!("../../src/lib.rs").contains("\n#![forbid(unsafe_code)]\n"));
+fn invariant_5_the_library_and_the_command_line_forbid_unsafe_code() {
+    for root in [include_str!("../../src/lib.rs"), include_str!("../../src/main.rs")] {
+        assert!(root.contains("\n#![forbid(unsafe_code)]\n"));
+    }
 }
 
 /// Rust files below `dir`, with their text up to the unit tests.
@@ -100,22 +102,27 @@ fn invariant_11_no_dependency_needs_a_c_compiler() {
             "babybench",
             "-e",
             "normal,build",
+            "--features",
+            "onnx",
             "--prefix",
             "none",
         ])
         .current_dir(ROOT)
         .output();
-    let text = match tree {
-        Ok(out) if out.status.success() => String::from_utf8_lossy(&out.stdout).into_owned(),
-        other => {
-            println!("skipped: cargo tree does not run here: {other:?}");
-            return;
-        }
+    let out = match tree {
+        Ok(out) => out,
+        Err(e) => return skipped("dependencies", format!("cargo does not run here: {e}")),
     };
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let text = String::from_utf8_lossy(&out.stdout).into_owned();
     let mut names: Vec<&str> = text.lines().filter_map(|l| l.split_whitespace().next()).collect();
     names.sort_unstable();
     names.dedup();
-    println!("{} packages with default features: {}", names.len(), names.join(" "));
+    println!(
+        "{} packages with default features and ONNX: {}",
+        names.len(),
+        names.join(" ")
+    );
     // bindings that come as Rust source
     let harmless = ["windows-sys", "linux-raw-sys", "js-sys", "web-sys"];
     for name in names {

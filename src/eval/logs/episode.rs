@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{LogError, evaluation_path, make_folder, read_pickle, records, to_value, write_pickle};
+use super::{LogError, evaluation_path, make_folder, read_pickle, records, to_value, write, write_pickle};
 #[cfg(feature = "npz")]
 use crate::env::BehaviorInfo;
 use crate::env::Info;
@@ -37,9 +37,10 @@ impl EvaluationLog {
         self.info.is_empty()
     }
 
-    /// Writes `evaluation_N.pkl` and, with the feature `npz`, `evaluation_N.npz` into the folder of a run. The archive
-    /// holds `qpos`, `steps` and, by behavior, the four counters or, for each hand, the touched geoms (`*_touches`, those
-    /// of step t at `*_ptr[t]..*_ptr[t+1]`).
+    /// Writes `evaluation_N.pkl`, `evaluation_N.jsonl` and, with the feature `npz`, `evaluation_N.npz` into the folder of
+    /// a run. A line of the `.jsonl` is the information of a step with its details ([`Info::to_detailed_json`]). The
+    /// archive holds `qpos`, `steps` and, by behavior, the four counters and the angles (`gaze_angles`, rad) or, for each
+    /// hand, the touched geoms (`*_touches`, those of step t at `*_ptr[t]..*_ptr[t+1]`).
     ///
     /// # Errors
     /// What the file system says.
@@ -51,6 +52,8 @@ impl EvaluationLog {
             Value::Array(pickle::Array { shape, data }.into())
         });
         let info = Value::list(self.info.iter().map(to_value));
+        let lines: String = self.info.iter().map(|i| i.to_detailed_json() + "\n").collect();
+        write(path.with_extension("jsonl"), lines.as_bytes())?;
         #[cfg(feature = "npz")]
         self.write_npz(&path.with_extension("npz"))
             .map_err(|e| LogError::Write(e.to_string()))?;
@@ -89,6 +92,15 @@ impl EvaluationLog {
             if counts.len() == t && t > 0 {
                 npz.add(name, &[t], &counts)?;
             }
+        }
+        let angles: Vec<f64> = self
+            .info
+            .iter()
+            .filter_map(|i| i.details.gaze_angles)
+            .flatten()
+            .collect();
+        if angles.len() == 4 * t && t > 0 {
+            npz.add("gaze_angles", &[t, 4], &angles)?;
         }
         npz.write(path)
     }

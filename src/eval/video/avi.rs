@@ -7,8 +7,7 @@
 
 use std::io::{Seek, SeekFrom, Write};
 
-use image::ExtendedColorType;
-use image::codecs::jpeg::JpegEncoder;
+use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
 use super::VideoError;
 
@@ -91,8 +90,11 @@ impl<W: Write + Seek> AviWriter<W> {
             });
         }
         self.jpeg.clear();
-        JpegEncoder::new_with_quality(&mut self.jpeg, self.quality)
-            .encode(rgb, self.width, self.height, ExtendedColorType::Rgb8)
+        let mut encoder = Encoder::new(&mut self.jpeg, self.quality);
+        encoder.set_sampling_factor(SamplingFactor::R_4_4_4);
+        // `new` has checked that the size fits
+        encoder
+            .encode(rgb, self.width as u16, self.height as u16, ColorType::Rgb)
             .map_err(|e| VideoError::Encode(e.to_string()))?;
         let size = self.jpeg.len() as u32;
         if self.jpeg.len() % 2 == 1 {

@@ -33,6 +33,7 @@ pub struct FramePainter {
     side: CameraId,
     eyes: Option<[CameraId; 2]>,
     picture: Vec<u8>,
+    half: Vec<u8>,
     other: Vec<u8>,
 }
 
@@ -43,7 +44,6 @@ impl FramePainter {
     /// The scene lacks one of the cameras `corner`, `top`, `side2`.
     pub fn new(model: &Model) -> Result<Self, VideoError> {
         let camera = |name: &'static str| model.camera(name).ok_or(VideoError::Camera(name));
-        let len = 3 * FRAME_HEIGHT * FRAME_HEIGHT;
         Ok(Self {
             renderer: Renderer::new(),
             corner: camera("corner")?,
@@ -53,8 +53,9 @@ impl FramePainter {
                 .camera("eye_left")
                 .zip(model.camera("eye_right"))
                 .map(<[_; 2]>::from),
-            picture: vec![0; len],
-            other: vec![0; len],
+            picture: vec![0; 3 * FRAME_HEIGHT * FRAME_HEIGHT],
+            half: vec![0; 3 * PANEL * PANEL],
+            other: vec![0; 3 * PANEL * PANEL],
         })
     }
 
@@ -74,7 +75,7 @@ impl FramePainter {
             line[..3 * FRAME_HEIGHT].copy_from_slice(row);
         }
         match panel {
-            Panel::Side => self.draw(visual, poses, self.side)?,
+            Panel::Side => self.half(visual, poses, self.side)?,
             Panel::Binocular => self.binocular(visual, poses)?,
             Panel::Picture(rgb) => {
                 let expected = 3 * PANEL * PANEL;
@@ -82,49 +83,51 @@ impl FramePainter {
                     let found = rgb.len();
                     return Err(VideoError::Frame { found, expected });
                 }
-                let lines = out.chunks_exact_mut(3 * FRAME_WIDTH);
-                for (line, row) in lines.zip(rgb.chunks_exact(3 * PANEL)) {
-                    line[3 * FRAME_HEIGHT..].copy_from_slice(row);
-                }
+                place(rgb, out, 0);
             }
         }
         if !matches!(panel, Panel::Picture(_)) {
-            self.place(out, 0);
+            place(&self.half, out, 0);
         }
-        self.draw(visual, poses, self.top)?;
-        self.place(out, PANEL);
+        self.half(visual, poses, self.top)?;
+        place(&self.half, out, PANEL);
         Ok(())
     }
 
     fn draw(&mut self, visual: &Visual, poses: &Poses, camera: CameraId) -> Result<(), VideoError> {
-        let view = View {
-            camera,
-            width: FRAME_HEIGHT,
-            height: FRAME_HEIGHT,
-        };
-        Ok(self.renderer.rgb(visual, poses, &view, &mut self.picture)?)
+        Ok(self.renderer.rgb(visual, poses, &view(camera), &mut self.picture)?)
+    }
+
+    /// The panels show every second pixel of every second row.
+    fn half(&mut self, visual: &Visual, poses: &Poses, camera: CameraId) -> Result<(), VideoError> {
+        Ok(self.renderer.rgb_halved(visual, poses, &view(camera), &mut self.half)?)
     }
 
     fn binocular(&mut self, visual: &Visual, poses: &Poses) -> Result<(), VideoError> {
         let [left, right] = self.eyes.ok_or(VideoError::Camera("eye_left"))?;
-        self.draw(visual, poses, left)?;
-        std::mem::swap(&mut self.picture, &mut self.other);
-        self.draw(visual, poses, right)?;
-        for (right, left) in self.picture.chunks_exact_mut(3).zip(self.other.chunks_exact(3)) {
+        self.half(visual, poses, left)?;
+        std::mem::swap(&mut self.half, &mut self.other);
+        self.half(visual, poses, right)?;
+        for (right, left) in self.half.chunks_exact_mut(3).zip(self.other.chunks_exact(3)) {
             let cyan = luma([right[0], right[1], right[2]]);
             right.copy_from_slice(&[luma([left[0], left[1], left[2]]), cyan, cyan]);
         }
         Ok(())
     }
+}
 
-    /// Puts every second pixel of every second row of the picture on the right, from row `top`.
-    fn place(&self, out: &mut [u8], top: usize) {
-        let lines = out.chunks_exact_mut(3 * FRAME_WIDTH).skip(top).take(PANEL);
-        for (line, row) in lines.zip(self.picture.chunks_exact(3 * FRAME_HEIGHT).step_by(2)) {
-            let pixels = line[3 * FRAME_HEIGHT..].chunks_exact_mut(3);
-            for (to, from) in pixels.zip(row.chunks_exact(3).step_by(2)) {
-                to.copy_from_slice(from);
-            }
-        }
+fn view(camera: CameraId) -> View {
+    View {
+        camera,
+        width: FRAME_HEIGHT,
+        height: FRAME_HEIGHT,
+    }
+}
+
+/// Puts a panel on the right, from row `top`.
+fn place(panel: &[u8], out: &mut [u8], top: usize) {
+    let lines = out.chunks_exact_mut(3 * FRAME_WIDTH).skip(top);
+    for (line, row) in lines.zip(panel.chunks_exact(3 * PANEL)) {
+        line[3 * FRAME_HEIGHT..].copy_from_slice(row);
     }
 }

@@ -10,6 +10,7 @@ use crate::render::RenderError;
 
 /// Why a video cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum VideoError {
     /// A size or frame rate that the format cannot hold.
     #[error("a video cannot have {width} x {height} pixels at {fps} frames per second")]
@@ -30,7 +31,9 @@ pub enum VideoError {
         expected: usize,
     },
     /// The format ends at 2 GiB.
-    #[error("the video has {frames} frames and is full: .avi files end at 2 GiB")]
+    #[error(
+        "the video has {frames} frames and is full: .avi files end at 2 GiB; make episodes shorter, or no videos (--no-render)"
+    )]
     Full {
         /// Frames written.
         frames: u32,

@@ -1,111 +1,190 @@
-//! Cost, force and curvature of one block of rows.
+//! Contacts with an elliptic friction cone: cost, force, curvature, slopes along a line.
 
-use crate::physics::constraint::{Block, RowKind};
+use crate::physics::constraint::{Block, Efc};
 
-/// Where a block is on its cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Zone {
-    /// No force, or a constant one: no curvature.
+/// Where a contact is on its cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) enum Zone {
+    /// No force, no curvature.
+    #[default]
     Flat,
     /// Quadratic: curvature `diag(d)`.
     Quadratic,
-    /// On the surface of the friction cone: curvature from [`cone_hessian`].
-    Cone,
+    /// On the surface of the friction cone: curvature from [`Cone::curvature`].
+    Surface,
 }
 
-/// Cost of a block at `jar = J a - aref`, and the force `-d cost / d jar`, written to `force`.
-#[inline]
-pub fn evaluate(b: &Block, jar: &[f64], d: &[f64], r: &[f64], force: &mut [f64]) -> (f64, Zone) {
-    match b.kind {
-        RowKind::Equality => quadratic(jar, d, force),
-        RowKind::FrictionLoss => {
-            let edge = r[0] * b.frictionloss;
-            if jar[0] <= -edge {
-                force[0] = b.frictionloss;
-                (b.frictionloss * (-0.5 * edge - jar[0]), Zone::Flat)
-            } else if jar[0] >= edge {
-                force[0] = -b.frictionloss;
-                (b.frictionloss * (-0.5 * edge + jar[0]), Zone::Flat)
-            } else {
-                quadratic(jar, d, force)
-            }
+/// A contact with friction. The first row is the normal; only the first `dim` rows count.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cone {
+    /// Number of rows.
+    pub(super) dim: usize,
+    /// First row in [`Efc`].
+    pub(super) row: usize,
+    /// Slope of the regularised cone.
+    mu: f64,
+    /// Friction coefficient of each row but the first.
+    friction: [f64; 6],
+    /// Inverse of the regularisation.
+    pub(super) d: [f64; 6],
+    /// Curvature across the surface.
+    dm: f64,
+    pub(super) aref: [f64; 6],
+    /// `J a - aref`
+    pub(super) jar: [f64; 6],
+    /// `J` times the search direction.
+    pub(super) jv: [f64; 6],
+    /// Minus the gradient of the cost by `jar`.
+    pub(super) force: [f64; 6],
+    pub(super) zone: Zone,
+    /// Coefficients of the cost along the search direction.
+    line: Line,
+}
+
+/// A contact along a line: its quadratic zone, and `n` and `t^2` of the others.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    /// First and second derivative at 0 when all rows are quadratic.
+    slope: f64,
+    curvature: f64,
+    /// `n = n0 + alpha n1`
+    n0: f64,
+    n1: f64,
+    /// `t^2 = uu + 2 alpha uv + alpha^2 vv`
+    uu: f64,
+    uv: f64,
+    vv: f64,
+}
+
+impl Cone {
+    /// The contact of a block.
+    pub(super) fn new(b: &Block, efc: &Efc) -> Self {
+        let mut cone = Self {
+            dim: b.dim,
+            row: b.row,
+            mu: b.mu,
+            dm: efc.d[b.row] / (b.mu * b.mu * (1.0 + b.mu * b.mu)),
+            ..Self::default()
+        };
+        for k in 0..b.dim {
+            (cone.d[k], cone.aref[k]) = (efc.d[b.row + k], efc.aref[b.row + k]);
         }
-        RowKind::Limit | RowKind::Frictionless => {
-            if jar[0] < 0.0 {
-                quadratic(jar, d, force)
-            } else {
-                force[0] = 0.0;
-                (0.0, Zone::Flat)
-            }
+        cone.friction[1..].copy_from_slice(&b.friction);
+        cone
+    }
+
+    /// Cost; fills force and zone.
+    #[inline]
+    pub(super) fn evaluate(&mut self) -> f64 {
+        let (jar, mu) = (&self.jar, self.mu);
+        let n = jar[0] * mu;
+        let mut tt = 0.0;
+        for k in 1..self.dim {
+            let u = jar[k] * self.friction[k];
+            tt += u * u;
         }
-        RowKind::Elliptic => {
-            let mu = b.mu;
-            let n = jar[0] * mu;
-            let mut tt = 0.0;
-            for j in 1..b.dim {
-                let u = jar[j] * b.friction[j - 1];
-                tt += u * u;
+        let t = tt.sqrt();
+        self.force = [0.0; 6];
+        if n >= mu * t || (t <= 0.0 && n >= 0.0) {
+            self.zone = Zone::Flat;
+            0.0
+        } else if mu * n + t <= 0.0 || (t <= 0.0 && n < 0.0) {
+            self.zone = Zone::Quadratic;
+            let mut cost = 0.0;
+            for k in 0..self.dim {
+                self.force[k] = -self.d[k] * jar[k];
+                cost += 0.5 * self.d[k] * jar[k] * jar[k];
             }
-            let t = tt.sqrt();
-            if n >= mu * t || (t <= 0.0 && n >= 0.0) {
-                force.fill(0.0);
-                (0.0, Zone::Flat)
-            } else if mu * n + t <= 0.0 || (t <= 0.0 && n < 0.0) {
-                quadratic(jar, d, force)
-            } else {
-                let dm = d[0] / (mu * mu * (1.0 + mu * mu));
-                let y = n - mu * t;
-                force[0] = -dm * y * mu;
-                let tangential = dm * y * mu / t;
-                for j in 1..b.dim {
-                    let f = b.friction[j - 1];
-                    force[j] = tangential * (jar[j] * f) * f;
+            cost
+        } else {
+            self.zone = Zone::Surface;
+            let y = n - mu * t;
+            self.force[0] = -self.dm * y * mu;
+            let tangential = self.dm * y * mu / t;
+            for k in 1..self.dim {
+                self.force[k] = tangential * (jar[k] * self.friction[k]) * self.friction[k];
+            }
+            0.5 * self.dm * y * y
+        }
+    }
+
+    /// Hessian of the cost on the surface of the cone with respect to `jar`.
+    ///
+    /// The cost is `dm/2 y^2` with `y = n - mu t`, `n = mu jar_0` and `t` the length of `u_k = friction_k jar_k`.
+    #[inline]
+    pub(super) fn curvature(&self) -> [[f64; 6]; 6] {
+        let (mu, dim) = (self.mu, self.dim);
+        let mut u = [0.0; 6];
+        let mut tt = 0.0;
+        for k in 1..dim {
+            u[k] = self.jar[k] * self.friction[k];
+            tt += u[k] * u[k];
+        }
+        let t = tt.sqrt();
+        let y = self.jar[0] * mu - mu * t;
+        let mut gradient = [0.0; 6];
+        gradient[0] = mu;
+        for k in 1..dim {
+            gradient[k] = -mu * u[k] * self.friction[k] / t;
+        }
+        let curl = -mu * y / t;
+        let mut h = [[0.0; 6]; 6];
+        for a in 0..dim {
+            for c in 0..=a {
+                let mut v = gradient[a] * gradient[c];
+                if a > 0 && c > 0 {
+                    let delta = if a == c { 1.0 } else { 0.0 };
+                    v += curl * self.friction[a] * self.friction[c] * (delta - u[a] * u[c] / tt);
                 }
-                (0.5 * dm * y * y, Zone::Cone)
+                h[a][c] = self.dm * v;
+                h[c][a] = h[a][c];
             }
         }
+        h
     }
-}
 
-#[inline]
-fn quadratic(jar: &[f64], d: &[f64], force: &mut [f64]) -> (f64, Zone) {
-    let mut cost = 0.0;
-    for ((f, &x), &d) in force.iter_mut().zip(jar).zip(d) {
-        *f = -d * x;
-        cost += 0.5 * d * x * x;
+    /// Prepares [`Self::add_slopes`] for `jar` and `jv`.
+    #[inline]
+    pub(super) fn prepare_line(&mut self) {
+        let mut line = Line {
+            n0: self.jar[0] * self.mu,
+            n1: self.jv[0] * self.mu,
+            ..Line::default()
+        };
+        for k in 0..self.dim {
+            let (x, v, d, f) = (self.jar[k], self.jv[k], self.d[k], self.friction[k]);
+            line.slope += d * x * v;
+            line.curvature += d * v * v;
+            // the normal has no friction coefficient
+            let (u, w) = (x * f, v * f);
+            line.uu += u * u;
+            line.uv += u * w;
+            line.vv += w * w;
+        }
+        self.line = line;
     }
-    (cost, Zone::Quadratic)
-}
 
-/// Hessian of the cost of an elliptic contact in the cone zone, row-major `dim` by `dim`, with respect to `jar`.
-///
-/// The cost is `dm/2 y^2` with `y = n - mu t`, `n = mu jar_0` and `t` the length of `u_j = friction_j jar_j`.
-#[inline]
-pub fn cone_hessian(b: &Block, jar: &[f64], d: &[f64], h: &mut [f64; 36]) {
-    let (mu, dim) = (b.mu, b.dim);
-    let mut u = [0.0; 6];
-    let mut tt = 0.0;
-    for j in 1..dim {
-        u[j] = jar[j] * b.friction[j - 1];
-        tt += u[j] * u[j];
-    }
-    let t = tt.sqrt();
-    let dm = d[0] / (mu * mu * (1.0 + mu * mu));
-    let y = jar[0] * mu - mu * t;
-    let mut gradient = [0.0; 6];
-    gradient[0] = mu;
-    for j in 1..dim {
-        gradient[j] = -mu * u[j] * b.friction[j - 1] / t;
-    }
-    let curl = -mu * y / t;
-    for a in 0..dim {
-        for c in 0..dim {
-            let mut v = gradient[a] * gradient[c];
-            if a > 0 && c > 0 {
-                let delta = if a == c { 1.0 } else { 0.0 };
-                v += curl * b.friction[a - 1] * b.friction[c - 1] * (delta - u[a] * u[c] / tt);
-            }
-            h[a * dim + c] = dm * v;
+    /// Adds first and second derivative of the cost at `jar + alpha jv`.
+    #[inline]
+    pub(super) fn add_slopes(&self, alpha: f64, first: &mut f64, second: &mut f64) {
+        let (c, mu) = (&self.line, self.mu);
+        let n = c.n0 + alpha * c.n1;
+        let half_rate = c.uv + alpha * c.vv;
+        let tt = c.uu + alpha * (c.uv + half_rate);
+        let t = tt.max(0.0).sqrt();
+        if n >= mu * t || (t <= 0.0 && n >= 0.0) {
+            return;
+        }
+        if mu * n + t <= 0.0 || t <= 0.0 {
+            *first += c.slope + alpha * c.curvature;
+            *second += c.curvature;
+        } else {
+            let t1 = half_rate / t;
+            let t2 = c.vv / t - half_rate * t1 / tt;
+            let y = n - mu * t;
+            let y1 = c.n1 - mu * t1;
+            *first += self.dm * y * y1;
+            *second += self.dm * (y1 * y1 - y * mu * t2);
         }
     }
 }
@@ -113,50 +192,46 @@ pub fn cone_hessian(b: &Block, jar: &[f64], d: &[f64], h: &mut [f64; 36]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::constraint::RowKind;
 
-    fn contact() -> Block {
-        Block {
+    /// A contact with torsional friction, regularised as the row builder does it.
+    fn contact(jar: [f64; 4]) -> Cone {
+        let block = Block {
             kind: RowKind::Elliptic,
             dim: 4,
             mu: 0.8,
             friction: [0.8, 0.8, 0.05, 0.0, 0.0],
             ..Block::default()
-        }
-    }
-
-    /// Regularisation of the tangential rows as the row builder gives it.
-    fn regularisation(b: &Block) -> ([f64; 4], [f64; 4]) {
-        let r0 = 0.01;
-        let r = [r0, r0, r0, r0 * (0.8 / 0.05_f64).powi(2)];
-        let _ = b;
-        (r.map(|v| 1.0 / v), r)
+        };
+        let torsional = 100.0 / (0.8 / 0.05_f64).powi(2);
+        let efc = Efc {
+            d: vec![100.0, 100.0, 100.0, torsional],
+            aref: vec![0.0; 4],
+            ..Efc::default()
+        };
+        let mut cone = Cone::new(&block, &efc);
+        cone.jar[..4].copy_from_slice(&jar);
+        cone
     }
 
     #[test]
-    fn force_is_the_negative_gradient_and_the_hessian_its_slope() {
-        let b = contact();
-        let (d, r) = regularisation(&b);
-        let mut force = [0.0; 4];
+    fn force_is_the_negative_gradient_and_the_curvature_its_slope() {
         for jar in [[-0.3, 0.5, 0.2, 3.0], [0.1, 0.5, -0.4, 1.0], [-2.0, 0.1, 0.2, 0.3]] {
-            let (_, zone) = evaluate(&b, &jar, &d, &r, &mut force);
-            let mut hessian = [0.0; 36];
-            if zone == Zone::Cone {
-                cone_hessian(&b, &jar, &d, &mut hessian);
-            }
+            let mut cone = contact(jar);
+            cone.evaluate();
+            let curvature = cone.curvature();
             for k in 0..4 {
                 let eps = 1e-6;
-                let (mut up, mut down) = (jar, jar);
-                up[k] += eps;
-                down[k] -= eps;
-                let (mut fu, mut fd) = ([0.0; 4], [0.0; 4]);
-                let (cu, _) = evaluate(&b, &up, &d, &r, &mut fu);
-                let (cd, _) = evaluate(&b, &down, &d, &r, &mut fd);
-                assert!((force[k] + (cu - cd) / (2.0 * eps)).abs() < 1e-5, "{jar:?} {k}");
-                if zone == Zone::Cone {
+                let (mut up, mut down) = (cone, cone);
+                up.jar[k] += eps;
+                down.jar[k] -= eps;
+                let (cu, cd) = (up.evaluate(), down.evaluate());
+                assert!((cone.force[k] + (cu - cd) / (2.0 * eps)).abs() < 1e-5, "{jar:?} {k}");
+                if cone.zone == Zone::Surface {
                     for c in 0..4 {
-                        let slope = -(fu[c] - fd[c]) / (2.0 * eps);
+                        let slope = -(up.force[c] - down.force[c]) / (2.0 * eps);
                         assert!(
-                            (hessian[k * 4 + c] - slope).abs() < 1e-4 * (1.0 + slope.abs()),
+                            (curvature[k][c] - slope).abs() < 1e-4 * (1.0 + slope.abs()),
                             "{jar:?} {k} {c}"
                         );
                     }
@@ -166,12 +241,46 @@ mod tests {
     }
 
     #[test]
+    fn slopes_along_a_line_are_those_of_the_cost() {
+        for jar in [[-0.3, 0.5, 0.2, 3.0], [0.1, 0.5, -0.4, 1.0], [-2.0, 0.1, 0.2, 0.3]] {
+            let mut cone = contact(jar);
+            cone.jv = [0.3, -0.2, 0.7, 0.4, 0.0, 0.0];
+            cone.prepare_line();
+            for alpha in [0.0, 0.4, 2.0] {
+                let at = |alpha: f64| {
+                    let mut moved = cone;
+                    for k in 0..4 {
+                        moved.jar[k] += alpha * cone.jv[k];
+                    }
+                    let cost = moved.evaluate();
+                    let slope: f64 = (0..4).map(|k| -moved.force[k] * cone.jv[k]).sum();
+                    (cost, slope)
+                };
+                let (mut first, mut second) = (0.0, 0.0);
+                cone.add_slopes(alpha, &mut first, &mut second);
+                let eps = 1e-6;
+                let numeric = (at(alpha + eps).1 - at(alpha - eps).1) / (2.0 * eps);
+                assert!(
+                    (first - at(alpha).1).abs() < 1e-9 * (1.0 + first.abs()),
+                    "{jar:?} {alpha}"
+                );
+                assert!(
+                    (second - numeric).abs() < 1e-4 * (1.0 + second.abs()),
+                    "{jar:?} {alpha}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn zones_follow_the_cone() {
-        let b = contact();
-        let (d, r) = regularisation(&b);
-        let mut f = [0.0; 4];
-        assert_eq!(evaluate(&b, &[1.0, 0.1, 0.0, 0.0], &d, &r, &mut f).1, Zone::Flat);
-        assert_eq!(evaluate(&b, &[-1.0, 0.01, 0.0, 0.0], &d, &r, &mut f).1, Zone::Quadratic);
-        assert_eq!(evaluate(&b, &[-0.1, 1.0, 0.0, 0.0], &d, &r, &mut f).1, Zone::Cone);
+        let zone = |jar| {
+            let mut cone = contact(jar);
+            cone.evaluate();
+            cone.zone
+        };
+        assert_eq!(zone([1.0, 0.1, 0.0, 0.0]), Zone::Flat);
+        assert_eq!(zone([-1.0, 0.01, 0.0, 0.0]), Zone::Quadratic);
+        assert_eq!(zone([-0.1, 1.0, 0.0, 0.0]), Zone::Surface);
     }
 }

@@ -1,103 +1,110 @@
 //! The Hessian `M + J' C J` of an island: sparsity, assembly, factorisation.
 
-use crate::physics::constraint::cone::{Zone, cone_hessian};
-use crate::physics::constraint::{Block, Efc};
-use crate::physics::topology::Topology;
+use crate::physics::constraint::Efc;
+use crate::physics::constraint::cone::Zone;
+use crate::physics::constraint::island::{Island, Jacobian};
+use crate::physics::tiles::{
+    Lanes, Pattern, Tile, ZERO, add_outer_products, factor_diagonal, scale_rows, solve, solve_columns,
+    sub_transposed_product, sub_transposed_product_diagonal,
+};
 
-/// Where the entries of a block's row go in a row of the Hessian.
-#[derive(Clone, Copy, Debug)]
-enum Target {
-    /// To consecutive places from here on.
-    Run(u32),
-    /// To the places listed from here on.
-    List(u32),
-}
-
-/// A symmetric positive matrix over the degrees of freedom of an island; of each row the nonzeros up to the diagonal.
+/// A symmetric positive matrix over the lanes of an island, kept up to date from one iteration to the next.
 ///
-/// The pattern is that of `L' D L` elimination from the last row to the first. A limb touches only its own chain, so the
-/// pattern of the inertia survives contacts with fixed things: the columns of an ancestor's row are then the first columns
-/// of its descendant's, and elimination runs on consecutive memory. Self-contact couples two chains, whose rows have more.
+/// Elimination goes from the last row of tiles to the first, by fronts: a row, and the *update* that it and those
+/// eliminated into it make to the rows of its other columns. From one iteration to the next few constraints change sides,
+/// so few rows change; what has not changed, and depends on nothing that has, is kept. Kept and computed again are the
+/// same bits.
 #[derive(Clone, Debug, Default)]
-pub struct Hessian {
-    /// Local index of each degree of freedom of the island (nv).
-    local: Vec<u32>,
-    /// Degree of freedom of each local index.
-    dofs: Vec<u32>,
+pub(super) struct Hessian {
+    words: usize,
     /// Pattern as bits, while it is found.
     bits: Vec<u64>,
-    /// Columns of each row, ascending, the diagonal last.
-    cols: Vec<u32>,
-    row_adr: Vec<usize>,
-    /// Values, laid out like `cols`.
-    h: Vec<f64>,
-    diag_inv: Vec<f64>,
-    /// For each row of each block with several columns.
-    targets: Vec<Target>,
-    target_adr: Vec<usize>,
-    places: Vec<u32>,
-    x: Vec<f64>,
-    weighted: Vec<f64>,
+    pattern: Pattern,
+    /// Place of tile (i, j) at `i rows + j`; only those of the pattern are valid.
+    place: Vec<u32>,
+    /// Rows eliminated into each row: the first, and the next of the same.
+    child: Vec<u32>,
+    sibling: Vec<u32>,
+    /// First tile of each row's update: the lower triangle over its columns but the diagonal.
+    update_adr: Vec<usize>,
+    /// The matrix, its factor, the inverse of the factor's diagonal, the updates.
+    h: Vec<Tile>,
+    factor: Vec<Tile>,
+    inv: Vec<Lanes>,
+    update: Vec<Tile>,
+    /// Rows whose entries have changed since they were factorised.
+    changed: Vec<bool>,
+    /// Curvatures and zones of the last assembly.
+    weight: Vec<Lanes>,
+    zone: Vec<Zone>,
+    weighted: Vec<Lanes>,
 }
+
+/// No row.
+const NONE: u32 = u32::MAX;
 
 impl Hessian {
     /// With memory for `nv` degrees of freedom and `contacts` contacts.
-    pub fn with_capacity(nv: usize, contacts: usize) -> Self {
-        let values = nv * (nv + 1) / 2;
+    pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
+        // tiles are mostly full
+        let (rows, tiles) = (nv, nv * (nv + 1) / 16);
         Self {
-            local: Vec::with_capacity(nv),
-            dofs: Vec::with_capacity(nv),
-            bits: Vec::with_capacity(nv * nv.div_ceil(64)),
-            cols: Vec::with_capacity(values),
-            row_adr: Vec::with_capacity(nv + 1),
-            h: Vec::with_capacity(values),
-            diag_inv: Vec::with_capacity(nv),
-            targets: Vec::with_capacity(16 * contacts),
-            target_adr: Vec::with_capacity(4 * nv + contacts),
-            places: Vec::with_capacity(64 * contacts),
-            x: Vec::with_capacity(nv),
-            weighted: Vec::with_capacity(6 * nv),
+            words: 0,
+            bits: Vec::with_capacity(rows * rows.div_ceil(64)),
+            pattern: Pattern::with_capacity(rows, tiles),
+            place: Vec::with_capacity(rows * rows / 4),
+            child: Vec::with_capacity(rows),
+            sibling: Vec::with_capacity(rows),
+            update_adr: Vec::with_capacity(rows),
+            h: Vec::with_capacity(tiles),
+            factor: Vec::with_capacity(tiles),
+            inv: Vec::with_capacity(rows),
+            update: Vec::with_capacity(4 * tiles),
+            changed: Vec::with_capacity(rows),
+            weight: Vec::with_capacity(3 * nv + contacts),
+            zone: Vec::with_capacity(contacts),
+            weighted: Vec::with_capacity(6 * rows),
         }
     }
 
-    /// Finds the pattern for the island made of `trees` and `blocks` (indices into `efc.blocks`).
-    pub fn analyse(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc) {
-        self.local.resize(topology.dof_tree.len(), 0);
-        self.dofs.clear();
-        for &t in trees {
-            for d in topology.tree_adr[t]..topology.tree_adr[t + 1] {
-                self.local[d] = self.dofs.len() as u32;
-                self.dofs.push(d as u32);
-            }
-        }
-        let n = self.dofs.len();
-        let words = n.div_ceil(64);
+    /// Finds the pattern for an island.
+    pub(super) fn analyse(&mut self, island: &Island) {
+        let n = island.tiles();
+        self.words = n.div_ceil(64);
+        let words = self.words;
         self.bits.clear();
         self.bits.resize(n * words, 0);
         for i in 0..n {
-            for &a in topology.dof_chain(self.dofs[i] as usize) {
-                set(&mut self.bits, words, i, self.local[a as usize] as usize);
+            for &j in island.m_pattern.cols(i) {
+                set(&mut self.bits[i * words..], j);
             }
         }
-        for &k in blocks {
-            let cols = efc.columns(&efc.blocks[k as usize]);
-            for (a, &col) in cols.iter().enumerate().skip(1) {
-                let i = self.local[col as usize] as usize;
-                for &other in &cols[..a] {
-                    set(&mut self.bits, words, i, self.local[other as usize] as usize);
-                }
+        let several = island.several.iter().map(|s| &s.1);
+        for j in several.chain(island.cones.iter().map(|c| &c.1)) {
+            // elimination hands the coupling down to the lower rows
+            if let [cols @ .., last] = island.cols(j) {
+                let row = *last as usize * words;
+                cols.iter().for_each(|&c| set(&mut self.bits[row..], c));
             }
         }
-        self.eliminate(words);
-        self.h.resize(self.cols.len(), 0.0);
-        self.diag_inv.resize(n, 0.0);
-        self.x.resize(n, 0.0);
-        self.place_blocks(blocks, efc);
+        self.eliminate(n);
+        let tiles = self.pattern.tiles();
+        self.h.resize(tiles, ZERO);
+        self.factor.resize(tiles, ZERO);
+        self.inv.resize(n, [0.0; 4]);
+        self.changed.clear();
+        self.changed.resize(n, true);
+        self.weight.clear();
+        self.zone.clear();
     }
 
     /// Symbolic elimination, then the columns of each row.
-    fn eliminate(&mut self, words: usize) {
-        let n = self.dofs.len();
+    fn eliminate(&mut self, n: usize) {
+        let words = self.words;
+        self.child.clear();
+        self.child.resize(n, NONE);
+        self.sibling.clear();
+        self.sibling.resize(n, NONE);
         for i in (0..n).rev() {
             let (head, row) = self.bits.split_at_mut(i * words);
             row[i / 64] &= !(1 << (i % 64));
@@ -108,236 +115,293 @@ impl Hessian {
                 for (t, r) in target.iter_mut().zip(&row[..words]) {
                     *t |= r;
                 }
+                self.sibling[i] = self.child[j];
+                self.child[j] = i as u32;
             }
         }
-        self.cols.clear();
-        self.row_adr.clear();
+        self.pattern.clear();
+        self.place.resize((n * n).max(self.place.len()), 0);
+        self.update_adr.clear();
+        let mut updates = 0;
         for i in 0..n {
-            self.row_adr.push(self.cols.len());
+            let start = self.pattern.tiles();
+            let mut push = |col: usize| {
+                self.place[i * n + col] = self.pattern.tiles() as u32;
+                self.pattern.push_col(col as u32);
+            };
             for w in 0..words {
                 let mut bits = self.bits[i * words + w];
                 while bits != 0 {
-                    self.cols.push((w * 64) as u32 + bits.trailing_zeros());
+                    push(w * 64 + bits.trailing_zeros() as usize);
                     bits &= bits - 1;
                 }
             }
-            self.cols.push(i as u32);
+            push(i);
+            self.pattern.end_row();
+            let cols = self.pattern.tiles() - start - 1;
+            self.update_adr.push(updates);
+            updates += cols * (cols + 1) / 2;
         }
-        self.row_adr.push(self.cols.len());
+        self.update.resize(updates, ZERO);
     }
 
-    /// Finds where the entries of each block go.
-    fn place_blocks(&mut self, blocks: &[u32], efc: &Efc) {
-        self.targets.clear();
-        self.target_adr.clear();
-        self.places.clear();
-        for &k in blocks {
-            self.target_adr.push(self.targets.len());
-            let cols = efc.columns(&efc.blocks[k as usize]);
-            if cols.len() == 1 {
+    /// Assembles and factorises what has changed.
+    pub(super) fn refresh(&mut self, island: &Island, efc: &Efc) {
+        self.find_changes(island);
+        self.assemble(island, efc);
+        self.factorise();
+    }
+
+    /// Marks the rows whose constraints have other curvatures than at the last call.
+    fn find_changes(&mut self, island: &Island) {
+        let first = self.weight.is_empty() && self.zone.is_empty();
+        if first {
+            self.weight.extend(island.quads.iter().map(|q| q.weight));
+            self.zone.extend(island.cones.iter().map(|c| c.0.zone));
+            return;
+        }
+        for (i, (q, w)) in island.quads.iter().zip(&self.weight).enumerate() {
+            if i < island.friction_tiles && q.weight != *w {
+                self.changed[i] = true;
+            }
+        }
+        let weight = |row: usize| (island.quads[row / 4].weight[row % 4], self.weight[row / 4][row % 4]);
+        for s in &island.singles {
+            let (now, before) = weight(s.row);
+            if now != before {
+                self.changed[s.slot / 4] = true;
+            }
+        }
+        for (row, j) in &island.several {
+            let (now, before) = weight(*row);
+            if now != before {
+                island.cols(j).iter().for_each(|&c| self.changed[c as usize] = true);
+            }
+        }
+        for ((c, j), zone) in island.cones.iter().zip(&self.zone) {
+            if c.zone != *zone || c.zone == Zone::Surface {
+                island.cols(j).iter().for_each(|&c| self.changed[c as usize] = true);
+            }
+        }
+        for (w, q) in self.weight.iter_mut().zip(&island.quads) {
+            *w = q.weight;
+        }
+        for (z, c) in self.zone.iter_mut().zip(&island.cones) {
+            *z = c.0.zone;
+        }
+    }
+
+    /// Fills the changed rows of the matrix.
+    fn assemble(&mut self, island: &Island, efc: &Efc) {
+        let n = island.tiles();
+        for i in 0..n {
+            if !self.changed[i] {
                 continue;
             }
-            for (a, &col) in cols.iter().enumerate() {
-                let i = self.local[col as usize] as usize;
-                let row = &self.cols[self.row_adr[i]..self.row_adr[i + 1]];
-                let start = self.places.len();
-                let mut p = 0;
-                for &c in &cols[..=a] {
-                    let c = self.local[c as usize];
-                    while row[p] != c {
-                        p += 1;
-                    }
-                    self.places.push(p as u32);
-                }
-                let first = self.places[start];
-                self.targets.push(if p as u32 - first == a as u32 {
-                    self.places.truncate(start);
-                    Target::Run(first)
-                } else {
-                    Target::List(start as u32)
-                });
-            }
-        }
-    }
-
-    /// Assembles the Hessian at `jar`, with the zone of each block.
-    pub fn assemble(
-        &mut self,
-        topology: &Topology,
-        qm: &[f64],
-        blocks: &[u32],
-        zones: &[Zone],
-        efc: &Efc,
-        jar: &[f64],
-    ) {
-        for (i, &d) in self.dofs.iter().enumerate() {
-            let d = d as usize;
-            let range = self.row_adr[i]..self.row_adr[i + 1];
-            let (row, cols) = (&mut self.h[range.clone()], &self.cols[range]);
-            let inertia = &qm[topology.row_adr[d]..topology.row_adr[d + 1]];
+            let inertia = island.m_pattern.start(i)..island.m_pattern.start(i + 1);
+            let row = &mut self.h[self.pattern.start(i)..self.pattern.start(i + 1)];
+            let inertia = &island.m[inertia];
             if row.len() == inertia.len() {
                 row.copy_from_slice(inertia);
             } else {
-                row.fill(0.0);
-                let mut p = 0;
-                for (&a, &m) in topology.dof_chain(d).iter().zip(inertia) {
-                    let c = self.local[a as usize];
-                    while cols[p] != c {
-                        p += 1;
-                    }
-                    row[p] = m;
+                row.fill(ZERO);
+                let start = self.pattern.start(i);
+                for (m, &c) in inertia.iter().zip(island.m_pattern.cols(i)) {
+                    row[self.place[i * n + c as usize] as usize - start] = *m;
+                }
+            }
+            if let (Some(q), Some(diagonal)) = (island.quads[..island.friction_tiles].get(i), row.last_mut()) {
+                for k in 0..4 {
+                    diagonal[k][k] += q.weight[k];
                 }
             }
         }
-        for (index, &k) in blocks.iter().enumerate() {
-            let b = &efc.blocks[k as usize];
-            let zone = zones[index];
-            if zone == Zone::Flat {
+        for s in &island.singles {
+            let (i, k) = (s.slot / 4, s.slot % 4);
+            if self.changed[i] {
+                let weight = island.quads[s.row / 4].weight[s.row % 4];
+                self.h[self.pattern.start(i + 1) - 1][k][k] += weight * s.value * s.value;
+            }
+        }
+        for (row, j) in &island.several {
+            let mut weight = [0.0; 6];
+            for (k, w) in weight.iter_mut().enumerate().take(j.dim) {
+                *w = island.quads[(row + k) / 4].weight[(row + k) % 4];
+            }
+            if weight[0] != 0.0 && self.touches_changed(island, j) {
+                self.weigh_diagonal(j.values(efc), &weight, j.dim);
+                self.add_weighted(island, j, efc);
+            }
+        }
+        for (c, j) in &island.cones {
+            if c.zone == Zone::Flat || !self.touches_changed(island, j) {
                 continue;
             }
-            if b.dim == 1 && b.ncol == 1 {
-                let i = self.local[efc.cols[b.col] as usize] as usize;
-                let j = efc.jac[b.jac];
-                self.h[self.row_adr[i + 1] - 1] += efc.d[b.row] * j * j;
-                continue;
+            if c.zone == Zone::Quadratic {
+                self.weigh_diagonal(j.values(efc), &c.d, j.dim);
+            } else {
+                self.weigh(j.values(efc), &c.curvature(), j.dim);
             }
-            self.weigh(b, zone, efc, jar);
-            self.add_block(index, b, efc);
+            self.add_weighted(island, j, efc);
         }
     }
 
-    /// `weighted = C J` for one block.
-    fn weigh(&mut self, b: &Block, zone: Zone, efc: &Efc, jar: &[f64]) {
-        let (n, jac, rows) = (b.ncol, efc.jacobian(b), b.row..b.row + b.dim);
+    fn touches_changed(&self, island: &Island, j: &Jacobian) -> bool {
+        island.cols(j).iter().any(|&c| self.changed[c as usize])
+    }
+
+    /// `weighted = diag(weight) J`
+    fn weigh_diagonal(&mut self, jac: &[Lanes], weight: &[f64; 6], dim: usize) {
         self.weighted.clear();
-        if zone == Zone::Quadratic {
-            for (jac, &d) in jac.chunks_exact(n).zip(&efc.d[rows]) {
-                self.weighted.extend(jac.iter().map(|j| d * j));
-            }
-        } else {
-            self.weighted.resize(b.dim * n, 0.0);
-            let mut c = [0.0; 36];
-            cone_hessian(b, &jar[rows.clone()], &efc.d[rows], &mut c);
-            for (r, weighted) in self.weighted.chunks_exact_mut(n).enumerate() {
-                for (q, jac) in jac.chunks_exact(n).enumerate() {
-                    let v = c[r * b.dim + q];
-                    for (w, j) in weighted.iter_mut().zip(jac) {
-                        *w += v * j;
+        for rows in jac.chunks_exact(dim) {
+            self.weighted
+                .extend(rows.iter().zip(weight).map(|(row, w)| row.map(|v| w * v)));
+        }
+    }
+
+    /// `weighted = C J`
+    fn weigh(&mut self, jac: &[Lanes], c: &[[f64; 6]; 6], dim: usize) {
+        self.weighted.clear();
+        for rows in jac.chunks_exact(dim) {
+            for c in &c[..dim] {
+                let mut sum = [0.0; 4];
+                for (row, c) in rows.iter().zip(c) {
+                    for k in 0..4 {
+                        sum[k] += c * row[k];
                     }
                 }
+                self.weighted.push(sum);
             }
         }
     }
 
-    /// Adds `J' weighted` of one block to the lower triangle.
-    fn add_block(&mut self, index: usize, b: &Block, efc: &Efc) {
-        let (m, jac) = (b.ncol, efc.jacobian(b));
-        for (a, &col) in efc.columns(b).iter().enumerate() {
-            let i = self.local[col as usize] as usize;
-            let row = &mut self.h[self.row_adr[i]..self.row_adr[i + 1]];
-            match self.targets[self.target_adr[index] + a] {
-                Target::Run(first) => {
-                    let target = &mut row[first as usize..first as usize + a + 1];
-                    let mut r = 0;
-                    // three rows at a time: most contacts have three or six
-                    while r + 3 <= b.dim {
-                        let (j0, j1, j2) = (jac[r * m + a], jac[(r + 1) * m + a], jac[(r + 2) * m + a]);
-                        let w = &self.weighted[r * m..(r + 3) * m];
-                        let (w0, w1, w2) = (&w[..a + 1], &w[m..m + a + 1], &w[2 * m..2 * m + a + 1]);
-                        for (k, t) in target.iter_mut().enumerate() {
-                            *t += j0 * w0[k] + j1 * w1[k] + j2 * w2[k];
-                        }
-                        r += 3;
-                    }
-                    for r in r..b.dim {
-                        let j = jac[r * m + a];
-                        for (t, w) in target.iter_mut().zip(&self.weighted[r * m..]) {
-                            *t += j * w;
-                        }
-                    }
-                }
-                Target::List(start) => {
-                    let places = &self.places[start as usize..start as usize + a + 1];
-                    for r in 0..b.dim {
-                        let j = jac[r * m + a];
-                        for (&p, w) in places.iter().zip(&self.weighted[r * m..]) {
-                            row[p as usize] += j * w;
-                        }
-                    }
-                }
+    /// Adds `J' weighted` to the changed rows of the lower triangle.
+    fn add_weighted(&mut self, island: &Island, j: &Jacobian, efc: &Efc) {
+        let (n, cols) = (island.tiles(), island.cols(j));
+        for (a, (&i, rows)) in cols.iter().zip(j.values(efc).chunks_exact(j.dim)).enumerate() {
+            let i = i as usize;
+            if !self.changed[i] {
+                continue;
+            }
+            for (&c, weighted) in cols[..a + 1].iter().zip(self.weighted.chunks_exact(j.dim)) {
+                let place = self.place[i * n + c as usize] as usize;
+                add_outer_products(&mut self.h[place], rows, weighted);
             }
         }
     }
 
-    /// Factorises in place, `H = L' D L`.
-    pub fn factor(&mut self) {
-        for i in (0..self.dofs.len()).rev() {
-            let (head, tail) = self.h.split_at_mut(self.row_adr[i]);
-            let n = self.row_adr[i + 1] - self.row_adr[i] - 1;
-            let cols = &self.cols[self.row_adr[i]..][..n];
-            let inv = 1.0 / tail[n];
-            self.diag_inv[i] = inv;
-            let row = &mut tail[..n];
-            for (k, &j) in cols.iter().enumerate() {
-                let t = row[k] * inv;
-                let range = self.row_adr[j as usize]..self.row_adr[j as usize + 1];
-                let target = &mut head[range.clone()];
-                if target.len() == k + 1 {
-                    // the columns of row j are the first of row i
-                    for (a, b) in target.iter_mut().zip(&row[..k + 1]) {
-                        *a -= t * b;
-                    }
-                } else if t != 0.0 {
-                    let target_cols = &self.cols[range];
-                    let mut p = 0;
-                    for (&c, b) in cols[..k + 1].iter().zip(&row[..k + 1]) {
-                        while target_cols[p] != c {
-                            p += 1;
-                        }
-                        target[p] -= t * b;
-                    }
-                }
-            }
-            for v in row {
-                *v *= inv;
-            }
-        }
-    }
-
-    /// `out = -H^-1 gradient` on the island's degrees of freedom (both nv).
-    pub fn descend(&mut self, gradient: &[f64], out: &mut [f64]) {
-        let n = self.dofs.len();
-        let x = &mut self.x;
-        for (v, &d) in x.iter_mut().zip(&self.dofs) {
-            *v = -gradient[d as usize];
-        }
+    /// Factorises the changed rows and those they are eliminated into.
+    fn factorise(&mut self) {
+        let n = self.pattern.rows();
         for i in (0..n).rev() {
-            let xi = x[i];
-            if xi != 0.0 {
-                let range = self.row_adr[i]..self.row_adr[i + 1] - 1;
-                for (&c, v) in self.cols[range.clone()].iter().zip(&self.h[range]) {
-                    x[c as usize] -= v * xi;
+            let mut c = self.child[i];
+            while c != NONE && !self.changed[i] {
+                self.changed[i] = self.changed[c as usize];
+                c = self.sibling[c as usize];
+            }
+            if self.changed[i] {
+                self.factorise_row(i);
+            }
+        }
+        self.changed.fill(false);
+    }
+
+    fn factorise_row(&mut self, i: usize) {
+        let range = self.pattern.start(i)..self.pattern.start(i + 1);
+        let cols = self.pattern.cols(i);
+        let count = cols.len() - 1;
+        let start = self.update_adr[i];
+        let (mine, others) = self.update[start..].split_at_mut(count * (count + 1) / 2);
+        let first = start + mine.len();
+        let row = &mut self.factor[range.clone()];
+        row.copy_from_slice(&self.h[range]);
+        let mut c = self.child[i] as usize;
+        if self.child[i] == NONE {
+            mine.fill(ZERO);
+        } else {
+            // the last column of a child is this row
+            let mut empty = true;
+            while c != NONE as usize {
+                let child_cols = &self.pattern.cols(c)[..self.pattern.cols(c).len() - 1];
+                let update = &others[self.update_adr[c] - first..];
+                let m = child_cols.len() - 1;
+                let (triangle, last) = update[..(m + 1) * (m + 2) / 2].split_at(m * (m + 1) / 2);
+                if m == count {
+                    row.iter_mut().zip(last).for_each(|(r, u)| add(r, u));
+                    if empty {
+                        mine.copy_from_slice(triangle);
+                    } else {
+                        mine.iter_mut().zip(triangle).for_each(|(r, u)| add(r, u));
+                    }
+                } else {
+                    if empty {
+                        mine.fill(ZERO);
+                    }
+                    extend_add(cols, child_cols, row, mine, update);
                 }
+                empty = false;
+                c = self.sibling[c] as usize;
             }
         }
-        for (v, inv) in x.iter_mut().zip(&self.diag_inv) {
-            *v *= inv;
-        }
-        for i in 0..n {
-            let range = self.row_adr[i]..self.row_adr[i + 1] - 1;
-            let mut sum = 0.0;
-            for (&c, v) in self.cols[range.clone()].iter().zip(&self.h[range]) {
-                sum += v * x[c as usize];
+        let (row, rest) = row.split_at_mut(count);
+        let diagonal = &mut rest[0];
+        let inv = factor_diagonal(diagonal);
+        self.inv[i] = inv;
+        let mut triangle = mine.iter_mut();
+        for a in 0..count {
+            solve_columns(diagonal, &mut row[a]);
+            let l = scale_rows(&row[a], &inv);
+            for (g, u) in row[..a].iter().zip(&mut triangle) {
+                sub_transposed_product(u, &l, g);
             }
-            x[i] -= sum;
+            if let Some(u) = triangle.next() {
+                sub_transposed_product_diagonal(u, &l, &row[a]);
+            }
         }
-        for (v, &d) in x.iter().zip(&self.dofs) {
-            out[d as usize] = *v;
+    }
+
+    /// Sets `out` to minus the inverse times `gradient`.
+    pub(super) fn descend(&self, gradient: &[Lanes], out: &mut [Lanes]) {
+        for (o, g) in out.iter_mut().zip(gradient) {
+            *o = g.map(|v| -v);
+        }
+        solve(&self.pattern, &self.factor, &self.inv, out);
+    }
+}
+
+/// Adds the update of a row with `child_cols` to the row with `cols` that it is eliminated into, and to that row's update.
+fn extend_add(cols: &[u32], child_cols: &[u32], row: &mut [Tile], update: &mut [Tile], child: &[Tile]) {
+    let mut child = child.iter();
+    let mut a = 0;
+    for (n, col) in child_cols.iter().enumerate() {
+        while cols[a] != *col {
+            a += 1;
+        }
+        let target = if a + 1 == cols.len() {
+            &mut *row
+        } else {
+            &mut update[a * (a + 1) / 2..]
+        };
+        let mut b = 0;
+        for (col, u) in child_cols[..n + 1].iter().zip(&mut child) {
+            while cols[b] != *col {
+                b += 1;
+            }
+            add(&mut target[b], u);
+        }
+    }
+}
+
+#[inline(always)]
+fn add(a: &mut Tile, b: &Tile) {
+    for i in 0..4 {
+        for j in 0..4 {
+            a[i][j] += b[i][j];
         }
     }
 }
 
 #[inline]
-fn set(bits: &mut [u64], words: usize, i: usize, j: usize) {
-    bits[i * words + j / 64] |= 1 << (j % 64);
+fn set(bits: &mut [u64], i: u32) {
+    bits[i as usize / 64] |= 1 << (i % 64);
 }

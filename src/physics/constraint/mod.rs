@@ -9,13 +9,17 @@
 mod cone;
 mod hessian;
 mod impedance;
+mod island;
 mod line_search;
 mod newton;
 mod rows;
 
 pub use impedance::{Impedance, impedance};
 pub use newton::Newton;
-pub use rows::{Weld, make_constraints, weld_points};
+pub use rows::{RowBuilder, Weld, weld_points};
+
+use crate::physics::tiles::Lanes;
+use crate::physics::topology::Topology;
 
 /// What a block of rows constrains; blocks stand in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -44,12 +48,14 @@ pub struct Block {
     pub row: usize,
     /// Number of rows.
     pub dim: usize,
-    /// First column entry in [`Efc::cols`].
+    /// First tile in [`Efc::cols`].
     pub col: usize,
-    /// Number of columns.
+    /// Number of tiles.
     pub ncol: usize,
-    /// First value in [`Efc::jac`]; row-major, `dim` by `ncol`.
+    /// First entry in [`Efc::jac`].
     pub jac: usize,
+    /// The degree of freedom of a row that has only one.
+    pub dof: Option<usize>,
     /// Bound of dry friction, N m.
     pub frictionloss: f64,
     /// Slope of the regularised friction cone.
@@ -63,10 +69,10 @@ pub struct Block {
 pub struct Efc {
     /// Blocks, in row order.
     pub blocks: Vec<Block>,
-    /// Degrees of freedom of each block's columns, ascending.
+    /// Tiles of degrees of freedom ([`Topology::tiles`]) in which each block has entries, ascending.
     pub cols: Vec<u32>,
-    /// Jacobian values.
-    pub jac: Vec<f64>,
+    /// Jacobian values of each block: for each of its tiles, `dim` rows.
+    pub jac: Vec<Lanes>,
     /// Constraint violation of each row, m or rad.
     pub pos: Vec<f64>,
     /// Margin of each row.
@@ -97,8 +103,8 @@ impl Efc {
         let reserved = || Vec::with_capacity(rows);
         Self {
             blocks: Vec::with_capacity(contacts + 3 * nv),
-            cols: Vec::with_capacity(16 * contacts + 3 * nv),
-            jac: Vec::with_capacity(64 * contacts + 9 * nv),
+            cols: Vec::with_capacity(8 * contacts + 3 * nv),
+            jac: Vec::with_capacity(32 * contacts + 9 * nv),
             pos: reserved(),
             margin: reserved(),
             diag_approx: reserved(),
@@ -114,8 +120,8 @@ impl Efc {
     pub fn clear(&mut self) {
         self.blocks.clear();
         self.cols.clear();
+        self.jac.clear();
         for v in [
-            &mut self.jac,
             &mut self.pos,
             &mut self.margin,
             &mut self.diag_approx,
@@ -129,13 +135,21 @@ impl Efc {
         }
     }
 
-    /// Columns of a block.
-    pub fn columns(&self, b: &Block) -> &[u32] {
-        &self.cols[b.col..b.col + b.ncol]
+    /// Tiles of a block, and for each of them `dim` rows.
+    pub fn tiles(&self, b: &Block) -> impl Iterator<Item = (u32, &[Lanes])> {
+        let rows = self.jac[b.jac..b.jac + b.dim * b.ncol].chunks_exact(b.dim.max(1));
+        self.cols[b.col..b.col + b.ncol].iter().copied().zip(rows)
     }
 
-    /// Jacobian of a block, row-major.
-    pub fn jacobian(&self, b: &Block) -> &[f64] {
-        &self.jac[b.jac..b.jac + b.dim * b.ncol]
+    /// Entries of the Jacobian of a block: row in the block, degree of freedom, value.
+    pub fn entries(&self, topology: &Topology, b: &Block) -> impl Iterator<Item = (usize, usize, f64)> {
+        self.tiles(b).flat_map(move |(tile, rows)| {
+            let (first, lanes) = (topology.tile_dof[tile as usize], topology.lanes(tile as usize));
+            let row = move |(r, row): (usize, &Lanes)| {
+                let row = *row;
+                (0..lanes).map(move |k| (r, first + k, row[k]))
+            };
+            rows.iter().enumerate().flat_map(row)
+        })
     }
 }

@@ -1,51 +1,45 @@
 //! Newton's method on the accelerations, island by island.
 
+use std::ops::Range;
+
 use crate::math::MINVAL;
 use crate::model::Model;
-use crate::physics::constraint::cone::{Zone, evaluate};
+use crate::physics::constraint::Efc;
 use crate::physics::constraint::hessian::Hessian;
+use crate::physics::constraint::island::Island;
 use crate::physics::constraint::line_search::LineSearch;
-use crate::physics::constraint::{Block, Efc};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
 /// The constraint solver and its working memory.
 #[derive(Clone, Debug, Default)]
 pub struct Newton {
+    island: Island,
     hessian: Hessian,
-    line: LineSearch,
     /// Union-find over trees.
     parent: Vec<usize>,
     /// Trees of the island at hand.
     trees: Vec<usize>,
-    /// Blocks of the island at hand.
+    /// Island (first tree) of each block.
+    block_tree: Vec<u32>,
+    /// Blocks, by island.
     blocks: Vec<u32>,
-    /// Island (root tree) of each block.
-    block_root: Vec<usize>,
-    /// Degrees of freedom, full length; only the island's entries are touched.
-    ma: Vec<f64>,
-    gradient: Vec<f64>,
-    search: Vec<f64>,
-    m_search: Vec<f64>,
-    /// Rows, full length.
-    jar: Vec<f64>,
-    jv: Vec<f64>,
-    zones: Vec<Zone>,
+    /// First block of each island, by its first tree.
+    block_adr: Vec<usize>,
 }
 
 impl Newton {
     /// With memory for `nv` degrees of freedom and `contacts` contacts, so that solving need not allocate.
     pub fn with_capacity(nv: usize, contacts: usize) -> Self {
-        let (blocks, rows) = (contacts + 4 * nv, 4 * contacts + 4 * nv);
+        let blocks = contacts + 4 * nv;
         Self {
+            island: Island::with_capacity(nv, contacts),
             hessian: Hessian::with_capacity(nv, contacts),
-            line: LineSearch::with_capacity(nv, contacts),
+            parent: Vec::with_capacity(nv),
+            trees: Vec::with_capacity(nv),
+            block_tree: Vec::with_capacity(blocks),
             blocks: Vec::with_capacity(blocks),
-            block_root: Vec::with_capacity(blocks),
-            zones: Vec::with_capacity(blocks),
-            jar: Vec::with_capacity(rows),
-            jv: Vec::with_capacity(rows),
-            ..Self::default()
+            block_adr: Vec::with_capacity(nv + 2),
         }
     }
 
@@ -57,31 +51,19 @@ impl Newton {
         s.qfrc_constraint.fill(0.0);
         s.solver_iterations = 0;
         if s.efc.nefc() > 0 {
-            let (nv, nefc) = (model.nv, s.efc.nefc());
-            for v in [&mut self.ma, &mut self.gradient, &mut self.search, &mut self.m_search] {
-                v.resize(nv, 0.0);
-            }
-            self.jar.resize(nefc, 0.0);
-            self.jv.resize(nefc, 0.0);
-            self.find_islands(topology, &s.efc);
+            let mut efc = std::mem::take(&mut s.efc);
+            self.find_islands(topology, &efc);
             for root in 0..topology.ntree() {
-                self.blocks.clear();
-                self.blocks
-                    .extend((0..s.efc.blocks.len() as u32).filter(|&k| self.block_root[k as usize] == root));
-                if self.blocks.is_empty() {
+                let blocks = self.block_adr[root]..self.block_adr[root + 1];
+                if blocks.is_empty() {
                     continue;
                 }
                 self.trees.clear();
-                for t in root..topology.ntree() {
-                    if find(&mut self.parent, t) == root {
-                        self.trees.push(t);
-                    }
-                }
-                self.island(model, topology, s);
+                self.trees
+                    .extend((root..topology.ntree()).filter(|&t| self.parent[t] == root));
+                self.solve_island(model, topology, blocks, &mut efc, s);
             }
-            for b in &s.efc.blocks {
-                add_transposed(&s.efc, b, 1.0, &s.efc.force, &mut s.qfrc_constraint);
-            }
+            s.efc = efc;
         }
         for c in &mut s.contacts {
             c.force = [0.0; 6];
@@ -92,101 +74,99 @@ impl Newton {
         s.qacc_warmstart.copy_from_slice(&s.qacc);
     }
 
-    /// Trees that share a block belong together; the island's name is its first tree.
+    /// Trees that share a block belong together; the island's name is its first tree. Sorts the blocks by island.
     fn find_islands(&mut self, topology: &Topology, efc: &Efc) {
+        let ntree = topology.ntree();
         self.parent.clear();
-        self.parent.extend(0..topology.ntree());
-        let tree_of = |col: u32| topology.dof_tree[col as usize];
+        self.parent.extend(0..ntree);
+        self.block_tree.clear();
         for b in &efc.blocks {
-            let cols = efc.columns(b);
-            for &c in &cols[1..] {
-                let (a, c) = (
-                    find(&mut self.parent, tree_of(cols[0])),
-                    find(&mut self.parent, tree_of(c)),
-                );
-                self.parent[a.max(c)] = a.min(c);
+            let first = topology.tile_tree(efc.cols[b.col] as usize);
+            let mut last = first;
+            for &tile in &efc.cols[b.col + 1..b.col + b.ncol] {
+                let tree = topology.tile_tree(tile as usize);
+                if tree != last {
+                    let (a, c) = (find(&mut self.parent, first), find(&mut self.parent, tree));
+                    self.parent[a.max(c)] = a.min(c);
+                    last = tree;
+                }
             }
+            self.block_tree.push(first as u32);
         }
-        self.block_root.clear();
-        for b in &efc.blocks {
-            self.block_root.push(find(&mut self.parent, tree_of(efc.cols[b.col])));
+        for t in 0..ntree {
+            self.parent[t] = find(&mut self.parent, t);
+        }
+        // counting sort
+        self.block_adr.clear();
+        self.block_adr.resize(ntree + 2, 0);
+        for tree in &mut self.block_tree {
+            *tree = self.parent[*tree as usize] as u32;
+            self.block_adr[*tree as usize + 2] += 1;
+        }
+        for t in 0..ntree {
+            self.block_adr[t + 2] += self.block_adr[t + 1];
+        }
+        self.blocks.clear();
+        self.blocks.resize(efc.blocks.len(), 0);
+        for (k, &tree) in self.block_tree.iter().enumerate() {
+            let place = &mut self.block_adr[tree as usize + 1];
+            self.blocks[*place] = k as u32;
+            *place += 1;
         }
     }
 
-    fn island(&mut self, model: &Model, topology: &Topology, s: &mut State) {
-        let State {
-            efc,
-            qm,
-            qfrc_smooth,
-            qacc_smooth,
-            qacc_warmstart,
-            qacc,
-            solver_iterations,
-            ..
-        } = s;
-        let problem = Problem {
-            topology,
-            trees: &self.trees,
-            blocks: &self.blocks,
-            qm,
-            qfrc_smooth,
-            qacc_smooth,
-        };
-        let mut force = std::mem::take(&mut efc.force);
-        let (ma, jar, zones) = (&mut self.ma, &mut self.jar, &mut self.zones);
-
-        let smooth_cost = problem.cost_at(efc, qacc_smooth, qfrc_smooth, jar, &mut force, zones);
-        problem.mul_m(qacc_warmstart, ma);
-        let mut cost = problem.cost_at(efc, qacc_warmstart, ma, jar, &mut force, zones);
-        if cost < smooth_cost {
-            problem.for_dofs(|d| qacc[d] = qacc_warmstart[d]);
-        } else {
-            // M qacc_smooth is qfrc_smooth
-            problem.for_dofs(|d| (qacc[d], ma[d]) = (qacc_smooth[d], qfrc_smooth[d]));
-            cost = problem.cost_at(efc, qacc_smooth, ma, jar, &mut force, zones);
+    fn solve_island(&mut self, model: &Model, topology: &Topology, blocks: Range<usize>, efc: &mut Efc, s: &mut State) {
+        let (island, hessian) = (&mut self.island, &mut self.hessian);
+        island.load(topology, &self.trees, &self.blocks[blocks], efc, s);
+        island.start_smooth(efc);
+        let smooth_cost = island.evaluate();
+        island.start_at(topology, &s.qacc_warmstart, efc);
+        let mut cost = island.evaluate();
+        // a warm start that is no number costs no less
+        let warm = cost < smooth_cost;
+        if !warm {
+            island.start_smooth(efc);
+            cost = island.evaluate();
         }
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
-        problem.gradient(efc, ma, &force, &mut self.gradient);
-        self.hessian.analyse(topology, &self.trees, &self.blocks, efc);
+        let length = island.differentiate(efc);
+        // what rests needs no step: the Hessian exceeds the inertia, so its steps are bounded by the inertia's inverse
+        let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(model, t)).sum();
+        if mobility > 0.0 && length * length * mobility < MINVAL {
+            island.store(topology, efc, s);
+            return;
+        }
+        hessian.analyse(island);
         for _ in 0..model.opt.iterations {
-            self.hessian
-                .assemble(topology, problem.qm, &self.blocks, zones, efc, jar);
-            self.hessian.factor();
-            self.hessian.descend(&self.gradient, &mut self.search);
-            problem.mul_m(&self.search, &mut self.m_search);
-            problem.mul_j(efc, &self.search, &mut self.jv);
-            let (mut slope, mut curvature, mut length) = (0.0, 0.0, 0.0);
-            problem.for_dofs(|d| {
-                slope += self.search[d] * (ma[d] - qfrc_smooth[d]);
-                curvature += self.search[d] * self.m_search[d];
-                length += self.search[d] * self.search[d];
-            });
-            let length = length.sqrt();
-            if length < MINVAL {
+            hessian.refresh(island, efc);
+            hessian.descend(&island.gradient, &mut island.search);
+            island.follow_search(efc);
+            let along = island.along_search();
+            // H search is minus the gradient: the curvature is minus the slope
+            if along.length < MINVAL || along.slope >= 0.0 || -along.slope < MINVAL {
                 break;
             }
-            self.line.prepare(slope, curvature, &self.blocks, efc, jar, &self.jv);
-            let tolerance = model.opt.tolerance * model.opt.ls_tolerance * length / scale;
-            let alpha = self.line.minimise(tolerance, model.opt.ls_iterations);
+            island.cones.iter_mut().for_each(|(c, _)| c.prepare_line());
+            let line = LineSearch {
+                slope: along.inertial_slope,
+                curvature: along.inertial_curvature,
+                island,
+            };
+            let tolerance = model.opt.tolerance * model.opt.ls_tolerance * along.length / scale;
+            let alpha = line.minimise(1.0, tolerance, model.opt.ls_iterations);
             if alpha == 0.0 {
                 break;
             }
-            *solver_iterations += 1;
-            problem.for_dofs(|d| {
-                qacc[d] += alpha * self.search[d];
-                ma[d] += alpha * self.m_search[d];
-            });
-            problem.for_rows(efc, |i| jar[i] += alpha * self.jv[i]);
+            s.solver_iterations += 1;
+            island.advance(alpha);
             let previous = cost;
-            cost = problem.cost(efc, qacc, ma, jar, &mut force, zones);
-            problem.gradient(efc, ma, &force, &mut self.gradient);
-            let mut norm = 0.0;
-            problem.for_dofs(|d| norm += self.gradient[d] * self.gradient[d]);
-            if scale * (previous - cost) < model.opt.tolerance || scale * norm.sqrt() < model.opt.tolerance {
+            cost = island.evaluate();
+            let length = island.differentiate(efc);
+            if scale * (previous - cost) < model.opt.tolerance || scale * length < model.opt.tolerance {
                 break;
             }
         }
-        efc.force = force;
+        island.store(topology, efc, s);
     }
 }
 
@@ -197,129 +177,4 @@ fn find(parent: &mut [usize], mut t: usize) -> usize {
         t = parent[t];
     }
     t
-}
-
-/// `out += sign J' force` of one block.
-#[inline]
-fn add_transposed(efc: &Efc, b: &Block, sign: f64, force: &[f64], out: &mut [f64]) {
-    let (cols, jac) = (efc.columns(b), efc.jacobian(b));
-    for r in 0..b.dim {
-        let f = sign * force[b.row + r];
-        if f != 0.0 {
-            for (&c, j) in cols.iter().zip(&jac[r * b.ncol..]) {
-                out[c as usize] += j * f;
-            }
-        }
-    }
-}
-
-/// What does not change while an island is solved.
-struct Problem<'a> {
-    topology: &'a Topology,
-    trees: &'a [usize],
-    blocks: &'a [u32],
-    qm: &'a [f64],
-    qfrc_smooth: &'a [f64],
-    qacc_smooth: &'a [f64],
-}
-
-impl Problem<'_> {
-    #[inline]
-    fn for_dofs(&self, mut f: impl FnMut(usize)) {
-        for &t in self.trees {
-            for d in self.topology.tree_adr[t]..self.topology.tree_adr[t + 1] {
-                f(d);
-            }
-        }
-    }
-
-    #[inline]
-    fn for_rows(&self, efc: &Efc, mut f: impl FnMut(usize)) {
-        for &k in self.blocks {
-            let b = &efc.blocks[k as usize];
-            for i in b.row..b.row + b.dim {
-                f(i);
-            }
-        }
-    }
-
-    /// `out = M x` on the island.
-    fn mul_m(&self, x: &[f64], out: &mut [f64]) {
-        let adr = &self.topology.row_adr;
-        self.for_dofs(|d| out[d] = 0.0);
-        self.for_dofs(|i| {
-            let (start, diag) = (adr[i], adr[i + 1] - 1);
-            let xi = x[i];
-            let mut sum = self.qm[diag] * xi;
-            for (&j, &v) in self.topology.chain[start..diag].iter().zip(&self.qm[start..diag]) {
-                sum += v * x[j as usize];
-                out[j as usize] += v * xi;
-            }
-            out[i] += sum;
-        });
-    }
-
-    /// `out = J x` on the island's rows.
-    fn mul_j(&self, efc: &Efc, x: &[f64], out: &mut [f64]) {
-        for &k in self.blocks {
-            let b = &efc.blocks[k as usize];
-            if b.ncol == 1 {
-                out[b.row] = efc.jac[b.jac] * x[efc.cols[b.col] as usize];
-                continue;
-            }
-            let (cols, jac) = (efc.columns(b), efc.jacobian(b));
-            for r in 0..b.dim {
-                let mut sum = 0.0;
-                for (&c, j) in cols.iter().zip(&jac[r * b.ncol..]) {
-                    sum += j * x[c as usize];
-                }
-                out[b.row + r] = sum;
-            }
-        }
-    }
-
-    /// Cost at `x` with `ma` up to date; fills `jar`, the forces and the zones.
-    fn cost_at(
-        &self,
-        efc: &Efc,
-        x: &[f64],
-        ma: &[f64],
-        jar: &mut [f64],
-        force: &mut [f64],
-        zones: &mut Vec<Zone>,
-    ) -> f64 {
-        self.mul_j(efc, x, jar);
-        self.for_rows(efc, |i| jar[i] -= efc.aref[i]);
-        self.cost(efc, x, ma, jar, force, zones)
-    }
-
-    /// Cost at `x` with `ma` and `jar` up to date.
-    fn cost(&self, efc: &Efc, x: &[f64], ma: &[f64], jar: &[f64], force: &mut [f64], zones: &mut Vec<Zone>) -> f64 {
-        let mut cost = 0.0;
-        self.for_dofs(|d| cost += 0.5 * (ma[d] - self.qfrc_smooth[d]) * (x[d] - self.qacc_smooth[d]));
-        zones.clear();
-        for &k in self.blocks {
-            let b = &efc.blocks[k as usize];
-            let rows = b.row..b.row + b.dim;
-            let (c, zone) = evaluate(
-                b,
-                &jar[rows.clone()],
-                &efc.d[rows.clone()],
-                &efc.r[rows.clone()],
-                &mut force[rows],
-            );
-            cost += c;
-            zones.push(zone);
-        }
-        cost
-    }
-
-    /// `gradient = M x - qfrc_smooth - J' force`
-    fn gradient(&self, efc: &Efc, ma: &[f64], force: &[f64], gradient: &mut [f64]) {
-        self.for_dofs(|d| gradient[d] = ma[d] - self.qfrc_smooth[d]);
-        for &k in self.blocks {
-            let b = &efc.blocks[k as usize];
-            add_transposed(efc, b, -1.0, force, gradient);
-        }
-    }
 }

@@ -3,12 +3,9 @@
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
 use crate::physics::constraint::{Block, Efc, RowKind, impedance};
-use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
+use crate::physics::tiles::{Lanes, total};
 use crate::physics::topology::Topology;
-
-/// One column of the Jacobian of a relative motion: degree of freedom, translation, rotation.
-type Column = (u32, Vec3, Vec3);
 
 /// Pose error of a weld and what its Jacobian needs.
 #[derive(Clone, Copy, Debug)]
@@ -79,45 +76,126 @@ pub fn weld_points(model: &Model, s: &State, id: usize) -> Option<Weld> {
     })
 }
 
-/// Fills `s.efc` from the position stage, the contacts and `qvel`: equalities, friction loss, limits of joints and
-/// tendons, contacts. `columns` is working memory.
-pub fn make_constraints(model: &Model, topology: &Topology, s: &mut State, columns: &mut Vec<Column>) {
-    let mut efc = std::mem::take(&mut s.efc);
-    efc.clear();
-    let mut rows = Rows { model, efc: &mut efc };
-    equalities(&mut rows, topology, s, columns);
-    for d in 0..model.nv {
-        let loss = model.dof_frictionloss[d];
-        if loss > 0.0 {
-            let spec = Spec {
-                solref: model.dof_solref[d],
-                solimp: model.dof_solimp[d],
-                diag: model.dof_invweight0[d],
-            };
-            rows.single(RowKind::FrictionLoss, d, d, 1.0);
-            rows.block_mut().frictionloss = loss;
-            rows.row(0.0, 0.0, 0.0, spec);
-        }
-    }
-    limits(&mut rows, s);
-    for i in 0..s.contacts.len() {
-        contact(&mut rows, topology, s, i, columns);
-    }
-    // vel holds the damping of each row until here
-    efc.force.resize(efc.pos.len(), 0.0);
-    for k in 0..efc.blocks.len() {
-        let b = efc.blocks[k];
-        for r in 0..b.dim {
-            let mut v = 0.0;
-            for c in 0..b.ncol {
-                v += efc.jac[b.jac + r * b.ncol + c] * s.qvel[efc.cols[b.col + c] as usize];
+/// Builds the constraint rows. Keeps those of dry friction, which are always the same.
+#[derive(Clone, Debug, Default)]
+pub struct RowBuilder {
+    friction: Efc,
+    /// Damping of each row of dry friction.
+    damping: Vec<f64>,
+    /// `qvel` in lanes.
+    qvel: Vec<Lanes>,
+}
+
+impl RowBuilder {
+    /// For `model`.
+    pub fn new(model: &Model, topology: &Topology) -> Self {
+        let mut friction = Efc::default();
+        let mut rows = Rows {
+            model,
+            topology,
+            efc: &mut friction,
+        };
+        for d in 0..model.nv {
+            let loss = model.dof_frictionloss[d];
+            if loss > 0.0 {
+                let spec = Spec {
+                    solref: model.dof_solref[d],
+                    solimp: model.dof_solimp[d],
+                    diag: model.dof_invweight0[d],
+                };
+                rows.single(RowKind::FrictionLoss, d, d, 1.0);
+                rows.block_mut().frictionloss = loss;
+                rows.row(0.0, 0.0, 0.0, spec);
             }
-            let damping = efc.vel[b.row + r];
-            efc.aref[b.row + r] -= damping * v;
-            efc.vel[b.row + r] = v;
+        }
+        Self {
+            damping: friction.vel.clone(),
+            friction,
+            qvel: vec![[0.0; 4]; topology.tiles.rows()],
         }
     }
-    s.efc = efc;
+
+    /// Fills `s.efc` from the position stage, the contacts and `qvel`: equalities, friction loss, limits of joints and
+    /// tendons, contacts.
+    pub fn build(&mut self, model: &Model, topology: &Topology, s: &mut State) {
+        let mut efc = std::mem::take(&mut s.efc);
+        efc.clear();
+        topology.to_lanes(&s.qvel, &mut self.qvel);
+        let mut rows = Rows {
+            model,
+            topology,
+            efc: &mut efc,
+        };
+        equalities(&mut rows, s);
+        self.add_friction(rows.efc, s);
+        limits(&mut rows, s);
+        for i in 0..s.contacts.len() {
+            contact(&mut rows, s, i);
+        }
+        self.add_velocities(&mut efc, s);
+        s.efc = efc;
+    }
+
+    /// Appends dry friction.
+    fn add_friction(&self, efc: &mut Efc, s: &State) {
+        let f = &self.friction;
+        let (row, col, jac) = (efc.pos.len(), efc.cols.len(), efc.jac.len());
+        efc.blocks.extend(f.blocks.iter().map(|b| Block {
+            row: row + b.row,
+            col: col + b.col,
+            jac: jac + b.jac,
+            ..*b
+        }));
+        efc.cols.extend_from_slice(&f.cols);
+        efc.jac.extend_from_slice(&f.jac);
+        for (to, from) in [
+            (&mut efc.pos, &f.pos),
+            (&mut efc.margin, &f.margin),
+            (&mut efc.diag_approx, &f.diag_approx),
+            (&mut efc.r, &f.r),
+            (&mut efc.d, &f.d),
+        ] {
+            to.extend_from_slice(from);
+        }
+        for (b, damping) in f.blocks.iter().zip(&self.damping) {
+            let v = s.qvel[b.id];
+            efc.vel.push(v);
+            efc.aref.push(0.0 - damping * v);
+        }
+    }
+
+    /// Velocities of all rows but those of dry friction; `vel` holds the damping of each until here.
+    fn add_velocities(&self, efc: &mut Efc, s: &State) {
+        efc.force.resize(efc.pos.len(), 0.0);
+        for k in 0..efc.blocks.len() {
+            let b = &efc.blocks[k];
+            if b.kind == RowKind::FrictionLoss {
+                continue;
+            }
+            let (row, dim, dof) = (b.row, b.dim, b.dof);
+            let mut v = [0.0; 6];
+            if let Some(dof) = dof {
+                let value = efc.jac[b.jac].iter().find(|v| **v != 0.0);
+                v[0] = value.copied().unwrap_or(0.0) * s.qvel[dof];
+            } else {
+                let mut sums = [[0.0; 4]; 6];
+                for (tile, rows) in efc.tiles(b) {
+                    let x = &self.qvel[tile as usize];
+                    for (sum, row) in sums.iter_mut().zip(rows) {
+                        for k in 0..4 {
+                            sum[k] += row[k] * x[k];
+                        }
+                    }
+                }
+                v = sums.map(|s| total(&s));
+            }
+            let rows = row..row + dim;
+            for ((vel, aref), v) in efc.vel[rows.clone()].iter_mut().zip(&mut efc.aref[rows]).zip(v) {
+                *aref -= *vel * v;
+                *vel = v;
+            }
+        }
+    }
 }
 
 /// Parameters shared by the rows of a block.
@@ -131,11 +209,13 @@ struct Spec {
 /// Appends blocks and rows.
 struct Rows<'a> {
     model: &'a Model,
+    topology: &'a Topology,
     efc: &'a mut Efc,
 }
 
 impl Rows<'_> {
-    fn block(&mut self, kind: RowKind, id: usize, dim: usize, ncol: usize) {
+    /// Starts a block without columns.
+    fn block(&mut self, kind: RowKind, id: usize, dim: usize) {
         let e = &mut *self.efc;
         e.blocks.push(Block {
             kind,
@@ -143,7 +223,6 @@ impl Rows<'_> {
             row: e.pos.len(),
             dim,
             col: e.cols.len(),
-            ncol,
             jac: e.jac.len(),
             ..Block::default()
         });
@@ -154,15 +233,82 @@ impl Rows<'_> {
         &mut self.efc.blocks[last]
     }
 
+    /// Adds to the entry of a degree of freedom in the last block, whose dimension is 1. Degrees of freedom come
+    /// ascending.
+    fn entry(&mut self, dof: usize, value: f64) {
+        let slot = self.topology.slot[dof];
+        let e = &mut *self.efc;
+        let last = e.blocks.len() - 1;
+        let b = &mut e.blocks[last];
+        if b.ncol == 0 || e.cols.last() != Some(&(slot / 4)) {
+            e.cols.push(slot / 4);
+            e.jac.push([0.0; 4]);
+            b.ncol += 1;
+        }
+        if let Some(lanes) = e.jac.last_mut() {
+            lanes[slot as usize % 4] += value;
+        }
+    }
+
     /// Starts a block with one row on one degree of freedom.
     fn single(&mut self, kind: RowKind, id: usize, dof: usize, value: f64) {
-        self.block(kind, id, 1, 1);
-        self.efc.cols.push(dof as u32);
-        self.efc.jac.push(value);
+        self.block(kind, id, 1);
+        self.entry(dof, value);
+        self.block_mut().dof = Some(dof);
+    }
+
+    /// Starts a block for the motion of a point of body `b` relative to a point of body `a`, over the tiles that move either;
+    /// those that move both alike are left out. `rows` turns translation and rotation (three axes each) of a tile into rows.
+    fn relative(
+        &mut self,
+        (kind, id, dim): (RowKind, usize, usize),
+        s: &State,
+        (a, point_a): (usize, Vec3),
+        (b, point_b): (usize, Vec3),
+        mut rows: impl FnMut(&[Lanes; 3], &[Lanes; 3], &mut Vec<Lanes>),
+    ) {
+        self.block(kind, id, dim);
+        let (model, topology) = (self.model, self.topology);
+        let (mut tiles_a, mut tiles_b) = (topology.body_tiles(a), topology.body_tiles(b));
+        // of the same tree, or one of them is not used
+        let com_a = s.subtree_com[model.body_rootid[a]];
+        let com_b = s.subtree_com[model.body_rootid[b]];
+        let (offset_a, offset_b) = (sub(point_a, com_a), sub(point_b, com_b));
+        let mut ncol = 0;
+        loop {
+            let next = |tiles: &[(u32, u32)]| tiles.first().map_or((u32::MAX, 0), |t| *t);
+            let ((tile_a, lanes_a), (tile_b, lanes_b)) = (next(tiles_a), next(tiles_b));
+            let tile = tile_a.min(tile_b);
+            if tile == u32::MAX {
+                break;
+            }
+            let (mut translation, mut rotation) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
+            let cdof = &s.cdof_lanes[tile as usize];
+            if tile_b == tile {
+                tiles_b = &tiles_b[1..];
+            }
+            if tile_a == tile {
+                tiles_a = &tiles_a[1..];
+            }
+            if tile_a == tile_b && lanes_a == lanes_b && point_a == point_b {
+                continue;
+            }
+            if tile_b == tile {
+                add_motion(cdof, lanes_b, offset_b, |v, w| v + w, &mut translation, &mut rotation);
+            }
+            if tile_a == tile {
+                add_motion(cdof, lanes_a, offset_a, |v, w| v - w, &mut translation, &mut rotation);
+            }
+            self.efc.cols.push(tile);
+            rows(&translation, &rotation, &mut self.efc.jac);
+            ncol += 1;
+        }
+        self.block_mut().ncol = ncol;
     }
 
     /// Appends a row whose impedance follows from `violation` (the distance to the margin, or the norm of a weld's error).
-    fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) {
+    /// Returns its damping.
+    fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
         let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.timestep);
         let r = ((1.0 - i.imp) / i.imp * spec.diag).max(MINVAL);
         let k = if self.block_mut().kind == RowKind::FrictionLoss {
@@ -171,6 +317,7 @@ impl Rows<'_> {
             i.k
         };
         self.push(pos, margin, spec.diag, r, -k * i.imp * (pos - margin), i.b);
+        i.b
     }
 
     fn push(&mut self, pos: f64, margin: f64, diag: f64, r: f64, aref: f64, damping: f64) {
@@ -185,7 +332,33 @@ impl Rows<'_> {
     }
 }
 
-fn equalities(rows: &mut Rows, topology: &Topology, s: &State, columns: &mut Vec<Column>) {
+/// Adds (or subtracts) the motion of a point at `offset` from the centre of mass due to the first `lanes` of a tile.
+#[inline(always)]
+fn add_motion(
+    cdof: &[Lanes; 6],
+    lanes: u32,
+    offset: Vec3,
+    join: impl Fn(f64, f64) -> f64,
+    translation: &mut [Lanes; 3],
+    rotation: &mut [Lanes; 3],
+) {
+    let [wx, wy, wz, x, y, z] = cdof;
+    for k in 0..4 {
+        let moves = if (k as u32) < lanes { 1.0 } else { 0.0 };
+        let (wx, wy, wz) = (moves * wx[k], moves * wy[k], moves * wz[k]);
+        let v = [
+            moves * x[k] + (wy * offset[2] - wz * offset[1]),
+            moves * y[k] + (wz * offset[0] - wx * offset[2]),
+            moves * z[k] + (wx * offset[1] - wy * offset[0]),
+        ];
+        for (c, w) in [wx, wy, wz].into_iter().enumerate() {
+            translation[c][k] = join(translation[c][k], v[c]);
+            rotation[c][k] = join(rotation[c][k], w);
+        }
+    }
+}
+
+fn equalities(rows: &mut Rows, s: &State) {
     let model = rows.model;
     for id in 0..model.neq() {
         if !s.params.eq_active[id] {
@@ -216,37 +389,34 @@ fn equalities(rows: &mut Rows, topology: &Topology, s: &State, columns: &mut Vec
                 pos -= x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
                 let slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * 4.0 * c[4]));
                 spec.diag += model.dof_invweight0[d2];
-                rows.block(RowKind::Equality, id, 1, 2);
+                rows.block(RowKind::Equality, id, 1);
                 let mut entries = [(d1, 1.0), (d2, -slope)];
                 entries.sort_unstable_by_key(|e| e.0);
-                for (d, v) in entries {
-                    rows.efc.cols.push(d as u32);
-                    rows.efc.jac.push(v);
-                }
+                entries.into_iter().for_each(|(d, v)| rows.entry(d, v));
                 rows.row(pos, 0.0, pos, spec);
             }
             EqualityKind::Weld { body1, body2, .. } => {
                 let Some(weld) = weld_points(model, s, id) else {
                     continue;
                 };
-                relative_jacobian(
-                    model,
-                    topology,
+                rows.relative(
+                    (RowKind::Equality, id, 6),
                     s,
                     (body2.0, weld.point2),
                     (body1.0, weld.point1),
-                    columns,
+                    |translation, rotation, out| {
+                        let mut turn = [[0.0; 4]; 3];
+                        for k in 0..4 {
+                            let rate = weld.rotation_rate([rotation[0][k], rotation[1][k], rotation[2][k]]);
+                            (turn[0][k], turn[1][k], turn[2][k]) = (rate[0], rate[1], rate[2]);
+                        }
+                        out.extend_from_slice(translation);
+                        out.extend_from_slice(&turn);
+                    },
                 );
-                let (n, jac) = (columns.len(), rows.efc.jac.len());
-                rows.block(RowKind::Equality, id, 6, n);
-                rows.efc.jac.resize(jac + 6 * n, 0.0);
-                for (c, &(dof, translation, rotation)) in columns.iter().enumerate() {
-                    rows.efc.cols.push(dof);
-                    let turn = weld.rotation_rate(rotation);
-                    for k in 0..3 {
-                        rows.efc.jac[jac + k * n + c] = translation[k];
-                        rows.efc.jac[jac + (3 + k) * n + c] = turn[k];
-                    }
+                if rows.block_mut().ncol == 0 {
+                    rows.efc.blocks.pop();
+                    continue;
                 }
                 let norm = weld.error.iter().map(|e| e * e).sum::<f64>().sqrt();
                 for (k, &pos) in weld.error.iter().enumerate() {
@@ -266,14 +436,14 @@ fn limits(rows: &mut Rows, s: &State) {
             continue;
         }
         let (value, margin, d) = (s.qpos[model.jnt_qposadr[j]], model.jnt_margin[j], model.jnt_dofadr[j]);
-        let spec = Spec {
-            solref: model.jnt_solref[j],
-            solimp: model.jnt_solimp[j],
-            diag: model.dof_invweight0[d],
-        };
         for (side, limit) in [(-1.0, model.jnt_range[j][0]), (1.0, model.jnt_range[j][1])] {
             let dist = side * (limit - value);
             if dist < margin {
+                let spec = Spec {
+                    solref: model.jnt_solref[j],
+                    solimp: model.jnt_solimp[j],
+                    diag: model.dof_invweight0[d],
+                };
                 rows.single(RowKind::Limit, j, d, -side);
                 rows.row(dist, margin, dist - margin, spec);
             }
@@ -294,16 +464,13 @@ fn limits(rows: &mut Rows, s: &State) {
         for (side, limit) in [(-1.0, model.tendon_range[t][0]), (1.0, model.tendon_range[t][1])] {
             let dist = side * (limit - length);
             if dist < margin {
-                rows.block(RowKind::Limit, t, 1, wrap.len());
-                let start = rows.efc.cols.len();
-                rows.efc
-                    .cols
-                    .extend(wrap.iter().map(|&(j, _)| model.jnt_dofadr[j] as u32));
-                rows.efc.cols[start..].sort_unstable();
-                for c in start..rows.efc.cols.len() {
-                    let dof = rows.efc.cols[c] as usize;
-                    let coef: f64 = wrap.iter().filter(|w| model.jnt_dofadr[w.0] == dof).map(|w| w.1).sum();
-                    rows.efc.jac.push(-side * coef);
+                rows.block(RowKind::Limit, t, 1);
+                // ascending, whatever the order in the model
+                let mut from = 0;
+                while let Some(d) = wrap.iter().map(|w| model.jnt_dofadr[w.0]).filter(|d| *d >= from).min() {
+                    let coef: f64 = wrap.iter().filter(|w| model.jnt_dofadr[w.0] == d).map(|w| w.1).sum();
+                    rows.entry(d, -side * coef);
+                    from = d + 1;
                 }
                 rows.row(dist, margin, dist - margin, spec);
             }
@@ -313,32 +480,38 @@ fn limits(rows: &mut Rows, s: &State) {
 
 /// Rows of contact `i`: the normal, then friction. The friction rows have no stiffness; their regularisation follows from
 /// that of the normal so that the cone keeps its shape.
-fn contact(rows: &mut Rows, topology: &Topology, s: &mut State, i: usize, columns: &mut Vec<Column>) {
+fn contact(rows: &mut Rows, s: &mut State, i: usize) {
     let model = rows.model;
-    let c = s.contacts[i];
     s.contacts[i].efc_address = None;
+    let c = &s.contacts[i];
     if c.dist >= c.includemargin {
         return;
     }
     let (b1, b2) = (model.geom_bodyid[c.geom[0]], model.geom_bodyid[c.geom[1]]);
-    relative_jacobian(model, topology, s, (b1, c.pos), (b2, c.pos), columns);
-    let (n, jac) = (columns.len(), rows.efc.jac.len());
-    if n == 0 {
-        return;
-    }
     let kind = if c.dim == 1 {
         RowKind::Frictionless
     } else {
         RowKind::Elliptic
     };
-    rows.block(kind, i, c.dim, n);
-    rows.efc.jac.resize(jac + c.dim * n, 0.0);
-    for (k, &(dof, translation, rotation)) in columns.iter().enumerate() {
-        rows.efc.cols.push(dof);
-        for r in 0..c.dim {
-            let motion = if r < 3 { translation } else { rotation };
-            rows.efc.jac[jac + r * n + k] = dot(row(&c.frame, r % 3), motion);
-        }
+    rows.relative(
+        (kind, i, c.dim),
+        s,
+        (b1, c.pos),
+        (b2, c.pos),
+        |translation, rotation, out| {
+            for r in 0..c.dim {
+                let (axis, motion) = (row(&c.frame, r % 3), if r < 3 { translation } else { rotation });
+                let mut lanes = [0.0; 4];
+                for k in 0..4 {
+                    lanes[k] = axis[0] * motion[0][k] + axis[1] * motion[1][k] + axis[2] * motion[2][k];
+                }
+                out.push(lanes);
+            }
+        },
+    );
+    if rows.block_mut().ncol == 0 {
+        rows.efc.blocks.pop();
+        return;
     }
     let first = rows.efc.pos.len();
     let diag = model.body_invweight0[b1][0] + model.body_invweight0[b2][0];
@@ -347,14 +520,11 @@ fn contact(rows: &mut Rows, topology: &Topology, s: &mut State, i: usize, column
         solimp: c.solimp,
         diag,
     };
-    rows.row(c.dist, c.includemargin, c.dist - c.includemargin, spec);
+    let mut damping = rows.row(c.dist, c.includemargin, c.dist - c.includemargin, spec);
     if c.dim > 1 {
-        let solref = if c.solreffriction == [0.0; 2] {
-            c.solref
-        } else {
-            c.solreffriction
-        };
-        let damping = impedance(solref, c.solimp, c.dist - c.includemargin, model.opt.timestep).b;
+        if c.solreffriction != [0.0; 2] {
+            damping = impedance(c.solreffriction, c.solimp, 0.0, model.opt.timestep).b;
+        }
         let normal = rows.efc.r[first];
         let sliding = normal / model.opt.impratio.max(MINVAL);
         for f in c.friction.iter().take(c.dim - 1) {
@@ -368,43 +538,4 @@ fn contact(rows: &mut Rows, topology: &Topology, s: &mut State, i: usize, column
         block.friction = c.friction;
     }
     s.contacts[i].efc_address = Some(first);
-}
-
-/// Jacobian of the motion of a point of body `b` relative to a point of body `a`, over the degrees of freedom that move
-/// either; those that move both alike are left out.
-fn relative_jacobian(
-    model: &Model,
-    topology: &Topology,
-    s: &State,
-    (a, point_a): (usize, Vec3),
-    (b, point_b): (usize, Vec3),
-    out: &mut Vec<Column>,
-) {
-    out.clear();
-    let (chain_a, chain_b) = (topology.body_chain(a), topology.body_chain(b));
-    let common = if point_a == point_b {
-        chain_a.iter().zip(chain_b).take_while(|(x, y)| x == y).count()
-    } else {
-        0
-    };
-    let (mut ia, mut ib) = (common, common);
-    while ia < chain_a.len() || ib < chain_b.len() {
-        let da = chain_a.get(ia).copied().unwrap_or(u32::MAX);
-        let db = chain_b.get(ib).copied().unwrap_or(u32::MAX);
-        let d = da.min(db);
-        let cdof = &s.cdof[d as usize];
-        let com = s.subtree_com[model.body_rootid[model.dof_bodyid[d as usize]]];
-        let (mut translation, mut rotation) = ([0.0; 3], [0.0; 3]);
-        if db == d {
-            translation = velocity_at(cdof, sub(point_b, com));
-            rotation = angular(cdof);
-            ib += 1;
-        }
-        if da == d {
-            translation = sub(translation, velocity_at(cdof, sub(point_a, com)));
-            rotation = sub(rotation, angular(cdof));
-            ia += 1;
-        }
-        out.push((d, translation, rotation));
-    }
 }

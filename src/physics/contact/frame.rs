@@ -4,7 +4,7 @@ use crate::math::{Mat3, Vec3, add_scaled, cross, dot, norm, unit};
 
 /// Frame with the given normal as first row; the tangents follow the world's y axis, or z if the normal is near y.
 #[inline]
-pub(super) fn from_normal(normal: Vec3) -> Mat3 {
+pub(crate) fn from_normal(normal: Vec3) -> Mat3 {
     let x = unit(normal).0;
     complete(x, default_hint(x))
 }

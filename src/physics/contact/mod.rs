@@ -41,7 +41,7 @@ mod box_face;
 mod capsule_box;
 mod convex;
 mod epa;
-mod frame;
+pub(crate) mod frame;
 mod gjk;
 mod nearest;
 mod plane;

@@ -1,15 +1,14 @@
 //! From controls to joint forces and unconstrained acceleration.
 
 use crate::model::{BiasType, Model};
-use crate::physics::dynamics::inertia::solve_packed;
+use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::state::State;
-use crate::physics::topology::Topology;
 
 /// Computes `actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
 ///
 /// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint; its length and velocity are gear times those
-/// of the joint. Controls out of range are clamped.
-pub fn fwd_actuation(model: &Model, topology: &Topology, s: &mut State) {
+/// of the joint. Controls out of range are clamped. `bodies` must be up to date.
+pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
     s.qfrc_actuator.fill(0.0);
     for i in 0..model.nu() {
         let j = model.actuator_trnid[i];
@@ -35,6 +34,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, s: &mut State) {
     for d in 0..model.nv {
         s.qfrc_smooth[d] = s.qfrc_passive[d] - s.qfrc_bias[d] + s.qfrc_applied[d] + s.qfrc_actuator[d];
     }
-    s.qacc_smooth.copy_from_slice(&s.qfrc_smooth);
-    solve_packed(topology, &s.qld, &s.qld_diag_inv, &mut s.qacc_smooth);
+    let mut acc = std::mem::take(&mut s.qacc_smooth);
+    bodies.solve(model, s, Damping::Without, &s.qfrc_smooth, &mut acc);
+    s.qacc_smooth = acc;
 }

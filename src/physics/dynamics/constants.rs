@@ -1,8 +1,8 @@
 //! Constants of a model that need its dynamics at `qpos0`: inverse weights and statistics.
 
 use crate::math::*;
-use crate::model::{GeomType, JointType, Model};
-use crate::physics::dynamics::{com_pos, crb, factor_m, kinematics, solve_packed};
+use crate::model::{GeomType, JointType, Model, SameFrame};
+use crate::physics::dynamics::{Articulated, Damping, com_pos, crb, kinematics};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -17,29 +17,30 @@ pub fn set_const(model: &mut Model) {
     kinematics(model, &mut s);
     com_pos(model, &mut s);
     crb(model, &topology, &mut s);
-    factor_m(&topology, &mut s);
+    let mut bodies = Articulated::default();
+    bodies.update(model, &s);
     statistics(model, &s, &topology);
 
     let nv = model.nv;
-    let mut x = vec![0.0; nv];
-    let mut weight = |jac: &[(usize, f64)]| -> f64 {
-        x.fill(0.0);
+    let (mut b, mut x) = (vec![0.0; nv], vec![0.0; nv]);
+    let mut weight = |model: &Model, jac: &[(usize, f64)]| -> f64 {
+        b.fill(0.0);
         for &(d, v) in jac {
-            x[d] += v;
+            b[d] += v;
         }
-        solve_packed(&topology, &s.qld, &s.qld_diag_inv, &mut x);
+        bodies.solve(model, &s, Damping::Without, &b, &mut x);
         jac.iter().map(|&(d, v)| v * x[d]).sum()
     };
     for j in 0..model.njnt() {
         let d = model.jnt_dofadr[j];
         match model.jnt_type[j] {
             JointType::Free => {
-                let w: [f64; 6] = std::array::from_fn(|k| weight(&[(d + k, 1.0)]));
+                let w: [f64; 6] = std::array::from_fn(|k| weight(model, &[(d + k, 1.0)]));
                 let (t, r) = ((w[0] + w[1] + w[2]) / 3.0, (w[3] + w[4] + w[5]) / 3.0);
                 model.dof_invweight0[d..d + 3].fill(t);
                 model.dof_invweight0[d + 3..d + 6].fill(r);
             }
-            _ => model.dof_invweight0[d] = weight(&[(d, 1.0)]),
+            _ => model.dof_invweight0[d] = weight(model, &[(d, 1.0)]),
         }
     }
     for b in 1..model.nbody() {
@@ -63,7 +64,11 @@ pub fn set_const(model: &mut Model) {
                     (d as usize, v)
                 })
                 .collect();
-            sums[k / 3] += weight(&jac);
+            sums[k / 3] += weight(model, &jac);
+        }
+        if slides_alone(model, b) {
+            model.body_invweight0[b] = [1.0 / model.body_mass[b], 0.0];
+            continue;
         }
         model.body_invweight0[b] = [sums[0] / 3.0, sums[1] / 3.0];
     }
@@ -72,14 +77,28 @@ pub fn set_const(model: &mut Model) {
             .iter()
             .map(|&(j, c)| (model.jnt_dofadr[j], c))
             .collect();
-        model.tendon_invweight0[t] = weight(&jac);
+        model.tendon_invweight0[t] = weight(model, &jac);
     }
+}
+
+/// Whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a child of the world without children
+/// whose joints all slide along axes of its frame, which is that of its inertia.
+fn slides_alone(model: &Model, b: usize) -> bool {
+    let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
+    let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > MINVAL).count() == 1;
+    model.body_parentid[b] == 0
+        && !model.body_parentid.contains(&b)
+        && model.body_sameframe[b] == SameFrame::Body
+        && !joints.is_empty()
+        && joints
+            .into_iter()
+            .all(|j| model.jnt_type[j] == JointType::Slide && along_axis(j))
 }
 
 /// Mean inertia, mass and size, extent and centre, where they are not given.
 fn statistics(model: &mut Model, s: &State, topology: &Topology) {
     let (nb, nv) = (model.nbody(), model.nv);
-    let diagonal = (0..nv).map(|d| s.qm[topology.row_adr[d + 1] - 1]);
+    let diagonal = (0..nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
     let meaninertia = if nv == 0 {
         1.0
     } else {
@@ -114,8 +133,10 @@ fn statistics(model: &mut Model, s: &State, topology: &Topology) {
 
     let mut size = vec![0.0_f64; nb];
     for j in 0..model.njnt() {
-        let b = model.jnt_bodyid[j];
-        size[b] = size[b].max(norm(sub(s.xipos[b], s.xanchor[j])));
+        let body = model.jnt_bodyid[j];
+        for b in [body, model.body_parentid[body]] {
+            size[b] = size[b].max(norm(sub(s.xipos[b], s.xanchor[j])));
+        }
     }
     for g in 0..model.ngeom() {
         let b = model.geom_bodyid[g];

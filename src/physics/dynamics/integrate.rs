@@ -2,33 +2,27 @@
 
 use crate::math::{axis_angle_to_quat, quat_mul, quat_normalize, unit};
 use crate::model::{JointType, Model};
-use crate::physics::dynamics::inertia::{factor_packed, solve_packed};
+use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::state::State;
-use crate::physics::topology::Topology;
 
-/// Advances a state by one time step. Holds the factor of the damped inertia.
+/// Advances a state by one time step.
 #[derive(Clone, Debug, Default)]
 pub struct Integrator {
-    damped: Vec<f64>,
-    diag_inv: Vec<f64>,
+    force: Vec<f64>,
     acc: Vec<f64>,
 }
 
 impl Integrator {
     /// `v+ = v + h (M + h D)^-1 (qfrc_smooth + qfrc_constraint)`, then `q+ = q (+) h v+`; without damping `v+ = v + h qacc`.
-    pub fn advance(&mut self, model: &Model, topology: &Topology, s: &mut State) {
+    /// `bodies` must be up to date.
+    pub fn advance(&mut self, model: &Model, bodies: &mut Articulated, s: &mut State) {
         let h = model.opt.timestep;
         if s.params.dof_damping.iter().any(|&d| d > 0.0) {
-            self.damped.resize(s.qm.len(), 0.0);
-            self.diag_inv.resize(model.nv, 0.0);
             self.acc.resize(model.nv, 0.0);
-            self.damped.copy_from_slice(&s.qm);
-            for d in 0..model.nv {
-                self.damped[topology.row_adr[d + 1] - 1] += h * s.params.dof_damping[d];
-                self.acc[d] = s.qfrc_smooth[d] + s.qfrc_constraint[d];
-            }
-            factor_packed(topology, &mut self.damped, &mut self.diag_inv);
-            solve_packed(topology, &self.damped, &self.diag_inv, &mut self.acc);
+            self.force.clear();
+            let forces = s.qfrc_smooth.iter().zip(&s.qfrc_constraint);
+            self.force.extend(forces.map(|(a, b)| a + b));
+            bodies.solve(model, s, Damping::Implicit, &self.force, &mut self.acc);
             for (v, a) in s.qvel.iter_mut().zip(&self.acc) {
                 *v += h * a;
             }

@@ -4,6 +4,7 @@
 //! which [`crate::physics::SoftEngine`] calls them.
 
 mod actuation;
+mod articulated;
 mod constants;
 mod inertia;
 mod integrate;
@@ -12,8 +13,9 @@ mod post_constraint;
 mod velocity;
 
 pub use actuation::fwd_actuation;
+pub use articulated::{Articulated, Damping};
 pub use constants::set_const;
-pub use inertia::{crb, factor_m, factor_packed, mul_m, solve_packed};
+pub use inertia::{crb, mul_m};
 pub use integrate::{Integrator, integrate_pos};
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;

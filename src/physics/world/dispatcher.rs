@@ -20,12 +20,19 @@ use crate::physics::contact::{ContactPoint, Options, Placed, Scratch, bounding_t
 #[derive(Clone, Copy, Debug)]
 pub struct ContactDispatcher {
     options: Options,
+    split: bool,
 }
 
 impl ContactDispatcher {
     /// With the given options.
     pub fn new(options: Options) -> Self {
-        Self { options }
+        Self { options, split: false }
+    }
+
+    /// The same with a manifold for each point, whose `subshape1` is the place of the point in the list of the pair.
+    /// Rapier's solver takes at most four points of a manifold; the contact routines find up to eight.
+    pub fn one_point_manifolds(self) -> Self {
+        Self { split: true, ..self }
     }
 }
 
@@ -127,11 +134,14 @@ where
         let mut last_normal = None;
         for p in &points {
             let normal = if flipped { p.normal().map(|v| -v) } else { p.normal() };
-            if last_normal != Some(normal) {
+            if self.split || last_normal != Some(normal) {
                 if manifolds.len() == used {
                     manifolds.push(ContactManifold::with_data(0, 1, M::default()));
                 }
                 let m = &mut manifolds[used];
+                if self.split {
+                    m.subshape1 = used as u32;
+                }
                 m.local_n1 = vector(normal);
                 m.local_n2 = pos12.rotation.inverse() * -vector(normal);
                 last_normal = Some(normal);

@@ -13,4 +13,5 @@ mod sweep;
 pub use dispatcher::ContactDispatcher;
 pub use pairs::{Pair, PairTable};
 pub use scene::{Scene, SceneContact};
+pub(crate) use scene::{collider_order, geom_pose, pose, shape};
 pub use sweep::Sweep;

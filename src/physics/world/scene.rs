@@ -62,14 +62,14 @@ pub struct Scene {
     dirty: bool,
 }
 
-fn pose(pos: Vec3, q: Quat) -> Pose {
+pub(crate) fn pose(pos: Vec3, q: Quat) -> Pose {
     Pose::from_parts(
         Vector::new(pos[0], pos[1], pos[2]),
         Rotation::from_xyzw(q[1], q[2], q[3], q[0]),
     )
 }
 
-fn shape(kind: GeomType, s: Vec3) -> SharedShape {
+pub(crate) fn shape(kind: GeomType, s: Vec3) -> SharedShape {
     let along_z = Vector::new(0.0, 0.0, s[1]);
     match kind {
         GeomType::Plane => SharedShape::halfspace(Vector::Z),
@@ -79,6 +79,33 @@ fn shape(kind: GeomType, s: Vec3) -> SharedShape {
         GeomType::Ellipsoid => SharedShape::ball(s[0].max(s[1]).max(s[2])),
         GeomType::Cylinder => SharedShape::cylinder(s[1], s[0]),
         GeomType::Box => SharedShape::cuboid(s[0], s[1], s[2]),
+    }
+}
+
+/// Pose of a geom's collider in its body.
+pub(crate) fn geom_pose(model: &Model, geom: usize) -> Pose {
+    let mut local = pose(model.geom_pos[geom], model.geom_quat[geom]);
+    if model.geom_type[geom] == GeomType::Cylinder {
+        // Parry's cylinders stand along y
+        let half = 0.5_f64.sqrt();
+        local.rotation *= Rotation::from_xyzw(half, 0.0, 0.0, half);
+    }
+    local
+}
+
+/// Geoms in the order in which their colliders are made: by type, so that Rapier hands pairs over with the lower first.
+pub(crate) fn collider_order(model: &Model) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..model.ngeom()).collect();
+    order.sort_by_key(|&g| (model.geom_type[g], g));
+    order
+}
+
+impl std::fmt::Debug for Scene {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Scene")
+            .field("bodies", &self.bodies.len())
+            .field("colliders", &self.colliders.len())
+            .finish_non_exhaustive()
     }
 }
 
@@ -98,17 +125,10 @@ impl Scene {
                 bodies.insert(builder.user_data(b as u128))
             })
             .collect();
-        // in the order of types, so that Rapier hands pairs over with the lower type first
-        let mut order: Vec<usize> = (0..model.ngeom()).collect();
-        order.sort_by_key(|&g| (model.geom_type[g], g));
+        let order = collider_order(model);
         let mut collider_handle = vec![ColliderHandle::invalid(); order.len()];
         for &g in &order {
-            let mut local = pose(model.geom_pos[g], model.geom_quat[g]);
-            if model.geom_type[g] == GeomType::Cylinder {
-                // Parry's cylinders stand along y
-                let half = 0.5_f64.sqrt();
-                local.rotation *= Rotation::from_xyzw(half, 0.0, 0.0, half);
-            }
+            let local = geom_pose(model, g);
             let types = ActiveCollisionTypes::KINEMATIC_KINEMATIC | ActiveCollisionTypes::KINEMATIC_FIXED;
             let collider = ColliderBuilder::new(shape(model.geom_type[g], model.geom_size[g]))
                 .position(local)

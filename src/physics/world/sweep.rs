@@ -3,21 +3,27 @@
 use crate::math::{Mat3, Vec3};
 use crate::model::{GeomType, Model};
 use crate::physics::contact::{ContactPoint, Options, Placed, Scratch, bounding_test, collide};
-use crate::physics::state::{RESERVED_CONTACTS, State};
+use crate::physics::state::{Contact, RESERVED_CONTACTS, State};
 use crate::physics::world::PairTable;
 
 /// Boxes are enlarged by this, m: more than rounding, so that the exact routines decide.
 const SLACK: f64 = 1e-7;
+
+/// World box of a geom.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    geom: usize,
+    low: Vec3,
+    high: Vec3,
+}
 
 /// Finds contacts. Holds the sorted order of the last step, which is nearly that of the next, and all working memory.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     options: Options,
     scratch: Scratch,
-    /// Geoms that are part of a pair, by lower x of the last step.
-    order: Vec<usize>,
-    /// Lower and upper corner per geom.
-    aabb: Vec<[Vec3; 2]>,
+    /// Geoms that are part of a pair, with their boxes, by lower x of the last step.
+    boxes: Vec<Bounds>,
     candidates: Vec<u32>,
     points: Vec<ContactPoint>,
 }
@@ -29,8 +35,14 @@ impl Sweep {
         Self {
             options,
             scratch: Scratch::new(),
-            order: (0..model.ngeom()).filter(|&g| in_pair(g)).collect(),
-            aabb: vec![[[0.0; 3]; 2]; model.ngeom()],
+            boxes: (0..model.ngeom())
+                .filter(|&g| in_pair(g))
+                .map(|geom| Bounds {
+                    geom,
+                    low: [0.0; 3],
+                    high: [0.0; 3],
+                })
+                .collect(),
             candidates: Vec::with_capacity(2 * RESERVED_CONTACTS),
             points: Vec::with_capacity(64),
         }
@@ -62,19 +74,21 @@ impl Sweep {
                 &mut self.scratch,
                 &mut self.points,
             );
-            for p in &self.points {
-                let mut contact = pair.template;
-                (contact.dist, contact.pos, contact.frame) = (p.dist, p.pos, p.frame);
-                s.contacts.push(contact);
-            }
+            s.contacts.extend(self.points.iter().map(|p| Contact {
+                dist: p.dist,
+                pos: p.pos,
+                frame: p.frame,
+                ..pair.template
+            }));
         }
     }
 
     /// Fills `candidates` with the pairs whose boxes overlap, ascending.
     fn broad_phase(&mut self, model: &Model, table: &PairTable, s: &State) {
-        for &g in &self.order {
+        for b in &mut self.boxes {
+            let g = b.geom;
             let slack = SLACK + model.geom_margin[g];
-            self.aabb[g] = aabb(
+            [b.low, b.high] = aabb(
                 model.geom_type[g],
                 model.geom_size[g],
                 s.geom_xpos[g],
@@ -83,29 +97,30 @@ impl Sweep {
             );
         }
         // insertion sort: the order changes little from step to step
-        for i in 1..self.order.len() {
-            let g = self.order[i];
-            let key = self.aabb[g][0][0];
+        for i in 1..self.boxes.len() {
+            let b = self.boxes[i];
             let mut k = i;
-            while k > 0 && self.aabb[self.order[k - 1]][0][0] > key {
-                self.order[k] = self.order[k - 1];
+            while k > 0 && self.boxes[k - 1].low[0] > b.low[0] {
+                self.boxes[k] = self.boxes[k - 1];
                 k -= 1;
             }
-            self.order[k] = g;
+            if k < i {
+                self.boxes[k] = b;
+            }
         }
         self.candidates.clear();
-        for (i, &a) in self.order.iter().enumerate() {
-            let [low, high] = self.aabb[a];
-            for &b in &self.order[i + 1..] {
-                let [other_low, other_high] = self.aabb[b];
-                if other_low[0] > high[0] {
+        let mut rest = &self.boxes[..];
+        while let [a, others @ ..] = rest {
+            rest = others;
+            let (low, high) = (a.low, a.high);
+            for b in others {
+                if b.low[0] > high[0] {
                     break;
                 }
-                let overlap = low[1] <= other_high[1]
-                    && other_low[1] <= high[1]
-                    && low[2] <= other_high[2]
-                    && other_low[2] <= high[2];
-                if overlap && let Some(k) = table.find(a, b) {
+                // no branches between the comparisons: they are hard to predict
+                let overlap =
+                    (low[1] <= b.high[1]) & (b.low[1] <= high[1]) & (low[2] <= b.high[2]) & (b.low[2] <= high[2]);
+                if overlap && let Some(k) = table.find(a.geom, b.geom) {
                     self.candidates.push(k as u32);
                 }
             }

@@ -1,5 +1,5 @@
-//! A camera as the reference sets it up: single precision, in the same order of operations, so that vertices fall on the
-//! same 1/256 of a pixel.
+//! A camera as the reference sets it up: single precision, in the order of operations of MuJoCo and of Mesa's matrices, so
+//! that vertices fall on the same 1/256 of a pixel.
 
 use crate::math::{Mat3, Vec3, column};
 use crate::render::mesh::Part;
@@ -8,6 +8,9 @@ use crate::render::visual::{Poses, View, Visual};
 pub type V3 = [f32; 3];
 /// Coefficients of x, y, z and the constant.
 pub type Row = [f32; 4];
+
+/// The reference draws in the middle between two cameras this far apart, m.
+const EYE_DISTANCE: f64 = 0.068;
 
 pub fn dot(a: V3, b: V3) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -30,6 +33,13 @@ pub fn single(v: Vec3) -> V3 {
     v.map(|x| x as f32)
 }
 
+/// `a b + c` rounded once, like the fused instruction that llvmpipe uses: the product is exact. (But for one case in 2^29,
+/// in which the sum is rounded twice.)
+#[inline(always)]
+pub fn fused(a: f32, b: f32, c: f32) -> f32 {
+    (f64::from(a) * f64::from(b) + f64::from(c)) as f32
+}
+
 /// A camera at its place.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Eye {
@@ -39,30 +49,53 @@ pub struct Eye {
     pub forward: V3,
     /// Tangents of half of the field of view.
     pub tan: [f32; 2],
-    /// Focal lengths in half pictures.
-    focal: [f32; 2],
     pub near: f32,
+    /// From the world to the camera, which looks along -z.
+    view: [Row; 3],
+    /// Focal lengths in half pictures.
+    pub focal: [f32; 2],
+    /// Factor and offset of the depth before the division: 1 at the near plane, 0 at the far plane.
+    pub depth: [f32; 2],
 }
 
 impl Eye {
     pub fn new(visual: &Visual, poses: &Poses, view: &View) -> Self {
-        let mat = &poses.cam_xmat[view.camera.0];
-        let pos = single(poses.cam_xpos[view.camera.0]);
-        let forward = unit(single(column(mat, 2)).map(|v| -v));
-        let right = unit(cross(forward, single(column(mat, 1))));
+        let (place, mat) = (poses.cam_xpos[view.camera.0], &poses.cam_xmat[view.camera.0]);
+        let aside = column(mat, 0);
+        let side = |sign: f64| [0, 1, 2].map(|i| (place[i] + sign * EYE_DISTANCE * 0.5 * aside[i]) as f32);
+        let (left, right) = (side(-1.0), side(1.0));
+        let pos = [0, 1, 2].map(|i| ((f64::from(left[i]) + f64::from(right[i])) * 0.5) as f32);
+        let doubled = |v: Vec3| single(v).map(|x| f64::from(x) + f64::from(x));
+        let ahead = crate::math::unit(doubled(column(mat, 2).map(|v| -v))).0;
+        let upward = doubled(column(mat, 1));
+        let along = crate::math::dot(upward, ahead);
+        let upward = crate::math::unit([0, 1, 2].map(|i| upward[i] - along * ahead[i])).0;
+
+        let forward = unit(single(ahead));
+        let right = unit(cross(forward, single(upward)));
         let up = unit(cross(right, forward));
-        let tangent = pxfm::f_tan(visual.cameras[view.camera.0].fovy.to_radians() * 0.5);
-        let near = visual.near as f32;
-        let top = (visual.near * tangent) as f32;
+        let (near, far) = (visual.near as f32, visual.far as f32);
+        let tangent = pxfm::f_tan(visual.cameras[view.camera.0].fovy * std::f64::consts::PI / 360.0);
+        let top = (f64::from(near) * tangent) as f32;
         let half_width = 0.5 * view.width as f32 / view.height as f32 * (top + top);
+        let back = forward.map(|v| -v);
         Self {
             pos,
             right,
             up,
             forward,
             tan: [half_width / near, top / near],
-            focal: [2.0 * near / (half_width + half_width), 2.0 * near / (top + top)],
             near,
+            view: [
+                [right[0], right[1], right[2], -dot(right, pos)],
+                [up[0], up[1], up[2], -dot(up, pos)],
+                [back[0], back[1], back[2], dot(forward, pos)],
+            ],
+            focal: [2.0 * near / (half_width + half_width), 2.0 * near / (top + top)],
+            depth: [
+                -0.5 * (-(far + near) / (far - near)) - 0.5,
+                -0.5 * (-(2.0 * far * near) / (far - near)),
+            ],
         }
     }
 
@@ -72,22 +105,29 @@ impl Eye {
         [dot(d, self.right), dot(d, self.up), dot(d, self.forward)]
     }
 
-    /// Projection of something scaled by `size` and placed in the world: rows that give x, y (in half pictures, times w)
-    /// and w.
-    pub fn projection(&self, pos: Vec3, mat: &Mat3, size: V3) -> [Row; 3] {
+    /// The depth at a distance ahead.
+    pub fn depth_at(&self, ahead: f32) -> f32 {
+        self.depth[1] / ahead - self.depth[0]
+    }
+
+    /// From something scaled by `size` and placed in the world to the camera.
+    pub fn model(&self, pos: Vec3, mat: &Mat3, size: V3) -> [Row; 3] {
         let (pos, mat) = (single(pos), mat.map(|v| v as f32));
-        let back = self.forward.map(|v| -v);
-        let row = |axis: V3, offset: f32| {
-            let turned = |k: usize| axis[0] * mat[k] + axis[1] * mat[3 + k] + axis[2] * mat[6 + k];
-            let constant = axis[0] * pos[0] + axis[1] * pos[1] + axis[2] * pos[2] + offset;
+        self.view.map(|[x, y, z, c]| {
+            let turned = |k: usize| x * mat[k] + y * mat[3 + k] + z * mat[6 + k];
+            let constant = x * pos[0] + y * pos[1] + z * pos[2] + c;
             [turned(0) * size[0], turned(1) * size[1], turned(2) * size[2], constant]
-        };
-        let x = row(self.right, -dot(self.right, self.pos));
-        let y = row(self.up, -dot(self.up, self.pos));
-        let z = row(back, dot(self.forward, self.pos));
+        })
+    }
+
+    /// Rows that give x, y (in half pictures), the depth, all times w, and w, from those that lead to the camera.
+    pub fn project(&self, [x, y, z]: [Row; 3]) -> [Row; 4] {
+        let mut depth = z.map(|v| self.depth[0] * v);
+        depth[3] += self.depth[1];
         [
-            x.map(|v| v * self.focal[0]),
-            y.map(|v| v * self.focal[1]),
+            x.map(|v| self.focal[0] * v),
+            y.map(|v| self.focal[1] * v),
+            depth,
             z.map(|v| -v),
         ]
     }

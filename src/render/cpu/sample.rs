@@ -1,146 +1,284 @@
 //! Texture lookups as Mesa's llvmpipe makes them: bilinear in two levels, with one level of detail per 2 x 2 pixels.
 
+use std::ops::Neg;
+
+use wide::f32x4;
+
 use crate::render::texture::{Face, Level, Texture};
 
-/// Between which mip levels to blend, and how far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Detail {
-    level: usize,
-    blend: f32,
+/// Between which mip levels to blend at the pixels of a group, and how far.
+#[derive(Clone, Copy, Debug)]
+struct Detail {
+    level: [usize; 4],
+    blend: [f32; 4],
 }
 
 impl Detail {
-    /// From the square of the number of texels per pixel. The logarithm is linear between powers of two, as llvmpipe's is.
-    fn new(squared: f32, levels: usize) -> Self {
-        let last = levels as i32 - 1;
-        let bits = squared.to_bits();
-        let exponent = ((bits >> 23) & 255) as i32 - 127;
-        let mantissa = f32::from_bits((bits & 0x007f_ffff) | 0x3f80_0000);
-        let level = (0.5 * (exponent as f32 + mantissa - 1.0)).max(0.0);
-        let whole = floor(level);
-        if whole >= last {
-            Self {
-                level: last as usize,
-                blend: 0.0,
-            }
-        } else {
-            Self {
-                level: whole as usize,
-                blend: level - whole as f32,
-            }
+    /// From the squares of the numbers of texels per pixel. The logarithm is linear between powers of two, as llvmpipe's is;
+    /// what is magnified has the first level.
+    fn new(squared: f32x4, levels: usize) -> Self {
+        let bits = squared.to_array().map(f32::to_bits);
+        let exponent = f32x4::new(bits.map(|b| ((b >> 23 & 255) as i32 - 127) as f32));
+        let mantissa = f32x4::new(bits.map(|b| f32::from_bits(b & 0x007f_ffff | 0x3f80_0000)));
+        let level = 0.5 * (exponent + mantissa - f32x4::ONE);
+        // these are always numbers
+        let level = level.fast_max(f32x4::ZERO).fast_min(f32x4::splat(levels as f32 - 1.0));
+        let whole = level.fast_trunc_int();
+        Self {
+            level: whole.to_array().map(|l| l as usize),
+            blend: (level - f32x4::from_i32x4(whole)).to_array(),
         }
     }
+
+    fn blends(&self) -> bool {
+        self.blend != [0.0; 4]
+    }
 }
+
+/// Coordinates of the pixels of a group of 2 x 2, the lower two first.
+pub type Coordinates = [f32x4; 3];
 
 impl Texture {
-    /// The level of detail for coordinates at a pixel, its right and its upper neighbour.
-    pub fn detail(&self, at: [f32; 3], right: [f32; 3], up: [f32; 3]) -> Detail {
-        match self {
-            Texture::Flat(face) => {
-                let (w, h) = (face[0].width as f32, face[0].height as f32);
-                let squared = |v: [f32; 3]| {
-                    let (s, t) = ((v[0] - at[0]) * w, (v[1] - at[1]) * h);
-                    s * s + t * t
-                };
-                Detail::new(squared(right).max(squared(up)), face.len())
-            }
-            Texture::Cube(faces) => {
-                let (side, sc, tc, ma) = project(at);
-                let scale = 0.5 / ma * faces[0][0].width as f32;
-                let squared = |v: [f32; 3]| {
-                    let d = [v[0] - at[0], v[1] - at[1], v[2] - at[2]];
-                    let (dsc, dtc, dma) = components(side, d);
-                    let shift = dma / ma;
-                    let (s, t) = ((dsc - shift * sc) * scale, (dtc - shift * tc) * scale);
-                    s * s + t * t
-                };
-                Detail::new(squared(right).max(squared(up)), faces[0].len())
-            }
+    /// The colours at the pixels of a group, 0..1, where `wanted`: red, green, blue and opacity. Flat textures have one level of
+    /// detail for the whole group, cubes one for each pixel.
+    pub fn sample(&self, at: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
+        let colours = match self {
+            Texture::Flat(face) => flat(face, at, wanted),
+            Texture::Cube(faces) => Place::new(faces, at).colours(faces, wanted),
+        };
+        colours.map(|c| c * f32x4::splat(1.0 / 255.0))
+    }
+}
+
+/// Differences between the columns of a group, at each pixel.
+#[inline(always)]
+fn across(v: f32x4) -> f32x4 {
+    let v = v.to_array();
+    let (low, high) = (v[1] - v[0], v[3] - v[2]);
+    f32x4::new([low, low, high, high])
+}
+
+/// Differences between the rows of a group, at each pixel.
+#[inline(always)]
+fn upward(v: f32x4) -> f32x4 {
+    let v = v.to_array();
+    let (left, right) = (v[2] - v[0], v[3] - v[1]);
+    f32x4::new([left, right, left, right])
+}
+
+/// Where the pixels of a group lie on a cube.
+struct Place {
+    side: [u8; 4],
+    u: f32x4,
+    v: f32x4,
+    detail: Detail,
+}
+
+impl Place {
+    #[inline(always)]
+    fn new(faces: &[Face; 6], at: &Coordinates) -> Self {
+        let side = sides_of(at);
+        if side == [side[0]; 4] {
+            Self::on(faces, side[0], at)
+        } else {
+            Self::apart(faces, side, at)
         }
     }
 
-    /// The colour, 0..1.
-    pub fn sample(&self, at: [f32; 3], detail: Detail) -> [f32; 3] {
-        let [r, g, b, _] = match self {
-            Texture::Flat(face) => flat(face, at, detail),
-            Texture::Cube(faces) => {
-                let (side, sc, tc, ma) = project(at);
-                let half = 0.5 / ma;
-                let (u, v) = (sc * half + 0.5, tc * half + 0.5);
-                let mut colour = cube(faces, side, detail.level, u, v);
-                if detail.blend > 0.0 {
-                    let next = cube(faces, side, detail.level + 1, u, v);
-                    for k in 0..4 {
-                        colour[k] += detail.blend * (next[k] - colour[k]);
-                    }
-                }
-                colour
+    /// On several sides: each pixel as if all were on its side.
+    #[cold]
+    fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
+        let own = side.map(|side| Self::on(faces, side, at));
+        let each = |value: &dyn Fn(&Self) -> [f32; 4]| {
+            let mut out = [0.0; 4];
+            for k in 0..4 {
+                out[k] = value(&own[k])[k];
             }
+            out
         };
-        const BYTE: f32 = 1.0 / 255.0;
-        [r * BYTE, g * BYTE, b * BYTE]
+        let mut level = [0; 4];
+        for k in 0..4 {
+            level[k] = own[k].detail.level[k];
+        }
+        Self {
+            side,
+            u: f32x4::new(each(&|p| p.u.to_array())),
+            v: f32x4::new(each(&|p| p.v.to_array())),
+            detail: Detail {
+                level,
+                blend: each(&|p| p.detail.blend),
+            },
+        }
+    }
+
+    /// As if all pixels were on one side.
+    #[inline(always)]
+    fn on(faces: &[Face; 6], side: u8, at: &Coordinates) -> Self {
+        let (sc, tc, ma) = components(side, *at);
+        // a zero direction has no side; any colour will do
+        let least = f32x4::splat(f32::MIN_POSITIVE);
+        let inverse = f32x4::ONE / ma.simd_gt(least).select(ma, least);
+        let half = 0.5 * inverse;
+        let scale = half * f32x4::splat(faces[0][0].width as f32);
+        let length = |change: fn(f32x4) -> f32x4| {
+            let shift = change(ma) * inverse;
+            let s = (change(sc) - shift * sc) * scale;
+            let t = (change(tc) - shift * tc) * scale;
+            s * s + t * t
+        };
+        let (right, up) = (length(across), length(upward));
+        Self {
+            side: [side; 4],
+            u: sc * half + 0.5,
+            v: tc * half + 0.5,
+            detail: Detail::new(right.simd_gt(up).select(right, up), faces[0].len()),
+        }
+    }
+
+    #[inline(always)]
+    fn colours(&self, faces: &[Face; 6], wanted: [bool; 4]) -> [f32x4; 4] {
+        let mut colours = self.at_level(faces, self.detail.level, wanted);
+        if self.detail.blends() {
+            let last = faces[0].len() - 1;
+            let next = self.at_level(faces, self.detail.level.map(|l| (l + 1).min(last)), wanted);
+            for k in 0..4 {
+                colours[k] += f32x4::splat(self.detail.blend[k]) * (next[k] - colours[k]);
+            }
+        }
+        colours
+    }
+
+    /// Bilinear lookups in a level for each pixel, across the edges of the cube where needed; 0..255.
+    #[inline(always)]
+    fn at_level(&self, faces: &[Face; 6], level: [usize; 4], wanted: [bool; 4]) -> [f32x4; 4] {
+        let mut size = [0.0; 4];
+        for k in 0..4 {
+            size[k] = faces[usize::from(self.side[k])][level[k]].width as f32;
+        }
+        let size = f32x4::new(size);
+        let (x, y) = (self.u * size - 0.5, self.v * size - 0.5);
+        let (left, top) = (whole(x), whole(y));
+        let (wx, wy) = ((x - left).to_array(), (y - top).to_array());
+        let index = |v: f32x4| {
+            let v = v.max(f32x4::splat(-1.0)).fast_min(size - 1.0);
+            v.fast_trunc_int().to_array()
+        };
+        let (left, top) = (index(left), index(top));
+        let mut out = [f32x4::ZERO; 4];
+        for k in (0..4).filter(|&k| wanted[k]) {
+            let image = &faces[usize::from(self.side[k])][level[k]];
+            let n = image.width;
+            let last = n as u32 - 1;
+            let [a, b, c, d] = if (left[k] as u32) < last && (top[k] as u32) < last {
+                let i = top[k] as usize * n + left[k] as usize;
+                let block = &image.pixels[i..i + n + 2];
+                [block[0], block[1], block[n], block[n + 1]]
+            } else {
+                across_edges(faces, self.side[k], level[k], left[k], top[k])
+            };
+            let [a, b, c, d] = [numbers(a), numbers(b), numbers(c), numbers(d)];
+            let wx = f32x4::splat(wx[k]);
+            let (upper, lower) = (a + wx * (b - a), c + wx * (d - c));
+            out[k] = upper + f32x4::splat(wy[k]) * (lower - upper);
+        }
+        out
     }
 }
 
-/// The largest integer that is not greater; coordinates are small, and what is not a number becomes 0.
+/// Bytes as numbers.
 #[inline(always)]
-fn floor(x: f32) -> i32 {
-    let whole = x as i32;
-    whole - i32::from(whole as f32 > x)
+fn numbers(v: [u8; 4]) -> f32x4 {
+    let mut out = [0.0; 4];
+    for k in 0..4 {
+        out[k] = f32::from(v[k]);
+    }
+    f32x4::new(out)
 }
 
-/// Blend of bytes with a weight of 0..256.
+/// The largest integers that are not greater, for numbers within +-2^22.
 #[inline(always)]
-fn blend(a: [i32; 4], b: [i32; 4], weight: i32) -> [i32; 4] {
-    let mut out = a;
-    for k in 0..4 {
-        out[k] += ((b[k] - a[k]) * weight + 128) >> 8;
+fn whole(x: f32x4) -> f32x4 {
+    // adding 1.5 * 2^23 rounds to the nearest integer
+    let nearest = (x + 12_582_912.0) - 12_582_912.0;
+    nearest - (nearest.simd_gt(x) & f32x4::ONE)
+}
+
+/// Blend of bytes with a weight of 0..256, in whole numbers.
+#[inline(always)]
+fn blend(a: f32x4, b: f32x4, weight: f32) -> f32x4 {
+    let sum = a * (256.0 - weight) + b * weight + 128.0;
+    f32x4::from_i32x4((sum * (1.0 / 256.0)).fast_trunc_int())
+}
+
+/// Two-dimensional lookups go through 8-bit arithmetic.
+fn flat(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
+    let length = |change: fn(f32x4) -> f32x4| {
+        let s = change(*s) * f32x4::splat(face[0].width as f32);
+        let t = change(*t) * f32x4::splat(face[0].height as f32);
+        (s * s + t * t).to_array()[0]
+    };
+    let squared = length(across).max(length(upward));
+    let detail = Detail::new(f32x4::splat(squared), face.len());
+    let (level, share) = (detail.level[0], detail.blend[0]);
+    let mut out = flat_level(&face[level], *s, *t, wanted);
+    if share > 0.0 {
+        let weight = (share * 256.0).trunc();
+        let next = flat_level(&face[level + 1], *s, *t, wanted);
+        for k in 0..4 {
+            out[k] = blend(out[k], next[k], weight);
+        }
     }
     out
 }
 
-/// Two-dimensional lookups go through 8-bit arithmetic.
-fn flat(face: &Face, at: [f32; 3], detail: Detail) -> [f32; 4] {
-    let mut colour = flat_level(&face[detail.level], at);
-    if detail.blend > 0.0 {
-        let weight = (detail.blend * 256.0) as i32;
-        colour = blend(colour, flat_level(&face[detail.level + 1], at), weight);
+/// Places along an image that repeats.
+struct Along {
+    /// The texels before and after.
+    texels: [[usize; 4]; 2],
+    /// The weights of the second ones, 0..256.
+    weight: [f32; 4],
+}
+
+impl Along {
+    #[inline(always)]
+    fn new(at: f32x4, size: usize) -> Self {
+        let n = f32x4::splat(size as f32);
+        let at = (at - whole(at)) * n - 0.5;
+        let low = whole(at);
+        // coordinates that are not numbers give any place
+        let index = |v: f32x4| {
+            let v = v.max(f32x4::ZERO).fast_min(n - 1.0);
+            v.fast_trunc_int().to_array().map(|i| i as usize)
+        };
+        let (before, after) = (low, low + 1.0);
+        Self {
+            texels: [
+                index(before.simd_lt(f32x4::ZERO).select(n - 1.0, before)),
+                index(after.simd_ge(n).select(f32x4::ZERO, after)),
+            ],
+            weight: whole((at - low) * 256.0 + 0.5).max(f32x4::ZERO).to_array(),
+        }
     }
-    let [r, g, b, a] = colour;
-    [r as f32, g as f32, b as f32, a as f32]
-}
-
-/// Texels before and after a place along an image that repeats, and the weight of the second.
-#[inline(always)]
-fn repeated(x: f32, n: usize) -> (usize, usize, i32) {
-    let x = (x - floor(x) as f32) * n as f32 - 0.5;
-    let low = floor(x);
-    let weight = ((x - low as f32) * 256.0 + 0.5) as i32;
-    let n = n as i32;
-    let wrap = |i: i32| {
-        let i = if i < 0 { i + n } else { i };
-        (if i >= n { i - n } else { i }).clamp(0, n - 1) as usize
-    };
-    (wrap(low), wrap(low + 1), weight)
 }
 
 #[inline(always)]
-fn flat_level(level: &Level, at: [f32; 3]) -> [i32; 4] {
-    let (x0, x1, wx) = repeated(at[0], level.width);
-    let (y0, y1, wy) = repeated(at[1], level.height);
-    let (upper, lower) = (y0 * level.width, y1 * level.width);
-    let texel = |i: usize| {
-        let [r, g, b, a] = level.pixels[i];
-        [i32::from(r), i32::from(g), i32::from(b), i32::from(a)]
-    };
-    let above = blend(texel(upper + x0), texel(upper + x1), wx);
-    let below = blend(texel(lower + x0), texel(lower + x1), wx);
-    blend(above, below, wy)
+fn flat_level(level: &Level, s: f32x4, t: f32x4, wanted: [bool; 4]) -> [f32x4; 4] {
+    let (x, y) = (Along::new(s, level.width), Along::new(t, level.height));
+    let mut out = [f32x4::ZERO; 4];
+    for k in (0..4).filter(|&k| wanted[k]) {
+        let row = |y: &[usize; 4]| {
+            let row = &level.pixels[y[k] * level.width..][..level.width];
+            let (left, right) = (row[x.texels[0][k]], row[x.texels[1][k]]);
+            blend(numbers(left), numbers(right), x.weight[k])
+        };
+        out[k] = blend(row(&y.texels[0]), row(&y.texels[1]), y.weight[k]);
+    }
+    out
 }
 
-/// Components of a direction on a side of the cube: to the right, downward, outward.
+/// Components of directions on a side of the cube: to the right, downward, outward.
 #[inline(always)]
-fn components(side: usize, [x, y, z]: [f32; 3]) -> (f32, f32, f32) {
+fn components<T: Neg<Output = T>>(side: u8, [x, y, z]: [T; 3]) -> (T, T, T) {
     match side {
         0 => (-z, -y, x),
         1 => (z, -y, -x),
@@ -152,7 +290,7 @@ fn components(side: usize, [x, y, z]: [f32; 3]) -> (f32, f32, f32) {
 }
 
 /// The direction of components on a side of the cube.
-fn direction(side: usize, right: f32, down: f32) -> [f32; 3] {
+fn direction(side: u8, right: f32, down: f32) -> [f32; 3] {
     match side {
         0 => [1.0, -down, -right],
         1 => [-1.0, -down, right],
@@ -163,52 +301,27 @@ fn direction(side: usize, right: f32, down: f32) -> [f32; 3] {
     }
 }
 
-/// The side of the cube that a direction goes through, and its components there.
+/// The sides of the cube that directions go through.
 #[inline(always)]
-fn project(at: [f32; 3]) -> (usize, f32, f32, f32) {
-    let [x, y, z] = [at[0].abs(), at[1].abs(), at[2].abs()];
-    let (axis, positive) = if z >= x.max(y) {
-        (2, at[2] >= 0.0)
-    } else if x > y {
-        (0, at[0] >= 0.0)
-    } else {
-        (1, at[1] >= 0.0)
-    };
-    let side = 2 * axis + usize::from(!positive);
-    let (right, down, out) = components(side, at);
-    // a zero direction has no side; any colour will do
-    (side, right, down, out.max(f32::MIN_POSITIVE))
-}
-
-/// Bilinear lookup on a side of a cube, across its edges where needed; 0..255.
-#[inline(always)]
-fn cube(faces: &[Face; 6], side: usize, level: usize, u: f32, v: f32) -> [f32; 4] {
-    let image = &faces[side][level];
-    let n = image.width;
-    let (x, y) = (u * n as f32 - 0.5, v * n as f32 - 0.5);
-    let (x0, y0) = (floor(x), floor(y));
-    let (wx, wy) = (x - x0 as f32, y - y0 as f32);
-    let last = n as i32 - 1;
-    let [a, b, c, d] = if x0 >= 0 && y0 >= 0 && x0 < last && y0 < last {
-        let i = y0 as usize * n + x0 as usize;
-        let (upper, lower) = (&image.pixels[i..i + 2], &image.pixels[i + n..i + n + 2]);
-        [upper[0], upper[1], lower[0], lower[1]]
-    } else {
-        across_edges(faces, side, level, x0, y0)
-    };
-    let wide = |[r, g, b, a]: [u8; 4]| [f32::from(r), f32::from(g), f32::from(b), f32::from(a)];
-    let (a, b, c, d) = (wide(a), wide(b), wide(c), wide(d));
-    let mut colour = [0.0; 4];
-    for k in 0..4 {
-        let (upper, lower) = (a[k] + wx * (b[k] - a[k]), c[k] + wx * (d[k] - c[k]));
-        colour[k] = upper + wy * (lower - upper);
-    }
-    colour
+fn sides_of([x, y, z]: &Coordinates) -> [u8; 4] {
+    let (along_x, along_y) = (x.abs(), y.abs());
+    let longer = along_x.simd_gt(along_y);
+    let upright = z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask();
+    let longer = longer.to_bitmask();
+    let negative = [x, y, z].map(|v| v.is_sign_negative().to_bitmask());
+    [0, 1, 2, 3].map(|k| {
+        let axis = if upright >> k & 1 == 1 {
+            2
+        } else {
+            1 - (longer >> k & 1)
+        };
+        (2 * axis + (negative[axis as usize] >> k & 1)) as u8
+    })
 }
 
 /// Four texels of which some lie beyond an edge.
 #[cold]
-fn across_edges(faces: &[Face; 6], side: usize, level: usize, x: i32, y: i32) -> [[u8; 4]; 4] {
+fn across_edges(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> [[u8; 4]; 4] {
     let at = |dx: i32, dy: i32| texel(faces, side, level, x + dx, y + dy);
     let mut found = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
     // at a corner of the cube only three texels meet
@@ -222,17 +335,20 @@ fn across_edges(faces: &[Face; 6], side: usize, level: usize, x: i32, y: i32) ->
 }
 
 /// A texel of a side or, beyond one of its edges, of the side that adjoins there; none beyond two.
-fn texel(faces: &[Face; 6], side: usize, level: usize, x: i32, y: i32) -> Option<[u8; 4]> {
-    let n = faces[side][level].width;
+fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u8; 4]> {
+    let image = |side: u8| &faces[usize::from(side)][level];
+    let n = image(side).width;
     let inside = |i: i32| (0..n as i32).contains(&i);
     match (inside(x), inside(y)) {
-        (true, true) => Some(faces[side][level].pixels[y as usize * n + x as usize]),
+        (true, true) => Some(image(side).pixels[y as usize * n + x as usize]),
         (false, false) => None,
         _ => {
             let place = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;
-            let (side, right, down, out) = project(direction(side, place(x), place(y)));
+            let at = direction(side, place(x), place(y));
+            let side = sides_of(&at.map(f32x4::splat))[0];
+            let (right, down, out) = components(side, at);
             let index = |v: f32| (((v / out + 1.0) * 0.5 * n as f32) as usize).min(n - 1);
-            Some(faces[side][level].pixels[index(down) * n + index(right)])
+            Some(image(side).pixels[index(down) * n + index(right)])
         }
     }
 }
@@ -244,19 +360,23 @@ mod tests {
     #[test]
     fn sides_and_directions_are_inverse() {
         for side in 0..6 {
-            let (s, right, down, out) = project(direction(side, 0.3, -0.7));
-            assert_eq!((s, right, down, out), (side, 0.3, -0.7, 1.0));
+            let at = direction(side, 0.3, -0.7);
+            assert_eq!(sides_of(&at.map(f32x4::splat)), [side; 4]);
+            assert_eq!(components(side, at), (0.3, -0.7, 1.0));
         }
     }
 
     #[test]
     fn levels_follow_the_logarithm() {
-        let of = |texels: f32| Detail::new(texels * texels, 8);
-        assert_eq!(of(0.1), Detail { level: 0, blend: 0.0 });
-        assert_eq!(of(4.0), Detail { level: 2, blend: 0.0 });
-        assert_eq!(of(2.0 * std::f32::consts::SQRT_2).level, 1);
-        assert!((of(2.0 * std::f32::consts::SQRT_2).blend - 0.5).abs() < 1e-5);
-        assert_eq!(of(1e9), Detail { level: 7, blend: 0.0 });
-        assert_eq!(Detail::new(f32::NAN, 8).blend, 0.0);
+        let of = |texels: f32| {
+            let detail = Detail::new(f32x4::splat(texels * texels), 8);
+            (detail.level[0], detail.blend[0])
+        };
+        assert_eq!(of(0.1), (0, 0.0));
+        assert_eq!(of(4.0), (2, 0.0));
+        assert_eq!(of(2.0 * std::f32::consts::SQRT_2).0, 1);
+        assert!((of(2.0 * std::f32::consts::SQRT_2).1 - 0.5).abs() < 1e-5);
+        assert_eq!(of(1e9), (7, 0.0));
+        assert_eq!(of(f32::NAN), (7, 0.0));
     }
 }

@@ -1,11 +1,12 @@
 //! The colour of what is seen: each triangle once per pixel, in the pixel's middle, averaged over the four samples.
 
-use super::camera::{Eye, V3, part_rows};
+use wide::{f32x4, u32x4};
+
+use super::camera::Eye;
+use super::frame::{Frame, part_of};
 use super::light::{self, PlacedLamp};
-use super::raster::NONE;
-use super::sample::Detail;
-use super::{Frame, apply, part_of};
-use crate::render::texture::Texture;
+use super::plane::{Basis, Planes};
+use super::raster::{NONE, Record};
 use crate::render::visual::{Poses, Visual};
 
 /// Shades what a frame shows.
@@ -16,38 +17,60 @@ pub struct Shader {
     lit_of: Vec<u32>,
     lit: Vec<Lit>,
     setups: Vec<Setup>,
+    /// Colours of the samples of each pixel, in bytes, where there are transparent things.
+    samples: Vec<[f32x4; 4]>,
+}
+
+/// Which pixels of a picture are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pixels {
+    /// Every one.
+    All,
+    /// Every second one of every second row, from the upper left.
+    Second,
+}
+
+impl Pixels {
+    /// Where a pixel goes, counted in pixels; none if it is not wanted. `y` is counted from the top.
+    #[inline(always)]
+    fn place(self, x: usize, y: usize, width: usize) -> Option<usize> {
+        match self {
+            Self::All => Some(y * width + x),
+            Self::Second => (x.is_multiple_of(2) && y.is_multiple_of(2)).then(|| y / 2 * width.div_ceil(2) + x / 2),
+        }
+    }
+
+    /// The samples of a group of 2 x 2 pixels, the lower two first, that are wanted: four bits for each pixel.
+    fn of_group(self, height: usize) -> u32 {
+        match self {
+            Self::All => 0xffff,
+            Self::Second if height.is_multiple_of(2) => 0x0f00,
+            Self::Second => 0x000f,
+        }
+    }
 }
 
 /// A vertex of a triangle that is seen.
 #[derive(Clone, Copy, Debug)]
 struct Lit {
-    clip: V3,
-    colour: V3,
-    texture: V3,
+    /// Red, green, blue, 1.
+    colour: f32x4,
+    /// Coordinates of the texture, 0.
+    texture: f32x4,
 }
 
-/// How a triangle is shaded: numerators and the common denominator are linear in the pixel, counted from one where the
-/// denominator is 1.
+/// How a triangle is shaded.
 #[derive(Clone, Copy, Debug)]
 struct Setup {
-    origin: [f32; 2],
-    denominator: [f32; 2],
-    colour: [Linear; 3],
-    coordinates: [Linear; 3],
-    texture: Option<usize>,
-}
-
-/// Value at the origin, change to the right, change upward.
-type Linear = [f32; 3];
-
-/// Levels of detail of the triangles in a group of 2 x 2 pixels.
-struct Quad {
-    at: [f32; 2],
-    known: [(u32, Detail); 4],
-    count: usize,
+    /// Those of the vertices, divided by w.
+    colour: Planes,
+    texture: Planes,
+    /// Index of the texture, or [`NONE`].
+    image: u32,
 }
 
 /// Everything that is read while shading.
+#[derive(Clone, Copy)]
 struct Scene<'a> {
     visual: &'a Visual,
     eye: &'a Eye,
@@ -56,11 +79,18 @@ struct Scene<'a> {
 }
 
 impl Shader {
-    /// Writes the picture, rows from the top.
-    pub fn resolve(&mut self, frame: &mut Frame, visual: &Visual, poses: &Poses, eye: &Eye, out: &mut [u8]) {
+    /// Writes pixels of the picture, rows from the top.
+    pub fn resolve(
+        &mut self,
+        frame: &mut Frame,
+        visual: &Visual,
+        poses: &Poses,
+        eye: &Eye,
+        (pixels, out): (Pixels, &mut [u8]),
+    ) {
         light::place(visual, poses, eye, &mut self.lamps);
         self.lit_of.clear();
-        self.lit_of.resize(frame.x.len(), NONE);
+        self.lit_of.resize(frame.vertices.len(), NONE);
         self.lit.clear();
         self.setups.clear();
         let (w, h) = (frame.target.width, frame.target.height);
@@ -69,185 +99,243 @@ impl Shader {
             eye,
             step: [2.0 / w as f32, 2.0 / h as f32],
         };
-        for qy in (0..h).step_by(2) {
-            for qx in (0..w).step_by(2) {
-                let mut quad = Quad {
-                    at: [qx as f32, qy as f32],
-                    known: [(NONE, Detail::default()); 4],
-                    count: 0,
-                };
-                for y in qy..(qy + 2).min(h) {
-                    for x in qx..(qx + 2).min(w) {
-                        let rgb = self.pixel(frame, &scene, &mut quad, x, y);
-                        let at = 3 * ((h - 1 - y) * w + x);
-                        out[at..at + 3].copy_from_slice(&rgb);
+        if !frame.panes.is_empty() {
+            self.blended(frame, &scene, pixels, out);
+            return;
+        }
+        let part = pixels.of_group(h);
+        for y in (0..h).step_by(2) {
+            for x in (0..w).step_by(2) {
+                let mut sums = [f32x4::ZERO; 4];
+                self.quad(frame, &scene, [x, y], part, |k, samples, colour| {
+                    sums[k] += f32x4::splat(samples.count_ones() as f32) * colour;
+                });
+                for (k, &sum) in sums.iter().enumerate() {
+                    let (x, y) = (x + k % 2, y + k / 2);
+                    if x < w
+                        && y < h
+                        && let Some(at) = pixels.place(x, h - 1 - y, w)
+                    {
+                        out[3 * at..3 * at + 3].copy_from_slice(&average(sum));
                     }
                 }
             }
         }
     }
 
-    /// The average over the samples of a pixel, each rounded to a byte.
-    fn pixel(&mut self, frame: &mut Frame, scene: &Scene, quad: &mut Quad, x: usize, y: usize) -> [u8; 3] {
-        let ids = frame.target.ids[y * frame.target.width + x];
-        let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-        let at = [x as f32, y as f32];
-        if ids == [ids[0]; 4] {
-            let [r, g, b] = self.colour(frame, scene, quad, at, ids[0]);
-            return [byte(r) as u8, byte(g) as u8, byte(b) as u8];
-        }
-        let mut sum = [2; 3];
-        for k in 0..4 {
-            if ids[..k].contains(&ids[k]) {
-                continue;
+    /// Passes on the colours that are seen in a group of pixels, at the samples with a bit in `part`: the pixel in the group,
+    /// a bit for each sample, the colour in bytes.
+    #[inline(always)]
+    fn quad(
+        &mut self,
+        frame: &mut Frame,
+        scene: &Scene,
+        at: [usize; 2],
+        part: u32,
+        mut emit: impl FnMut(usize, u32, f32x4),
+    ) {
+        let (w, h) = (frame.target.width, frame.target.height);
+        let [x, y] = at;
+        let first = y * w + x;
+        let (right, up) = (usize::from(x + 1 < w), if y + 1 < h { w } else { 0 });
+        let ids = &frame.target.ids;
+        let seen = [ids[first], ids[first + right], ids[first + up], ids[first + up + right]];
+        let vectors = seen.map(u32x4::new);
+        let mut rest = part;
+        while rest != 0 {
+            let next = rest.trailing_zeros() as usize;
+            let id = seen[next / 4][next % 4];
+            let same = |k: usize| vectors[k].simd_eq(u32x4::splat(id)).to_bitmask() << (4 * k);
+            let mine = (same(0) | same(1) | same(2) | same(3)) & rest;
+            rest &= !mine;
+            let samples = [mine & 15, mine >> 4 & 15, mine >> 8 & 15, mine >> 12 & 15];
+            let colours = self.colours(frame, scene, at, id, samples.map(|s| s != 0));
+            for k in 0..4 {
+                emit(k, samples[k], bytes(colours[k]));
             }
-            let share = ids[k..].iter().filter(|&&id| id == ids[k]).count() as u32;
-            let colour = self.colour(frame, scene, quad, at, ids[k]);
-            for (s, c) in sum.iter_mut().zip(colour) {
-                *s += share * byte(c);
-            }
         }
-        [(sum[0] / 4) as u8, (sum[1] / 4) as u8, (sum[2] / 4) as u8]
     }
 
-    /// The colour of a record in the middle of a pixel.
-    fn colour(&mut self, frame: &mut Frame, scene: &Scene, quad: &mut Quad, at: [f32; 2], id: u32) -> V3 {
+    /// Writes a picture with transparent things, each drawn twice: from the front to the back and then back.
+    #[cold]
+    fn blended(&mut self, frame: &mut Frame, scene: &Scene, pixels: Pixels, out: &mut [u8]) {
+        let (w, h) = (frame.target.width, frame.target.height);
+        let mut samples = std::mem::take(&mut self.samples);
+        samples.clear();
+        samples.resize(w * h, [f32x4::ZERO; 4]);
+        for y in (0..h).step_by(2) {
+            for x in (0..w).step_by(2) {
+                self.quad(frame, scene, [x, y], 0xffff, |k, covered, colour| {
+                    let (x, y) = (x + k % 2, y + k / 2);
+                    if x < w && y < h {
+                        for s in (0..4).filter(|s| covered >> s & 1 == 1) {
+                            samples[y * w + x][s] = colour;
+                        }
+                    }
+                });
+            }
+        }
+        let panes = frame.panes.len();
+        for k in (0..panes).chain((0..panes).rev()) {
+            for i in frame.panes[k].clone() {
+                let fragment = frame.target.fragments[i];
+                let (x, y) = (fragment.at as usize % w, fragment.at as usize / w);
+                let mut wanted = [false; 4];
+                let own = x % 2 + 2 * (y % 2);
+                wanted[own] = true;
+                let group = [x - x % 2, y - y % 2];
+                let colour = self.colours(frame, scene, group, fragment.id, wanted)[own];
+                let draw = frame.target.records[fragment.id as usize].draw;
+                let alpha = frame.draws[draw as usize].alpha;
+                for s in (0..4).filter(|s| fragment.samples >> s & 1 == 1) {
+                    let under = &mut samples[fragment.at as usize][s];
+                    *under = blend(*under, colour, alpha);
+                }
+            }
+        }
+        for (i, s) in samples.iter().enumerate() {
+            if let Some(at) = pixels.place(i % w, h - 1 - i / w, w) {
+                out[3 * at..3 * at + 3].copy_from_slice(&average(s[0] + s[1] + s[2] + s[3]));
+            }
+        }
+        self.samples = samples;
+    }
+
+    /// The colours of a record in the middles of the pixels of a group, where `wanted`.
+    #[inline(always)]
+    fn colours(
+        &mut self,
+        frame: &mut Frame,
+        scene: &Scene,
+        [x, y]: [usize; 2],
+        id: u32,
+        wanted: [bool; 4],
+    ) -> [f32x4; 4] {
+        let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
         if id == NONE {
-            return scene.sky(quad, at);
+            return scene.sky(x, y, wanted);
         }
         let mut index = frame.target.records[id as usize].setup;
         if index == NONE {
             index = self.setups.len() as u32;
-            let setup = self.setup(frame, scene, id, at);
+            let record = frame.target.records[id as usize];
+            let setup = self.setup(frame, scene, &record);
             self.setups.push(setup);
             frame.target.records[id as usize].setup = index;
         }
-        let setup = &self.setups[index as usize];
-        let mut colour = setup.value(&setup.colour, at);
-        if let Some(texture) = setup.texture {
-            let texture = &scene.visual.textures[texture];
-            let detail = quad.detail(id, texture, |at| setup.value(&setup.coordinates, at));
-            let texel = texture.sample(setup.value(&setup.coordinates, at), detail);
-            for (c, t) in colour.iter_mut().zip(texel) {
-                *c *= t;
-            }
-        }
-        colour
+        self.setups[index as usize].colours(scene.visual, x, y, wanted)
     }
 
-    fn setup(&mut self, frame: &Frame, scene: &Scene, id: u32, at: [f32; 2]) -> Setup {
-        let record = &frame.target.records[id as usize];
+    fn setup(&mut self, frame: &Frame, scene: &Scene, record: &Record) -> Setup {
         let index = record.draw as usize;
+        let lit = record.vertices.map(|v| self.lit(frame, scene, index, v));
+        let vertices = record.vertices.map(|v| &frame.vertices[v as usize]);
+        let basis = Basis::new(vertices);
+        let iw = vertices.map(|v| f32x4::splat(v.iw));
+        let size = [frame.target.width, frame.target.height];
+        let over = |[a, b, c]: [f32x4; 3]| Planes::new(&basis, [a * iw[0], b * iw[1], c * iw[2]], vertices[0].iw, size);
+        let image = scene.visual.drawables[index].texture;
+        Setup {
+            colour: over(lit.map(|l| l.colour)),
+            texture: match image {
+                Some(_) => over(lit.map(|l| l.texture)),
+                None => Planes::default(),
+            },
+            image: image.map_or(NONE, |i| i as u32),
+        }
+    }
+
+    /// A vertex of the frame that belongs to a drawable, lit when it is first asked for.
+    fn lit(&mut self, frame: &Frame, scene: &Scene, index: usize, v: u32) -> Lit {
+        let slot = self.lit_of[v as usize];
+        if slot != NONE {
+            return self.lit[slot as usize];
+        }
         let drawable = &scene.visual.drawables[index];
         let draw = &frame.draws[index];
         let mesh = &scene.visual.meshes[drawable.shape as usize];
-        let corners = record.vertices.map(|v| {
-            let slot = self.lit_of[v as usize];
-            if slot != NONE {
-                return self.lit[slot as usize];
+        let i = v as usize - draw.base;
+        let lit = match i.checked_sub(mesh.x.len()) {
+            Some(point) => {
+                let point = frame.points[draw.points + point];
+                let from = self.lit(frame, scene, index, point.from);
+                let to = self.lit(frame, scene, index, point.to);
+                let share = f32x4::splat(point.share);
+                Lit {
+                    colour: from.colour + share * (to.colour - from.colour),
+                    texture: from.texture + share * (to.texture - from.texture),
+                }
             }
-            let i = v as usize - draw.base;
-            let unit = [mesh.x[i], mesh.y[i], mesh.z[i]];
-            let part = part_of(&mesh.parts, i);
-            let lit = Lit {
-                clip: apply(&part_rows(part, draw.rows, drawable.size), unit),
-                colour: light::vertex(&self.lamps, drawable, draw, scene.eye.pos, (part, unit, mesh.normal[i])),
-                texture: [0, 1, 2].map(|k| unit[k] * drawable.texture_scale[k] + drawable.texture_offset),
-            };
-            self.lit_of[v as usize] = self.lit.len() as u32;
-            self.lit.push(lit);
-            lit
-        });
-        Setup::new(scene, corners, at, drawable.texture)
+            None => {
+                let unit = [mesh.x[i], mesh.y[i], mesh.z[i]];
+                let part = part_of(&mesh.parts, i);
+                let vertex = (part, unit, mesh.normal[i]);
+                let [r, g, b] = light::vertex(&self.lamps, drawable, draw, scene.eye.pos, vertex);
+                let [s, t, u] = [0, 1, 2].map(|k| unit[k] * drawable.texture_scale[k] + drawable.texture_offset);
+                Lit {
+                    colour: f32x4::new([r, g, b, 1.0]),
+                    texture: f32x4::new([s, t, u, 0.0]),
+                }
+            }
+        };
+        self.lit_of[v as usize] = self.lit.len() as u32;
+        self.lit.push(lit);
+        lit
     }
+}
+
+/// A colour of 0..1 in bytes: to the nearest, halves to even. What is not a number becomes 0.
+#[inline(always)]
+fn bytes(colour: f32x4) -> f32x4 {
+    // adding 2^23 rounds to the nearest integer
+    const SHIFT: f32 = 8_388_608.0;
+    (colour.max(f32x4::ZERO).fast_min(f32x4::ONE) * 255.0 + SHIFT) - SHIFT
+}
+
+/// Lays a colour over one in bytes.
+fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
+    let over = over.max(f32x4::ZERO).fast_min(f32x4::ONE);
+    bytes(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
+}
+
+/// The average of four colours in bytes from their sum.
+#[inline(always)]
+fn average(sum: f32x4) -> [u8; 3] {
+    let [r, g, b, _] = ((sum + 2.0) * 0.25).fast_trunc_int().to_array();
+    [r as u8, g as u8, b as u8]
 }
 
 impl Setup {
-    /// The weights of the corners are ratios of determinants of clip coordinates, which also holds for corners behind the
-    /// camera.
-    fn new(scene: &Scene, corners: [Lit; 3], at: [f32; 2], texture: Option<usize>) -> Self {
-        let wide = |v: &Lit| [f64::from(v.clip[0]), f64::from(v.clip[1]), f64::from(v.clip[2])];
-        let (p, q, r) = (wide(&corners[0]), wide(&corners[1]), wide(&corners[2]));
-        use crate::math::cross;
-        let normals = [cross(q, r), cross(r, p), cross(p, q)];
-        let [sx, sy] = scene.step.map(f64::from);
-        let (x, y) = ((f64::from(at[0]) + 0.5) * sx - 1.0, (f64::from(at[1]) + 0.5) * sy - 1.0);
-        let [l, m, n] = normals;
-        let weight = |n: [f64; 3]| n[0] * x + n[1] * y + n[2];
-        let weights = [weight(l), weight(m), weight(n)];
-        let total = weights[0] + weights[1] + weights[2];
-        // an edge-on triangle has no denominator; it is one sample at most
-        let scale = if total != 0.0 { 1.0 / total } else { 0.0 };
-        let linear = |a: f32, b: f32, c: f32| -> Linear {
-            let (a, b, c) = (f64::from(a), f64::from(b), f64::from(c));
-            [
-                ((a * weights[0] + b * weights[1] + c * weights[2]) * scale) as f32,
-                ((a * l[0] + b * m[0] + c * n[0]) * scale * sx) as f32,
-                ((a * l[1] + b * m[1] + c * n[1]) * scale * sy) as f32,
-            ]
-        };
-        let [a, b, c] = &corners;
-        let colour = |k: usize| linear(a.colour[k], b.colour[k], c.colour[k]);
-        let coordinate = |k: usize| linear(a.texture[k], b.texture[k], c.texture[k]);
-        let [_, dx, dy] = linear(1.0, 1.0, 1.0);
-        Self {
-            origin: at,
-            denominator: [dx, dy],
-            colour: [colour(0), colour(1), colour(2)],
-            coordinates: if texture.is_some() {
-                [coordinate(0), coordinate(1), coordinate(2)]
-            } else {
-                [[0.0; 3]; 3]
-            },
-            texture,
+    #[inline(always)]
+    fn colours(&self, visual: &Visual, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
+        let mut colours = self.colour.group(x, y);
+        let w = f32x4::ONE / f32x4::new(colours.map(|c| c.to_array()[3]));
+        let each = w.to_array();
+        for k in 0..4 {
+            colours[k] *= f32x4::splat(each[k]);
         }
-    }
-
-    fn value(&self, numerators: &[Linear; 3], at: [f32; 2]) -> V3 {
-        let (dx, dy) = (at[0] - self.origin[0], at[1] - self.origin[1]);
-        let scale = 1.0 / (1.0 + self.denominator[0] * dx + self.denominator[1] * dy);
-        let [a, b, c] = numerators;
-        let value = |n: &Linear| (n[0] + n[1] * dx + n[2] * dy) * scale;
-        [value(a), value(b), value(c)]
-    }
-}
-
-impl Quad {
-    /// The level of detail of a record, from the coordinates in the lower left pixel of the group and its neighbours.
-    fn detail(&mut self, id: u32, texture: &Texture, coordinates: impl Fn([f32; 2]) -> V3) -> Detail {
-        if let Some(found) = self.known[..self.count].iter().find(|k| k.0 == id) {
-            return found.1;
+        if self.image != NONE {
+            let [s, t, u, _] = f32x4::transpose(self.texture.group(x, y));
+            let texels = visual.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
+            for k in 0..4 {
+                colours[k] *= texels[k];
+            }
         }
-        let [x, y] = self.at;
-        let detail = texture.detail(
-            coordinates([x, y]),
-            coordinates([x + 1.0, y]),
-            coordinates([x, y + 1.0]),
-        );
-        if self.count < self.known.len() {
-            self.known[self.count] = (id, detail);
-            self.count += 1;
-        }
-        detail
+        colours
     }
 }
 
 impl Scene<'_> {
-    /// The background: a cube map turned by 90 degrees about x, seen in the direction of a pixel.
-    fn sky(&self, quad: &mut Quad, at: [f32; 2]) -> V3 {
+    /// The background: a cube map turned by 90 degrees about x, seen in the direction of the pixels of a group.
+    fn sky(&self, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
         let Some(sky) = self.visual.sky else {
-            return [0.0; 3];
+            return [f32x4::ZERO; 4];
         };
-        let texture = &self.visual.textures[sky];
-        let direction = |at: [f32; 2]| {
-            let x = ((at[0] + 0.5) * self.step[0] - 1.0) * self.eye.tan[0];
-            let y = ((at[1] + 0.5) * self.step[1] - 1.0) * self.eye.tan[1];
-            let Eye { forward, right, up, .. } = self.eye;
-            let along = |k: usize| forward[k] + right[k] * x + up[k] * y;
-            let d = [along(0), along(1), along(2)];
-            [d[0], d[2], -d[1]]
-        };
-        let detail = quad.detail(NONE, texture, direction);
-        texture.sample(direction(at), detail)
+        let Eye { forward, right, up, .. } = self.eye;
+        let ray = |at: [f32; 4], k: usize| (f32x4::new(at) * self.step[k] - 1.0) * self.eye.tan[k];
+        let across = ray([x, x + 1.0, x, x + 1.0], 0);
+        let upward = ray([y, y, y + 1.0, y + 1.0], 1);
+        let along = |k: usize| forward[k] + right[k] * across + up[k] * upward;
+        self.visual.textures[sky].sample(&[along(0), along(2), -along(1)], wanted)
     }
 }

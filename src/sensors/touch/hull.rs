@@ -1,5 +1,7 @@
 //! Convex hulls of sensor points, to tell which sensors of a body lie inside another of its geoms.
 
+use std::ops::Range;
+
 use crate::math::*;
 
 /// A face of the hull under construction.
@@ -34,10 +36,41 @@ impl Face {
     }
 }
 
-/// The convex hull of a set of points, as half spaces.
+/// A half space: outward unit normal and offset.
+type Plane = (Vec3, f64);
+
+/// Bounds of a run of planes whose normals lie close together. Runs split in two until they are short.
+#[derive(Clone, Debug, PartialEq)]
+struct Bundle {
+    planes: Range<usize>,
+    /// Box around the normals.
+    low: Vec3,
+    high: Vec3,
+    /// Largest offset.
+    offset: f64,
+    /// The second half, if the bundle is split; the first follows the bundle itself.
+    second: Option<usize>,
+}
+
+/// Planes in a bundle that is not split.
+const BUNDLE: usize = 8;
+/// Slack (m) for the rounding of bounds, far below the spacing of sensors.
+const ROUNDING: f64 = 1e-12;
+
+impl Bundle {
+    /// An upper bound of the distance of `p` from the planes.
+    fn bound(&self, p: Vec3) -> f64 {
+        (0..3).fold(self.offset + ROUNDING, |sum, k| {
+            sum + (self.low[k] * p[k]).max(self.high[k] * p[k])
+        })
+    }
+}
+
+/// The convex hull of a set of points, as half spaces in a tree of bundles: most are dismissed together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    planes: Vec<(Vec3, f64)>,
+    planes: Vec<Plane>,
+    bundles: Vec<Bundle>,
 }
 
 impl Hull {
@@ -51,13 +84,59 @@ impl Hull {
         let faces = [1e-12, 1e-11, 1e-10]
             .iter()
             .find_map(|tolerance| quickhull(points, tolerance * extent))?;
-        let planes = faces.iter().filter(|f| f.alive).map(|f| (f.normal, f.offset)).collect();
-        Some(Self { planes })
+        let planes: Vec<Plane> = faces.iter().filter(|f| f.alive).map(|f| (f.normal, f.offset)).collect();
+        let all = 0..planes.len();
+        let mut hull = Self {
+            planes,
+            bundles: Vec::new(),
+        };
+        hull.bundle(all);
+        Some(hull)
+    }
+
+    /// Sorts `run` of the planes into bundles.
+    fn bundle(&mut self, run: Range<usize>) {
+        let planes = &mut self.planes[run.clone()];
+        let bound = |pick: fn(f64, f64) -> f64, from: f64| {
+            std::array::from_fn::<f64, 3, _>(|k| planes.iter().fold(from, |m, (n, _)| pick(m, n[k])))
+        };
+        let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+        let offset = planes.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.1));
+        let index = self.bundles.len();
+        self.bundles.push(Bundle {
+            planes: run.clone(),
+            low,
+            high,
+            offset,
+            second: None,
+        });
+        if run.len() > BUNDLE {
+            let width = sub(high, low);
+            let axis = (1..3).fold(0, |best, k| if width[k] > width[best] { k } else { best });
+            let middle = run.len() / 2;
+            planes.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+            self.bundle(run.start..run.start + middle);
+            self.bundles[index].second = Some(self.bundles.len());
+            self.bundle(run.start + middle..run.end);
+        }
     }
 
     /// Whether `p` is inside, or outside by less than `margin` (m) from the plane of every face.
     pub fn contains(&self, p: Vec3, margin: f64) -> bool {
-        self.planes.iter().all(|(n, d)| dot(*n, p) + d < margin)
+        self.inside(0, p, margin)
+    }
+
+    fn inside(&self, bundle: usize, p: Vec3, margin: f64) -> bool {
+        let b = &self.bundles[bundle];
+        if b.bound(p) < margin {
+            return true;
+        }
+        match b.second {
+            Some(second) => self.inside(bundle + 1, p, margin) && self.inside(second, p, margin),
+            None => self.planes[b.planes.clone()]
+                .iter()
+                .all(|(n, d)| dot(*n, p) + d < margin),
+        }
     }
 }
 
@@ -197,6 +276,23 @@ mod tests {
         }
         println!("points leave their hull by up to {worst:.1e} m");
         assert!(worst < 1e-12);
+    }
+
+    /// Bundles give what all planes give, one by one.
+    #[test]
+    fn bundles_dismiss_no_plane_that_matters() {
+        let points = surface_points(GeomType::Capsule, [0.052, 0.035, 0.0], 0.004);
+        let hull = Hull::new(&points).expect("a volume");
+        let mut inside = 0;
+        for (i, p) in points.iter().enumerate() {
+            for stretch in [0.3, 0.9, 0.99, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.01, 1.5] {
+                let p = scale(*p, stretch);
+                let plain = hull.planes.iter().all(|(n, d)| dot(*n, p) + d < 1e-9);
+                assert_eq!(hull.contains(p, 1e-9), plain, "point {i} at {stretch}");
+                inside += usize::from(plain);
+            }
+        }
+        assert!((3 * points.len()..7 * points.len()).contains(&inside), "{inside}");
     }
 
     #[test]

@@ -57,6 +57,7 @@ const BODIES: [Row; 30] = [
 
 /// Why a skin cannot be made.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum SkinError {
     /// A distance between sensors is not a positive number.
     #[error("the touch sensors of {body:?} cannot be {spacing} m apart: the distance must be finite and > 0")]

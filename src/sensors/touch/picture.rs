@@ -3,6 +3,7 @@
 use super::trace::trace;
 use crate::math::*;
 use crate::model::{GeomType, Model};
+use crate::render::MAX_SIZE;
 use crate::sensors::touch::{SkinLayout, Touch};
 
 /// Colour of the background.
@@ -168,9 +169,93 @@ impl Canvas<'_> {
     }
 }
 
+/// What is drawn, in the frame of the first body that feels.
+struct Figure {
+    dots: Vec<Dot>,
+    solids: Vec<Solid>,
+    /// Points of contact and forces on the skin, N.
+    arrows: Vec<(Vec3, Vec3)>,
+}
+
+impl Figure {
+    /// In the frame of the body `first`.
+    fn new(
+        model: &Model,
+        layout: &SkinLayout,
+        xpos: &[Vec3],
+        xmat: &[Mat3],
+        touch: Option<&Touch>,
+        first: usize,
+    ) -> Self {
+        let to_frame = |p: Vec3| mat_t_vec(&xmat[first], sub(p, xpos[first]));
+        let strength = |value: &[f32]| value.iter().fold(0.0_f64, |m, v| m.max(f64::from(v.abs())));
+        let strongest = touch.map_or(0.0, |t| strength(t.values())).max(f64::MIN_POSITIVE);
+        let (mut dots, mut solids) = (Vec::new(), Vec::new());
+        for (k, body) in layout.bodies().iter().enumerate() {
+            let b = body.body.0;
+            let color = SKIN[k % SKIN.len()];
+            let values = touch.map_or(&[][..], |t| t.body_values(body.body));
+            let width = touch.map_or(1, Touch::width);
+            let placed = |p: Vec3| to_frame(add(xpos[b], mat_vec(&xmat[b], p)));
+            for (i, p) in body.positions().iter().enumerate() {
+                let value = values.get(width * i..width * (i + 1)).unwrap_or(&[]);
+                dots.push(Dot {
+                    place: placed(*p),
+                    spacing: body.scale,
+                    color,
+                    felt: strength(value) / strongest,
+                });
+            }
+            for g in &body.geoms {
+                let turned = mat_mul(&xmat[b], &g.mat);
+                solids.push(Solid {
+                    kind: model.geom_type[g.geom.0],
+                    size: model.geom_size[g.geom.0],
+                    pos: placed(model.geom_pos[g.geom.0]),
+                    mat: mat_mul(&transpose(&xmat[first]), &turned),
+                    color,
+                });
+            }
+        }
+        let felt = touch.map_or(&[][..], Touch::contacts).iter();
+        let arrows = felt
+            .map(|c| (to_frame(c.point), mat_t_vec(&xmat[first], c.force)))
+            .collect();
+        Self { dots, solids, arrows }
+    }
+
+    /// Bounds along each axis, m: all of it, and the arrows, has to fit.
+    fn bounds(&self) -> [(f64, f64); 3] {
+        let room = if self.arrows.is_empty() { 0.02 } else { 0.6 * ARROW };
+        std::array::from_fn(|k| {
+            let places = self.dots.iter().map(|d| d.place[k]);
+            let (low, high) = places.fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(x), h.max(x)));
+            (low - room, high + room)
+        })
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        self.solids.iter().for_each(|g| canvas.draw_solid(g));
+        for touched in [false, true] {
+            for d in self.dots.iter().filter(|d| (d.felt > 0.0) == touched) {
+                if canvas.sees(d.place) {
+                    canvas.draw_dot(d);
+                }
+            }
+        }
+        let largest = self.arrows.iter().fold(f64::MIN_POSITIVE, |m, a| m.max(norm(a.1)));
+        for (point, force) in &self.arrows {
+            let (direction, size) = unit(*force);
+            let tip = add_scaled(*point, direction, ARROW * (size / largest).sqrt());
+            let (from, to) = (canvas.at(*point), canvas.at(tip));
+            draw_arrow(canvas.picture, from, to);
+        }
+    }
+}
+
 /// Draws the sensors of a skin on its geoms, at the body poses `xpos` (m) and `xmat`, seen from the front, from the right
 /// side and from the back of the first body that feels (MIMo's hip), without perspective; `height` pixels high (at least
-/// 64).
+/// 64, at most [`MAX_SIZE`]). The views are smaller where together they would be wider than four times [`MAX_SIZE`].
 ///
 /// With a `touch` of the same instant the sensors that feel are red, the more the stronger, and arrows from the points of
 /// contact show the forces on the skin, their length growing with the square root of the force.
@@ -182,55 +267,16 @@ pub fn draw_skin(
     touch: Option<&Touch>,
     height: usize,
 ) -> Picture {
-    let height = height.max(64);
+    let height = height.clamp(64, MAX_SIZE);
     let Some(first) = layout.bodies().first().map(|b| b.body.0) else {
         return Picture::blank(height, height);
     };
-    let to_frame = |p: Vec3| mat_t_vec(&xmat[first], sub(p, xpos[first]));
-    let strength = |value: &[f32]| value.iter().fold(0.0_f64, |m, v| m.max(f64::from(v.abs())));
-    let strongest = touch.map_or(0.0, |t| strength(t.values())).max(f64::MIN_POSITIVE);
-    let (mut dots, mut solids) = (Vec::new(), Vec::new());
-    for (k, body) in layout.bodies().iter().enumerate() {
-        let b = body.body.0;
-        let color = SKIN[k % SKIN.len()];
-        let values = touch.map_or(&[][..], |t| t.body_values(body.body));
-        let width = touch.map_or(1, Touch::width);
-        let placed = |p: Vec3| to_frame(add(xpos[b], mat_vec(&xmat[b], p)));
-        for (i, p) in body.positions().iter().enumerate() {
-            let value = values.get(width * i..width * (i + 1)).unwrap_or(&[]);
-            dots.push(Dot {
-                place: placed(*p),
-                spacing: body.scale,
-                color,
-                felt: strength(value) / strongest,
-            });
-        }
-        for g in &body.geoms {
-            let turned = mat_mul(&xmat[b], &g.mat);
-            solids.push(Solid {
-                kind: model.geom_type[g.geom.0],
-                size: model.geom_size[g.geom.0],
-                pos: placed(model.geom_pos[g.geom.0]),
-                mat: mat_mul(&transpose(&xmat[first]), &turned),
-                color,
-            });
-        }
-    }
-    let felt = touch.map_or(&[][..], Touch::contacts).iter();
-    let arrows: Vec<(Vec3, Vec3)> = felt
-        .map(|c| (to_frame(c.point), mat_t_vec(&xmat[first], c.force)))
-        .collect();
-    let largest = arrows.iter().fold(f64::MIN_POSITIVE, |m, a| m.max(norm(a.1)));
-
-    // all of it, and the arrows, has to fit
-    let room = if arrows.is_empty() { 0.02 } else { 0.6 * ARROW };
-    let bounds: [(f64, f64); 3] = std::array::from_fn(|k| {
-        let places = dots.iter().map(|d| d.place[k]);
-        let (low, high) = places.fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(x), h.max(x)));
-        (low - room, high + room)
-    });
-    let scale = height as f64 / (bounds[2].1 - bounds[2].0);
-    let widths = VIEWS.map(|v| (bounds[v.0].1 - bounds[v.0].0) * scale);
+    let figure = Figure::new(model, layout, xpos, xmat, touch, first);
+    let bounds = figure.bounds();
+    let extents = bounds.map(|(low, high)| high - low);
+    let across = VIEWS.iter().map(|v| extents[v.0]).sum::<f64>();
+    let scale = (height as f64 / extents[2]).min(4.0 * MAX_SIZE as f64 / across);
+    let widths = VIEWS.map(|v| extents[v.0] * scale);
     let mut picture = Picture::blank(widths.iter().sum::<f64>().ceil() as usize, height);
     let mut left = 0.0;
     for (view, width) in VIEWS.iter().zip(widths) {
@@ -243,22 +289,7 @@ pub fn draw_skin(
             left,
             scale,
         };
-        solids.iter().for_each(|g| canvas.draw_solid(g));
-        for touched in [false, true] {
-            for d in dots
-                .iter()
-                .filter(|d| (d.felt > 0.0) == touched && canvas.sees(d.place))
-                .collect::<Vec<_>>()
-            {
-                canvas.draw_dot(d);
-            }
-        }
-        for (point, force) in &arrows {
-            let (direction, size) = unit(*force);
-            let tip = add_scaled(*point, direction, ARROW * (size / largest).sqrt());
-            let (from, to) = (canvas.at(*point), canvas.at(tip));
-            draw_arrow(canvas.picture, from, to);
-        }
+        figure.draw(&mut canvas);
         left += width;
     }
     picture

@@ -1,0 +1,374 @@
+//! Arrays of our compiled model under MuJoCo's names and in its layout.
+
+use babybench::Model;
+use babybench::model::{BiasType, CameraMode, EqualityKind, GeomType, JointType, SensorType, TextureType};
+
+fn ids(values: &[usize]) -> Vec<f64> {
+    values.iter().map(|&v| v as f64).collect()
+}
+
+fn flags(values: &[bool]) -> Vec<f64> {
+    values.iter().map(|&v| f64::from(u8::from(v))).collect()
+}
+
+fn flat<const N: usize>(values: &[[f64; N]]) -> Vec<f64> {
+    values.iter().flatten().copied().collect()
+}
+
+fn optional(values: &[Option<usize>]) -> Vec<f64> {
+    values.iter().map(|v| v.map_or(-1.0, |v| v as f64)).collect()
+}
+
+fn shapes(values: &[GeomType]) -> Vec<f64> {
+    let code = |shape: &GeomType| match shape {
+        GeomType::Plane => 0,
+        GeomType::Sphere => 2,
+        GeomType::Capsule => 3,
+        GeomType::Ellipsoid => 4,
+        GeomType::Cylinder => 5,
+        GeomType::Box => 6,
+    };
+    values.iter().map(|shape| f64::from(code(shape))).collect()
+}
+
+/// MuJoCo gives -1 as the address of an empty range.
+fn addresses(first: &[usize], number: &[usize]) -> Vec<f64> {
+    first
+        .iter()
+        .zip(number)
+        .map(|(&first, &number)| if number == 0 { -1.0 } else { first as f64 })
+        .collect()
+}
+
+/// The arrays that matter to physics and sensors, under MuJoCo's names.
+pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+    let targets = m.cam_mode.iter().map(|mode| match mode {
+        CameraMode::Fixed => -1.0,
+        CameraMode::TargetBody(body) => body.0 as f64,
+    });
+    let mut eq_data = Vec::new();
+    let (mut eq_type, mut eq_obj1, mut eq_obj2) = (Vec::new(), Vec::new(), Vec::new());
+    for kind in &m.eq_kind {
+        match kind {
+            EqualityKind::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                eq_type.push(2.0);
+                eq_obj1.push(joint1.0 as f64);
+                eq_obj2.push(joint2.map_or(-1.0, |joint| joint.0 as f64));
+                // The last entry is the unused torque scale.
+                eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+            }
+            EqualityKind::Weld {
+                body1,
+                body2,
+                anchor,
+                relpos,
+                relquat,
+                torquescale,
+            } => {
+                eq_type.push(1.0);
+                eq_obj1.push(body1.0 as f64);
+                eq_obj2.push(body2.0 as f64);
+                eq_data.extend(anchor.iter().chain(relpos).chain(relquat).chain([torquescale]));
+            }
+        }
+    }
+    let wraps: Vec<(usize, f64)> = m.tendon_wrap.iter().flatten().copied().collect();
+    let starts = m.tendon_wrap.iter().scan(0, |next, wrap| {
+        *next += wrap.len();
+        Some((*next - wrap.len()) as f64)
+    });
+    let joint_code = |kind: &JointType| match kind {
+        JointType::Free => 0.0,
+        JointType::Slide => 2.0,
+        JointType::Hinge => 3.0,
+    };
+    let sensor_code = |kind: &SensorType| match kind {
+        SensorType::Accelerometer => 1.0,
+        SensorType::Gyro => 3.0,
+        SensorType::Torque => 5.0,
+    };
+    vec![
+        ("nq", vec![m.nq as f64]),
+        ("nv", vec![m.nv as f64]),
+        ("opt_timestep", vec![m.opt.timestep]),
+        ("opt_gravity", m.opt.gravity.to_vec()),
+        ("opt_iterations", vec![m.opt.iterations as f64]),
+        ("opt_tolerance", vec![m.opt.tolerance]),
+        ("opt_ls_iterations", vec![m.opt.ls_iterations as f64]),
+        ("opt_ls_tolerance", vec![m.opt.ls_tolerance]),
+        ("opt_impratio", vec![m.opt.impratio]),
+        ("opt_ccd_iterations", vec![m.opt.ccd_iterations as f64]),
+        ("opt_ccd_tolerance", vec![m.opt.ccd_tolerance]),
+        ("body_parentid", ids(&m.body_parentid)),
+        ("body_rootid", ids(&m.body_rootid)),
+        ("body_weldid", ids(&m.body_weldid)),
+        ("body_jntadr", addresses(&m.body_jntadr, &m.body_jntnum)),
+        ("body_jntnum", ids(&m.body_jntnum)),
+        ("body_dofadr", addresses(&m.body_dofadr, &m.body_dofnum)),
+        ("body_dofnum", ids(&m.body_dofnum)),
+        ("body_geomadr", addresses(&m.body_geomadr, &m.body_geomnum)),
+        ("body_geomnum", ids(&m.body_geomnum)),
+        ("body_pos", flat(&m.body_pos)),
+        ("body_quat", flat(&m.body_quat)),
+        ("body_ipos", flat(&m.body_ipos)),
+        ("body_iquat", flat(&m.body_iquat)),
+        ("body_mass", m.body_mass.clone()),
+        ("body_subtreemass", m.body_subtreemass.clone()),
+        ("body_inertia", flat(&m.body_inertia)),
+        ("jnt_type", m.jnt_type.iter().map(joint_code).collect()),
+        ("jnt_bodyid", ids(&m.jnt_bodyid)),
+        ("jnt_qposadr", ids(&m.jnt_qposadr)),
+        ("jnt_dofadr", ids(&m.jnt_dofadr)),
+        ("jnt_pos", flat(&m.jnt_pos)),
+        ("jnt_axis", flat(&m.jnt_axis)),
+        ("jnt_limited", flags(&m.jnt_limited)),
+        ("jnt_range", flat(&m.jnt_range)),
+        ("jnt_margin", m.jnt_margin.clone()),
+        ("jnt_stiffness", m.jnt_stiffness.clone()),
+        ("jnt_solref", flat(&m.jnt_solref)),
+        ("jnt_solimp", flat(&m.jnt_solimp)),
+        ("jnt_group", ids(&m.jnt_group)),
+        ("dof_bodyid", ids(&m.dof_bodyid)),
+        ("dof_jntid", ids(&m.dof_jntid)),
+        ("dof_parentid", optional(&m.dof_parentid)),
+        ("dof_armature", m.dof_armature.clone()),
+        ("dof_damping", m.dof_damping.clone()),
+        ("dof_frictionloss", m.dof_frictionloss.clone()),
+        ("dof_solref", flat(&m.dof_solref)),
+        ("dof_solimp", flat(&m.dof_solimp)),
+        ("qpos0", m.qpos0.clone()),
+        ("qpos_spring", m.qpos_spring.clone()),
+        ("geom_type", shapes(&m.geom_type)),
+        ("geom_size", flat(&m.geom_size)),
+        ("geom_bodyid", ids(&m.geom_bodyid)),
+        ("geom_pos", flat(&m.geom_pos)),
+        ("geom_quat", flat(&m.geom_quat)),
+        ("geom_contype", m.geom_contype.iter().map(|&v| f64::from(v)).collect()),
+        (
+            "geom_conaffinity",
+            m.geom_conaffinity.iter().map(|&v| f64::from(v)).collect(),
+        ),
+        ("geom_condim", ids(&m.geom_condim)),
+        ("geom_priority", m.geom_priority.iter().map(|&v| f64::from(v)).collect()),
+        ("geom_friction", flat(&m.geom_friction)),
+        ("geom_solmix", m.geom_solmix.clone()),
+        ("geom_solref", flat(&m.geom_solref)),
+        ("geom_solimp", flat(&m.geom_solimp)),
+        ("geom_margin", m.geom_margin.clone()),
+        ("geom_gap", m.geom_gap.clone()),
+        ("geom_rbound", m.geom_rbound.clone()),
+        ("site_type", shapes(&m.site_type)),
+        ("site_bodyid", ids(&m.site_bodyid)),
+        ("site_size", flat(&m.site_size)),
+        ("site_pos", flat(&m.site_pos)),
+        ("site_quat", flat(&m.site_quat)),
+        ("cam_targetbodyid", targets.collect()),
+        ("cam_bodyid", ids(&m.cam_bodyid)),
+        ("cam_pos", flat(&m.cam_pos)),
+        ("cam_quat", flat(&m.cam_quat)),
+        ("cam_fovy", m.cam_fovy.clone()),
+        ("pair_geom1", m.pair_geom.iter().map(|g| g[0] as f64).collect()),
+        ("pair_geom2", m.pair_geom.iter().map(|g| g[1] as f64).collect()),
+        ("pair_dim", ids(&m.pair_dim)),
+        ("pair_solref", flat(&m.pair_solref)),
+        ("pair_solreffriction", flat(&m.pair_solreffriction)),
+        ("pair_solimp", flat(&m.pair_solimp)),
+        ("pair_friction", flat(&m.pair_friction)),
+        ("pair_margin", m.pair_margin.clone()),
+        ("pair_gap", m.pair_gap.clone()),
+        (
+            "exclude_signature",
+            m.exclude.iter().map(|[a, b]| ((a << 16) + b) as f64).collect(),
+        ),
+        ("eq_type", eq_type),
+        ("eq_obj1id", eq_obj1),
+        ("eq_obj2id", eq_obj2),
+        ("eq_data", eq_data),
+        ("eq_active0", flags(&m.eq_active0)),
+        ("eq_solref", flat(&m.eq_solref)),
+        ("eq_solimp", flat(&m.eq_solimp)),
+        ("tendon_adr", starts.collect()),
+        (
+            "tendon_num",
+            m.tendon_wrap.iter().map(|wrap| wrap.len() as f64).collect(),
+        ),
+        ("tendon_limited", flags(&m.tendon_limited)),
+        ("tendon_range", flat(&m.tendon_range)),
+        ("tendon_margin", m.tendon_margin.clone()),
+        ("tendon_solref_lim", flat(&m.tendon_solref_lim)),
+        ("tendon_solimp_lim", flat(&m.tendon_solimp_lim)),
+        ("wrap_objid", wraps.iter().map(|&(joint, _)| joint as f64).collect()),
+        ("wrap_prm", wraps.iter().map(|&(_, coef)| coef).collect()),
+        ("sensor_type", m.sensor_type.iter().map(sensor_code).collect()),
+        ("sensor_objid", ids(&m.sensor_objid)),
+        ("sensor_adr", ids(&m.sensor_adr)),
+    ]
+}
+
+/// Actuator arrays, reduced to what the model keeps.
+pub fn actuators(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+    let bias = |kind: &BiasType| if *kind == BiasType::None { 0.0 } else { 1.0 };
+    vec![
+        ("actuator_trnid", ids(&m.actuator_trnid)),
+        ("actuator_gear", m.actuator_gear.clone()),
+        ("actuator_ctrllimited", flags(&m.actuator_ctrllimited)),
+        ("actuator_ctrlrange", flat(&m.actuator_ctrlrange)),
+        ("actuator_forcelimited", flags(&m.actuator_forcelimited)),
+        ("actuator_forcerange", flat(&m.actuator_forcerange)),
+        ("actuator_gainprm", flat(&m.actuator_gainprm)),
+        ("actuator_biastype", m.actuator_biastype.iter().map(bias).collect()),
+        ("actuator_biasprm", flat(&m.actuator_biasprm)),
+        ("actuator_user", m.actuator_user.iter().flatten().copied().collect()),
+    ]
+}
+
+/// Arrays that only change what is drawn.
+pub fn looks(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+    let texture_code = |kind: TextureType| match kind {
+        TextureType::Flat2d => 0.0,
+        TextureType::Cube => 1.0,
+        TextureType::Skybox => 2.0,
+    };
+    vec![
+        ("geom_group", ids(&m.geom_group)),
+        ("geom_rgba", flat(&m.geom_rgba)),
+        ("geom_matid", optional(&m.geom_matid)),
+        ("site_group", ids(&m.site_group)),
+        ("site_rgba", flat(&m.site_rgba)),
+        ("site_matid", optional(&m.site_matid)),
+        ("light_bodyid", m.lights.iter().map(|l| l.bodyid as f64).collect()),
+        (
+            "light_directional",
+            m.lights.iter().map(|l| f64::from(u8::from(l.directional))).collect(),
+        ),
+        (
+            "light_castshadow",
+            m.lights.iter().map(|l| f64::from(u8::from(l.castshadow))).collect(),
+        ),
+        ("light_pos", m.lights.iter().flat_map(|l| l.pos).collect()),
+        ("light_dir", m.lights.iter().flat_map(|l| l.dir).collect()),
+        ("light_ambient", m.lights.iter().flat_map(|l| l.ambient).collect()),
+        ("light_diffuse", m.lights.iter().flat_map(|l| l.diffuse).collect()),
+        ("light_specular", m.lights.iter().flat_map(|l| l.specular).collect()),
+        (
+            "light_attenuation",
+            m.lights.iter().flat_map(|l| l.attenuation).collect(),
+        ),
+        ("light_cutoff", m.lights.iter().map(|l| l.cutoff).collect()),
+        ("light_exponent", m.lights.iter().map(|l| l.exponent).collect()),
+        ("mat_rgba", m.materials.iter().flat_map(|x| x.rgba).collect()),
+        ("mat_specular", m.materials.iter().map(|x| x.specular).collect()),
+        ("mat_shininess", m.materials.iter().map(|x| x.shininess).collect()),
+        ("mat_reflectance", m.materials.iter().map(|x| x.reflectance).collect()),
+        ("mat_emission", m.materials.iter().map(|x| x.emission).collect()),
+        ("mat_texrepeat", m.materials.iter().flat_map(|x| x.texrepeat).collect()),
+        (
+            "mat_texuniform",
+            m.materials.iter().map(|x| f64::from(u8::from(x.texuniform))).collect(),
+        ),
+        (
+            "mat_texid",
+            m.materials
+                .iter()
+                .map(|x| x.texture.map_or(-1.0, |id| id as f64))
+                .collect(),
+        ),
+        ("tex_type", m.textures.iter().map(|t| texture_code(t.kind)).collect()),
+        ("vis_global__fovy", vec![m.vis.fovy]),
+        ("vis_global__offwidth", vec![m.vis.offwidth as f64]),
+        ("vis_global__offheight", vec![m.vis.offheight as f64]),
+        ("vis_map_znear", vec![m.vis.znear]),
+        ("vis_map_zfar", vec![m.vis.zfar]),
+        ("vis_map_fogstart", vec![m.vis.fogstart]),
+        ("vis_map_fogend", vec![m.vis.fogend]),
+        ("vis_map_haze", vec![m.vis.haze]),
+        ("vis_map_shadowclip", vec![m.vis.shadowclip]),
+        ("vis_map_force", vec![m.vis.force]),
+        ("vis_quality_shadowsize", vec![m.vis.shadowsize as f64]),
+        ("vis_quality_offsamples", vec![m.vis.offsamples as f64]),
+        (
+            "vis_headlight_active",
+            vec![f64::from(u8::from(m.vis.headlight_active))],
+        ),
+        ("vis_headlight_ambient", m.vis.headlight_ambient.to_vec()),
+        ("vis_headlight_diffuse", m.vis.headlight_diffuse.to_vec()),
+        ("vis_headlight_specular", m.vis.headlight_specular.to_vec()),
+    ]
+}
+
+/// Rows of MuJoCo's arrays are wider than ours where the models leave the rest at zero; the rest is checked to be zero.
+/// `mat_texid` holds one texture per role, of which the models use the second (colour).
+pub fn narrowed(name: &str, recorded: &[f64]) -> Vec<f64> {
+    let (wide, first, keep) = match name {
+        "actuator_trnid" => (2, 0, 1),
+        "actuator_gear" => (6, 0, 1),
+        "actuator_gainprm" | "actuator_biasprm" => (10, 0, 3),
+        "mat_texid" => (10, 1, 1),
+        _ => return recorded.to_vec(),
+    };
+    let mut out = Vec::new();
+    for row in recorded.chunks(wide) {
+        for (column, &value) in row.iter().enumerate() {
+            if (first..first + keep).contains(&column) {
+                out.push(value);
+            } else {
+                assert!(value == 0.0 || value == -1.0, "{name}: {value} in column {column}");
+            }
+        }
+    }
+    out
+}
+
+/// What follows from the dynamics at `qpos0`.
+pub fn derived(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+    let s = &m.stat;
+    vec![
+        ("body_subtreemass", m.body_subtreemass.clone()),
+        ("body_invweight0", flat(&m.body_invweight0)),
+        ("dof_invweight0", m.dof_invweight0.clone()),
+        ("tendon_invweight0", m.tendon_invweight0.clone()),
+        ("meaninertia", vec![s.meaninertia]),
+        ("meanmass", vec![s.meanmass]),
+        ("meansize", vec![s.meansize]),
+        ("extent", vec![s.extent]),
+        ("center", s.center.to_vec()),
+    ]
+}
+
+/// Options.
+pub fn options(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+    let o = &m.opt;
+    vec![
+        ("timestep", vec![o.timestep]),
+        ("gravity", o.gravity.to_vec()),
+        ("iterations", vec![o.iterations as f64]),
+        ("tolerance", vec![o.tolerance]),
+        ("ls_iterations", vec![o.ls_iterations as f64]),
+        ("ls_tolerance", vec![o.ls_tolerance]),
+        ("impratio", vec![o.impratio]),
+        ("ccd_iterations", vec![o.ccd_iterations as f64]),
+        ("ccd_tolerance", vec![o.ccd_tolerance]),
+    ]
+}
+
+/// Names of elements by kind.
+pub fn names(m: &Model) -> Vec<(&'static str, Vec<String>)> {
+    vec![
+        ("body", m.body_name.clone()),
+        ("jnt", m.jnt_name.clone()),
+        ("geom", m.geom_name.clone()),
+        ("site", m.site_name.clone()),
+        ("cam", m.cam_name.clone()),
+        ("eq", m.eq_name.clone()),
+        ("tendon", m.tendon_name.clone()),
+        ("actuator", m.actuator_name.clone()),
+        ("sensor", m.sensor_name.clone()),
+        ("tex", m.textures.iter().map(|t| t.name.clone()).collect()),
+        ("mat", m.materials.iter().map(|t| t.name.clone()).collect()),
+        ("light", m.lights.iter().map(|t| t.name.clone()).collect()),
+    ]
+}

@@ -1,0 +1,170 @@
+//! The scenes that are compared.
+
+use std::sync::Arc;
+
+use babybench::Model;
+use babybench::config::{Behavior, BodyParts, Config, Part, Scene};
+use babybench::mimo::{DOCUMENT, Version, build_model, embedded, lock, scene_xml};
+use babybench::physics::{Engine, Params, RapierEngine, RapierOptions, SoftEngine, SoftOptions};
+
+use crate::mujoco::{Mujoco, Release, Simulation};
+
+/// An engine that is compared.
+#[derive(Clone, Copy)]
+pub struct Subject {
+    /// The value of the configuration's key `engine`.
+    pub name: &'static str,
+    /// Builds it for a scene.
+    pub make: fn(&Case) -> Box<dyn Engine>,
+}
+
+/// All engines.
+pub const SUBJECTS: &[Subject] = &[
+    Subject {
+        name: "soft",
+        make: Case::soft,
+    },
+    Subject {
+        name: "rapier",
+        make: Case::rapier,
+    },
+];
+
+/// A version of MIMo in a scene.
+#[derive(Clone)]
+pub struct Case {
+    /// Version and scene, such as `v1_base`.
+    pub name: String,
+    /// Its configuration.
+    pub config: Config,
+    /// Our model.
+    pub model: Arc<Model>,
+    /// Parameters at the start: those of the model and the configuration's locks.
+    pub params: Params,
+}
+
+impl Case {
+    /// Of a configuration.
+    pub fn new(name: String, config: Config) -> Self {
+        let model = Arc::new(build_model(&config, &embedded()).expect("the embedded assets load"));
+        let mut params = Params::new(&model);
+        for part in Part::ALL {
+            if config.lock.get(part) {
+                lock(&model, &mut params, part.into(), 0.0).expect("MIMo's joints have locks");
+            }
+        }
+        Self {
+            name,
+            config,
+            model,
+            params,
+        }
+    }
+
+    /// Both versions of MIMo in all scenes, everything actuated and nothing locked.
+    pub fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        for behavior in [Behavior::None, Behavior::HandRegard] {
+            for &scene in Scene::ALL {
+                let (act, lock) = (BodyParts::all(true), BodyParts::all(false));
+                let config = Config {
+                    behavior,
+                    scene,
+                    act,
+                    lock,
+                    ..Config::default()
+                };
+                all.push(Self::new(format!("{}_{scene}", Version::of(behavior).name()), config));
+            }
+        }
+        all
+    }
+
+    /// Both versions in all scenes, actuated and locked as in the example configurations: v1 in base as in
+    /// `test_installation`, elsewhere as in `selftouch`; v2 as in `handregard`.
+    pub fn examples() -> Vec<Self> {
+        let read = |text, name| Config::from_yaml(text, name).expect("the examples are valid");
+        let installation = read(
+            include_str!("../../../configs/config_test_installation.yml"),
+            "test_installation",
+        );
+        let self_touch = read(include_str!("../../../configs/config_selftouch.yml"), "selftouch");
+        let hand_regard = read(include_str!("../../../configs/config_handregard.yml"), "handregard");
+        let mut all = Vec::new();
+        for example in [&installation, &self_touch, &hand_regard] {
+            for &scene in Scene::ALL {
+                let version = Version::of(example.behavior);
+                if version == Version::V1 && (example.scene == Scene::Base) != (scene == Scene::Base) {
+                    continue;
+                }
+                let config = Config {
+                    scene,
+                    ..example.clone()
+                };
+                all.push(Self::new(format!("{}_{scene}", version.name()), config));
+            }
+        }
+        all
+    }
+
+    /// Writes the top document and the embedded assets, as they are, to a temporary folder for MuJoCo.
+    fn with_files<T>(&self, load: impl FnOnce(&str) -> Result<T, String>) -> Result<T, String> {
+        let folder = tempfile::tempdir().map_err(|e| format!("no temporary folder: {e}"))?;
+        let xml = scene_xml(&self.config);
+        for (name, content) in embedded().0.iter().copied().chain([(DOCUMENT, xml.as_bytes())]) {
+            let path = folder.path().join(name);
+            let parent = path.parent().unwrap_or(folder.path());
+            let written = std::fs::create_dir_all(parent).and_then(|()| std::fs::write(&path, content));
+            written.map_err(|e| format!("{}: {e}", path.display()))?;
+        }
+        load(&folder.path().join(DOCUMENT).to_string_lossy())
+    }
+
+    /// The scene in MuJoCo 3.3.0, at `qpos0` with the parameters of the start.
+    ///
+    /// # Errors
+    /// MuJoCo's message.
+    pub fn simulation(&self, api: &'static Mujoco) -> Result<Simulation, String> {
+        let mut simulation = self.with_files(|path| Simulation::new(api, path, &[]))?;
+        simulation.set_params(&self.model, &self.params);
+        Ok(simulation)
+    }
+
+    /// The scene in another release.
+    ///
+    /// # Errors
+    /// MuJoCo's message.
+    pub fn release(&self, api: &'static Mujoco, version: &str) -> Result<Release, String> {
+        self.with_files(|path| Release::new(api, version, path))
+    }
+
+    /// Our default engine on the scene, counting the torque of welds as MuJoCo does.
+    pub fn soft(&self) -> Box<dyn Engine> {
+        self.soft_with(self.model.clone())
+    }
+
+    /// Our default engine on another model, such as this one with other tolerances.
+    pub fn soft_with(&self, model: Arc<Model>) -> Box<dyn Engine> {
+        let options = SoftOptions {
+            double_weld_torque: true,
+            ..SoftOptions::default()
+        };
+        Box::new(SoftEngine::new(model, options))
+    }
+
+    /// The same model in Rapier's own pipeline.
+    pub fn rapier(&self) -> Box<dyn Engine> {
+        let options = RapierOptions {
+            double_weld_torque: true,
+            ..RapierOptions::default()
+        };
+        Box::new(RapierEngine::new(self.model.clone(), options).expect("MIMo fits Rapier's multibodies"))
+    }
+
+    /// Whether a degree of freedom belongs to an object, not to MIMo.
+    pub fn object_dofs(&self) -> Vec<usize> {
+        let m = &self.model;
+        let of_object = |&d: &usize| m.jnt_name[m.dof_jntid[d]].is_empty();
+        (0..m.nv).filter(of_object).collect()
+    }
+}

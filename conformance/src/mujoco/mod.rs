@@ -1,0 +1,88 @@
+//! The real MuJoCo, loaded at run time: nothing of it is needed to build.
+//!
+//! `conformance/scripts/fetch_mujoco.sh` puts releases into `target/mujoco/VERSION/`. [`Simulation`] is release 3.3.0 with
+//! all its arrays, by the offsets that `scripts/mujoco_offsets.py` took from its headers; [`Release`] is any release, of
+//! which only the state is looked at.
+
+mod api;
+pub mod layout;
+pub mod offsets;
+mod release;
+mod simulation;
+
+pub use api::Mujoco;
+pub use release::{Release, load};
+pub use simulation::{Contact, Simulation};
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The release that babybench reproduces.
+pub const REFERENCE: &str = "3.3.0";
+
+/// Set to `required`, a missing MuJoCo is a failure instead of a skipped test.
+pub const REQUIRED: &str = "MUJOCO_CONFORMANCE";
+
+/// Where a release is, once fetched.
+pub fn folder(version: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../target/mujoco")
+        .join(version)
+}
+
+/// The releases that are there, oldest first.
+pub fn fetched() -> Vec<String> {
+    let entries = std::fs::read_dir(folder("")).into_iter().flatten();
+    let names = entries.filter_map(|e| e.ok()?.file_name().into_string().ok());
+    let mut versions: Vec<String> = names.filter(|v| library(v).is_file()).collect();
+    versions.sort_by_key(|v| v.split('.').map(|n| n.parse().unwrap_or(0)).collect::<Vec<u32>>());
+    versions
+}
+
+fn library(version: &str) -> PathBuf {
+    folder(version).join(format!("mujoco/libmujoco.so.{version}"))
+}
+
+/// MuJoCo 3.3.0, loaded once.
+///
+/// # Errors
+/// It is not there, and how to get it; it cannot be loaded; it is another release.
+pub fn reference() -> Result<&'static Mujoco, String> {
+    static LOADED: OnceLock<Result<Mujoco, String>> = OnceLock::new();
+    let load = || {
+        let path = library(REFERENCE);
+        if !path.is_file() {
+            return Err(format!(
+                "MuJoCo {REFERENCE} is not at {}: run conformance/scripts/fetch_mujoco.sh",
+                folder(REFERENCE).display()
+            ));
+        }
+        let mujoco = Mujoco::load(&path)?;
+        match mujoco.version() {
+            offsets::VERSION => Ok(mujoco),
+            other => Err(format!(
+                "{} calls itself {other}, the offsets are those of {}: fetch it anew",
+                path.display(),
+                offsets::VERSION
+            )),
+        }
+    };
+    LOADED.get_or_init(load).as_ref().map_err(String::clone)
+}
+
+/// MuJoCo 3.3.0 for a test, which is skipped without it: this is said on the standard error, where cargo does not hide it.
+///
+/// # Panics
+/// When it is missing and `MUJOCO_CONFORMANCE=required` is set.
+pub fn reference_or_skip(test: &str) -> Option<&'static Mujoco> {
+    match reference() {
+        Ok(mujoco) => Some(mujoco),
+        Err(why) if std::env::var(REQUIRED).is_ok_and(|v| v == "required") => {
+            panic!("{test}: {REQUIRED}=required, but {why}")
+        }
+        Err(why) => {
+            crate::skipped(test, why);
+            None
+        }
+    }
+}

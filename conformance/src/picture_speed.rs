@@ -1,0 +1,137 @@
+//! What pictures cost beside MuJoCo's own renderer.
+
+use std::path::Path;
+use std::process::Command;
+
+use babybench::config::{Behavior, Scene};
+use babybench::npz::Npz;
+use babybench::render::{Poses, Renderer, View};
+use babybench::{Config, Env};
+use conformance::live::speed::{cpu_time, quartiles};
+
+/// A picture, or both eyes, of a state.
+struct Row {
+    scene: String,
+    state: usize,
+    eyes: bool,
+    /// CPU time of MuJoCo's renderer, ms.
+    mujoco: f64,
+}
+
+/// Prints the CPU time of MuJoCo's renderer and ours for the states of `data/render_*.npz`.
+pub fn print() -> Result<(), String> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let rows = rows()?;
+    println!(
+        "CPU time of pictures, ms: MuJoCo 3.3.0's renderer (OSMesa in one thread) and ours, the same states and cameras.\n"
+    );
+    println!("| scene | pictures | MuJoCo | ours | times faster, least | p50 |");
+    println!("|---|---|--:|--:|--:|--:|");
+    for scene in Scene::ALL {
+        let name = scene.to_string();
+        let states = Npz::open(data.join(format!("render_{name}.npz")))
+            .and_then(|npz| npz.get_f64("qpos"))
+            .map_err(|e| e.to_string())?;
+        let config = Config {
+            scene: *scene,
+            behavior: if *scene == Scene::Cubes {
+                Behavior::HandRegard
+            } else {
+                Behavior::None
+            },
+            touch_active: false,
+            vision_active: false,
+            ..Config::default()
+        };
+        let mut env = Env::new(config).map_err(|e| e.to_string())?;
+        let nq = states.shape[1];
+        for eyes in [true, false] {
+            let rows = rows.iter().filter(|r| r.scene == name && r.eyes == eyes);
+            let (mut theirs, mut ours, mut ratio) = (Vec::new(), Vec::new(), Vec::new());
+            for row in rows {
+                let qpos = states
+                    .data
+                    .get(row.state * nq..(row.state + 1) * nq)
+                    .ok_or_else(|| format!("render_{name}.npz has no state {}", row.state))?;
+                let spent = spent(&mut env, qpos, eyes)?;
+                theirs.push(row.mujoco);
+                ours.push(spent);
+                ratio.push(row.mujoco / spent);
+            }
+            let least = ratio.iter().copied().fold(f64::INFINITY, f64::min);
+            let [theirs, ours, ratio] = [theirs, ours, ratio].map(|v| quartiles(v)[1]);
+            let what = if eyes {
+                "both eyes, 64 x 64"
+            } else {
+                "corner, 480 x 480"
+            };
+            println!("| {name} | {what} | {theirs:.2} | {ours:.3} | {least:.1} | {ratio:.1} |");
+        }
+    }
+    Ok(())
+}
+
+/// Runs the script that measures MuJoCo's renderer.
+fn rows() -> Result<Vec<Row>, String> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/render_goldens.py");
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_string());
+    let output = Command::new(&python)
+        .arg(&script)
+        .arg("--time")
+        .env("MUJOCO_GL", "osmesa")
+        // threads only cost it time
+        .env("LP_NUM_THREADS", "0")
+        .output()
+        .map_err(|e| format!("cannot run {python}: {e}; set PYTHON to a Python with mujoco 3.3.0 and numpy"))?;
+    if !output.status.success() {
+        return Err(format!(
+            "{} failed; it needs mujoco 3.3.0, numpy and pillow in the Python that the variable PYTHON names, and OSMesa \
+             (Debian: apt install libosmesa6):\n{}",
+            script.display(),
+            String::from_utf8_lossy(&output.stderr)
+        ));
+    }
+    let row = |line: &str| {
+        let mut words = line.split_whitespace();
+        Some(Row {
+            scene: words.next()?.to_string(),
+            state: words.next()?.parse().ok()?,
+            eyes: words.next()? == "eyes",
+            mujoco: words.next()?.parse().ok()?,
+        })
+    };
+    String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .map(|line| row(line).ok_or_else(|| format!("unexpected line of {}: {line}", script.display())))
+        .collect()
+}
+
+/// Median CPU time of ours, ms.
+fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<f64, String> {
+    let qvel = vec![0.0; env.state().qvel.len()];
+    env.reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
+    let visual = env.blueprint().visual().map_err(|e| e.to_string())?;
+    let (names, size, repeat): (&[&str], _, _) = if eyes {
+        (&["eye_left", "eye_right"], 64, 60)
+    } else {
+        (&["corner"], 480, 10)
+    };
+    let mut renderer = Renderer::new();
+    let mut picture = vec![0; 3 * size * size];
+    let mut times = Vec::new();
+    for _ in 0..repeat {
+        let start = cpu_time();
+        for name in names {
+            let view = View {
+                camera: env.model().camera(name).ok_or_else(|| format!("no camera {name}"))?,
+                width: size,
+                height: size,
+            };
+            renderer
+                .rgb(&visual, &Poses::from(env.state()), &view, &mut picture)
+                .map_err(|e| e.to_string())?;
+        }
+        times.push(1e3 * (cpu_time() - start));
+    }
+    Ok(quartiles(times)[1])
+}

@@ -1,0 +1,63 @@
+//! MIMo in a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo, who feels it.
+//! `cargo run --release --example own_world`
+
+use std::sync::Arc;
+
+use babybench::config::{Behavior, Config, Scene};
+use babybench::mimo::{build_model, embedded};
+use babybench::physics::RapierOptions;
+use babybench::physics::rapier::{Bridge, Sets};
+use rapier3d_f64::prelude::*;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let config = Config {
+        behavior: Behavior::None,
+        scene: Scene::Base,
+        ..Config::default()
+    };
+    let model = Arc::new(build_model(&config, &embedded())?);
+
+    // a world with a ball, above MIMo's trunk
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::new(0.0, 0.0, -9.81);
+    let mut bridge = Bridge::insert(model.clone(), RapierOptions::default(), &mut Sets::from(&mut world))?;
+    let mut state = bridge.new_state();
+    bridge.configure(&mut world);
+    let above = state.qpos[..3].to_vec();
+    let (ball, collider) = world.insert(
+        RigidBodyBuilder::dynamic().translation(Vector::new(above[0], above[1], above[2] + 0.8)),
+        ColliderBuilder::ball(0.05).density(500.0),
+    );
+
+    let mut hits = 0;
+    for step in 0..400 {
+        // the senses read the state: contacts, forces, accelerations
+        bridge.step(&mut state, &mut world, &())?;
+
+        let touched: Vec<&str> = world
+            .narrow_phase
+            .contact_pairs_with(collider)
+            .filter(|pair| pair.has_any_active_contact())
+            .filter_map(|pair| {
+                let other = if pair.collider1 == collider {
+                    pair.collider2
+                } else {
+                    pair.collider1
+                };
+                let body = model.geom_bodyid[bridge.rig().geom_of(other)?];
+                Some(model.body_name[body].as_str())
+            })
+            .collect();
+        hits += usize::from(!touched.is_empty());
+        if step % 40 == 0 {
+            println!(
+                "{:.2} s: ball at {:.3} m, hip at {:.3} m, the ball touches {touched:?}",
+                state.time,
+                world.bodies[ball].translation().z,
+                model.body("hip").map_or(0.0, |b| state.xpos[b.0][2]),
+            );
+        }
+    }
+    println!("the ball touched something of the model in {hits} of 400 steps");
+    Ok(())
+}

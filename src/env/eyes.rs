@@ -1,0 +1,146 @@
+//! What the eyes see beyond the observation: distances, geoms, grey; and the eyes of many environments, drawn together.
+
+use crate::env::{Env, EnvError};
+use crate::physics::State;
+use crate::sensors::Vision;
+
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+use {
+    crate::render::gpu::Rgb,
+    crate::render::{RenderError, SharedGpu, Shot},
+    std::sync::{Arc, PoisonError},
+};
+
+impl Env {
+    /// Draws what both eyes see in grey: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    pub fn eye_gray(&mut self, eyes: [&mut [u8]; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.gray(state, eyes)?)
+    }
+
+    /// Draws how far away is what both eyes see: left and right, (H, W) distances from the camera's plane from the top, m;
+    /// infinite where nothing is.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let (mut left, mut right) = (vec![0.0; 64 * 64], vec![0.0; 64 * 64]);
+    /// env.eye_depth([&mut left, &mut right])?;
+    /// let mut geoms = [vec![0; 64 * 64], vec![0; 64 * 64]];
+    /// env.eye_segmentation(geoms.each_mut().map(|v| &mut v[..]))?;
+    /// assert!(left.iter().zip(&geoms[0]).all(|(distance, &geom)| distance.is_finite() || geom == -1));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    pub fn eye_depth(&mut self, eyes: [&mut [f32]; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.depth(state, eyes)?)
+    }
+
+    /// Draws which geoms both eyes see: left and right, (H, W) ids from the top; -1 where none is.
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    pub fn eye_segmentation(&mut self, eyes: [&mut [i32]; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.segmentation(state, eyes)?)
+    }
+
+    fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
+        let vision = self.vision.as_mut().ok_or(EnvError::NoVision)?;
+        Ok((vision, &self.state))
+    }
+
+    /// Whether resets and steps leave the eyes' images as they are, for [`Env::draw_eyes`] to draw.
+    pub fn defer_vision(&mut self, deferred: bool) {
+        self.vision_deferred = deferred;
+    }
+
+    /// Draws what the eyes of many environments see into their observations. With `renderer: wgpu`, all environments of a
+    /// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other.
+    ///
+    /// ```
+    /// use babybench::{Blueprint, Config, Env};
+    ///
+    /// let blueprint = Blueprint::new(Config { touch_active: false, ..Config::default() })?; // renderer: wgpu for a GPU
+    /// let mut environments: Vec<Env> = (0..2).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
+    /// let mut action = Vec::new();
+    /// for (seed, env) in environments.iter_mut().enumerate() {
+    ///     env.defer_vision(true);
+    ///     env.reset(Some(seed as u64))?;
+    ///     env.sample_action(&mut action);
+    ///     env.step(&action)?;
+    /// }
+    /// Env::draw_eyes(&mut environments)?;
+    /// assert!(environments[1].observation().eye_left.is_some_and(|image| image.iter().any(|&v| v > 0)));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As the renderers.
+    pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Result<(), EnvError> {
+        #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+        let mut batches: Vec<Batch> = Vec::new();
+        for env in environments {
+            let Env {
+                vision: Some(vision),
+                state,
+                eye_values: [left, right],
+                ..
+            } = env
+            else {
+                continue;
+            };
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            if let Some(gpu) = vision.painter().shared_gpu() {
+                let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
+                let index = known.unwrap_or(batches.len());
+                if known.is_none() {
+                    batches.push(Batch::new(gpu.clone()));
+                }
+                batches[index].shots.extend(vision.shots(state));
+                batches[index].outs.extend([&mut left[..], &mut right[..]]);
+                continue;
+            }
+            vision.observe(state, [left, right])?;
+        }
+        #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+        for batch in batches {
+            batch.draw()?;
+        }
+        Ok(())
+    }
+}
+
+/// What one GPU draws.
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+struct Batch<'e> {
+    gpu: SharedGpu,
+    shots: Vec<Shot<'e>>,
+    outs: Vec<&'e mut [u8]>,
+}
+
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+impl Batch<'_> {
+    fn new(gpu: SharedGpu) -> Self {
+        Self {
+            gpu,
+            shots: Vec::new(),
+            outs: Vec::new(),
+        }
+    }
+
+    fn draw(self) -> Result<(), RenderError> {
+        let mut gpu = self.gpu.lock().unwrap_or_else(PoisonError::into_inner);
+        let pending = gpu.begin::<Rgb>(&self.shots)?;
+        drop(gpu);
+        pending.wait_into(self.outs)
+    }
+}

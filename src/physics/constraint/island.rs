@@ -1,0 +1,552 @@
+//! The problem of one island, in lanes: what the solver minimises, and its value, force and slopes at a point.
+
+use crate::physics::constraint::cone::{Cone, Zone};
+use crate::physics::constraint::{Block, Efc, RowKind};
+use crate::physics::state::State;
+use crate::physics::tiles::{Lanes, Pattern, Tile, mul, total};
+use crate::physics::topology::Topology;
+
+/// No row.
+const NONE: u32 = u32::MAX;
+
+/// Four rows whose force is `-d jar`, clamped: by nothing (equalities), to the dry friction, to one sign (limits and
+/// contacts without friction). Rows that are not there are zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quad {
+    /// Inverse of the regularisation.
+    pub(super) d: Lanes,
+    /// Regularisation.
+    r: Lanes,
+    /// Bounds of `d jar`.
+    low: Lanes,
+    high: Lanes,
+    aref: Lanes,
+    /// `J a - aref`
+    pub(super) jar: Lanes,
+    /// `J` times the search direction.
+    pub(super) jv: Lanes,
+    force: Lanes,
+    /// Curvature: `d` between the bounds, else 0.
+    pub(super) weight: Lanes,
+    /// Rows of [`Efc`].
+    row: [u32; 4],
+}
+
+const NO_ROWS: Quad = Quad {
+    d: [0.0; 4],
+    r: [0.0; 4],
+    low: [0.0; 4],
+    high: [0.0; 4],
+    aref: [0.0; 4],
+    jar: [0.0; 4],
+    jv: [0.0; 4],
+    force: [0.0; 4],
+    weight: [0.0; 4],
+    row: [NONE; 4],
+};
+
+impl Jacobian {
+    /// Values: for each tile of columns, `dim` rows.
+    pub(super) fn values<'a>(&self, efc: &'a Efc) -> &'a [Lanes] {
+        &efc.jac[self.jac..self.jac + self.dim * self.ncol]
+    }
+}
+
+impl Quad {
+    fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
+        let (low, high) = match b.kind {
+            RowKind::FrictionLoss => (-b.frictionloss, b.frictionloss),
+            RowKind::Limit | RowKind::Frictionless => (f64::NEG_INFINITY, 0.0),
+            RowKind::Equality | RowKind::Elliptic => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        (self.d[k], self.r[k], self.aref[k]) = (efc.d[row], efc.r[row], efc.aref[row]);
+        (self.low[k], self.high[k], self.row[k]) = (low, high, row as u32);
+    }
+
+    /// Fills force and weight; returns the costs.
+    #[inline(always)]
+    fn evaluate(&mut self) -> Lanes {
+        let mut cost = [0.0; 4];
+        for k in 0..4 {
+            let pull = self.d[k] * self.jar[k];
+            let clamped = clamp(pull, self.low[k], self.high[k]);
+            self.weight[k] = if clamped == pull { self.d[k] } else { 0.0 };
+            self.force[k] = -clamped;
+            cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
+        }
+        cost
+    }
+
+    /// Adds first and second derivatives of the cost at `jar + alpha jv`.
+    #[inline(always)]
+    pub(super) fn add_slopes(&self, alpha: f64, first: &mut Lanes, second: &mut Lanes) {
+        for k in 0..4 {
+            let pull = self.d[k] * (self.jar[k] + alpha * self.jv[k]);
+            let clamped = clamp(pull, self.low[k], self.high[k]);
+            let curvature = self.d[k] * self.jv[k] * self.jv[k];
+            first[k] += clamped * self.jv[k];
+            second[k] += if clamped == pull { curvature } else { 0.0 };
+        }
+    }
+}
+
+#[inline(always)]
+fn clamp(x: f64, low: f64, high: f64) -> f64 {
+    let x = if x < low { low } else { x };
+    if x > high { high } else { x }
+}
+
+/// Jacobian of some rows over the tiles that they have entries in.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Jacobian {
+    /// Number of rows.
+    pub(super) dim: usize,
+    /// First entry in [`Island::cols`], and their number.
+    pub(super) col: usize,
+    pub(super) ncol: usize,
+    /// First entry in [`Efc::jac`].
+    jac: usize,
+}
+
+/// A row on one degree of freedom.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Single {
+    /// Where in the quads.
+    pub(super) row: usize,
+    /// Lane of the degree of freedom.
+    pub(super) slot: usize,
+    pub(super) value: f64,
+}
+
+/// The cost along the search direction, where the search starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AlongSearch {
+    /// First and second derivative of the inertial part.
+    pub(super) inertial_slope: f64,
+    pub(super) inertial_curvature: f64,
+    /// First derivative of the whole.
+    pub(super) slope: f64,
+    /// Length of the direction.
+    pub(super) length: f64,
+}
+
+/// Trees that share constraints, with everything about them in lanes. Tiles of the island count from 0.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Island {
+    /// Trees, each with its first tile.
+    trees: Vec<(usize, usize)>,
+    /// Difference between a tree's lanes and those of the whole model.
+    shift: Vec<usize>,
+    /// Inertia.
+    pub(super) m: Vec<Tile>,
+    pub(super) m_pattern: Pattern,
+    force_smooth: Vec<Lanes>,
+    acc_smooth: Vec<Lanes>,
+    /// Number of quads that are the dry friction of a tile; none or all of them.
+    pub(super) friction_tiles: usize,
+    pub(super) quads: Vec<Quad>,
+    /// Rows on one degree of freedom, which stand after dry friction.
+    pub(super) singles: Vec<Single>,
+    /// Rows on several: first row in the quads, Jacobian.
+    pub(super) several: Vec<(usize, Jacobian)>,
+    /// Contacts with friction.
+    pub(super) cones: Vec<(Cone, Jacobian)>,
+    /// Tiles of the Jacobians' columns, ascending for each.
+    cols: Vec<u32>,
+
+    /// Acceleration, inertia times it, and `J' force`.
+    pub(super) acc: Vec<Lanes>,
+    pub(super) ma: Vec<Lanes>,
+    pub(super) constraint_force: Vec<Lanes>,
+    pub(super) gradient: Vec<Lanes>,
+    /// Search direction, and inertia times it.
+    pub(super) search: Vec<Lanes>,
+    pub(super) m_search: Vec<Lanes>,
+}
+
+impl Island {
+    /// With memory for `nv` degrees of freedom and `contacts` contacts.
+    pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
+        let lanes = || Vec::with_capacity(nv);
+        Self {
+            trees: Vec::with_capacity(nv),
+            shift: Vec::with_capacity(nv),
+            m: Vec::with_capacity(8 * nv),
+            m_pattern: Pattern::with_capacity(nv, 8 * nv),
+            force_smooth: lanes(),
+            acc_smooth: lanes(),
+            friction_tiles: 0,
+            quads: Vec::with_capacity(3 * nv + contacts),
+            singles: Vec::with_capacity(4 * nv),
+            several: Vec::with_capacity(nv + contacts),
+            cones: Vec::with_capacity(contacts),
+            cols: Vec::with_capacity(8 * contacts + 4 * nv),
+            acc: lanes(),
+            ma: lanes(),
+            constraint_force: lanes(),
+            gradient: lanes(),
+            search: lanes(),
+            m_search: lanes(),
+        }
+    }
+
+    /// Number of tiles of degrees of freedom.
+    pub(super) fn tiles(&self) -> usize {
+        self.m_pattern.rows()
+    }
+
+    /// Takes in the trees and blocks (indices into `efc.blocks`) of an island.
+    pub(super) fn load(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc, s: &State) {
+        self.load_trees(topology, trees, s);
+        let lanes = self.tiles();
+        for v in [
+            &mut self.acc,
+            &mut self.ma,
+            &mut self.constraint_force,
+            &mut self.gradient,
+            &mut self.search,
+            &mut self.m_search,
+        ] {
+            v.clear();
+            v.resize(lanes, [0.0; 4]);
+        }
+        self.load_rows(topology, blocks, efc);
+    }
+
+    fn load_trees(&mut self, topology: &Topology, trees: &[usize], s: &State) {
+        self.trees.clear();
+        self.shift.resize(topology.ntree(), 0);
+        self.m.clear();
+        self.m_pattern.clear();
+        self.force_smooth.clear();
+        self.acc_smooth.clear();
+        for &t in trees {
+            let (first, rows) = (self.tiles(), topology.tile_adr[t]..topology.tile_adr[t + 1]);
+            self.trees.push((t, first));
+            // wraps where a tree moves down; so does the sum with it
+            self.shift[t] = (4 * first).wrapping_sub(4 * rows.start);
+            let tiles = topology.tiles.start(rows.start)..topology.tiles.start(rows.end);
+            self.m.extend_from_slice(&s.qm[tiles]);
+            for row in rows.clone() {
+                for &c in topology.tiles.cols(row) {
+                    self.m_pattern.push_col(c - rows.start as u32 + first as u32);
+                }
+                self.m_pattern.end_row();
+            }
+            self.force_smooth.resize(self.m_pattern.rows(), [0.0; 4]);
+            self.acc_smooth.resize(self.m_pattern.rows(), [0.0; 4]);
+            for d in topology.tree_adr[t]..topology.tree_adr[t + 1] {
+                let slot = (topology.slot[d] as usize).wrapping_add(self.shift[t]);
+                self.force_smooth[slot / 4][slot % 4] = s.qfrc_smooth[d];
+                self.acc_smooth[slot / 4][slot % 4] = s.qacc_smooth[d];
+            }
+        }
+    }
+
+    /// Lane of a degree of freedom.
+    fn slot(&self, topology: &Topology, dof: usize) -> usize {
+        (topology.slot[dof] as usize).wrapping_add(self.shift[topology.dof_tree[dof]])
+    }
+
+    fn load_rows(&mut self, topology: &Topology, blocks: &[u32], efc: &Efc) {
+        self.quads.clear();
+        self.singles.clear();
+        self.several.clear();
+        self.cones.clear();
+        self.cols.clear();
+        let block = |k: &u32| &efc.blocks[*k as usize];
+        let friction = |b: &Block| b.kind == RowKind::FrictionLoss;
+        self.friction_tiles = if blocks.iter().any(|k| friction(block(k))) {
+            self.tiles()
+        } else {
+            0
+        };
+        self.quads.resize(self.friction_tiles, NO_ROWS);
+        let mut row = 4 * self.friction_tiles;
+        for b in blocks.iter().map(block) {
+            if friction(b) {
+                let slot = self.slot(topology, b.id);
+                self.quads[slot / 4].set(slot % 4, efc, b.row, b);
+            } else if b.kind == RowKind::Elliptic {
+                let jacobian = self.load_jacobian(topology, b, efc);
+                self.cones.push((Cone::new(b, efc), jacobian));
+            } else {
+                for k in 0..b.dim {
+                    if (row + k).is_multiple_of(4) {
+                        self.quads.push(NO_ROWS);
+                    }
+                    self.quads[(row + k) / 4].set((row + k) % 4, efc, b.row + k, b);
+                }
+                if let Some(dof) = b.dof {
+                    let slot = self.slot(topology, dof);
+                    let value = efc.jac[b.jac][slot % 4];
+                    self.singles.push(Single { row, slot, value });
+                } else {
+                    let jacobian = self.load_jacobian(topology, b, efc);
+                    self.several.push((row, jacobian));
+                }
+                row += b.dim;
+            }
+        }
+    }
+
+    fn load_jacobian(&mut self, topology: &Topology, b: &Block, efc: &Efc) -> Jacobian {
+        let col = self.cols.len();
+        for &tile in &efc.cols[b.col..b.col + b.ncol] {
+            let shift = self.shift[topology.tile_tree(tile as usize)];
+            self.cols.push((4 * tile as usize).wrapping_add(shift) as u32 / 4);
+        }
+        Jacobian {
+            dim: b.dim,
+            col,
+            ncol: b.ncol,
+            jac: b.jac,
+        }
+    }
+
+    /// Tiles of the columns, ascending.
+    pub(super) fn cols(&self, j: &Jacobian) -> &[u32] {
+        &self.cols[j.col..j.col + j.ncol]
+    }
+
+    /// Starts at the acceleration without constraints.
+    pub(super) fn start_smooth(&mut self, efc: &Efc) {
+        self.acc.copy_from_slice(&self.acc_smooth);
+        // M qacc_smooth is qfrc_smooth
+        self.ma.copy_from_slice(&self.force_smooth);
+        self.reset_rows(efc);
+    }
+
+    /// Starts at a given acceleration (nv).
+    pub(super) fn start_at(&mut self, topology: &Topology, qacc: &[f64], efc: &Efc) {
+        for &(t, _) in &self.trees {
+            for d in topology.tree_adr[t]..topology.tree_adr[t + 1] {
+                let slot = (topology.slot[d] as usize).wrapping_add(self.shift[t]);
+                self.acc[slot / 4][slot % 4] = qacc[d];
+            }
+        }
+        mul(&self.m_pattern, &self.m, &self.acc, &mut self.ma);
+        self.reset_rows(efc);
+    }
+
+    /// Computes all `jar` at `acc`.
+    fn reset_rows(&mut self, efc: &Efc) {
+        let x = std::mem::take(&mut self.acc);
+        self.rates(&x, efc);
+        self.acc = x;
+        for q in &mut self.quads {
+            for k in 0..4 {
+                q.jar[k] = q.jv[k] - q.aref[k];
+            }
+        }
+        for (c, _) in &mut self.cones {
+            for k in 0..6 {
+                c.jar[k] = c.jv[k] - c.aref[k];
+            }
+        }
+    }
+
+    /// Computes `m_search` and all `jv` for `search`.
+    pub(super) fn follow_search(&mut self, efc: &Efc) {
+        mul(&self.m_pattern, &self.m, &self.search, &mut self.m_search);
+        let x = std::mem::take(&mut self.search);
+        self.rates(&x, efc);
+        self.search = x;
+    }
+
+    /// `jv = J x`
+    fn rates(&mut self, x: &[Lanes], efc: &Efc) {
+        for (q, x) in self.quads[..self.friction_tiles].iter_mut().zip(x) {
+            q.jv = *x;
+        }
+        for s in &self.singles {
+            self.quads[s.row / 4].jv[s.row % 4] = s.value * x[s.slot / 4][s.slot % 4];
+        }
+        for &(row, j) in &self.several {
+            let v = product(&self.cols, &efc.jac, &j, x);
+            for (k, v) in v.iter().enumerate().take(j.dim) {
+                self.quads[(row + k) / 4].jv[(row + k) % 4] = *v;
+            }
+        }
+        for (c, j) in &mut self.cones {
+            c.jv = product(&self.cols, &efc.jac, j, x);
+        }
+    }
+
+    /// Goes `alpha` along the search direction.
+    pub(super) fn advance(&mut self, alpha: f64) {
+        let axpy = |x: &mut Lanes, v: &Lanes| {
+            for k in 0..4 {
+                x[k] += alpha * v[k];
+            }
+        };
+        self.acc.iter_mut().zip(&self.search).for_each(|(x, v)| axpy(x, v));
+        self.ma.iter_mut().zip(&self.m_search).for_each(|(x, v)| axpy(x, v));
+        for q in &mut self.quads {
+            axpy(&mut q.jar, &q.jv);
+        }
+        for (c, _) in &mut self.cones {
+            for k in 0..6 {
+                c.jar[k] += alpha * c.jv[k];
+            }
+        }
+    }
+
+    /// Cost at the acceleration; fills forces and curvatures.
+    pub(super) fn evaluate(&mut self) -> f64 {
+        let mut cost = [0.0; 4];
+        for (((ma, f), a), b) in self
+            .ma
+            .iter()
+            .zip(&self.force_smooth)
+            .zip(&self.acc)
+            .zip(&self.acc_smooth)
+        {
+            for k in 0..4 {
+                cost[k] += 0.5 * (ma[k] - f[k]) * (a[k] - b[k]);
+            }
+        }
+        for q in &mut self.quads {
+            let c = q.evaluate();
+            for k in 0..4 {
+                cost[k] += c[k];
+            }
+        }
+        let mut cost = total(&cost);
+        for (c, _) in &mut self.cones {
+            cost += c.evaluate();
+        }
+        cost
+    }
+
+    /// `constraint_force = J' force`, `gradient = M acc - qfrc_smooth - J' force`; returns the length of the gradient.
+    pub(super) fn differentiate(&mut self, efc: &Efc) -> f64 {
+        let out = &mut self.constraint_force;
+        if self.friction_tiles > 0 {
+            for (o, q) in out.iter_mut().zip(&self.quads) {
+                *o = q.force;
+            }
+        } else {
+            out.fill([0.0; 4]);
+        }
+        for s in &self.singles {
+            out[s.slot / 4][s.slot % 4] += s.value * self.quads[s.row / 4].force[s.row % 4];
+        }
+        for (row, j) in &self.several {
+            let mut force = [0.0; 6];
+            for (k, f) in force.iter_mut().enumerate().take(j.dim) {
+                *f = self.quads[(row + k) / 4].force[(row + k) % 4];
+            }
+            add_transposed_product(&self.cols, &efc.jac, j, &force, out);
+        }
+        for (c, j) in &self.cones {
+            if c.zone != Zone::Flat {
+                add_transposed_product(&self.cols, &efc.jac, j, &c.force, out);
+            }
+        }
+        let mut length2 = [0.0; 4];
+        for (((g, ma), f), c) in self.gradient.iter_mut().zip(&self.ma).zip(&self.force_smooth).zip(out) {
+            for k in 0..4 {
+                g[k] = ma[k] - f[k] - c[k];
+                length2[k] += g[k] * g[k];
+            }
+        }
+        total(&length2).sqrt()
+    }
+
+    /// What the line search starts from.
+    pub(super) fn along_search(&self) -> AlongSearch {
+        let mut sums = [[0.0; 4]; 4];
+        for ((((s, ms), ma), f), g) in self
+            .search
+            .iter()
+            .zip(&self.m_search)
+            .zip(&self.ma)
+            .zip(&self.force_smooth)
+            .zip(&self.gradient)
+        {
+            for k in 0..4 {
+                sums[0][k] += s[k] * (ma[k] - f[k]);
+                sums[1][k] += s[k] * ms[k];
+                sums[2][k] += s[k] * g[k];
+                sums[3][k] += s[k] * s[k];
+            }
+        }
+        AlongSearch {
+            inertial_slope: total(&sums[0]),
+            inertial_curvature: total(&sums[1]),
+            slope: total(&sums[2]),
+            length: total(&sums[3]).sqrt(),
+        }
+    }
+
+    /// Writes acceleration, constraint force and the forces of the rows back.
+    pub(super) fn store(&self, topology: &Topology, efc: &mut Efc, s: &mut State) {
+        for &(t, _) in &self.trees {
+            for d in topology.tree_adr[t]..topology.tree_adr[t + 1] {
+                let slot = (topology.slot[d] as usize).wrapping_add(self.shift[t]);
+                s.qacc[d] = self.acc[slot / 4][slot % 4];
+                s.qfrc_constraint[d] = self.constraint_force[slot / 4][slot % 4];
+            }
+        }
+        for q in &self.quads {
+            for (&row, &f) in q.row.iter().zip(&q.force) {
+                if row != NONE {
+                    efc.force[row as usize] = f;
+                }
+            }
+        }
+        for (c, j) in &self.cones {
+            efc.force[c.row..c.row + j.dim].copy_from_slice(&c.force[..j.dim]);
+        }
+    }
+}
+
+/// `J x`
+#[inline]
+fn product(cols: &[u32], jac: &[Lanes], j: &Jacobian, x: &[Lanes]) -> [f64; 6] {
+    let mut out = [0.0; 6];
+    let mut first = 0;
+    while first + 3 <= j.dim {
+        let [a, b, c] = some_products::<3>(cols, jac, j, first, x);
+        out[first..first + 3].copy_from_slice(&[a, b, c]);
+        first += 3;
+    }
+    while first < j.dim {
+        [out[first]] = some_products::<1>(cols, jac, j, first, x);
+        first += 1;
+    }
+    out
+}
+
+/// Rows from `first` on of `J x`.
+#[inline(always)]
+fn some_products<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, first: usize, x: &[Lanes]) -> [f64; N] {
+    let mut sums = [[0.0; 4]; N];
+    let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
+    for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
+        let x = x[c as usize];
+        for (sum, row) in sums.iter_mut().zip(&rows[first..first + N]) {
+            for k in 0..4 {
+                sum[k] += row[k] * x[k];
+            }
+        }
+    }
+    sums.map(|s| total(&s))
+}
+
+/// `out += J' force`
+#[inline]
+fn add_transposed_product(cols: &[u32], jac: &[Lanes], j: &Jacobian, force: &[f64; 6], out: &mut [Lanes]) {
+    let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
+    for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
+        let out = &mut out[c as usize];
+        let mut sum = *out;
+        for (row, f) in rows.iter().zip(force) {
+            for k in 0..4 {
+                sum[k] += row[k] * f;
+            }
+        }
+        *out = sum;
+    }
+}

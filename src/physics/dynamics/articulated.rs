@@ -1,0 +1,197 @@
+//! Solving `M x = b` by articulated bodies: linear in the number of degrees of freedom (Featherstone 2008, chapter 7).
+
+use crate::model::Model;
+use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
+use crate::physics::state::State;
+
+/// One value for the inertia, one for the inertia with implicit damping.
+type Pair = [f64; 2];
+
+/// Which matrix to solve with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damping {
+    /// `M`
+    Without,
+    /// `M + h D`, of the integrator.
+    Implicit,
+}
+
+/// Articulated inertias of all bodies, without damping and with that of the integrator; both are computed at once.
+#[derive(Clone, Debug, Default)]
+pub struct Articulated {
+    /// Of each body: lower triangle of the symmetric 6 by 6 matrix, row by row.
+    inertia: Vec<[Pair; 21]>,
+    /// Of each degree of freedom.
+    released: Vec<Released>,
+    /// Working memory of a solution: bodies, bodies, degrees of freedom.
+    force: Vec<Spatial>,
+    acc: Vec<Spatial>,
+    rest: Vec<f64>,
+}
+
+/// A degree of freedom of an articulated body.
+#[derive(Clone, Copy, Debug, Default)]
+struct Released {
+    /// Force of a unit acceleration of it alone.
+    unit_force: [Pair; 6],
+    /// Inverse of the inertia that it feels.
+    inverse: Pair,
+}
+
+/// Place of row `i`, column `j <= i`.
+const fn at(i: usize, j: usize) -> usize {
+    i * (i + 1) / 2 + j
+}
+
+/// The inertia of a rigid body as a matrix.
+fn matrix(i: &Inertia) -> [f64; 21] {
+    let [xx, yy, zz, xy, xz, yz, x, y, z, m] = *i;
+    [
+        xx, xy, yy, xz, yz, zz, // rotation
+        0.0, z, -y, m, // x
+        -z, 0.0, x, 0.0, m, // y
+        y, -x, 0.0, 0.0, 0.0, m, // z
+    ]
+}
+
+impl Articulated {
+    /// Computes the inertias from `cinert`, `cdof`, armature and damping.
+    pub fn update(&mut self, model: &Model, s: &State) {
+        self.inertia.clear();
+        self.inertia.extend(s.cinert.iter().map(|i| matrix(i).map(|v| [v; 2])));
+        self.released.resize(model.nv, Released::default());
+        let h = model.opt.timestep;
+        for b in (1..model.nbody()).rev() {
+            let (head, tail) = self.inertia.split_at_mut(b);
+            let inertia = &mut tail[0];
+            for d in (model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b]).rev() {
+                let extra = [
+                    model.dof_armature[d],
+                    model.dof_armature[d] + h * s.params.dof_damping[d],
+                ];
+                self.released[d] = release(inertia, &s.cdof[d], extra);
+            }
+            let p = model.body_parentid[b];
+            if p > 0 {
+                for (a, c) in head[p].iter_mut().zip(inertia) {
+                    for k in 0..2 {
+                        a[k] += c[k];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Solves `M x = b` (nv), or with damping `(M + h D) x = b`.
+    pub fn solve(&mut self, model: &Model, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
+        match damping {
+            Damping::Without => self.solve_lane::<0>(model, s, b, x),
+            Damping::Implicit => self.solve_lane::<1>(model, s, b, x),
+        }
+    }
+
+    fn solve_lane<const LANE: usize>(&mut self, model: &Model, s: &State, b: &[f64], x: &mut [f64]) {
+        let nb = model.nbody();
+        self.force.clear();
+        self.force.resize(nb, [0.0; 6]);
+        self.acc.resize(nb, [0.0; 6]);
+        self.rest.resize(model.nv, 0.0);
+        for body in (1..nb).rev() {
+            let mut f = self.force[body];
+            let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
+            let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
+            let lanes = self.rest[dofs.clone()].iter_mut().zip(&b[dofs]);
+            for ((axis, d), (rest, b)) in values.zip(lanes).rev() {
+                *rest = b - dot6(axis, &f);
+                axpy6(&mut f, *rest * d.inverse[LANE], &d.unit_force.map(|v| v[LANE]));
+            }
+            let p = model.body_parentid[body];
+            if p > 0 {
+                axpy6(&mut self.force[p], 1.0, &f);
+            }
+        }
+        for body in 1..nb {
+            let p = model.body_parentid[body];
+            let mut a = if p > 0 { self.acc[p] } else { [0.0; 6] };
+            let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
+            let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
+            let lanes = self.rest[dofs.clone()].iter().zip(&mut x[dofs]);
+            for ((axis, d), (rest, x)) in values.zip(lanes) {
+                *x = (rest - dot6(&d.unit_force.map(|v| v[LANE]), &a)) * d.inverse[LANE];
+                axpy6(&mut a, *x, axis);
+            }
+            self.acc[body] = a;
+        }
+    }
+}
+
+/// Lets an articulated body move along `axis`: takes out of its inertia what that motion feels. `extra` adds to the inertia
+/// along the axis.
+#[inline(always)]
+fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
+    let mut force = [[0.0; 2]; 6];
+    let (mut felt, mut inverse) = (extra, [0.0; 2]);
+    for i in 0..6 {
+        for j in 0..6 {
+            let place = if j <= i { at(i, j) } else { at(j, i) };
+            for k in 0..2 {
+                force[i][k] += inertia[place][k] * axis[j];
+            }
+        }
+        for k in 0..2 {
+            felt[k] += force[i][k] * axis[i];
+        }
+    }
+    for k in 0..2 {
+        inverse[k] = 1.0 / felt[k];
+    }
+    for i in 0..6 {
+        let scaled = [force[i][0] * inverse[0], force[i][1] * inverse[1]];
+        for j in 0..=i {
+            for k in 0..2 {
+                inertia[at(i, j)][k] -= scaled[k] * force[j][k];
+            }
+        }
+    }
+    Released {
+        unit_force: force,
+        inverse,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{Behavior, Scene};
+    use crate::physics::Topology;
+    use crate::physics::dynamics::mul_m;
+    use crate::{Blueprint, Config};
+
+    #[test]
+    fn solutions_agree_with_the_inertia_matrix() {
+        let config = Config {
+            behavior: Behavior::HandRegard,
+            scene: Scene::Cubes,
+            touch_active: false,
+            vision_active: false,
+            ..Config::default()
+        };
+        let blueprint = Blueprint::new(config).expect("available");
+        let (model, mut engine) = (blueprint.model(), blueprint.engine());
+        let mut s = engine.new_state();
+        engine.forward(&mut s).expect("finite");
+        let mut bodies = Articulated::default();
+        bodies.update(model, &s);
+        let x: Vec<f64> = (0..model.nv).map(|d| (d % 7) as f64 - 3.0).collect();
+        let (mut b, mut found) = (vec![0.0; model.nv], vec![0.0; model.nv]);
+        mul_m(&Topology::new(model), &s.qm, &x, &mut b);
+        bodies.solve(model, &s, Damping::Without, &b, &mut found);
+        let worst = |found: &[f64]| x.iter().zip(found).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        assert!(worst(&found) < 1e-11, "{:e}", worst(&found));
+        for d in 0..model.nv {
+            b[d] += model.opt.timestep * s.params.dof_damping[d] * x[d];
+        }
+        bodies.solve(model, &s, Damping::Implicit, &b, &mut found);
+        assert!(worst(&found) < 1e-11, "{:e}", worst(&found));
+    }
+}

@@ -1,0 +1,282 @@
+//! Between a state and a Rapier world.
+
+use std::sync::Arc;
+
+use rapier3d_f64::dynamics::{FrictionModel, IntegrationParameters};
+use rapier3d_f64::geometry::NarrowPhase;
+use rapier3d_f64::pipeline::{EventHandler, PhysicsWorld};
+
+use crate::model::Model;
+use crate::physics::constraint::RowBuilder;
+use crate::physics::contact::{Options, Quirks};
+use crate::physics::dynamics::*;
+use crate::physics::engine::{EngineError, Stage, check_input, check_motion, check_output};
+use crate::physics::rapier::contacts::{ContactAims, ContactHooks, read_contacts};
+use crate::physics::rapier::rig::Rig;
+use crate::physics::rapier::rows::{Rows, read_welds, softness};
+use crate::physics::rapier::{RapierError, RapierOptions, Sets};
+use crate::physics::state::{RESERVED_CONTACTS, State};
+use crate::physics::topology::Topology;
+use crate::physics::world::{ContactDispatcher, PairTable, Sweep};
+
+/// A model in a Rapier world that may hold anything else: hands a [`State`] to Rapier before a step of the world, and takes
+/// the result out of it.
+///
+/// [`Bridge::step`] advances a `PhysicsWorld`. Where the sets are your own, a step is [`Bridge::before`],
+/// `PhysicsPipeline::step` with [`Bridge::hooks`] and [`Bridge::parameters`], [`Bridge::after`], [`Bridge::advance`], with
+/// [`Bridge::narrow_phase`] for MuJoCo's contact geometry. The state leads: poses in the world are overwritten by the
+/// next step.
+///
+/// See `examples/own_world.rs`.
+pub struct Bridge {
+    model: Arc<Model>,
+    topology: Arc<Topology>,
+    pairs: Arc<PairTable>,
+    rig: Arc<Rig>,
+    options: RapierOptions,
+    contact: Options,
+    sweep: Sweep,
+    rows: Rows,
+    aims: ContactAims,
+    integrator: Integrator,
+    bias: BiasScratch,
+    builder: RowBuilder,
+    inertia: Articulated,
+    force: Vec<f64>,
+    velocity: Vec<f64>,
+    stranger: Option<usize>,
+}
+
+impl std::fmt::Debug for Bridge {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bridge")
+            .field("options", &self.options)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Bridge {
+    /// Inserts `model`, whose constants [`set_const`] has filled, into a world.
+    ///
+    /// Gravity acts on the model as the model says, whatever that of the world is.
+    ///
+    /// # Errors
+    /// Elements that Rapier's multibodies cannot represent.
+    pub fn insert(model: Arc<Model>, options: RapierOptions, sets: &mut Sets) -> Result<Self, RapierError> {
+        let topology = Topology::new(&model);
+        let rig = Rig::insert(&model, &topology, sets)?;
+        let pairs = Arc::new(PairTable::new(&model));
+        Ok(Self::new(model, Arc::new(topology), pairs, Arc::new(rig), options))
+    }
+
+    pub(super) fn new(
+        model: Arc<Model>,
+        topology: Arc<Topology>,
+        pairs: Arc<PairTable>,
+        rig: Arc<Rig>,
+        options: RapierOptions,
+    ) -> Self {
+        let contact = Options {
+            ccd_tolerance: model.opt.ccd_tolerance,
+            ccd_iterations: model.opt.ccd_iterations,
+            quirks: Quirks::default(),
+        };
+        Self {
+            sweep: Sweep::new(&model, &pairs, contact),
+            rows: Rows::default(),
+            aims: ContactAims::default(),
+            integrator: Integrator::default(),
+            bias: BiasScratch::default(),
+            builder: RowBuilder::new(&model, &topology),
+            inertia: Articulated::default(),
+            force: Vec::with_capacity(model.nv),
+            velocity: vec![0.0; model.nv],
+            stranger: (0..model.ngeom()).find(|&g| model.geom_bodyid[g] == 0),
+            model,
+            topology,
+            pairs,
+            rig,
+            options,
+            contact,
+        }
+    }
+
+    /// The compiled scene.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// Derived structure of the model.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// Geom pairs that may touch, in contact order.
+    pub fn pairs(&self) -> &PairTable {
+        &self.pairs
+    }
+
+    /// The model's bodies and colliders in the world.
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    pub(super) fn contact_options(&self) -> Options {
+        self.contact
+    }
+
+    /// A state at `qpos0`, at rest, of which nothing has been computed.
+    pub fn new_state(&self) -> State {
+        let mut state = State::new(&self.model, &self.topology);
+        state.contacts.reserve(RESERVED_CONTACTS);
+        state
+    }
+
+    /// The geom that stands for colliders that are not the model's in `State::contacts`: by default the first of the world's.
+    /// Without one such contacts act but are not felt.
+    pub fn set_stranger(&mut self, geom: Option<usize>) {
+        self.stranger = geom.filter(|&g| g < self.model.ngeom());
+    }
+
+    /// Rapier's parameters: one step without substeps, all of Rapier's own approximations switched off.
+    pub fn parameters(&self) -> IntegrationParameters {
+        let (soft, _) = softness(self.options.contact_compliance, self.model.opt.timestep);
+        IntegrationParameters {
+            dt: self.model.opt.timestep,
+            contact_softness: soft,
+            static_contact_softness: soft,
+            warmstart_coefficient: 0.0,
+            num_solver_iterations: 1,
+            num_internal_pgs_iterations: self.options.iterations,
+            num_internal_stabilization_iterations: 0,
+            friction_in_bias_pass: true,
+            normalized_max_corrective_velocity: f64::MAX,
+            normalized_max_linear_velocity: f64::MAX,
+            normalized_prediction_distance: 0.0005,
+            max_ccd_substeps: 0,
+            contact_clustering: false,
+            contact_recycling: false,
+            friction_model: FrictionModel::Coulomb,
+            ..IntegrationParameters::default()
+        }
+    }
+
+    /// A narrow phase with MuJoCo's contact geometry between the shapes of a model, and Parry's for others.
+    pub fn narrow_phase(&self) -> NarrowPhase {
+        NarrowPhase::with_query_dispatcher(ContactDispatcher::new(self.contact).one_point_manifolds())
+    }
+
+    /// Sets up a world for the model: time step, solver and narrow phase.
+    pub fn configure(&self, world: &mut PhysicsWorld) {
+        world.integration_parameters = self.parameters();
+        world.narrow_phase = self.narrow_phase();
+    }
+
+    /// Advances a world, and with it the state, by one time step.
+    ///
+    /// # Errors
+    /// As [`Bridge::before`] and [`Bridge::after`].
+    pub fn step(
+        &mut self,
+        s: &mut State,
+        world: &mut PhysicsWorld,
+        events: &dyn EventHandler,
+    ) -> Result<(), EngineError> {
+        self.before(s, &mut Sets::from(&mut *world))?;
+        world.step_with_events(&self.hooks(), events);
+        let sets = Sets {
+            bodies: &mut world.bodies,
+            colliders: &mut world.colliders,
+            impulse_joints: &mut world.impulse_joints,
+            multibody_joints: &mut world.multibody_joints,
+        };
+        self.after(s, &sets, &world.narrow_phase)?;
+        self.advance(s)
+    }
+
+    /// Computes all that precedes the solver from `qpos`, `qvel` and `ctrl`, and loads it into the world.
+    ///
+    /// # Errors
+    /// A state that does not fit the model or is not finite.
+    pub fn before(&mut self, s: &mut State, sets: &mut Sets) -> Result<(), EngineError> {
+        self.compute(s, &mut |_, _| {})?;
+        self.load(s, sets);
+        Ok(())
+    }
+
+    /// Poses, contacts, constraint rows and forces; `stage` is told which part begins, with what there is so far.
+    pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage, &State)) -> Result<(), EngineError> {
+        let (model, topology) = (&*self.model, &*self.topology);
+        check_input(model, s)?;
+        // what Rapier cannot make sense of never reaches it
+        check_motion(model, s)?;
+        stage(Stage::Kinematics, s);
+        kinematics(model, s);
+        cameras(model, s);
+        com_pos(model, s);
+        crb(model, topology, s);
+        self.inertia.update(model, s);
+        stage(Stage::Scene, s);
+        stage(Stage::Collision, s);
+        if self.options.disable_contacts {
+            s.contacts.clear();
+        } else {
+            self.sweep.contacts(model, &self.pairs, s);
+        }
+        stage(Stage::Constraints, s);
+        self.builder.build(model, topology, s);
+        stage(Stage::Forces, s);
+        fwd_velocity(model, s, &mut self.bias);
+        fwd_actuation(model, &mut self.inertia, s);
+        stage(Stage::Solver, s);
+        Ok(())
+    }
+
+    pub(super) fn load(&mut self, s: &State, sets: &mut Sets) {
+        let (model, topology, h) = (&*self.model, &*self.topology, self.model.opt.timestep);
+        self.rig.load(model, topology, s, sets, &mut self.force);
+        self.rows.load(&self.rig, model, topology, &mut self.inertia, s, sets);
+        let (_, rate) = softness(self.options.contact_compliance, h);
+        self.aims.load(&self.pairs, s, h, rate);
+    }
+
+    /// The hooks for the step that [`Bridge::before`] prepared.
+    pub fn hooks(&self) -> ContactHooks<'_> {
+        ContactHooks {
+            rig: &self.rig,
+            table: &self.pairs,
+            aims: &self.aims,
+        }
+    }
+
+    /// Takes accelerations and the forces of contacts and welds out of the world, and computes what follows from them.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn after(&mut self, s: &mut State, sets: &Sets, narrow: &NarrowPhase) -> Result<(), EngineError> {
+        let (model, h) = (&*self.model, self.model.opt.timestep);
+        self.rig.velocities(model, s, sets, &mut self.velocity);
+        for d in 0..model.nv {
+            s.qacc[d] = (self.velocity[d] - s.qvel[d]) / h;
+        }
+        s.qacc_warmstart.copy_from_slice(&s.qacc);
+        mul_m(&self.topology, &s.qm, &s.qacc, &mut s.qfrc_constraint);
+        for (f, smooth) in s.qfrc_constraint.iter_mut().zip(&s.qfrc_smooth) {
+            *f -= smooth;
+        }
+        s.solver_iterations = self.options.iterations;
+        read_contacts(&self.hooks(), model, narrow, s, self.stranger);
+        read_welds(&self.rig, model, s, sets);
+        rne_post_constraint(model, s, self.options.double_weld_torque);
+        check_output(model, s)
+    }
+
+    /// Advances the state by a time step with these accelerations, as MuJoCo does, with implicit joint damping.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn advance(&mut self, s: &mut State) -> Result<(), EngineError> {
+        self.integrator.advance(&self.model, &mut self.inertia, s);
+        check_output(&self.model, s)
+    }
+}

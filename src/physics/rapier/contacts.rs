@@ -1,0 +1,229 @@
+//! Contacts between Rapier's solver and a [`State`].
+//!
+//! Contacts are found by the sweep, as the rows of the step need them beforehand. Rapier's narrow phase finds the same
+//! ones with the same routines; while it does, the hooks give each the velocity that its row asks for.
+
+use parry3d_f64::math::Vector;
+use rapier3d_f64::geometry::{ContactData, ContactManifold, NarrowPhase, SolverFlags};
+use rapier3d_f64::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
+
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::constraint::RowKind;
+use crate::physics::contact::frame::from_normal;
+use crate::physics::rapier::rig::Rig;
+use crate::physics::state::{Contact, State};
+use crate::physics::world::{PairTable, geom_pose, pose};
+
+/// What Rapier's solver is told about a contact.
+#[derive(Clone, Copy, Debug)]
+struct ContactAim {
+    geom: [usize; 2],
+    /// Velocity of the second geom relative to the first to aim at, in the frame of the contact, m/s.
+    velocity: Vec3,
+    friction: f64,
+}
+
+/// The contacts of a step as Rapier's solver shall see them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ContactAims {
+    /// Pair of the table, first contact, number of contacts; ascending.
+    pairs: Vec<(usize, usize, usize)>,
+    /// For each contact of the state; `None` where it is no constraint.
+    aims: Vec<Option<ContactAim>>,
+    /// Frames of the contacts.
+    frames: Vec<Mat3>,
+    h: f64,
+    rate: f64,
+}
+
+impl ContactAims {
+    /// From the contacts and rows of a state. `rate` is the rate at which Rapier reduces penetration, 1/s.
+    pub fn load(&mut self, table: &PairTable, s: &State, h: f64, rate: f64) {
+        (self.h, self.rate) = (h, rate);
+        self.pairs.clear();
+        self.aims.clear();
+        self.frames.clear();
+        for (k, c) in s.contacts.iter().enumerate() {
+            self.frames.push(c.frame);
+            self.aims.push(None);
+            let Some(pair) = table.find(c.geom[0], c.geom[1]) else {
+                continue;
+            };
+            match self.pairs.last_mut() {
+                Some(last) if last.0 == pair => last.2 += 1,
+                _ => self.pairs.push((pair, k, 1)),
+            }
+        }
+        for block in &s.efc.blocks {
+            if !matches!(block.kind, RowKind::Elliptic | RowKind::Frictionless) {
+                continue;
+            }
+            let c = &s.contacts[block.id];
+            let aim = |r: usize| s.efc.vel[block.row + r] + h * s.efc.aref[block.row + r];
+            self.aims[block.id] = Some(ContactAim {
+                geom: c.geom,
+                velocity: std::array::from_fn(|r| if r < c.dim { aim(r) } else { 0.0 }),
+                friction: if c.dim > 1 { c.friction[0] } else { 0.0 },
+            });
+        }
+    }
+
+    /// The contact at place `ordinal` in the list of a pair.
+    fn find(&self, pair: usize, ordinal: usize) -> Option<usize> {
+        let at = self.pairs.binary_search_by_key(&pair, |p| p.0).ok()?;
+        let (_, first, number) = self.pairs[at];
+        (ordinal < number).then_some(first + ordinal)
+    }
+
+    /// Distance that makes Rapier aim at a normal velocity: it lets a gap close within the step, and reduces penetration
+    /// at its rate.
+    fn distance(&self, normal: f64) -> f64 {
+        if normal < 0.0 {
+            -normal * self.h
+        } else {
+            -normal / self.rate
+        }
+    }
+}
+
+/// Hooks for `PhysicsPipeline::step`: which geoms may touch, and how their contacts are solved. Contacts with colliders
+/// that are not the model's are left to Rapier.
+#[derive(Clone, Copy)]
+pub struct ContactHooks<'a> {
+    pub(super) rig: &'a Rig,
+    pub(super) table: &'a PairTable,
+    pub(super) aims: &'a ContactAims,
+}
+
+impl std::fmt::Debug for ContactHooks<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ContactHooks").finish_non_exhaustive()
+    }
+}
+
+impl ContactHooks<'_> {
+    /// The contact of a manifold, by its geoms and its place in the list of the pair.
+    fn contact(&self, a: usize, b: usize, manifold: &ContactManifold) -> Option<usize> {
+        self.aims.find(self.table.find(a, b)?, manifold.subshape1 as usize)
+    }
+}
+
+impl PhysicsHooks for ContactHooks<'_> {
+    fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
+        let of = |c| self.rig.geom_of(c);
+        let touching = match (of(context.collider1), of(context.collider2)) {
+            (Some(a), Some(b)) => self
+                .table
+                .find(a, b)
+                .is_some_and(|pair| self.aims.find(pair, 0).is_some()),
+            _ => true,
+        };
+        touching.then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
+    }
+
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let of = |c| self.rig.geom_of(c);
+        let (Some(a), Some(b)) = (of(context.collider1), of(context.collider2)) else {
+            return;
+        };
+        let Some(manifold) = context.rigid_mut() else { return };
+        let found = self.contact(a, b, manifold.manifold);
+        let Some((k, aim)) = found.and_then(|k| Some((k, self.aims.aims[k]?))) else {
+            manifold.solver_contacts.clear();
+            return;
+        };
+        (*manifold.friction, *manifold.restitution) = (aim.friction, 0.0);
+        let sign = if aim.geom[0] == a { 1.0 } else { -1.0 };
+        let [_, t1, t2] = aim.velocity;
+        let slip = scale(mat_t_vec(&self.aims.frames[k], [0.0, t1, t2]), sign);
+        for contact in manifold.solver_contacts.iter_mut() {
+            contact.dist = self.aims.distance(aim.velocity[0]);
+            contact.tangent_velocity = Vector::new(slip[0], slip[1], slip[2]);
+        }
+    }
+}
+
+/// Writes the forces of contacts to the state, in the contacts' frames, and to the rows of `s.efc`. Contacts with
+/// colliders that are not the model's are appended, with the geom `stranger` in the place of the other collider.
+pub(super) fn read_contacts(
+    hooks: &ContactHooks,
+    model: &Model,
+    narrow: &NarrowPhase,
+    s: &mut State,
+    stranger: Option<usize>,
+) {
+    let h = model.opt.timestep;
+    s.contacts.truncate(hooks.aims.aims.len());
+    s.contacts.iter_mut().for_each(|c| c.force = [0.0; 6]);
+    for pair in narrow.contact_pairs() {
+        let geoms = [pair.collider1, pair.collider2].map(|c| hooks.rig.geom_of(c));
+        for manifold in pair.manifolds() {
+            match geoms {
+                [Some(a), Some(b)] => {
+                    if let Some(k) = hooks.contact(a, b, manifold) {
+                        read_own(manifold, a, &mut s.contacts[k], &mut s.efc.force, h);
+                    }
+                }
+                [Some(own), None] => read_foreign(model, manifold, (own, 0), stranger, s),
+                [None, Some(own)] => read_foreign(model, manifold, (own, 1), stranger, s),
+                [None, None] => {}
+            }
+        }
+    }
+}
+
+/// Force on the second body of a manifold at one of its points, world, N.
+fn force(manifold: &ContactManifold, point: &ContactData, h: f64) -> Vec3 {
+    let f = manifold.data.normal * point.impulse - point.warmstart_tangent_world;
+    scale([f.x, f.y, f.z], 1.0 / h)
+}
+
+fn read_own(manifold: &ContactManifold, first: usize, c: &mut Contact, rows: &mut [f64], h: f64) {
+    let Some(point) = manifold.points.first() else { return };
+    let sign = if c.geom[0] == first { 1.0 } else { -1.0 };
+    let f = mat_vec(&c.frame, scale(force(manifold, &point.data, h), sign));
+    c.force[..3].copy_from_slice(&f);
+    if let Some(row) = c.efc_address {
+        let n = c.dim.min(3);
+        rows[row..row + n].copy_from_slice(&f[..n]);
+    }
+}
+
+/// `own` is the geom of the model and its side of the manifold.
+fn read_foreign(
+    model: &Model,
+    manifold: &ContactManifold,
+    (own, side): (usize, usize),
+    stranger: Option<usize>,
+    s: &mut State,
+) {
+    let Some(stranger) = stranger else { return };
+    let body = model.geom_bodyid[own];
+    let place = pose(s.xpos[body], s.xquat[body]) * geom_pose(model, own);
+    for point in manifold.points.iter().filter(|p| p.data.impulse > 0.0) {
+        let (local, outward, sign) = match side {
+            0 => (point.local_p1, manifold.local_n1, -1.0),
+            _ => (point.local_p2, manifold.local_n2, 1.0),
+        };
+        let (on, n) = (place * local, -(place.rotation * outward));
+        let frame = from_normal([n.x, n.y, n.z]);
+        let f = mat_vec(&frame, scale(force(manifold, &point.data, model.opt.timestep), sign));
+        let slip = manifold.data.friction;
+        s.contacts.push(Contact {
+            geom: [stranger, own],
+            dist: point.dist,
+            pos: add_scaled([on.x, on.y, on.z], row(&frame, 0), -0.5 * point.dist),
+            frame,
+            dim: 3,
+            friction: [slip, slip, 0.0, 0.0, 0.0],
+            solref: model.geom_solref[own],
+            solreffriction: [0.0; 2],
+            solimp: model.geom_solimp[own],
+            includemargin: 0.0,
+            // it has no row, but it is a constraint
+            efc_address: Some(s.efc.nefc()),
+            force: [f[0], f[1], f[2], 0.0, 0.0, 0.0],
+        });
+    }
+}

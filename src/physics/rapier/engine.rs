@@ -1,0 +1,190 @@
+//! The engine: a bridge into a world of its own.
+
+use std::sync::Arc;
+
+use parry3d_f64::math::Vector;
+use rapier3d_f64::dynamics::{
+    CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet, RigidBodySet, SoftBodySet,
+};
+use rapier3d_f64::geometry::{BroadPhaseBvh, ColliderSet};
+use rapier3d_f64::pipeline::PhysicsPipeline;
+
+use crate::model::Model;
+use crate::physics::engine::{Engine, EngineError, Probe, Stage};
+use crate::physics::rapier::bridge::Bridge;
+use crate::physics::rapier::rig::Rig;
+use crate::physics::rapier::{RapierError, RapierOptions, Sets};
+use crate::physics::state::State;
+use crate::physics::topology::Topology;
+use crate::physics::world::{PairTable, Scene};
+
+/// Sets of a world of our own.
+#[derive(Clone, Debug, Default)]
+struct OwnedSets {
+    bodies: RigidBodySet,
+    colliders: ColliderSet,
+    impulse_joints: ImpulseJointSet,
+    multibody_joints: MultibodyJointSet,
+}
+
+impl OwnedSets {
+    fn sets(&mut self) -> Sets<'_> {
+        Sets {
+            bodies: &mut self.bodies,
+            colliders: &mut self.colliders,
+            impulse_joints: &mut self.impulse_joints,
+            multibody_joints: &mut self.multibody_joints,
+        }
+    }
+}
+
+/// A model prepared for Rapier. Made once; engines from it are cheap.
+#[derive(Clone, Debug)]
+pub struct RapierModel {
+    model: Arc<Model>,
+    options: RapierOptions,
+    topology: Arc<Topology>,
+    pairs: Arc<PairTable>,
+    rig: Arc<Rig>,
+    /// The world before its first step.
+    pristine: Arc<OwnedSets>,
+}
+
+impl RapierModel {
+    /// Of `model`, whose constants [`crate::physics::set_const`] has filled.
+    ///
+    /// # Errors
+    /// Elements that Rapier's multibodies cannot represent.
+    pub fn new(model: Arc<Model>, options: RapierOptions) -> Result<Self, RapierError> {
+        let topology = Topology::new(&model);
+        let mut pristine = OwnedSets::default();
+        let rig = Rig::insert(&model, &topology, &mut pristine.sets())?;
+        Ok(Self {
+            pairs: Arc::new(PairTable::new(&model)),
+            options,
+            topology: Arc::new(topology),
+            rig: Arc::new(rig),
+            pristine: Arc::new(pristine),
+            model,
+        })
+    }
+
+    /// A new engine.
+    pub fn engine(&self) -> RapierEngine {
+        let (model, pairs) = (self.model.clone(), self.pairs.clone());
+        let bridge = Bridge::new(model, self.topology.clone(), pairs, self.rig.clone(), self.options);
+        RapierEngine {
+            scene: Scene::new(&self.model, &self.pairs, bridge.contact_options()),
+            parameters: bridge.parameters(),
+            pristine: self.pristine.clone(),
+            bridge,
+            probe: None,
+        }
+    }
+}
+
+/// Rapier's pipeline as the engine: multibody dynamics, contacts and joints are solved by `PhysicsPipeline::step`.
+///
+/// Every step starts from a copy of the world before its first step, loaded with the state. So a step depends on the state
+/// alone: nothing that Rapier remembers (islands, the order of pairs, warm starts) outlives it, a restored state continues
+/// with the same bits, and a state that diverged leaves no trace. The copy costs a few percent of a step. A step allocates.
+pub struct RapierEngine {
+    bridge: Bridge,
+    scene: Scene,
+    pristine: Arc<OwnedSets>,
+    parameters: IntegrationParameters,
+    probe: Option<Probe>,
+}
+
+impl std::fmt::Debug for RapierEngine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RapierEngine")
+            .field("bridge", &self.bridge)
+            .finish_non_exhaustive()
+    }
+}
+
+impl RapierEngine {
+    /// Of `model`, whose constants [`crate::physics::set_const`] has filled.
+    ///
+    /// # Errors
+    /// As [`RapierModel::new`].
+    pub fn new(model: Arc<Model>, options: RapierOptions) -> Result<Self, RapierError> {
+        Ok(RapierModel::new(model, options)?.engine())
+    }
+
+    /// The bridge to the world of the step.
+    pub fn bridge(&self) -> &Bridge {
+        &self.bridge
+    }
+}
+
+impl Engine for RapierEngine {
+    fn model(&self) -> &Arc<Model> {
+        self.bridge.model()
+    }
+
+    fn topology(&self) -> &Topology {
+        self.bridge.topology()
+    }
+
+    fn pairs(&self) -> &PairTable {
+        self.bridge.pairs()
+    }
+
+    fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    fn scene_mut(&mut self) -> &mut Scene {
+        &mut self.scene
+    }
+
+    fn forward(&mut self, s: &mut State) -> Result<(), EngineError> {
+        let (scene, probe) = (&mut self.scene, &mut self.probe);
+        self.bridge.compute(s, &mut |stage, s| {
+            if let Some(p) = probe {
+                p(Some(stage));
+            }
+            if stage == Stage::Scene {
+                scene.sync(s);
+            }
+        })?;
+        let mut world = OwnedSets::clone(&self.pristine);
+        self.bridge.load(s, &mut world.sets());
+        let mut narrow = self.bridge.narrow_phase();
+        PhysicsPipeline::new().step(
+            Vector::ZERO,
+            &self.parameters,
+            &mut IslandManager::new(),
+            &mut BroadPhaseBvh::new(),
+            &mut narrow,
+            &mut world.bodies,
+            &mut world.colliders,
+            &mut world.impulse_joints,
+            &mut world.multibody_joints,
+            &mut SoftBodySet::new(),
+            &mut CCDSolver::new(),
+            &self.bridge.hooks(),
+            &(),
+        );
+        self.mark(Some(Stage::Wrenches));
+        self.bridge.after(s, &world.sets(), &narrow)
+    }
+
+    fn step(&mut self, s: &mut State) -> Result<(), EngineError> {
+        self.forward(s)?;
+        self.mark(Some(Stage::Integration));
+        self.bridge.advance(s)
+    }
+
+    fn set_probe(&mut self, probe: Option<Probe>) {
+        self.probe = probe;
+    }
+
+    fn mark(&mut self, stage: Option<Stage>) {
+        if let Some(p) = &mut self.probe {
+            p(stage);
+        }
+    }
+}

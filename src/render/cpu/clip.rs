@@ -1,0 +1,225 @@
+//! Clipping at the sides of what the camera sees, as Mesa's draw module does it.
+
+use super::camera::{Row, cross, dot};
+use super::plane::Vertex;
+
+/// A vertex in clip coordinates: x, y, depth, w.
+pub type Clip = [f32; 4];
+
+/// A corner of what is left of a triangle: one of its own, or a point on an edge between two.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    pub clip: Clip,
+    pub from: Source,
+}
+
+/// Where a corner comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A corner of the triangle.
+    Own(usize),
+    /// A point on an edge: index among the new points.
+    New(usize),
+}
+
+/// A new point: `from + share (to - from)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Between {
+    pub clip: Clip,
+    pub from: Source,
+    pub to: Source,
+    pub share: f32,
+}
+
+/// Each of six planes adds at most one corner, and at most two points.
+const MAX_CORNERS: usize = 10;
+const MAX_POINTS: usize = 12;
+
+/// What is left of a triangle.
+pub struct Polygon {
+    pub corners: [Cut; MAX_CORNERS],
+    pub count: usize,
+    pub points: [Between; MAX_POINTS],
+    pub made: usize,
+}
+
+/// On which outer sides a vertex is, one bit for each plane.
+#[inline(always)]
+pub fn outside([x, y, z, w]: Clip) -> u32 {
+    u32::from(x > w)
+        | u32::from(x + w < 0.0) << 1
+        | u32::from(y > w) << 2
+        | u32::from(y + w < 0.0) << 3
+        | u32::from(z < 0.0) << 4
+        | u32::from(z > w) << 5
+}
+
+/// Signed distance from a plane, in the order of the bits of [`outside`].
+fn distance(plane: usize, [x, y, z, w]: Clip) -> f32 {
+    match plane {
+        0 => w - x,
+        1 => x + w,
+        2 => w - y,
+        3 => y + w,
+        4 => z,
+        _ => w - z,
+    }
+}
+
+impl Polygon {
+    pub fn new(triangle: [Clip; 3]) -> Self {
+        let own = |k: usize| Cut {
+            clip: triangle[k],
+            from: Source::Own(k),
+        };
+        let none = Between {
+            clip: [0.0; 4],
+            from: Source::Own(0),
+            to: Source::Own(0),
+            share: 0.0,
+        };
+        let mut corners = [own(0); MAX_CORNERS];
+        (corners[1], corners[2]) = (own(1), own(2));
+        Self {
+            corners,
+            count: 3,
+            points: [none; MAX_POINTS],
+            made: 0,
+        }
+    }
+
+    /// Cuts off what lies beyond the planes of `sides`; nothing may be left.
+    pub fn cut(&mut self, sides: u32) {
+        for plane in 0..6 {
+            if sides & (1 << plane) != 0 {
+                self.cut_at(plane);
+            }
+        }
+    }
+
+    /// The corners and the new points.
+    pub fn parts(&self) -> (&[Cut], &[Between]) {
+        (&self.corners[..self.count], &self.points[..self.made])
+    }
+
+    fn cut_at(&mut self, plane: usize) {
+        let mut source = [self.corners[0]; MAX_CORNERS];
+        let kept = self.count;
+        source[..kept].copy_from_slice(&self.corners[..kept]);
+        self.count = 0;
+        for k in 0..kept {
+            let (p, q) = (source[k], source[if k + 1 < kept { k + 1 } else { 0 }]);
+            let (a, b) = (distance(plane, p.clip), distance(plane, q.clip));
+            if !(a.is_finite() && b.is_finite()) {
+                self.count = 0;
+                return;
+            }
+            if a >= 0.0 {
+                self.push(p);
+            }
+            if (a >= 0.0) != (b >= 0.0) && self.made < MAX_POINTS {
+                let point = between((p, a), (q, b));
+                self.points[self.made] = point;
+                self.made += 1;
+                self.push(Cut {
+                    clip: point.clip,
+                    from: Source::New(self.made - 1),
+                });
+            }
+        }
+    }
+
+    fn push(&mut self, corner: Cut) {
+        if self.count < MAX_CORNERS {
+            self.corners[self.count] = corner;
+            self.count += 1;
+        }
+    }
+}
+
+/// Whether a triangle clearly shows its back, so that nothing of it can be seen.
+pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
+    const CLEAR: f32 = 1e-3;
+    let flat = |v: Clip| [v[0], v[1], v[3]];
+    let (a, b, c) = (flat(a), flat(b), flat(c));
+    let minus = |p: [f32; 3], q: [f32; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let normal = cross(minus(b, a), minus(c, a));
+    let away = dot(normal, a);
+    away < 0.0 && away * away > CLEAR * CLEAR * dot(normal, normal) * dot(a, a)
+}
+
+/// The point of an edge on a plane, counted from the end that is nearer to the plane.
+fn between((p, a): (Cut, f32), (q, b): (Cut, f32)) -> Between {
+    let difference = b - a;
+    // distances have different signs
+    let ((from, to), share) = if b.abs() < a.abs() {
+        ((q, p), b / difference)
+    } else {
+        ((p, q), -a / difference)
+    };
+    Between {
+        clip: mix(from.clip, to.clip, share),
+        from: from.from,
+        to: to.from,
+        share,
+    }
+}
+
+/// `from + share (to - from)`
+pub fn mix<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N] {
+    let mut out = from;
+    for (o, t) in out.iter_mut().zip(to) {
+        *o += share * (t - *o);
+    }
+    out
+}
+
+/// Projects a point that clipping has made.
+pub fn project([x, y, z, w]: Clip, half: [f32; 2]) -> Vertex {
+    let iw = 1.0 / w;
+    Vertex {
+        x: (x * iw) * half[0] + half[0],
+        y: (y * iw) * half[1] + half[1],
+        z: z * iw,
+        iw,
+    }
+}
+
+/// Applies the rows of a projection.
+#[inline(always)]
+pub fn apply(rows: &[Row; 4], [x, y, z]: [f32; 3]) -> Clip {
+    let row = |r: &Row| x * r[0] + y * r[1] + z * r[2] + r[3];
+    [row(&rows[0]), row(&rows[1]), row(&rows[2]), row(&rows[3])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_lies_within() {
+        let cut = |triangle: [Clip; 3], sides: u32| {
+            let mut polygon = Polygon::new(triangle);
+            polygon.cut(sides);
+            polygon
+        };
+        let triangle = [[-3.0, -3.0, 0.5, 1.0], [3.0, -3.0, 0.5, 1.0], [0.0, 3.0, 0.5, 1.0]];
+        let polygon = cut(triangle, triangle.iter().fold(0, |m, &v| m | outside(v)));
+        let (corners, points) = polygon.parts();
+        assert!(corners.len() >= 3 && !points.is_empty());
+        for corner in corners {
+            let [x, y, _, w] = corner.clip;
+            assert!(x.abs() <= w + 1e-6 && y.abs() <= w + 1e-6);
+        }
+        let beyond = triangle.map(|[x, y, z, w]| [x + 9.0, y, z, w]);
+        assert!(cut(beyond, 1).parts().0.is_empty());
+        assert!(cut([[f32::NAN; 4]; 3], 63).parts().0.is_empty());
+    }
+
+    #[test]
+    fn backs_are_known() {
+        let front = [[-1.0, -1.0, 0.5, 1.0], [1.0, -1.0, 0.5, 1.0], [0.0, 1.0, 0.5, 1.0]];
+        let [a, b, c] = front;
+        assert!(!faces_away(&front) && faces_away(&[a, c, b]));
+    }
+}

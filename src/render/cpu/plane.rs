@@ -1,0 +1,146 @@
+//! Linear functions over a triangle, as llvmpipe sets them up and evaluates them: from the lower left corner of the picture.
+//! Where a triangle is seen edge-on they are steep and the rounding is large; it is the reference's.
+
+use wide::f32x4;
+
+use super::camera::fused;
+
+/// Planes whose magnitude over a picture is within this multiple of a value are rounded little against it.
+const GENTLE: f32 = 8.0;
+
+/// A projected vertex: pixels from the lower left, depth, 1/w.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Vertex {
+    pub x: f32,
+    pub y: f32,
+    pub z: f32,
+    pub iw: f32,
+}
+
+/// Value at the corner of the picture, change per pixel to the right and upward.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Plane {
+    at: f32,
+    dx: f32,
+    dy: f32,
+}
+
+/// Four planes: values at the corner of the picture, changes per pixel to the right and upward.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Planes {
+    at: f32x4,
+    dx: f32x4,
+    dy: f32x4,
+    /// Whether rounding is small all over the picture.
+    gentle: bool,
+}
+
+/// What the planes of a triangle have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Basis {
+    x: f32,
+    y: f32,
+    dx01: f32,
+    dy01: f32,
+    dx20: f32,
+    dy20: f32,
+}
+
+impl Basis {
+    pub fn new([a, b, c]: [&Vertex; 3]) -> Self {
+        let (dx01, dy01) = (a.x - b.x, a.y - b.y);
+        let (dx20, dy20) = (c.x - a.x, c.y - a.y);
+        let scale = 1.0 / (dx01 * dy20 - dy01 * dx20);
+        Self {
+            x: a.x,
+            y: a.y,
+            dx01: dx01 * scale,
+            dy01: dy01 * scale,
+            dx20: dx20 * scale,
+            dy20: dy20 * scale,
+        }
+    }
+
+    /// The plane through values at the corners.
+    #[inline(always)]
+    pub fn plane(&self, [a, b, c]: [f32; 3]) -> Plane {
+        let (d01, d20) = (a - b, c - a);
+        let dx = d01 * self.dy20 - d20 * self.dy01;
+        let dy = d20 * self.dx01 - d01 * self.dx20;
+        Plane {
+            at: a - (dx * self.x + dy * self.y),
+            dx,
+            dy,
+        }
+    }
+}
+
+impl Planes {
+    /// Planes through values at the corners. Where they change little over a picture of some size, against the magnitude of
+    /// values, they need not be rounded as llvmpipe does.
+    #[inline(always)]
+    pub fn new(basis: &Basis, [a, b, c]: [f32x4; 3], magnitude: f32, size: [usize; 2]) -> Self {
+        let (d01, d20) = (a - b, c - a);
+        let dx = d01 * f32x4::splat(basis.dy20) - d20 * f32x4::splat(basis.dy01);
+        let dy = d20 * f32x4::splat(basis.dx01) - d01 * f32x4::splat(basis.dx20);
+        let at = a - (dx * f32x4::splat(basis.x) + dy * f32x4::splat(basis.y));
+        let change = dx.abs() * f32x4::splat(size[0] as f32) + dy.abs() * f32x4::splat(size[1] as f32);
+        let gentle = (at.abs() + change).simd_le(f32x4::splat(GENTLE * magnitude.abs()));
+        Self {
+            at,
+            dx,
+            dy,
+            gentle: gentle.to_bitmask() == 15,
+        }
+    }
+
+    /// Values in the middles of a group of 2 x 2 pixels, of which this is the first: the lower two first.
+    #[inline(always)]
+    pub fn group(&self, x: f32, y: f32) -> [f32x4; 4] {
+        if self.gentle {
+            let first = self.at + (self.dx * f32x4::splat(x) + self.dy * f32x4::splat(y));
+            [first, first + self.dx, first + self.dy, first + (self.dx + self.dy)]
+        } else {
+            [(x, y), (x + 1.0, y), (x, y + 1.0), (x + 1.0, y + 1.0)].map(|(x, y)| self.exact(x, y))
+        }
+    }
+
+    fn exact(&self, x: f32, y: f32) -> f32x4 {
+        let (at, dx, dy) = (self.at.to_array(), self.dx.to_array(), self.dy.to_array());
+        let mut out = [0.0; 4];
+        for k in 0..4 {
+            out[k] = fused(dy[k], y, fused(dx[k], x, at[k]));
+        }
+        f32x4::new(out)
+    }
+}
+
+impl Plane {
+    /// Whether rounding is small against `value` all over a picture.
+    pub fn is_gentle(&self, value: f32, size: [usize; 2]) -> bool {
+        let change = self.dx.abs() * size[0] as f32 + self.dy.abs() * size[1] as f32;
+        self.at.abs() + change <= GENTLE * value.abs()
+    }
+
+    /// The value at a place, not as llvmpipe rounds it.
+    #[inline(always)]
+    pub fn quick(&self, x: f32, y: f32) -> f32 {
+        self.at + (self.dx * x + self.dy * y)
+    }
+
+    /// Changes over some distances.
+    #[inline(always)]
+    pub fn spread(&self, dx: [f32; 4], dy: [f32; 4]) -> f32x4 {
+        f32x4::splat(self.dx) * f32x4::new(dx) + f32x4::splat(self.dy) * f32x4::new(dy)
+    }
+
+    /// Values at four places.
+    #[inline(always)]
+    pub fn at(&self, x: [f32; 4], y: [f32; 4]) -> [f32; 4] {
+        let mut out = [0.0; 4];
+        for k in 0..4 {
+            out[k] = fused(self.dy, y[k], fused(self.dx, x[k], self.at));
+        }
+        out
+    }
+}

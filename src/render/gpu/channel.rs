@@ -1,0 +1,93 @@
+//! What a picture can show.
+
+use super::pipelines::Output;
+use crate::render::luma;
+
+/// What a picture shows: [`Rgb`], [`Gray`], [`Depth`] or [`Segmentation`].
+pub trait Channel: sealed::Channel {}
+
+pub(super) mod sealed {
+    use super::Output;
+
+    /// How values come out of what the device writes.
+    pub trait Channel: std::fmt::Debug + Send + Sync + 'static {
+        /// Type of a value.
+        type Value: Copy + Default + std::fmt::Debug + PartialEq + Send + Sync + 'static;
+        /// Values of a pixel.
+        const PER_PIXEL: usize;
+        #[doc(hidden)]
+        const OUTPUT: Output;
+        #[doc(hidden)]
+        fn unpack(row: &[u8], out: &mut [Self::Value]);
+    }
+}
+
+/// Red, green, blue of each pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rgb;
+
+/// Brightness by the weights 0.2989, 0.5870, 0.1140.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gray;
+
+/// Distance from the camera's plane of what is seen in the middle of each pixel, m; infinite where nothing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Depth;
+
+/// Which geom is seen in the middle of each pixel; -1 where none is. Sites hide what is behind them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segmentation;
+
+impl sealed::Channel for Rgb {
+    type Value = u8;
+    const PER_PIXEL: usize = 3;
+    const OUTPUT: Output = Output::Colour;
+
+    fn unpack(row: &[u8], out: &mut [u8]) {
+        for (rgb, pixel) in out.as_chunks_mut().0.iter_mut().zip(row.as_chunks().0) {
+            let [r, g, b, _]: [u8; 4] = *pixel;
+            *rgb = [r, g, b];
+        }
+    }
+}
+
+impl sealed::Channel for Gray {
+    type Value = u8;
+    const PER_PIXEL: usize = 1;
+    const OUTPUT: Output = Output::Colour;
+
+    fn unpack(row: &[u8], out: &mut [u8]) {
+        for (gray, &[r, g, b, _]) in out.iter_mut().zip(row.as_chunks().0) {
+            *gray = luma([r, g, b]);
+        }
+    }
+}
+
+impl sealed::Channel for Depth {
+    type Value = f32;
+    const PER_PIXEL: usize = 1;
+    const OUTPUT: Output = Output::Measure;
+
+    fn unpack(row: &[u8], out: &mut [f32]) {
+        for (depth, &[a, b, c, d, ..]) in out.iter_mut().zip(row.as_chunks::<8>().0) {
+            *depth = 1.0 / f32::from_le_bytes([a, b, c, d]);
+        }
+    }
+}
+
+impl sealed::Channel for Segmentation {
+    type Value = i32;
+    const PER_PIXEL: usize = 1;
+    const OUTPUT: Output = Output::Measure;
+
+    fn unpack(row: &[u8], out: &mut [i32]) {
+        for (id, &[.., a, b, c, d]) in out.iter_mut().zip(row.as_chunks::<8>().0) {
+            *id = i32::from_le_bytes([a, b, c, d]).wrapping_sub(1);
+        }
+    }
+}
+
+impl Channel for Rgb {}
+impl Channel for Gray {}
+impl Channel for Depth {}
+impl Channel for Segmentation {}

@@ -1,0 +1,181 @@
+//! The graphics device: which one, and what it complains about.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::GpuError;
+
+/// A device with its queue, and the errors it reported.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    /// Name, kind and backend.
+    pub name: String,
+    /// Whether the adapter computes on the CPU.
+    pub software: bool,
+    faults: Arc<Mutex<Faults>>,
+}
+
+#[derive(Debug, Default)]
+struct Faults {
+    /// The first error since it was last asked for.
+    first: Option<GpuError>,
+    lost: Option<String>,
+}
+
+impl Gpu {
+    /// Opens the best adapter: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` narrow the choice.
+    pub async fn open() -> Result<Self, GpuError> {
+        let description = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        let backends = description.backends;
+        let instance = wgpu::Instance::new(description);
+        let mut tried = vec![format!("looked for {}", names(backends))];
+        for adapter in adapters(&instance, backends).await {
+            let name = describe(&adapter.get_info());
+            match Self::from_adapter(&adapter).await {
+                Ok(gpu) => return Ok(gpu),
+                Err(e) => tried.push(format!("{name}: {e}")),
+            }
+        }
+        if tried.len() == 1 {
+            let none = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await;
+            tried.extend(none.err().map(|e| e.to_string()));
+        }
+        let tried = tried.join("; ");
+        Err(GpuError::NoAdapter { tried })
+    }
+
+    async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, wgpu::RequestDeviceError> {
+        let most = adapter.limits();
+        let required_limits = wgpu::Limits {
+            max_buffer_size: most.max_buffer_size,
+            ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(most)
+        };
+        let description = wgpu::DeviceDescriptor {
+            label: Some("babybench"),
+            required_limits,
+            ..Default::default()
+        };
+        let (device, queue) = adapter.request_device(&description).await?;
+        Ok(Self::new(device, queue))
+    }
+
+    /// Around a device that is open. Errors outside error scopes are reported here from now on.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let faults = Arc::new(Mutex::new(Faults::default()));
+        let seen = faults.clone();
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
+            let error = match e {
+                wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory,
+                other => GpuError::Device(other.to_string()),
+            };
+            lock(&seen).first.get_or_insert(error);
+        }));
+        let seen = faults.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            lock(&seen).lost = Some(if message.is_empty() {
+                format!("{reason:?}")
+            } else {
+                message
+            });
+        });
+        let info = device.adapter_info();
+        Self {
+            name: describe(&info),
+            software: info.device_type == wgpu::DeviceType::Cpu,
+            device,
+            queue,
+            faults,
+        }
+    }
+
+    /// The first error since the last call; a lost device stays lost.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let mut faults = lock(&self.faults);
+        let first = faults.first.take();
+        match (&faults.lost, first) {
+            (Some(message), _) => Err(GpuError::Lost(message.clone())),
+            (None, Some(e)) => Err(e),
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// All adapters, the best first.
+async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let mut found = instance.enumerate_adapters(backends).await;
+    if found.is_empty() {
+        // browsers do not list their adapters
+        let best = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        found.extend(instance.request_adapter(&best).await.ok());
+    }
+    #[cfg(not(target_arch = "wasm32"))]
+    if let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME") {
+        let wanted = wanted.to_lowercase();
+        found.retain(|a| a.get_info().name.to_lowercase().contains(&wanted));
+    }
+    found.sort_by_key(|a| {
+        let info = a.get_info();
+        rank(info.device_type, info.backend)
+    });
+    found
+}
+
+/// The lower the better.
+fn rank(kind: wgpu::DeviceType, backend: wgpu::Backend) -> (u8, u8) {
+    use wgpu::{Backend, DeviceType};
+    let kind = match kind {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    };
+    // OpenGL does not blend over the edges of cube maps as wgpu sets it up
+    (kind, u8::from(backend == Backend::Gl))
+}
+
+fn describe(info: &wgpu::AdapterInfo) -> String {
+    let driver = if info.driver_info.is_empty() {
+        String::new()
+    } else {
+        format!(", {}", info.driver_info)
+    };
+    format!("{} ({:?}, {:?}{driver})", info.name, info.backend, info.device_type)
+}
+
+fn names(backends: wgpu::Backends) -> String {
+    let names: Vec<_> = backends.iter_names().map(|(name, _)| name.to_lowercase()).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rank;
+    use wgpu::{Backend, DeviceType};
+
+    #[test]
+    fn gpus_come_before_software_and_opengl_last() {
+        let order = [
+            (DeviceType::DiscreteGpu, Backend::Vulkan),
+            (DeviceType::DiscreteGpu, Backend::Gl),
+            (DeviceType::IntegratedGpu, Backend::Metal),
+            (DeviceType::VirtualGpu, Backend::Vulkan),
+            (DeviceType::Other, Backend::Gl),
+            (DeviceType::Cpu, Backend::Vulkan),
+            (DeviceType::Cpu, Backend::Gl),
+        ];
+        let ranks = order.map(|(kind, backend)| rank(kind, backend));
+        assert!(
+            ranks.is_sorted() && ranks[0] < ranks[1] && ranks[5] < ranks[6],
+            "{ranks:?}"
+        );
+    }
+}

@@ -1,0 +1,308 @@
+//! What moves: which drawables are in which view, where, and in which order they are drawn.
+
+use super::atlas::{Atlas, Tile};
+use super::pipelines::Output;
+use super::scene::{LAMPS, Scene};
+use crate::render::Shot;
+use crate::render::cpu::{Eye, PlacedLamp, V3, dot, place_lamps, pose, single};
+use crate::render::visual::{Drawable, Element, Shape, Visual};
+
+/// Numbers of an instance: the attributes of the shader's `Vertex` from `row_x` on.
+pub const INSTANCE: usize = 44;
+/// Views in a column of the texture of views, as in the shader.
+pub const VIEW_ROWS: usize = 1024;
+/// Texels of a view, as in the shader.
+pub const VIEW_TEXELS: usize = 7 + 2 * LAMPS;
+/// More opaque than this is not blended.
+const OPAQUE: f32 = 0.995;
+/// What is left of a plane's opacity seen from behind.
+const BEHIND: f32 = 0.3;
+
+/// Instances of a class drawn by one call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Call {
+    pub class: usize,
+    pub first: u32,
+    pub count: u32,
+}
+
+/// Calls for one view, inside its picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Own {
+    pub view: usize,
+    pub calls: std::ops::Range<usize>,
+}
+
+/// What is drawn into one texture.
+#[derive(Debug, Default)]
+pub struct Chunk {
+    /// Its views.
+    pub views: std::ops::Range<usize>,
+    /// Opaque things that lie inside their pictures, all views together.
+    pub shared: std::ops::Range<usize>,
+    /// Opaque things that reach out of their picture.
+    pub own: Vec<Own>,
+    /// Transparent things, in order.
+    pub clear: Vec<Own>,
+}
+
+/// Everything that a submission uploads. Kept, so that its memory is used again.
+#[derive(Debug, Default)]
+pub struct Frame {
+    pub instances: Vec<[f32; INSTANCE]>,
+    /// The texture of views, row by row.
+    pub views: Vec<[f32; 4]>,
+    pub calls: Vec<Call>,
+    pub chunks: Vec<Chunk>,
+    eyes: Vec<Eye>,
+    lamps: Vec<PlacedLamp>,
+    /// View and drawable of what lies inside its picture, by class.
+    inside: Vec<Vec<(usize, usize)>>,
+    /// View, class and drawable of what reaches out of its picture.
+    outside: Vec<(usize, usize, usize)>,
+    /// View, distance and drawable of what is transparent.
+    clear: Vec<(usize, f32, usize)>,
+}
+
+/// The scene and the pictures asked for.
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    pub visual: &'a Visual,
+    pub scene: &'a Scene,
+    pub shots: &'a [Shot<'a>],
+    pub atlas: &'a Atlas,
+    /// Width and height of the textures.
+    pub size: [u32; 2],
+    pub output: Output,
+}
+
+/// Width and height of the texture of so many views.
+pub fn views_size(count: usize) -> [usize; 2] {
+    [
+        VIEW_TEXELS * count.div_ceil(VIEW_ROWS).max(1),
+        count.clamp(1, VIEW_ROWS),
+    ]
+}
+
+impl Frame {
+    pub fn build(&mut self, r: &Request) {
+        self.instances.clear();
+        self.calls.clear();
+        self.chunks.clear();
+        self.eyes.clear();
+        self.inside.resize_with(r.scene.classes.len(), Vec::new);
+        let [width, height] = views_size(r.shots.len());
+        self.views.clear();
+        self.views.resize(width * height, [0.0; 4]);
+        let mut first = 0;
+        for chunk in 0..r.atlas.chunks.len() {
+            let end = r.atlas.tiles.partition_point(|t| t.chunk <= chunk);
+            for view in first..end {
+                let shot = &r.shots[view];
+                let eye = Eye::new(r.visual, &shot.poses, &shot.view);
+                self.eyes.push(eye);
+                self.place(r, view, &eye);
+                self.sort(r, view, &eye);
+            }
+            if end - first == 1 {
+                // alone, a picture is drawn as if there was no texture around it
+                let all = self.inside.iter_mut().enumerate();
+                let own = all.flat_map(|(class, found)| found.drain(..).map(move |(view, i)| (view, class, i)));
+                self.outside.extend(own);
+            }
+            let shared = self.emit_inside(r);
+            let own = self.emit_outside(r);
+            let clear = self.emit_clear(r);
+            self.chunks.push(Chunk {
+                views: first..end,
+                shared,
+                own,
+                clear,
+            });
+            first = end;
+        }
+    }
+
+    /// Writes the texels of a view.
+    fn place(&mut self, r: &Request, view: usize, eye: &Eye) {
+        let shot = &r.shots[view];
+        place_lamps(r.visual, &shot.poses, eye, &mut self.lamps);
+        let [width, _] = views_size(r.shots.len());
+        let start = view % VIEW_ROWS * width + view / VIEW_ROWS * VIEW_TEXELS;
+        let texels = &mut self.views[start..start + VIEW_TEXELS];
+        let with = |[a, b, c]: V3, w: f32| [a, b, c, w];
+        let Tile {
+            x, y, width, height, ..
+        } = r.atlas.tiles[view];
+        let [w, h] = r.size.map(|n| n as f32);
+        texels[0] = with(eye.pos, 0.0);
+        texels[1] = with(eye.forward, 0.0);
+        texels[2] = with(eye.right.map(|v| v * eye.tan[0]), 0.0);
+        texels[3] = with(eye.up.map(|v| v * eye.tan[1]), 0.0);
+        // from pixels of the picture, upward, to the texture, whose rows run downward from 1 to -1
+        texels[4] = [2.0 / w, -2.0 / h, 2.0 * x as f32 / w - 1.0, 1.0 - 2.0 * y as f32 / h];
+        texels[5] = [
+            0.5 * width as f32,
+            0.5 * height as f32,
+            eye.near,
+            f32::from(u8::from(x + y > 0)),
+        ];
+        texels[6] = [eye.focal[0], eye.focal[1], eye.depth[0], eye.depth[1]];
+        for (k, lamp) in self.lamps.iter().take(LAMPS).enumerate() {
+            texels[7 + 2 * k] = lamp.pos.map_or([0.0; 4], |p| with(p, 1.0));
+            texels[8 + 2 * k] = with(lamp.dir, 0.0);
+        }
+    }
+
+    /// Finds what a view shows.
+    fn sort(&mut self, r: &Request, view: usize, eye: &Eye) {
+        for (i, drawable) in r.visual.drawables.iter().enumerate() {
+            let (pos, mat) = pose(drawable, &r.shots[view].poses);
+            let at = eye.locate(single(pos));
+            let Some(whole) = seen(eye, at, drawable.radius, r.visual.far as f32) else {
+                continue;
+            };
+            let blended = drawable.rgba[3] < OPAQUE || behind(eye, drawable, single(pos), &mat);
+            if blended && r.output == Output::Colour {
+                let key = if drawable.shape == Shape::Plane {
+                    1e10
+                } else {
+                    dot(at, at).sqrt() - drawable.radius
+                };
+                self.clear.push((view, key, i));
+            } else if whole {
+                self.inside[r.scene.class_of[i]].push((view, i));
+            } else {
+                self.outside.push((view, r.scene.class_of[i], i));
+            }
+        }
+    }
+
+    fn emit_inside(&mut self, r: &Request) -> std::ops::Range<usize> {
+        let start = self.calls.len();
+        let mut inside = std::mem::take(&mut self.inside);
+        for (class, found) in inside.iter_mut().enumerate() {
+            for (view, drawable) in found.drain(..) {
+                self.emit(r, start, class, view, drawable, false);
+            }
+        }
+        self.inside = inside;
+        start..self.calls.len()
+    }
+
+    fn emit_outside(&mut self, r: &Request) -> Vec<Own> {
+        let mut outside = std::mem::take(&mut self.outside);
+        outside.sort_unstable();
+        let mut own = Vec::new();
+        for of_view in outside.chunk_by(|a, b| a.0 == b.0) {
+            let (start, view) = (self.calls.len(), of_view[0].0);
+            for &(_, class, drawable) in of_view {
+                self.emit(r, start, class, view, drawable, true);
+            }
+            let calls = start..self.calls.len();
+            own.push(Own { view, calls });
+        }
+        outside.clear();
+        self.outside = outside;
+        own
+    }
+
+    /// Transparent things of a view are drawn twice: from near to far, then from far to near.
+    fn emit_clear(&mut self, r: &Request) -> Vec<Own> {
+        let mut clear = std::mem::take(&mut self.clear);
+        clear.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut own = Vec::new();
+        for of_view in clear.chunk_by(|a, b| a.0 == b.0) {
+            let (start, view) = (self.calls.len(), of_view[0].0);
+            for &(_, _, drawable) in of_view.iter().chain(of_view.iter().rev()) {
+                let poses = &r.shots[view].poses;
+                let (pos, mat) = pose(&r.visual.drawables[drawable], poses);
+                let class = if behind(&self.eyes[view], &r.visual.drawables[drawable], single(pos), &mat) {
+                    r.scene.class_behind[drawable]
+                } else {
+                    r.scene.class_of[drawable]
+                };
+                self.emit(r, start, class, view, drawable, true);
+            }
+            let calls = start..self.calls.len();
+            own.push(Own { view, calls });
+        }
+        clear.clear();
+        self.clear = clear;
+        own
+    }
+
+    /// Adds an instance, to the last call since `start` if that is of the same class. `own` instances are drawn with the
+    /// picture as viewport.
+    fn emit(&mut self, r: &Request, start: usize, class: usize, view: usize, drawable: usize, own: bool) {
+        let first = self.instances.len() as u32;
+        match self.calls[start..].last_mut() {
+            Some(call) if call.class == class => call.count += 1,
+            _ => self.calls.push(Call { class, first, count: 1 }),
+        }
+        let instance = instance(r, &self.eyes[view], view, &r.visual.drawables[drawable], own);
+        self.instances.push(instance);
+    }
+}
+
+/// Whether a sphere is in view: none, partly or (`true`) wholly.
+fn seen(eye: &Eye, [x, y, z]: V3, radius: f32, far: f32) -> Option<bool> {
+    // distance from the sides of the view, positive inside
+    let side = |v: f32, tan: f32| (z * tan - v.abs()) / (1.0 + tan * tan).sqrt();
+    let margin = (z - eye.near).min(side(x, eye.tan[0])).min(side(y, eye.tan[1]));
+    // written so that a pose that is not a number is out of view
+    if margin > -radius && z.is_finite() {
+        Some(margin > radius * 1.001 + 1e-6 && z + radius < far)
+    } else {
+        None
+    }
+}
+
+/// Whether a plane shows its back.
+fn behind(eye: &Eye, drawable: &Drawable, pos: V3, mat: &crate::math::Mat3) -> bool {
+    let d = [eye.pos[0] - pos[0], eye.pos[1] - pos[1], eye.pos[2] - pos[2]];
+    drawable.shape == Shape::Plane && dot(d, [mat[2] as f32, mat[5] as f32, mat[8] as f32]) < 0.0
+}
+
+fn instance(r: &Request, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> [f32; INSTANCE] {
+    let (pos, mat) = pose(drawable, &r.shots[view].poses);
+    let [x, y, z] = eye.model(pos, &mat, drawable.size);
+    let [sx, sy, length] = drawable.size;
+    let cap = 0.5 * (sx + sy);
+    let [red, green, blue, mut alpha] = drawable.rgba;
+    if behind(eye, drawable, single(pos), &mat) {
+        alpha *= BEHIND;
+    }
+    let id = match drawable.element {
+        Element::Geom(g) => (g + 1) as f32,
+        Element::Site(_) => 0.0,
+    };
+    let [u, v, s] = drawable.texture_scale;
+    let (pos, m) = (single(pos), mat.map(|v| v as f32));
+    let rows: [[f32; 4]; INSTANCE / 4] = [
+        x,
+        y,
+        z,
+        [sx, sy, length, view as f32],
+        [
+            cap / length,
+            (length - cap) / cap,
+            2.0 * (cap - length) / cap,
+            f32::from(u8::from(own)),
+        ],
+        [red, green, blue, alpha],
+        [
+            drawable.emission,
+            drawable.specular,
+            drawable.exponent,
+            drawable.texture_offset,
+        ],
+        [u, v, s, id],
+        [m[0], m[1], m[2], pos[0]],
+        [m[3], m[4], m[5], pos[1]],
+        [m[6], m[7], m[8], pos[2]],
+    ];
+    let mut out = [0.0; INSTANCE];
+    out.copy_from_slice(rows.as_flattened());
+    out
+}

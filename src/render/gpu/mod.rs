@@ -1,0 +1,381 @@
+//! The renderer on a GPU, for many pictures at once: any number of views of any number of environments in one submission
+//! and one transfer (cargo feature `wgpu`).
+//!
+//! ```no_run
+//! use babybench::config::Config;
+//! use babybench::render::gpu::{GpuRenderer, Rgb};
+//! use babybench::{Blueprint, Env};
+//!
+//! let blueprint = Blueprint::new(Config { vision_active: true, ..Config::default() })?;
+//! let mut environments: Vec<Env> = (0..64).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
+//! for env in &mut environments {
+//!     env.reset(None)?;
+//! }
+//! let mut gpu = GpuRenderer::new(blueprint.visual()?)?;
+//! let shots: Vec<_> = environments.iter().flat_map(|e| e.eyes().into_iter().flatten()).collect();
+//! let pending = gpu.begin::<Rgb>(&shots)?; // the device works; so may we
+//! let pictures = pending.wait()?; // 128 x 64 x 64 x 3
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The look is that of the CPU renderer, from the same scene. The bytes are not: they depend on the device and its driver,
+//! and the invariant of equal bits does not cover them. On one device and driver they are the same every time, and a
+//! picture does not depend on what else is drawn with it.
+//!
+//! In browsers nothing can wait for a device: open with [`GpuRenderer::open`] and read with [`Pending::read`]. WebGL needs a
+//! canvas, so there the application opens the device: [`GpuRenderer::with_device`].
+
+mod atlas;
+mod buffers;
+mod channel;
+mod device;
+mod error;
+mod frame;
+mod pending;
+mod pipelines;
+mod scene;
+mod target;
+
+pub use channel::{Channel, Depth, Gray, Rgb, Segmentation};
+pub use error::GpuError;
+pub use pending::{Pending, Pictures};
+/// The version of wgpu whose devices [`GpuRenderer::with_device`] takes.
+pub use wgpu;
+
+use std::sync::{Arc, PoisonError};
+
+use atlas::Atlas;
+use buffers::{Buffers, fits};
+use device::Gpu;
+use frame::{Frame, Request};
+use pending::{Pool, Slot};
+use pipelines::{Layouts, Output, Pipelines, Style};
+use scene::Scene;
+use target::Target;
+
+use crate::render::{RenderError, Shot, Visual};
+
+/// Colours are what they are: no gamma.
+const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Draws pictures of one scene on a GPU.
+#[derive(Debug)]
+pub struct GpuRenderer {
+    gpu: Gpu,
+    visual: Arc<Visual>,
+    layouts: Layouts,
+    pipelines: Pipelines,
+    scene: Scene,
+    frame: Frame,
+    buffers: Buffers,
+    /// For [`Output::Colour`] and [`Output::Measure`].
+    targets: [Option<Target>; 2],
+    pool: Pool,
+    apart: bool,
+}
+
+impl GpuRenderer {
+    /// On the best adapter of this machine: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` (vulkan, gl, metal, dx12) and `WGPU_ADAPTER_NAME` (a part of it) narrow the choice.
+    ///
+    /// # Errors
+    /// No adapter, or the scene does not fit on the device.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn new(visual: Arc<Visual>) -> Result<Self, GpuError> {
+        pollster::block_on(Self::open(visual))
+    }
+
+    /// As [`GpuRenderer::new`], without blocking: the way to open one in a browser.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::new`].
+    pub async fn open(visual: Arc<Visual>) -> Result<Self, GpuError> {
+        Self::on(Gpu::open().await?, visual)
+    }
+
+    /// On a device that the application has opened, with at least the limits `wgpu::Limits::downlevel_webgl2_defaults()`. The
+    /// renderer takes over its handlers of lost devices and of errors outside error scopes.
+    ///
+    /// # Errors
+    /// The scene does not fit on the device.
+    pub fn with_device(device: wgpu::Device, queue: wgpu::Queue, visual: Arc<Visual>) -> Result<Self, GpuError> {
+        Self::on(Gpu::new(device, queue), visual)
+    }
+
+    fn on(gpu: Gpu, visual: Arc<Visual>) -> Result<Self, GpuError> {
+        let layouts = Layouts::new(&gpu);
+        let scene = Scene::new(&gpu, &layouts, &visual);
+        let renderer = Self {
+            pipelines: Pipelines::new(&gpu),
+            frame: Frame::default(),
+            buffers: Buffers::new(&gpu, &layouts, &scene.lamps, 256, 2),
+            targets: [None, None],
+            pool: Pool::default(),
+            apart: gpu.software,
+            gpu,
+            visual,
+            layouts,
+            scene,
+        };
+        renderer.gpu.check()?;
+        Ok(renderer)
+    }
+
+    /// The adapter: name, backend, kind, driver.
+    pub fn adapter(&self) -> &str {
+        &self.gpu.name
+    }
+
+    /// Whether the adapter is a program on the CPU, such as Mesa's llvmpipe. The CPU renderer is faster then.
+    pub fn is_software(&self) -> bool {
+        self.gpu.software
+    }
+
+    /// Whether each picture of a submission is drawn in a pass of its own, instead of many in one. That is the default on
+    /// software adapters: they gain nothing from large passes, and round at places far from the corner of a texture.
+    pub fn draw_apart(&mut self, apart: bool) {
+        self.apart = apart;
+    }
+
+    /// The scene that is drawn.
+    pub fn visual(&self) -> &Arc<Visual> {
+        &self.visual
+    }
+
+    /// Starts drawing. Submissions are worked off in order; more can be started before earlier ones are read.
+    ///
+    /// # Errors
+    /// As the CPU renderer for each shot; more pictures than the device takes; a device that is lost, out of memory or
+    /// failing.
+    pub fn begin<C: Channel>(&mut self, shots: &[Shot]) -> Result<Pending<C>, RenderError> {
+        self.gpu.check()?;
+        for shot in shots {
+            self.visual.check(&shot.poses, &shot.view)?;
+        }
+        if shots.is_empty() {
+            return Ok(Pending::none(&self.gpu));
+        }
+        let limits = self.gpu.device.limits();
+        let atlas = Atlas::new(
+            shots.iter().map(|s| s.view),
+            limits.max_texture_dimension_2d,
+            self.apart,
+        )?;
+        let (slots, bytes) = layout(&atlas, C::OUTPUT);
+        fits("the pictures, in bytes,", bytes, limits.max_buffer_size)?;
+        let size = self.target(C::OUTPUT, &atlas);
+        self.frame.build(&Request {
+            visual: &self.visual,
+            scene: &self.scene,
+            shots,
+            atlas: &atlas,
+            size,
+            output: C::OUTPUT,
+        });
+        self.buffers
+            .write(&self.gpu, &self.layouts, &self.scene.lamps, &self.frame, shots.len())?;
+        let buffer = self.readback(bytes);
+        let commands = self.encode(C::OUTPUT, &atlas, &slots, &buffer);
+        let submission = self.gpu.queue.submit([commands]);
+        self.gpu.check()?;
+        Ok(Pending::new(&self.gpu, slots, buffer, submission, &self.pool))
+    }
+
+    /// Draws and waits.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::begin`] and [`Pending::read`].
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn draw<C: Channel>(&mut self, shots: &[Shot]) -> Result<Pictures<C>, RenderError> {
+        self.begin::<C>(shots)?.wait()
+    }
+
+    /// Makes sure of attachments for all chunks and returns their size.
+    fn target(&mut self, output: Output, atlas: &Atlas) -> [u32; 2] {
+        let slot = &mut self.targets[output as usize];
+        let most = |k: usize| atlas.chunks.iter().map(|c| c[k]).max().unwrap_or(1);
+        let needed = [most(0), most(1)];
+        let old = slot.as_ref().map_or([0, 0], |t| t.size);
+        if old[0] >= needed[0] && old[1] >= needed[1] {
+            return old;
+        }
+        // room for both, so that alternating sizes do not ask for memory every time, unless that is much
+        let both = [needed[0].max(old[0]), needed[1].max(old[1])];
+        let size = if both[0].max(both[1]) <= atlas::SIDE {
+            both
+        } else {
+            needed
+        };
+        *slot = None;
+        *slot = Some(Target::new(&self.gpu, output, size));
+        size
+    }
+
+    /// A buffer for what comes back, used before if there is one.
+    fn readback(&self, bytes: u64) -> wgpu::Buffer {
+        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        let fitting = pool.iter().position(|b| (bytes..=4 * bytes).contains(&b.size()));
+        match fitting {
+            Some(k) => pool.swap_remove(k),
+            None => {
+                pool.clear();
+                self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("readback"),
+                    size: bytes,
+                    usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                    mapped_at_creation: false,
+                })
+            }
+        }
+    }
+
+    fn encode(&self, output: Output, atlas: &Atlas, slots: &[Slot], buffer: &wgpu::Buffer) -> wgpu::CommandBuffer {
+        let label = Some("pictures");
+        let mut encoder = self
+            .gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        let Some(target) = &self.targets[output as usize] else {
+            return encoder.finish();
+        };
+        for (chunk, [width, height]) in self.frame.chunks.iter().zip(&atlas.chunks) {
+            let mut pass = Pass {
+                renderer: self,
+                pass: target.pass(&mut encoder),
+                style: None,
+                texture: None,
+            };
+            pass.chunk(output, chunk, &atlas.tiles, target.size);
+            drop(pass);
+            // the first picture lies in the corner
+            let Slot { offset, pitch, .. } = slots[chunk.views.start];
+            encoder.copy_texture_to_buffer(
+                target.resolved.as_image_copy(),
+                wgpu::TexelCopyBufferInfo {
+                    buffer,
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: offset as u64,
+                        bytes_per_row: Some(pitch as u32),
+                        rows_per_image: None,
+                    },
+                },
+                wgpu::Extent3d {
+                    width: *width,
+                    height: *height,
+                    depth_or_array_layers: 1,
+                },
+            );
+        }
+        encoder.finish()
+    }
+}
+
+/// Where the pictures lie in the buffer that comes back, and its size.
+fn layout(atlas: &Atlas, output: Output) -> (Vec<Slot>, u64) {
+    let pixel = output.bytes();
+    let mut starts = Vec::with_capacity(atlas.chunks.len());
+    let mut end = 0;
+    for &[width, height] in &atlas.chunks {
+        let pitch = (width * pixel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT) as usize;
+        starts.push((end, pitch));
+        end += pitch * height as usize;
+    }
+    let slot = |t: &atlas::Tile| {
+        let (start, pitch) = starts[t.chunk];
+        Slot {
+            offset: start + t.y as usize * pitch + (t.x * pixel) as usize,
+            pitch,
+            width: t.width as usize,
+            height: t.height as usize,
+        }
+    };
+    (atlas.tiles.iter().map(slot).collect(), end as u64)
+}
+
+/// A pass, and what is set in it.
+struct Pass<'r, 'e> {
+    renderer: &'r GpuRenderer,
+    pass: wgpu::RenderPass<'e>,
+    style: Option<Style>,
+    texture: Option<usize>,
+}
+
+impl Pass<'_, '_> {
+    fn chunk(&mut self, output: Output, chunk: &frame::Chunk, tiles: &[atlas::Tile], size: [u32; 2]) {
+        let r = self.renderer;
+        self.pass.set_bind_group(0, &r.buffers.group, &[]);
+        self.pass
+            .set_index_buffer(r.scene.indices.slice(..), wgpu::IndexFormat::Uint16);
+        self.shapes();
+        let opaque = match output {
+            Output::Colour => Style::Opaque,
+            Output::Measure => |_| Style::Measure,
+        };
+        self.calls(&chunk.shared, opaque);
+        self.own(&chunk.own, tiles, opaque);
+        if let (Output::Colour, Some(sky)) = (output, r.visual.sky) {
+            self.everywhere(size);
+            self.pass.set_vertex_buffer(0, r.buffers.counting.slice(..));
+            self.style(Style::Sky);
+            self.texture(sky);
+            let views = chunk.views.start as u32..chunk.views.end as u32;
+            self.pass.draw(0..4, views);
+            self.shapes();
+        }
+        self.own(&chunk.clear, tiles, Style::Transparent);
+        // OpenGL averages the samples inside the last scissor only
+        self.everywhere(size);
+    }
+
+    fn shapes(&mut self) {
+        let r = self.renderer;
+        self.pass.set_vertex_buffer(0, r.scene.vertices.slice(..));
+        self.pass.set_vertex_buffer(1, r.buffers.instances.slice(..));
+    }
+
+    /// Draws into the whole texture.
+    fn everywhere(&mut self, [w, h]: [u32; 2]) {
+        self.pass.set_viewport(0.0, 0.0, w as f32, h as f32, 0.0, 1.0);
+        self.pass.set_scissor_rect(0, 0, w, h);
+    }
+
+    /// Draws into one picture after the other.
+    fn own(&mut self, own: &[frame::Own], tiles: &[atlas::Tile], style: fn(scene::Paint) -> Style) {
+        for frame::Own { view, calls } in own {
+            let t = &tiles[*view];
+            let (x, y, w, h) = (t.x as f32, t.y as f32, t.width as f32, t.height as f32);
+            self.pass.set_viewport(x, y, w, h, 0.0, 1.0);
+            self.pass.set_scissor_rect(t.x, t.y, t.width, t.height);
+            self.calls(calls, style);
+        }
+    }
+
+    fn calls(&mut self, calls: &std::ops::Range<usize>, style: fn(scene::Paint) -> Style) {
+        let r = self.renderer;
+        for call in &r.frame.calls[calls.clone()] {
+            let class = &r.scene.classes[call.class];
+            let style = style(class.paint);
+            self.style(style);
+            if let (Some(texture), true) = (class.texture, style != Style::Measure) {
+                self.texture(texture);
+            }
+            self.pass
+                .draw_indexed(class.indices.clone(), 0, call.first..call.first + call.count);
+        }
+    }
+
+    fn style(&mut self, style: Style) {
+        if self.style != Some(style) {
+            let r = self.renderer;
+            self.pass.set_pipeline(r.pipelines.get(&r.gpu, &r.layouts, style));
+            (self.style, self.texture) = (Some(style), None);
+        }
+    }
+
+    fn texture(&mut self, texture: usize) {
+        if self.texture != Some(texture) {
+            self.pass.set_bind_group(1, &self.renderer.scene.textures[texture], &[]);
+            self.texture = Some(texture);
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! What does not move, on the device: meshes, textures, lights.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use wgpu::util::DeviceExt;
+
+use super::device::Gpu;
+use super::pipelines::Layouts;
+use crate::render::mesh::{Mesh, Part};
+use crate::render::texture::{Face, Texture};
+use crate::render::visual::{Drawable, Shape, Visual};
+
+/// Lights in the shader.
+pub const LAMPS: usize = 8;
+
+/// How a drawable is coloured, which decides the pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Paint {
+    Plain,
+    Image,
+    Cube,
+}
+
+/// Drawables that share mesh and texture, drawn by one call.
+#[derive(Clone, Debug)]
+pub struct Class {
+    pub paint: Paint,
+    pub texture: Option<usize>,
+    /// In the buffer of indices.
+    pub indices: Range<u32>,
+}
+
+/// A scene on the device.
+#[derive(Debug)]
+pub struct Scene {
+    pub vertices: wgpu::Buffer,
+    pub indices: wgpu::Buffer,
+    /// Sorted by pipeline, then texture.
+    pub classes: Vec<Class>,
+    /// Class of each drawable.
+    pub class_of: Vec<usize>,
+    /// The same seen from behind; differs for planes.
+    pub class_behind: Vec<usize>,
+    /// Bind groups of the textures of the visual.
+    pub textures: Vec<wgpu::BindGroup>,
+    pub lamps: wgpu::Buffer,
+}
+
+impl Scene {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, visual: &Visual) -> Self {
+        let (vertices, indices, ranges) = geometry(visual);
+        let buffer = |label, contents: &[u8], usage| {
+            let label = Some(label);
+            gpu.device
+                .create_buffer_init(&wgpu::util::BufferInitDescriptor { label, contents, usage })
+        };
+        let paint = |d: &Drawable| match d.texture.map(|t| &visual.textures[t]) {
+            None => Paint::Plain,
+            Some(Texture::Flat(_)) => Paint::Image,
+            Some(Texture::Cube(_)) => Paint::Cube,
+        };
+        let behind = |shape: Shape| match shape {
+            Shape::Plane => Shape::ALL.len(),
+            other => other as usize,
+        };
+        // keys in the order of drawing
+        let keys = |mesh: &dyn Fn(Shape) -> usize| -> Vec<_> {
+            let key = |d: &Drawable| (paint(d), d.texture, mesh(d.shape));
+            visual.drawables.iter().map(key).collect()
+        };
+        let (front, back) = (keys(&|s| s as usize), keys(&behind));
+        let mut index: BTreeMap<_, usize> = front.iter().chain(&back).map(|&k| (k, 0)).collect();
+        let mut classes = Vec::with_capacity(index.len());
+        for (&(paint, texture, mesh), at) in &mut index {
+            *at = classes.len();
+            let indices = ranges[mesh].clone();
+            classes.push(Class {
+                paint,
+                texture,
+                indices,
+            });
+        }
+        Self {
+            vertices: buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
+            indices: buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
+            classes,
+            class_of: front.iter().map(|k| index[k]).collect(),
+            class_behind: back.iter().map(|k| index[k]).collect(),
+            textures: visual.textures.iter().map(|t| upload(gpu, layouts, t)).collect(),
+            lamps: buffer(
+                "lamps",
+                bytemuck::cast_slice(lamps(visual).as_flattened()),
+                wgpu::BufferUsages::UNIFORM,
+            ),
+        }
+    }
+}
+
+/// Vertices (place and part, normal), indices, and which indices belong to which mesh: those of [`Visual::meshes`], then
+/// the plane seen from behind.
+fn geometry(visual: &Visual) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
+    let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut first = 0;
+    let mut add = |mesh: &Mesh, flipped: bool| {
+        for (i, n) in mesh.normal.iter().enumerate() {
+            let part = mesh.parts.iter().find(|p| i < p.1).map_or(Part::Body, |p| p.0);
+            let part = match part {
+                Part::Body => 0.0,
+                Part::Top => 1.0,
+                Part::Bottom => 2.0,
+            };
+            vertices.extend([mesh.x[i], mesh.y[i], mesh.z[i], part, n[0], n[1], n[2], 0.0]);
+        }
+        let start = indices.len() as u32;
+        for &[a, b, c] in &mesh.triangles {
+            let corners = if flipped { [a, c, b] } else { [a, b, c] };
+            indices.extend(corners.map(|i| first + i));
+        }
+        ranges.push(start..indices.len() as u32);
+        first += mesh.x.len() as u16;
+    };
+    for mesh in &visual.meshes {
+        add(mesh, false);
+    }
+    add(&visual.meshes[Shape::Plane as usize], true);
+    // a copy of whole words needs an even number
+    if indices.len() % 2 == 1 {
+        indices.push(0);
+    }
+    (vertices, indices, ranges)
+}
+
+/// The uniform block `Scene` of the shader.
+fn lamps(visual: &Visual) -> [[f32; 4]; 4 * LAMPS + 1] {
+    let mut block = [[0.0; 4]; 4 * LAMPS + 1];
+    let with = |[a, b, c]: [f32; 3], w: f32| [a, b, c, w];
+    let head = visual.headlight.map(|[ambient, diffuse, specular]| {
+        let attenuation = [1.0, 0.0, 0.0, 0.0];
+        [
+            with(ambient, 0.0),
+            with(diffuse, 0.0),
+            with(specular, -1.0),
+            attenuation,
+        ]
+    });
+    let others = visual.lamps.iter().map(|l| {
+        let attenuation = with(l.attenuation, l.exponent);
+        [
+            with(l.ambient, 0.0),
+            with(l.diffuse, 0.0),
+            with(l.specular, l.cos_cutoff),
+            attenuation,
+        ]
+    });
+    let mut count = 0;
+    for lamp in head.into_iter().chain(others).take(LAMPS) {
+        block[4 * count..4 * count + 4].copy_from_slice(&lamp);
+        count += 1;
+    }
+    let glow = if count == 0 { 0.3 } else { 0.0 };
+    block[4 * LAMPS] = [count as f32, glow, 0.0, 0.0];
+    block
+}
+
+fn upload(gpu: &Gpu, layouts: &Layouts, texture: &Texture) -> wgpu::BindGroup {
+    let (faces, dimension, wrap, layout): (&[Face], _, _, _) = match texture {
+        Texture::Flat(face) => (
+            std::slice::from_ref(face),
+            wgpu::TextureViewDimension::D2,
+            wgpu::AddressMode::Repeat,
+            &layouts.image,
+        ),
+        Texture::Cube(faces) => (
+            faces,
+            wgpu::TextureViewDimension::Cube,
+            wgpu::AddressMode::ClampToEdge,
+            &layouts.cube,
+        ),
+    };
+    let extent = |width: usize, height: usize, layers: usize| wgpu::Extent3d {
+        width: width as u32,
+        height: height as u32,
+        depth_or_array_layers: layers as u32,
+    };
+    let made = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("texture"),
+        size: extent(faces[0][0].width, faces[0][0].height, faces.len()),
+        mip_level_count: faces[0].len() as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: super::COLOUR,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (z, face) in faces.iter().enumerate() {
+        for (k, level) in face.iter().enumerate() {
+            let to = wgpu::TexelCopyTextureInfo {
+                texture: &made,
+                mip_level: k as u32,
+                origin: wgpu::Origin3d {
+                    x: 0,
+                    y: 0,
+                    z: z as u32,
+                },
+                aspect: wgpu::TextureAspect::All,
+            };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * level.width as u32),
+                rows_per_image: None,
+            };
+            let size = extent(level.width, level.height, 1);
+            gpu.queue.write_texture(to, level.pixels.as_flattened(), layout, size);
+        }
+    }
+    let view = made.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(dimension),
+        ..Default::default()
+    });
+    let linear = wgpu::FilterMode::Linear;
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: wrap,
+        address_mode_v: wrap,
+        address_mode_w: wrap,
+        mag_filter: linear,
+        min_filter: linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    });
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("texture"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::Sampler(&sampler),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(&view),
+            },
+        ],
+    })
+}
