@@ -1,4 +1,4 @@
-//! What the actuation models and snapshots cost: `cargo bench --bench actuation`. Figures are medians.
+//! Measures the cost of actuation models and snapshots: `cargo bench --bench actuation`. Figures are medians.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use babybench::{Config, Env};
 const SAMPLES: usize = 2001;
 const REPEAT: usize = 16;
 
-/// Median time of one call, microseconds.
+/// Returns the median time of one call, microseconds.
 fn median(mut f: impl FnMut()) -> f64 {
     let mut times: Vec<f64> = (0..SAMPLES)
         .map(|_| {
@@ -42,9 +42,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for &kind in ActuationModel::ALL {
             let config = config(kind, behavior, Scene::Base);
             let model = std::sync::Arc::new(babybench::mimo::build_model(&config, &babybench::mimo::embedded())?);
-            let mut actuation = build(&model, &config)?;
+            let actuation = build(&model, &config)?;
             let mut state = SoftEngine::new(model.clone(), SoftOptions::default()).new_state();
-            actuation.prepare(&model, &mut state.params);
+            actuation.prepare(&model, &mut state);
             for (i, (q, v)) in state
                 .qpos
                 .iter_mut()

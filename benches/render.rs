@@ -1,5 +1,5 @@
-//! What pictures cost: `cargo bench --bench render`. To be laid beside what MuJoCo's own renderer needs on the same machine
-//! at the same time, which `conformance/scripts/render_goldens.py --time` prints.
+//! Measures the cost of pictures: `cargo bench --bench render`. Compare with what MuJoCo's own renderer needs on the
+//! same machine at the same time, which `conformance/scripts/render_goldens.py --time` prints.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -7,12 +7,14 @@ mod common;
 use std::time::Instant;
 
 use babybench::config::Scene;
-use babybench::eval::video::{AviWriter, DEFAULT_FPS, FRAME_HEIGHT, FRAME_WIDTH, FramePainter, Panel};
-use babybench::render::{Poses, Renderer, View};
+use babybench::eval::FilmError;
+use babybench::eval::film::{FRAME_HEIGHT, FRAME_WIDTH, FrameComposer, Panel};
+use babybench::formats::avi::{AviWriter, DEFAULT_FPS};
+use babybench::render::{CpuRenderer, Poses, View, Visual};
 use babybench::{Config, Env};
 use common::seen;
 
-/// Median of repeated measurements, ms.
+/// Returns the median of repeated measurements, ms.
 fn median(repeat: usize, mut work: impl FnMut()) -> f64 {
     work();
     let mut spent: Vec<f64> = (0..repeat)
@@ -24,6 +26,50 @@ fn median(repeat: usize, mut work: impl FnMut()) -> f64 {
         .collect();
     spent.sort_by(f64::total_cmp);
     spent[repeat / 2]
+}
+
+/// Returns the median time (ms) to draw a square image from each of some cameras.
+fn draw(env: &Env, visual: &Visual, cameras: &[&str], size: usize, repeat: usize) -> Result<f64, String> {
+    let mut renderer = CpuRenderer::new();
+    let mut out = vec![0; 3 * size * size];
+    let mut failed = None;
+    let ms = median(repeat, || {
+        for camera in cameras {
+            let result = env.model().camera(camera).map(|camera| {
+                let view = View {
+                    camera,
+                    width: size,
+                    height: size,
+                };
+                renderer.rgb(visual, &Poses::from(env.state()), &view, &mut out)
+            });
+            if let Some(Err(e)) = result {
+                failed = Some(e.to_string());
+            }
+        }
+    });
+    failed.map_or(Ok(ms), Err)
+}
+
+/// Returns the median times (ms) to draw and to encode a frame of an evaluation video.
+fn film(env: &Env, visual: &Visual) -> Result<[f64; 2], Box<dyn std::error::Error>> {
+    let mut composer = FrameComposer::new(env.model())?;
+    let mut frame = vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT];
+    let file = std::io::Cursor::new(Vec::new());
+    let mut video = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, DEFAULT_FPS)?;
+    let mut failed: Option<FilmError> = None;
+    let drawing = median(10, || {
+        let poses = Poses::from(env.state());
+        let result = composer.compose(visual, &poses, Panel::Binocular, &mut frame);
+        failed = failed.take().or(result.err().map(Into::into));
+    });
+    let encoding = median(10, || {
+        failed = failed.take().or(video.frame(&frame).err().map(Into::into));
+    });
+    match failed {
+        Some(e) => Err(e),
+        None => Ok([drawing, encoding]),
+    }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -38,58 +84,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
         env.reset_to(&qpos, &qvel)?;
         let visual = env.blueprint().visual()?;
-        let mut renderer = Renderer::new();
-        let mut time = |cameras: &[&str], size: usize, repeat: usize| -> Result<f64, String> {
-            let mut out = vec![0; 3 * size * size];
-            let mut failed = None;
-            let ms = median(repeat, || {
-                for camera in cameras {
-                    let camera = env.model().camera(camera);
-                    let result = camera.map(|camera| {
-                        let view = View {
-                            camera,
-                            width: size,
-                            height: size,
-                        };
-                        renderer.rgb(&visual, &Poses::from(env.state()), &view, &mut out)
-                    });
-                    if let Some(Err(e)) = result {
-                        failed = Some(e.to_string());
-                    }
-                }
-            });
-            failed.map_or(Ok(ms), Err)
-        };
         println!(
             "{scene}: both eyes 64 x 64, settled: {:.3} ms; corner 480 x 480: {:.2} ms",
-            time(&["eye_left", "eye_right"], 64, 100)?,
-            time(&["corner"], 480, 20)?
+            draw(&env, &visual, &["eye_left", "eye_right"], 64, 100)?,
+            draw(&env, &visual, &["corner"], 480, 20)?
         );
-        let mut painter = FramePainter::new(env.model())?;
-        let mut frame = vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT];
-        let file = std::io::Cursor::new(Vec::new());
-        let mut video = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, DEFAULT_FPS)?;
-        let mut failed = None;
-        let mut parts = [0.0; 2];
-        for (part, draw) in parts.iter_mut().zip([true, false]) {
-            *part = median(10, || {
-                let result = if draw {
-                    painter.paint(&visual, &Poses::from(env.state()), Panel::Binocular, &mut frame)
-                } else {
-                    video.frame(&frame)
-                };
-                if let Err(e) = result {
-                    failed = Some(e);
-                }
-            });
-        }
-        match failed {
-            Some(e) => return Err(e.into()),
-            None => println!(
-                "{scene}: evaluation frame with both eyes: {:.1} ms to draw, {:.1} ms to encode",
-                parts[0], parts[1]
-            ),
-        }
+        let [drawing, encoding] = film(&env, &visual)?;
+        println!("{scene}: evaluation frame with both eyes: {drawing:.1} ms to draw, {encoding:.1} ms to encode");
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
-//! What the eyes of 64 environments cost, in one submission to a GPU and by the CPU renderer, in the same run: `cargo bench
-//! --features wgpu --bench render_gpu`. `WGPU_BACKEND` (vulkan, gl, metal, dx12) chooses another adapter.
+//! Measures the cost of the eyes of 64 environments, in one submission to a GPU and by the CPU renderer, in the same
+//! run: `cargo bench --features wgpu --bench render_gpu`. `WGPU_BACKEND` (vulkan, gl, metal, dx12) chooses another
+//! adapter.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -8,14 +9,14 @@ use std::time::Instant;
 
 use babybench::config::Scene;
 use babybench::render::gpu::{GpuRenderer, Pending, Rgb};
-use babybench::render::{RenderError, Renderer, Shot};
+use babybench::render::{CpuRenderer, RenderError, RenderRequest};
 use babybench::{Blueprint, Env};
 use common::seen;
 
 const ENVIRONMENTS: usize = 64;
 const ROUNDS: usize = 7;
 
-/// CPU time of this process, all threads, s, where the system tells.
+/// Returns the CPU time of all threads of this process, s, where the system tells.
 fn cpu_time() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace().skip(11);
@@ -23,7 +24,7 @@ fn cpu_time() -> Option<f64> {
     Some(ticks / 100.0)
 }
 
-/// Wall and CPU time of a piece of work, s.
+/// Measures the wall and CPU time of a piece of work, s.
 fn timed(work: impl FnOnce() -> Result<(), RenderError>) -> Result<[f64; 2], RenderError> {
     let (start, cpu) = (Instant::now(), cpu_time());
     work()?;
@@ -36,7 +37,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// One line of the table: the median round.
+/// Prints one line of the table: the median round.
 fn report(name: &str, images: usize, rounds: &[[f64; 2]]) -> f64 {
     let wall = median(rounds.iter().map(|r| r[0]).collect());
     let cpu: f64 = rounds.iter().map(|r| r[1]).sum::<f64>() / rounds.len() as f64;
@@ -50,64 +51,70 @@ fn report(name: &str, images: usize, rounds: &[[f64; 2]]) -> f64 {
     wall
 }
 
+/// Creates the environments, each after a few random steps.
+fn environments(blueprint: &Blueprint) -> Result<Vec<Env>, Box<dyn std::error::Error>> {
+    let mut environments: Vec<Env> = (0..ENVIRONMENTS).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
+    let mut action = Vec::new();
+    for (seed, env) in environments.iter_mut().enumerate() {
+        env.defer_vision(true);
+        env.reset(Some(seed as u64))?;
+        for _ in 0..20 {
+            env.sample_action(&mut action);
+            env.step(&action)?;
+        }
+    }
+    Ok(environments)
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     for &scene in Scene::ALL {
         let blueprint = Blueprint::new(seen(scene))?;
         let visual = blueprint.visual()?;
         let mut gpu = GpuRenderer::new(visual.clone())?;
-        let mut environments: Vec<Env> = (0..ENVIRONMENTS).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
-        let mut action = Vec::new();
-        for (seed, env) in environments.iter_mut().enumerate() {
-            env.defer_vision(true);
-            env.reset(Some(seed as u64))?;
-            for _ in 0..20 {
-                env.sample_action(&mut action);
-                env.step(&action)?;
-            }
-        }
-        let shots: Vec<Shot> = environments.iter().filter_map(Env::eyes).flatten().collect();
+        let environments = environments(&blueprint)?;
+        let requests: Vec<RenderRequest> = environments.iter().filter_map(Env::eyes).flatten().collect();
         println!(
             "{scene}: {} eyes of 64 x 64 in one submission, {}",
-            shots.len(),
+            requests.len(),
             gpu.adapter()
         );
-        let mut array = vec![0; shots[0].view.rgb_len() * shots.len()];
-        let piece = array.len() / shots.len();
-        let mut renderer = Renderer::new();
+        let mut array = vec![0; requests[0].view.rgb_len() * requests.len()];
+        let piece = array.len() / requests.len();
+        let mut renderer = CpuRenderer::new();
         let (mut cpu, mut one, mut encoding) = (Vec::new(), Vec::new(), Vec::new());
-        gpu.draw::<Rgb>(&shots)?;
+        gpu.draw::<Rgb>(&requests)?;
         for _ in 0..ROUNDS {
             cpu.push(timed(|| {
                 let mut outs = array.chunks_exact_mut(piece);
-                shots.iter().try_for_each(|s| {
+                requests.iter().try_for_each(|s| {
                     let out = outs.next().unwrap_or_default();
                     renderer.rgb(&visual, &s.poses, &s.view, out)
                 })
             })?);
             one.push(timed(|| {
-                gpu.begin::<Rgb>(&shots)?.wait_into(array.chunks_exact_mut(piece))
+                gpu.begin::<Rgb>(&requests)?.wait_into(array.chunks_exact_mut(piece))
             })?);
             let mut pending = None;
             encoding.push(timed(|| {
-                pending = Some(gpu.begin::<Rgb>(&shots)?);
+                pending = Some(gpu.begin::<Rgb>(&requests)?);
                 Ok(())
             })?);
             pending.map(Pending::wait).transpose()?;
         }
         // the next submission is under way while the last one is read
         let pipelined = timed(|| {
-            let mut last = gpu.begin::<Rgb>(&shots)?;
+            let mut last = gpu.begin::<Rgb>(&requests)?;
             for _ in 1..ROUNDS {
-                let next = gpu.begin::<Rgb>(&shots)?;
+                let next = gpu.begin::<Rgb>(&requests)?;
                 std::mem::replace(&mut last, next).wait_into(array.chunks_exact_mut(piece))?;
             }
             last.wait_into(array.chunks_exact_mut(piece))
         })?
         .map(|t| t / ROUNDS as f64);
-        let by_cpu = report("CPU renderer, one thread", shots.len(), &cpu);
-        let by_gpu = report("wgpu, waiting for each", shots.len(), &one);
-        report("wgpu, one submission ahead", shots.len(), &[pipelined]);
-        report("of that, recording", shots.len(), &encoding);
+        let by_cpu = report("CPU renderer, one thread", requests.len(), &cpu);
+        let by_gpu = report("wgpu, waiting for each", requests.len(), &one);
+        report("wgpu, one submission ahead", requests.len(), &[pipelined]);
+        report("of that, recording", requests.len(), &encoding);
         println!("  wgpu takes {:.2} of the CPU renderer's time", by_gpu / by_cpu);
     }
     Ok(())

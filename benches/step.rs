@@ -1,19 +1,15 @@
-//! What a step, a reset and a construction cost: `cargo bench --bench step [FILTER]`.
+//! Measures the cost of a step, a reset and a construction: `cargo bench --bench step [FILTER]`.
 //!
 //! Every measurement alternates with a fixed piece of work, the product of two dense 64 x 64 matrices, so that the ratio
 //! to it can be compared between machines and on busy ones. Figures are medians; the spread is between the quartiles.
 
 use std::hint::black_box;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use babybench::config::{Behavior, BodyParts, Scene};
-use babybench::physics::constraint::{Newton, RowBuilder};
-use babybench::physics::contact::Options;
-use babybench::physics::dynamics::*;
-use babybench::physics::world::{PairTable, Scene as World, Sweep};
-use babybench::physics::{State, Topology};
-use babybench::{Blueprint, Config, Env, Model};
+use babybench::physics::Stage;
+use babybench::{Blueprint, Config, Env};
 
 const EXAMPLES: [(&str, &str); 3] = [
     ("self_touch", include_str!("../configs/config_selftouch.yml")),
@@ -24,7 +20,7 @@ const EXAMPLES: [(&str, &str); 3] = [
     ),
 ];
 
-/// The fixed piece of work.
+/// A fixed piece of work, to compare with.
 struct Baseline {
     a: Vec<f64>,
     b: Vec<f64>,
@@ -43,7 +39,7 @@ impl Baseline {
         }
     }
 
-    /// Nanoseconds of one product.
+    /// Measures one product, ns.
     fn time(&mut self) -> f64 {
         const REPEAT: usize = 8;
         let start = Instant::now();
@@ -60,7 +56,7 @@ impl Baseline {
     }
 }
 
-/// First quartile, median, third quartile.
+/// Returns the first quartile, the median and the third quartile.
 fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     [1, 2, 3].map(|q| values[(values.len() - 1) * q / 4])
@@ -88,7 +84,7 @@ fn report(name: &str, ns: Vec<f64>, baseline: Vec<f64>) {
     );
 }
 
-/// Runs the measurements whose name contains the filter.
+/// The measurements whose name contains the filter.
 struct Bench {
     filter: Option<String>,
     baseline: Baseline,
@@ -99,7 +95,7 @@ impl Bench {
         self.filter.as_ref().is_none_or(|f| name.contains(f.as_str()))
     }
 
-    /// `samples` times `repeat` calls of `work`, alternating with the baseline.
+    /// Measures `samples` times `repeat` calls of `work`, alternating with the baseline.
     fn run(&mut self, name: &str, samples: usize, repeat: usize, mut work: impl FnMut()) {
         work();
         let (mut ns, mut base) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
@@ -144,95 +140,28 @@ fn environment(bench: &mut Bench, name: &str, config: &Config) {
     }
 }
 
-/// The parts of a physics step, in their order.
-const PARTS: [&str; 10] = [
-    "kinematics",
-    "inertias",
-    "scene in Rapier",
-    "contacts",
-    "constraint rows",
-    "velocities and bias",
-    "actuation",
-    "Newton solver",
-    "internal forces",
-    "integration",
-];
-
-/// A step of [`SoftEngine`], taken apart.
-struct Anatomy {
-    model: Arc<Model>,
-    topology: Topology,
-    pairs: PairTable,
-    sweep: Sweep,
-    world: World,
-    rows: RowBuilder,
-    newton: Newton,
-    integrator: Integrator,
-    bias: BiasScratch,
-    bodies: Articulated,
-    ns: [f64; PARTS.len()],
+/// The time spent in each stage of the physics steps so far, ns.
+#[derive(Default)]
+struct Stages {
+    ns: [f64; Stage::ALL.len()],
+    since: Option<(Stage, Instant)>,
 }
 
-impl Anatomy {
-    fn new(model: Arc<Model>) -> Self {
-        let options = Options {
-            ccd_tolerance: model.opt.ccd_tolerance,
-            ccd_iterations: model.opt.ccd_iterations,
-            ..Options::default()
-        };
-        let pairs = PairTable::new(&model);
-        let topology = Topology::new(&model);
-        Self {
-            sweep: Sweep::new(&model, &pairs, options),
-            world: World::new(&model, &pairs, options),
-            rows: RowBuilder::new(&model, &topology),
-            newton: Newton::default(),
-            integrator: Integrator::default(),
-            bias: BiasScratch::default(),
-            bodies: Articulated::default(),
-            ns: [0.0; PARTS.len()],
-            pairs,
-            topology,
-            model,
+impl Stages {
+    fn enter(&mut self, stage: Option<Stage>) {
+        let now = Instant::now();
+        if let Some((last, since)) = self.since {
+            self.ns[last as usize] += (now - since).as_nanos() as f64;
         }
-    }
-
-    fn step(&mut self, s: &mut State) {
-        let (m, t) = (&*self.model, &self.topology);
-        let mut last = Instant::now();
-        let mut part = 0;
-        let mut lap = || {
-            let now = Instant::now();
-            self.ns[part] += (now - last).as_nanos() as f64;
-            (part, last) = (part + 1, now);
-        };
-        kinematics(m, s);
-        cameras(m, s);
-        com_pos(m, s);
-        lap();
-        crb(m, t, s);
-        self.bodies.update(m, s);
-        lap();
-        self.world.sync(s);
-        lap();
-        self.sweep.contacts(m, &self.pairs, s);
-        lap();
-        self.rows.build(m, t, s);
-        lap();
-        fwd_velocity(m, s, &mut self.bias);
-        lap();
-        fwd_actuation(m, &mut self.bodies, s);
-        lap();
-        self.newton.solve(m, t, s);
-        lap();
-        rne_post_constraint(m, s, false);
-        lap();
-        self.integrator.advance(m, &mut self.bodies, s);
-        lap();
+        self.since = stage.map(|s| (s, now));
     }
 }
 
-/// Where the time of a physics step goes, over a run with random actions held for ten steps.
+fn lock(stages: &Mutex<Stages>) -> MutexGuard<'_, Stages> {
+    stages.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Prints where the time of a physics step goes, over a run with random actions held for ten steps.
 fn anatomy(bench: &mut Bench, name: &str, config: &Config) {
     const BATCH: usize = 25;
     const BATCHES: usize = 40;
@@ -241,49 +170,45 @@ fn anatomy(bench: &mut Bench, name: &str, config: &Config) {
     }
     let mut env = Env::new(config.clone()).expect("available");
     env.reset(Some(0)).expect("no divergence");
-    let (mut whole, mut s) = (env.blueprint().engine(), env.state().clone());
-    let mut parts = Anatomy::new(env.model().clone());
+    let [mut engine, mut probed] = [0, 1].map(|_| env.blueprint().engine());
+    let mut s = env.state().clone();
     let mut reference = s.clone();
+    let stages = Arc::new(Mutex::new(Stages::default()));
+    let probe = stages.clone();
+    probed.set_probe(Some(Box::new(move |stage| lock(&probe).enter(stage))));
     let mut action = Vec::new();
-    let mut samples: Vec<[f64; PARTS.len()]> = Vec::new();
-    let (mut base, mut engine, mut size) = (Vec::new(), Vec::new(), [0.0; 3]);
+    let mut samples: Vec<[f64; Stage::ALL.len()]> = Vec::new();
+    let (mut base, mut whole, mut size) = (Vec::new(), Vec::new(), [0.0; 3]);
     for batch in 0..BATCHES {
         let mut took = 0.0;
         let before = bench.baseline.time();
-        parts.ns.fill(0.0);
+        *lock(&stages) = Stages::default();
         for k in 0..BATCH {
             if k % 10 == 0 {
                 env.sample_action(&mut action);
                 s.ctrl.iter_mut().zip(&action).for_each(|(c, &a)| *c = f64::from(a));
                 reference.ctrl.copy_from_slice(&s.ctrl);
             }
-            parts.step(&mut s);
+            probed.step(&mut s).expect("no divergence");
             let start = Instant::now();
-            whole.step(&mut reference).expect("no divergence");
+            engine.step(&mut reference).expect("no divergence");
             took += start.elapsed().as_nanos() as f64;
-            for (sum, n) in size
-                .iter_mut()
-                .zip([s.contacts.len(), s.efc.nefc(), s.solver_iterations])
-            {
+            for (sum, n) in size.iter_mut().zip([s.contact.len(), s.nefc(), s.solver_iterations]) {
                 *sum += n as f64;
             }
         }
-        assert_eq!(s.qpos, reference.qpos, "the parts make the step");
+        assert_eq!(s.qpos, reference.qpos, "a probe changes nothing");
         if batch > 0 {
-            samples.push(parts.ns.map(|ns| ns / BATCH as f64));
+            samples.push(lock(&stages).ns.map(|ns| ns / BATCH as f64));
             base.push(0.5 * (before + bench.baseline.time()));
-            engine.push(took / BATCH as f64);
+            whole.push(took / BATCH as f64);
         }
     }
     let [contacts, rows, iterations] = size.map(|v| v / (BATCHES * BATCH) as f64);
-    report(
-        &format!("parts/{name}/all, as the engine does it"),
-        engine,
-        base.clone(),
-    );
-    for (i, part) in PARTS.iter().enumerate() {
+    report(&format!("parts/{name}/all, without a probe"), whole, base.clone());
+    for (i, stage) in Stage::ALL.iter().enumerate() {
         report(
-            &format!("parts/{name}/{part}"),
+            &format!("parts/{name}/{}", stage.name()),
             samples.iter().map(|s| s[i]).collect(),
             base.clone(),
         );

@@ -1,26 +1,35 @@
-//! A tiny learner of self-touch: the cross-entropy method on slow swings of every joint, scored by how many body parts the
-//! hands touch. About a minute on two cores. `cargo run --release --example cross_entropy`, and then
-//! `cargo run --release -- report results/cross_entropy`
+//! Learns self-touch with the cross-entropy method: every joint swings slowly, and the swings that touch the most body parts
+//! survive. Takes about a minute on two cores.
+//!
+//! ```sh
+//! cargo run --release --example cross_entropy
+//! cargo run --release -- report results/cross_entropy   # shows the training as a page
+//! ```
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use babybench::config::{Config, Scene};
-use babybench::env::{Info, NumpyRng, PartNames};
-use babybench::eval::{Evaluation, Score, TrainingLog, write_scene};
+use babybench::env::{Info, PartNames};
+use babybench::eval::{Evaluation, Score};
+use babybench::runs::{TrainingLog, write_scene};
+use babybench::spaces::NumpyRng;
 use babybench::{Blueprint, Env, EnvError};
 
-/// Steps of an episode; generations; policies tried in each; the best of them, which make the next generation.
+/// Steps of an episode.
 const STEPS: usize = 1000;
+/// Number of generations.
 const GENERATIONS: usize = 12;
+/// Number of policies tried in each generation.
 const POPULATION: usize = 24;
+/// Number of the best of them, from which the next generation is drawn.
 const ELITE: usize = 6;
 /// Episodes of the comparison with the random policy.
 const TRIALS: usize = 10;
-/// Numbers of the policy for each actuator: offset, amplitude, logarithm of the frequency, phase.
+/// Number of parameters of the policy for each actuator: offset, amplitude, logarithm of the frequency, phase.
 const GENES: usize = 4;
 
-/// What a generation is drawn from: mean and spread of every number of the policy.
+/// The distribution that a generation is drawn from: mean and standard deviation of every parameter.
 struct Spread {
     mean: Vec<f64>,
     deviation: Vec<f64>,
@@ -37,7 +46,7 @@ impl Spread {
             .collect()
     }
 
-    /// Moves towards the best, and keeps some spread.
+    /// Moves towards the best policies, and keeps some spread.
     fn learn(&mut self, best: &[Vec<f64>]) {
         for i in 0..self.mean.len() {
             let n = best.len() as f64;
@@ -49,7 +58,7 @@ impl Spread {
     }
 }
 
-/// The information at the end of an episode with a policy; without one, with random actions.
+/// Runs an episode with a policy, or with random actions without one, and returns the information at its end.
 fn episode(env: &mut Env, policy: Option<&[f64]>, seed: u64) -> Result<Info, EnvError> {
     env.reset(Some(seed))?;
     let mut action = Vec::new();
@@ -63,7 +72,7 @@ fn episode(env: &mut Env, policy: Option<&[f64]>, seed: u64) -> Result<Info, Env
     Ok(env.info().clone())
 }
 
-/// The action of a policy.
+/// Computes the action of a policy.
 fn act(genes: &[f64], step: usize, action: &mut Vec<f32>) {
     let seconds = step as f64 * 0.005;
     let swing = |g: &[f64]| (std::f64::consts::TAU * 0.5 * g[2].exp() * seconds + 3.0 * g[3]).sin();
@@ -103,7 +112,7 @@ fn run(blueprint: &Blueprint, policies: &[Option<Vec<f64>>], seed: u64) -> Resul
     Ok(done.into_inner().unwrap_or_else(|e| e.into_inner()))
 }
 
-/// The score of episodes, as of a training log (whose first record never counts).
+/// Scores episodes as a training log is scored (its first record never counts).
 fn score(infos: Vec<Info>) -> Result<f64, Box<dyn std::error::Error>> {
     let log: Vec<Info> = infos.first().cloned().into_iter().chain(infos).collect();
     Ok(Score::new(&log)?.value)
@@ -113,7 +122,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let text = include_str!("../configs/config_selftouch.yml");
     let blueprint = Blueprint::new(Config {
         scene: Scene::Crib,
-        touch_active: false, // the contacts are counted, not felt
+        touch_active: false, // contacts are counted from the physics; the skin is not needed
         save_dir: "results/cross_entropy".to_string(),
         ..Config::from_yaml(text, "config_selftouch.yml")?
     })?;
@@ -153,7 +162,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     evaluate(&blueprint, &spread.mean)
 }
 
-/// An evaluation episode of the learned policy. `Evaluation::new(&env).with_video(&env)?` would also make a video.
+/// Runs an evaluation episode of the learned policy. `Evaluation::new(&env).with_video(&env)?` would also make a video.
 fn evaluate(blueprint: &Blueprint, genes: &[f64]) -> Result<(), Box<dyn std::error::Error>> {
     let mut env = blueprint.env()?;
     let (mut evaluation, mut action) = (Evaluation::new(&env), Vec::new());

@@ -1,5 +1,8 @@
-//! MIMo without the environment: model, engine, senses and actuation as plain parts.
-//! `cargo run --release --example embedding`
+//! Uses MIMo without the environment: model, physics engine, actuation and one sense as separate parts.
+//!
+//! ```sh
+//! cargo run --release --example embedding
+//! ```
 
 use std::sync::Arc;
 
@@ -10,20 +13,23 @@ use babybench::physics::{Engine, SoftEngine, SoftOptions};
 use babybench::sensors::Vestibular;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // the model: MIMo and a scene, compiled from the embedded MJCF
     let config = Config {
         behavior: Behavior::SelfTouch,
         scene: Scene::Base,
         ..Config::default()
     };
     let model = Arc::new(build_model(&config, &embedded())?);
+
+    // the engine advances a state, which holds everything that changes
     let mut engine = SoftEngine::new(model.clone(), SoftOptions::default());
     let mut state = engine.new_state();
-    let mut motors = actuation::build(&model, &config)?;
-    motors.prepare(&model, &mut state.params);
+    let motors = actuation::build(&model, &config)?;
+    motors.prepare(&model, &mut state);
     let vestibular = Vestibular::new(&model);
     let mut head = vec![0.0; vestibular.len()];
 
-    engine.forward(&mut state)?;
+    engine.forward(&mut state)?; // computes everything that follows from the initial positions
     for second in 0..5 {
         for step in 0..200 {
             let push = if step < 100 { 0.2 } else { -0.2 };
@@ -31,14 +37,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             motors.set_action(&model, &mut state, &action);
             engine.step(&mut state)?;
         }
-        vestibular.observe(&model, &state, &mut head);
-        let hip = model.body("hip").map(|b| state.xpos[b.0]).unwrap_or_default();
+        vestibular.observe(&state, &mut head);
+        let hip = model.body("hip").map(|b| state.xpos[b]).unwrap_or_default();
         println!(
-            "{} s: hip at {:.3?} m, head feels {:.2?} m/s^2, {} contacts",
+            "{} s: hip at {:.3?} m, head accelerates {:.2?} m/s^2, {} contacts",
             second + 1,
             hip,
             &head[..3],
-            state.contacts.len()
+            state.contact.len()
         );
     }
     Ok(())

@@ -1,9 +1,13 @@
-//! A wrapper that adds an intrinsic reward: how badly the next observation was predicted.
-//! `cargo run --release --example intrinsic_motivation`
+//! Wraps the environment to add an intrinsic reward: how badly the next observation was predicted.
+//!
+//! ```sh
+//! cargo run --release --example intrinsic_motivation
+//! ```
 
 use babybench::{Config, Env, EnvError};
 
-/// Predicts each value of the observation from its last two, with one learned weight per value, and rewards surprise.
+/// A forward model that predicts each value of the observation from its last two, with one learned weight per value,
+/// and rewards surprise.
 struct Curious {
     env: Env,
     weights: Vec<f64>,
@@ -17,16 +21,16 @@ impl Curious {
     }
 
     fn reset(&mut self) -> Result<(), EnvError> {
-        let now = self.env.reset(None)?.observation.to_vec();
+        let now = self.env.reset(None)?.proprioception.to_vec();
         self.weights.resize(now.len(), 0.0);
         self.last = [now.clone(), now];
         Ok(())
     }
 
-    /// Steps, and returns the reward and whether the episode is over.
+    /// Steps the environment, and returns the reward and whether the episode is over.
     fn step(&mut self, action: &[f32]) -> Result<(f64, bool), EnvError> {
         let step = self.env.step(action)?;
-        let (now, truncated) = (step.observation.observation, step.truncated);
+        let (now, truncated) = (step.observation.proprioception, step.truncated);
         let [before, last] = &mut self.last;
         let mut surprise = 0.0;
         for i in 0..now.len() {
@@ -53,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         curious.reset()?;
         let mut sum = 0.0;
         loop {
-            curious.env.sample_action(&mut action); // here learns and acts the agent
+            curious.env.sample_action(&mut action); // an agent would choose its action here, and learn after the step
             let (reward, truncated) = curious.step(&action)?;
             sum += reward;
             if truncated {

@@ -1,6 +1,11 @@
-//! What 64 infants see, step by step, drawn in one submission to a GPU: `cargo run --release --features wgpu --example
-//! many_eyes`. Writes the left eyes' last images side by side to many_eyes.png. Without a graphics adapter it says what to
-//! install; `renderer: cpu` draws the same with nothing.
+//! Draws what 64 infants see with one submission to a GPU per step, and saves the left eyes' last images side by side as
+//! `many_eyes.png`.
+//!
+//! ```sh
+//! cargo run --release --features wgpu --example many_eyes
+//! ```
+//!
+//! Without a graphics adapter it says what to install. `renderer: cpu` needs none.
 
 use std::time::Instant;
 
@@ -21,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
     let mut environments: Vec<Env> = (0..COLUMNS * ROWS).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
     for (seed, env) in environments.iter_mut().enumerate() {
-        // draw_eyes draws what all of them see, instead of each step
+        // steps leave the eyes to `Env::draw_eyes`, which draws them all at once
         env.defer_vision(true);
         env.reset(Some(seed as u64))?;
     }
@@ -41,6 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{}: {:.0} images per second", gpu.adapter(), images / drawing);
     }
 
+    // one sheet with a tile for each environment
     let side = blueprint.config().vision_resolution as usize;
     let mut sheet = vec![0; 3 * side * side * environments.len()];
     for (k, env) in environments.iter().enumerate() {

@@ -1,5 +1,8 @@
-//! MIMo in a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo, who feels it.
-//! `cargo run --release --example own_world`
+//! Puts MIMo into a Rapier world of your own, beside bodies that the model does not know: a ball falls on MIMo.
+//!
+//! ```sh
+//! cargo run --release --example own_world
+//! ```
 
 use std::sync::Arc;
 
@@ -17,12 +20,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let model = Arc::new(build_model(&config, &embedded())?);
 
-    // a world with a ball, above MIMo's trunk
+    // the world, with MIMo in it
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::new(0.0, 0.0, -9.81);
     let mut bridge = Bridge::insert(model.clone(), RapierOptions::default(), &mut Sets::from(&mut world))?;
     let mut state = bridge.new_state();
     bridge.configure(&mut world);
+
+    // a ball above MIMo's trunk
     let above = state.qpos[..3].to_vec();
     let (ball, collider) = world.insert(
         RigidBodyBuilder::dynamic().translation(Vector::new(above[0], above[1], above[2] + 0.8)),
@@ -31,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut hits = 0;
     for step in 0..400 {
-        // the senses read the state: contacts, forces, accelerations
+        // advances the world and takes MIMo's state out of it, for the senses to read
         bridge.step(&mut state, &mut world, &())?;
 
         let touched: Vec<&str> = world
@@ -54,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 "{:.2} s: ball at {:.3} m, hip at {:.3} m, the ball touches {touched:?}",
                 state.time,
                 world.bodies[ball].translation().z,
-                model.body("hip").map_or(0.0, |b| state.xpos[b.0][2]),
+                model.body("hip").map_or(0.0, |b| state.xpos[b][2]),
             );
         }
     }

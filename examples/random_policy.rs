@@ -1,4 +1,8 @@
-//! The random policy for both behaviors: trains, scores, evaluates. `cargo run --release --example random_policy`
+//! Trains, scores and evaluates the random policy on both behaviors, as the starter kit's scripts do.
+//!
+//! ```sh
+//! cargo run --release --example random_policy
+//! ```
 
 use babybench::eval::{Evaluation, Touchables};
 use babybench::{Config, make_env};
@@ -10,9 +14,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ] {
         let config = Config {
             save_dir: format!("results/random_{name}"),
-            vision_active: false, // the random policy looks at nothing
+            vision_active: false, // the random policy does not look
             ..Config::from_yaml(text, name)?
         };
+
+        // training: the environment logs each episode
         let mut action = Vec::new();
         let mut env = make_env(config.clone(), true)?;
         for _episode in 0..10 {
@@ -26,6 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         env.finish_training()?;
 
+        // evaluation: the score of the training log, then an episode on its own
         let mut env = make_env(config, false)?;
         let mut evaluation = Evaluation::new(&env);
         print!(

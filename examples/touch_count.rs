@@ -1,5 +1,8 @@
-//! The reward of the kit's self-touch example: how many sensors of the skin are touched.
-//! `cargo run --release --example touch_count`
+//! Computes the reward of the starter kit's self-touch example: the number of touch sensors that feel a force.
+//!
+//! ```sh
+//! cargo run --release --example touch_count
+//! ```
 
 use babybench::{Config, Env};
 
@@ -15,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         env.reset(None)?;
         let (mut sum, mut best) = (0, 0);
         loop {
-            env.sample_action(&mut action); // here learns and acts the agent
+            env.sample_action(&mut action); // an agent would choose its action here, and learn after the step
             let step = env.step(&action)?;
             let touch = step.observation.touch.unwrap_or_default();
             let reward = touch.iter().filter(|force| force.abs() > 1e-6).count();

@@ -1,9 +1,13 @@
-//! The reward of the kit's hand-regard example, in short: how much stands out in the middle of what the eyes see.
-//! `cargo run --release --example visual_saliency`
+//! Computes the reward of the starter kit's hand-regard example, simplified: how much the middle of an eye's image stands
+//! out.
+//!
+//! ```sh
+//! cargo run --release --example visual_saliency
+//! ```
 
 use babybench::{Config, Env};
 
-/// Mean difference between the brightness of a pixel and that of the image, near the centre.
+/// Returns the mean difference between the brightness of a pixel and that of the image, near the centre.
 fn saliency(image: &[u8], size: usize) -> f64 {
     let grey: Vec<f64> = image
         .chunks_exact(3)
@@ -29,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         env.reset(None)?;
         let mut sum = 0.0;
         loop {
-            env.sample_action(&mut action); // here learns and acts the agent
+            env.sample_action(&mut action); // an agent would choose its action here, and learn after the step
             let step = env.step(&action)?;
             let eyes = [step.observation.eye_left, step.observation.eye_right];
             sum += eyes

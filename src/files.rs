@@ -1,13 +1,7 @@
-//! Files that are never seen half written.
+//! Files that are replaced whole or not at all.
 
 use std::io::{self, Write};
 use std::path::Path;
-
-/// Says on the standard error what a test leaves out; not by `eprintln`, which the test harness hides.
-#[cfg(test)]
-pub(crate) fn skipped(what: &str, missing: &Path) {
-    let _ = writeln!(io::stderr(), "SKIPPED {what}: {} is not here", missing.display());
-}
 
 /// Writes a new file beside `path` and renames it over it: `path` holds what it held before or all of `bytes`, whenever
 /// the process ends.

@@ -9,7 +9,7 @@
 //! env.reset(Some(0))?;
 //! let action = vec![0.1; env.action_space().len()];
 //! let step = env.step(&action)?;
-//! println!("{} values, {:?}", step.observation.observation.len(), step.info);
+//! println!("{} values, {:?}", step.observation.proprioception.len(), step.info);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -47,7 +47,7 @@
 //! // env.touch.sensor_positions[body_id], in the frame of the body
 //! let touch = env.touch().expect("touch is active");
 //! for body in touch.layout().bodies() {
-//!     let (name, positions) = (&model.body_name[body.body.0], body.positions());
+//!     let (name, positions) = (&model.body_name[body.body], body.positions());
 //!     assert!(!positions.is_empty(), "{name}");
 //! }
 //! let hand = model.body("right_hand").expect("MIMo");
@@ -96,28 +96,47 @@
 //!
 //! # How it is put together
 //!
-//! The way of the data: [`config`] -> [`mimo`] chooses assets -> [`mjcf_loader`] compiles them -> [`Model`]. An action
+//! The way of the data: [`config`] -> [`mimo`] chooses assets -> [`mjcf_loader`] reads them -> [`physics::compile`] makes a
+//! [`Model`]. An action
 //! goes through [`actuation`] to the [`physics`] engine, which advances a [`physics::State`]; [`sensors`] read it; [`mod@env`]
 //! holds it all together. Each part works alone, without the environment.
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
 pub mod actuation;
+pub mod assets;
 pub mod config;
 pub mod env;
+#[cfg(feature = "eval")]
 pub mod eval;
 mod files;
+pub mod formats;
+#[cfg(feature = "eval")]
+mod json;
+mod limits;
 pub mod math;
 pub mod mimo;
 pub mod mjcf_loader;
 pub mod model;
-#[cfg(feature = "npz")]
-pub mod npz;
 pub mod physics;
+#[cfg(feature = "eval")]
+pub mod policy;
 pub mod render;
+#[cfg(feature = "report")]
+pub mod report;
+#[cfg(feature = "eval")]
+pub mod runs;
 pub mod sensors;
+pub mod spaces;
 
 pub use config::Config;
 pub use env::{Blueprint, Env, EnvError, Info, Observation, Step};
-pub use eval::make_env;
+pub use limits::Limits;
 pub use model::Model;
+#[cfg(feature = "eval")]
+pub use runs::make_env;
+
+/// The programs in the README are compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

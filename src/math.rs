@@ -20,37 +20,37 @@ pub const QUAT_ID: Quat = [1.0, 0.0, 0.0, 0.0];
 /// The identity matrix.
 pub const MAT3_ID: Mat3 = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
-/// `a + b`
+/// Computes `a + b`.
 #[inline(always)]
 pub fn add(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// `a - b`
+/// Computes `a - b`.
 #[inline(always)]
 pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// `a * s`
+/// Computes `a * s`.
 #[inline(always)]
 pub fn scale(a: Vec3, s: f64) -> Vec3 {
     [a[0] * s, a[1] * s, a[2] * s]
 }
 
-/// `a + b * s`
+/// Computes `a + b * s`.
 #[inline(always)]
 pub fn add_scaled(a: Vec3, b: Vec3, s: f64) -> Vec3 {
     [a[0] + b[0] * s, a[1] + b[1] * s, a[2] + b[2] * s]
 }
 
-/// Dot product.
+/// Computes the dot product.
 #[inline(always)]
 pub fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Cross product.
+/// Computes the cross product.
 #[inline(always)]
 pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     [
@@ -60,13 +60,14 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     ]
 }
 
-/// Euclidean length.
+/// Computes the Euclidean length.
 #[inline(always)]
 pub fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Unit vector and the original length. Shorter than [`MINVAL`] gives the x axis. Multiplies by the reciprocal.
+/// Normalises a vector by multiplying with the reciprocal of its length; returns it with the original length. A vector
+/// shorter than [`MINVAL`] gives the x axis.
 #[inline(always)]
 pub fn unit(a: Vec3) -> (Vec3, f64) {
     let length = norm(a);
@@ -77,7 +78,7 @@ pub fn unit(a: Vec3) -> (Vec3, f64) {
     }
 }
 
-/// Matrix times vector.
+/// Multiplies a matrix with a vector.
 #[inline(always)]
 pub fn mat_vec(m: &Mat3, v: Vec3) -> Vec3 {
     [
@@ -87,7 +88,7 @@ pub fn mat_vec(m: &Mat3, v: Vec3) -> Vec3 {
     ]
 }
 
-/// Transposed matrix times vector.
+/// Multiplies a transposed matrix with a vector.
 #[inline(always)]
 pub fn mat_t_vec(m: &Mat3, v: Vec3) -> Vec3 {
     [
@@ -97,19 +98,19 @@ pub fn mat_t_vec(m: &Mat3, v: Vec3) -> Vec3 {
     ]
 }
 
-/// Column `k` (a local axis) of a matrix.
+/// Returns column `k` (a local axis) of a matrix.
 #[inline(always)]
 pub fn column(m: &Mat3, k: usize) -> Vec3 {
     [m[k], m[3 + k], m[6 + k]]
 }
 
-/// Row `k` of a matrix.
+/// Returns row `k` of a matrix.
 #[inline(always)]
 pub fn row(m: &Mat3, k: usize) -> Vec3 {
     [m[3 * k], m[3 * k + 1], m[3 * k + 2]]
 }
 
-/// Matrix product `a b`.
+/// Computes the matrix product `a b`.
 #[inline(always)]
 pub fn mat_mul(a: &Mat3, b: &Mat3) -> Mat3 {
     let mut r = [0.0; 9];
@@ -121,13 +122,13 @@ pub fn mat_mul(a: &Mat3, b: &Mat3) -> Mat3 {
     r
 }
 
-/// Transpose.
+/// Transposes a matrix.
 #[inline(always)]
 pub fn transpose(m: &Mat3) -> Mat3 {
     [m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]]
 }
 
-/// Quaternion product `a b`.
+/// Computes the quaternion product `a b`.
 #[inline(always)]
 pub fn quat_mul(a: Quat, b: Quat) -> Quat {
     [
@@ -138,13 +139,13 @@ pub fn quat_mul(a: Quat, b: Quat) -> Quat {
     ]
 }
 
-/// Conjugate (the inverse of a unit quaternion).
+/// Conjugates a quaternion; for unit quaternions that is the inverse.
 #[inline(always)]
 pub fn quat_conj(a: Quat) -> Quat {
     [a[0], -a[1], -a[2], -a[3]]
 }
 
-/// Normalises; a zero quaternion becomes the identity, one already within [`MINVAL`] of unit length is left alone.
+/// Normalises a quaternion; zero becomes the identity, and one within [`MINVAL`] of unit length is left alone.
 #[inline(always)]
 pub fn quat_normalize(q: Quat) -> Quat {
     let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
@@ -158,7 +159,7 @@ pub fn quat_normalize(q: Quat) -> Quat {
     }
 }
 
-/// Rotation matrix of a unit quaternion.
+/// Converts a unit quaternion to a rotation matrix.
 #[inline(always)]
 pub fn quat_to_mat(q: Quat) -> Mat3 {
     if q == QUAT_ID {
@@ -202,7 +203,7 @@ pub fn quat_rotate(q: Quat, v: Vec3) -> Vec3 {
     ]
 }
 
-/// Quaternion of a rotation by `angle` (rad) about the unit vector `axis`.
+/// Returns the quaternion of a rotation by `angle` (rad) about the unit vector `axis`.
 #[inline(always)]
 pub fn axis_angle_to_quat(axis: Vec3, angle: f64) -> Quat {
     if angle == 0.0 {

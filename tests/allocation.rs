@@ -33,8 +33,8 @@ fn invariant_4_a_step_allocates_nothing_after_warm_up() {
             if calls > 0 {
                 seen.push((k, calls, bytes));
             }
-            contacts = contacts.max(env.state().contacts.len());
-            rows = rows.max(env.state().efc.nefc());
+            contacts = contacts.max(env.state().contact.len());
+            rows = rows.max(env.state().nefc());
         }
         let [calls, _] = allocations::of_all_threads();
         env.reset(Some(1)).expect("no divergence");

@@ -38,7 +38,7 @@ fn endure(behavior: Behavior, scene: Scene, unoptimised_steps: usize) {
         truncated += usize::from(step.truncated);
         let o = step.observation;
         assert!(
-            o.observation
+            o.proprioception
                 .iter()
                 .chain(o.vestibular.unwrap_or_default())
                 .all(|v| v.is_finite()),
@@ -46,7 +46,7 @@ fn endure(behavior: Behavior, scene: Scene, unoptimised_steps: usize) {
         );
         let speeds = env.state().qvel.iter().map(|v| v.abs()).enumerate();
         fastest = speeds.fold(fastest, |m, (d, v)| if v > m.0 { (v, d) } else { m });
-        contacts = contacts.max(env.state().contacts.len());
+        contacts = contacts.max(env.state().contact.len());
     }
     let rate = steps as f64 / start.elapsed().as_secs_f64();
     let (speed, dof) = fastest;

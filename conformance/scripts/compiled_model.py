@@ -32,22 +32,24 @@ POSE = {
 ARRAYS = """
 nq nv
 body_parentid body_rootid body_weldid body_jntadr body_jntnum body_dofadr body_dofnum body_geomadr body_geomnum
-body_pos body_quat body_ipos body_iquat body_mass body_subtreemass body_inertia
+body_pos body_quat body_ipos body_iquat body_mass body_subtreemass body_inertia body_invweight0
 jnt_type jnt_bodyid jnt_qposadr jnt_dofadr jnt_pos jnt_axis jnt_limited jnt_range jnt_margin jnt_stiffness jnt_solref
 jnt_solimp jnt_group
 dof_bodyid dof_jntid dof_parentid dof_armature dof_damping dof_frictionloss dof_solref dof_solimp
+dof_invweight0 dof_M0
 qpos0 qpos_spring
 geom_type geom_size geom_bodyid geom_pos geom_quat geom_contype geom_conaffinity geom_condim geom_priority geom_friction
 geom_solmix geom_solref geom_solimp geom_margin geom_gap geom_rbound geom_group geom_rgba geom_matid
 site_type site_bodyid site_size site_pos site_quat site_group site_rgba site_matid
-cam_mode cam_targetbodyid cam_bodyid cam_pos cam_quat cam_fovy
-light_bodyid light_directional light_castshadow light_pos light_dir light_ambient light_diffuse light_specular
+cam_mode cam_targetbodyid cam_bodyid cam_pos cam_quat cam_fovy cam_user
+light_bodyid light_mode light_targetbodyid light_pos0 light_poscom0 light_dir0 light_directional light_castshadow light_pos light_dir light_ambient light_diffuse light_specular
 light_attenuation light_cutoff light_exponent
 mat_texid mat_rgba mat_specular mat_shininess mat_reflectance mat_emission mat_texrepeat mat_texuniform tex_type
 pair_geom1 pair_geom2 pair_dim pair_solref pair_solreffriction pair_solimp pair_friction pair_margin pair_gap
 exclude_signature
 eq_type eq_obj1id eq_obj2id eq_data eq_active0 eq_solref eq_solimp
 tendon_adr tendon_num tendon_limited tendon_range tendon_margin tendon_solref_lim tendon_solimp_lim wrap_objid wrap_prm
+tendon_invweight0
 sensor_type sensor_objid sensor_adr
 """.split()
 ACTUATOR = """
@@ -69,6 +71,7 @@ NAMES = {
     "sensor": ("nsensor", mujoco.mjtObj.mjOBJ_SENSOR),
 }
 OPTION = "timestep gravity iterations tolerance ls_iterations ls_tolerance impratio ccd_iterations ccd_tolerance".split()
+STATISTIC = "meaninertia meanmass meansize extent center".split()
 VISUAL = {
     "global_": "fovy offwidth offheight",
     "map": "znear zfar fogstart fogend haze shadowclip force",
@@ -87,7 +90,9 @@ FEATURES = """
     <map znear="0.02" zfar="30" fogstart="2" haze="0.4"/>
     <quality offsamples="2" shadowsize="1024"/>
     <headlight ambient=".2 .2 .2" diffuse=".3 .3 .3" specular=".1 .1 .1"/>
+    <rgba fog=".1 .2 .3 1" contactforce="2 -1 0 1"/>
   </visual>
+  <size nuser_cam="3"/>
   <default>
     <geom rgba=".1 .2 .3 1" friction=".7"/>
     <default class="outer">
@@ -118,7 +123,12 @@ FEATURES = """
       <geom name="cyl" type="cylinder" size=".1 .2" xyaxes="1 .1 0 0 1 .2" mass="2"/>
       <geom name="bx" type="box" fromto="0 0 0 0 0 -1" size=".05"/>
       <site name="s" fromto="0 0 0 1 1 1" size=".1" type="cylinder"/>
-      <camera name="look" mode="targetbody" target="b" zaxis="1 1 1"/>
+      <camera name="look" mode="targetbody" target="b" zaxis="1 1 1" user="1 2"/>
+      <light mode="track" pos="0 .1 .2" dir="1 1 -2"/>
+      <light mode="trackcom" pos="0 .1 .2" dir="1 0 -2" directional="true"/>
+      <light mode="targetbody" target="b" pos="0 .3 .2"/>
+      <light mode="targetbodycom" target="f" pos="0 .3 .2"/>
+      <light mode="targetbody"/>
       <body name="b" childclass="outer" pos=".1 0 .4" zaxis=".1 .2 -.5">
         <joint name="b0"/>
         <joint name="b1" class="inner" pos="0 .1 0"/>
@@ -226,6 +236,8 @@ def dump(model):
         out[f"{name}_name"] = text_array("\n".join(names))
     for name in OPTION:
         out[f"opt_{name}"] = np.asarray(getattr(model.opt, name), dtype=np.float64)
+    for name in STATISTIC:
+        out[f"stat_{name}"] = np.asarray(getattr(model.stat, name), dtype=np.float64)
     for group, names in VISUAL.items():
         for name in names.split():
             out[f"vis_{group}_{name}"] = np.asarray(getattr(getattr(model.vis, group), name), dtype=np.float64)

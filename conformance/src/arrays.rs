@@ -1,7 +1,7 @@
 //! Arrays of our compiled model under MuJoCo's names and in its layout.
 
 use babybench::Model;
-use babybench::model::{BiasType, CameraMode, EqualityKind, GeomType, JointType, SensorType, TextureType};
+use babybench::model::{BiasType, CameraMode, EqualityKind, GeomType, JointType, LightMode, SensorType, TextureType};
 
 fn ids(values: &[usize]) -> Vec<f64> {
     values.iter().map(|&v| v as f64).collect()
@@ -31,7 +31,7 @@ fn shapes(values: &[GeomType]) -> Vec<f64> {
     values.iter().map(|shape| f64::from(code(shape))).collect()
 }
 
-/// MuJoCo gives -1 as the address of an empty range.
+/// Returns the addresses of ranges as MuJoCo stores them: -1 for an empty range.
 fn addresses(first: &[usize], number: &[usize]) -> Vec<f64> {
     first
         .iter()
@@ -40,57 +40,26 @@ fn addresses(first: &[usize], number: &[usize]) -> Vec<f64> {
         .collect()
 }
 
-/// The arrays that matter to physics and sensors, under MuJoCo's names.
-pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
-    let targets = m.cam_mode.iter().map(|mode| match mode {
-        CameraMode::Fixed => -1.0,
-        CameraMode::TargetBody(body) => body.0 as f64,
-    });
-    let mut eq_data = Vec::new();
-    let (mut eq_type, mut eq_obj1, mut eq_obj2) = (Vec::new(), Vec::new(), Vec::new());
-    for kind in &m.eq_kind {
-        match kind {
-            EqualityKind::Joint {
-                joint1,
-                joint2,
-                polycoef,
-            } => {
-                eq_type.push(2.0);
-                eq_obj1.push(joint1.0 as f64);
-                eq_obj2.push(joint2.map_or(-1.0, |joint| joint.0 as f64));
-                // The last entry is the unused torque scale.
-                eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
-            }
-            EqualityKind::Weld {
-                body1,
-                body2,
-                anchor,
-                relpos,
-                relquat,
-                torquescale,
-            } => {
-                eq_type.push(1.0);
-                eq_obj1.push(body1.0 as f64);
-                eq_obj2.push(body2.0 as f64);
-                eq_data.extend(anchor.iter().chain(relpos).chain(relquat).chain([torquescale]));
-            }
-        }
-    }
-    let wraps: Vec<(usize, f64)> = m.tendon_wrap.iter().flatten().copied().collect();
-    let starts = m.tendon_wrap.iter().scan(0, |next, wrap| {
-        *next += wrap.len();
-        Some((*next - wrap.len()) as f64)
-    });
-    let joint_code = |kind: &JointType| match kind {
-        JointType::Free => 0.0,
-        JointType::Slide => 2.0,
-        JointType::Hinge => 3.0,
-    };
-    let sensor_code = |kind: &SensorType| match kind {
-        SensorType::Accelerometer => 1.0,
-        SensorType::Gyro => 3.0,
-        SensorType::Torque => 5.0,
-    };
+/// Named arrays.
+type Named = Vec<(&'static str, Vec<f64>)>;
+
+/// Returns the arrays that matter to physics and sensors, under MuJoCo's names.
+pub fn physical(m: &Model) -> Named {
+    let groups = [
+        sizes_and_options(m),
+        of_bodies(m),
+        of_joints(m),
+        of_geoms(m),
+        of_sites_and_cameras(m),
+        of_contacts(m),
+        of_equalities(m),
+        of_tendons(m),
+        of_sensors(m),
+    ];
+    groups.concat()
+}
+
+fn sizes_and_options(m: &Model) -> Named {
     vec![
         ("nq", vec![m.nq as f64]),
         ("nv", vec![m.nv as f64]),
@@ -103,6 +72,11 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("opt_impratio", vec![m.opt.impratio]),
         ("opt_ccd_iterations", vec![m.opt.ccd_iterations as f64]),
         ("opt_ccd_tolerance", vec![m.opt.ccd_tolerance]),
+    ]
+}
+
+fn of_bodies(m: &Model) -> Named {
+    vec![
         ("body_parentid", ids(&m.body_parentid)),
         ("body_rootid", ids(&m.body_rootid)),
         ("body_weldid", ids(&m.body_weldid)),
@@ -119,6 +93,16 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("body_mass", m.body_mass.clone()),
         ("body_subtreemass", m.body_subtreemass.clone()),
         ("body_inertia", flat(&m.body_inertia)),
+    ]
+}
+
+fn of_joints(m: &Model) -> Named {
+    let joint_code = |kind: &JointType| match kind {
+        JointType::Free => 0.0,
+        JointType::Slide => 2.0,
+        JointType::Hinge => 3.0,
+    };
+    vec![
         ("jnt_type", m.jnt_type.iter().map(joint_code).collect()),
         ("jnt_bodyid", ids(&m.jnt_bodyid)),
         ("jnt_qposadr", ids(&m.jnt_qposadr)),
@@ -142,6 +126,11 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("dof_solimp", flat(&m.dof_solimp)),
         ("qpos0", m.qpos0.clone()),
         ("qpos_spring", m.qpos_spring.clone()),
+    ]
+}
+
+fn of_geoms(m: &Model) -> Named {
+    vec![
         ("geom_type", shapes(&m.geom_type)),
         ("geom_size", flat(&m.geom_size)),
         ("geom_bodyid", ids(&m.geom_bodyid)),
@@ -161,6 +150,15 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("geom_margin", m.geom_margin.clone()),
         ("geom_gap", m.geom_gap.clone()),
         ("geom_rbound", m.geom_rbound.clone()),
+    ]
+}
+
+fn of_sites_and_cameras(m: &Model) -> Named {
+    let targets = m.cam_mode.iter().map(|mode| match mode {
+        CameraMode::Fixed => -1.0,
+        CameraMode::TargetBody(body) => *body as f64,
+    });
+    vec![
         ("site_type", shapes(&m.site_type)),
         ("site_bodyid", ids(&m.site_bodyid)),
         ("site_size", flat(&m.site_size)),
@@ -171,6 +169,12 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("cam_pos", flat(&m.cam_pos)),
         ("cam_quat", flat(&m.cam_quat)),
         ("cam_fovy", m.cam_fovy.clone()),
+        ("cam_user", m.cam_user.iter().flatten().copied().collect()),
+    ]
+}
+
+fn of_contacts(m: &Model) -> Named {
+    vec![
         ("pair_geom1", m.pair_geom.iter().map(|g| g[0] as f64).collect()),
         ("pair_geom2", m.pair_geom.iter().map(|g| g[1] as f64).collect()),
         ("pair_dim", ids(&m.pair_dim)),
@@ -184,6 +188,41 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
             "exclude_signature",
             m.exclude.iter().map(|[a, b]| ((a << 16) + b) as f64).collect(),
         ),
+    ]
+}
+
+fn of_equalities(m: &Model) -> Named {
+    let mut eq_data = Vec::new();
+    let (mut eq_type, mut eq_obj1, mut eq_obj2) = (Vec::new(), Vec::new(), Vec::new());
+    for kind in &m.eq_kind {
+        match kind {
+            EqualityKind::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                eq_type.push(2.0);
+                eq_obj1.push(*joint1 as f64);
+                eq_obj2.push(joint2.map_or(-1.0, |joint| joint as f64));
+                // The last entry is the unused torque scale.
+                eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+            }
+            EqualityKind::Weld {
+                body1,
+                body2,
+                anchor,
+                relpos,
+                relquat,
+                torquescale,
+            } => {
+                eq_type.push(1.0);
+                eq_obj1.push(*body1 as f64);
+                eq_obj2.push(*body2 as f64);
+                eq_data.extend(anchor.iter().chain(relpos).chain(relquat).chain([torquescale]));
+            }
+        }
+    }
+    vec![
         ("eq_type", eq_type),
         ("eq_obj1id", eq_obj1),
         ("eq_obj2id", eq_obj2),
@@ -191,6 +230,16 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("eq_active0", flags(&m.eq_active0)),
         ("eq_solref", flat(&m.eq_solref)),
         ("eq_solimp", flat(&m.eq_solimp)),
+    ]
+}
+
+fn of_tendons(m: &Model) -> Named {
+    let wraps: Vec<(usize, f64)> = m.tendon_wrap.iter().flatten().copied().collect();
+    let starts = m.tendon_wrap.iter().scan(0, |next, wrap| {
+        *next += wrap.len();
+        Some((*next - wrap.len()) as f64)
+    });
+    vec![
         ("tendon_adr", starts.collect()),
         (
             "tendon_num",
@@ -203,14 +252,24 @@ pub fn physical(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("tendon_solimp_lim", flat(&m.tendon_solimp_lim)),
         ("wrap_objid", wraps.iter().map(|&(joint, _)| joint as f64).collect()),
         ("wrap_prm", wraps.iter().map(|&(_, coef)| coef).collect()),
+    ]
+}
+
+fn of_sensors(m: &Model) -> Named {
+    let sensor_code = |kind: &SensorType| match kind {
+        SensorType::Accelerometer => 1.0,
+        SensorType::Gyro => 3.0,
+        SensorType::Torque => 5.0,
+    };
+    vec![
         ("sensor_type", m.sensor_type.iter().map(sensor_code).collect()),
         ("sensor_objid", ids(&m.sensor_objid)),
         ("sensor_adr", ids(&m.sensor_adr)),
     ]
 }
 
-/// Actuator arrays, reduced to what the model keeps.
-pub fn actuators(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+/// Returns the actuator arrays, reduced to what the model keeps.
+pub fn actuators(m: &Model) -> Named {
     let bias = |kind: &BiasType| if *kind == BiasType::None { 0.0 } else { 1.0 };
     vec![
         ("actuator_trnid", ids(&m.actuator_trnid)),
@@ -226,13 +285,12 @@ pub fn actuators(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
     ]
 }
 
-/// Arrays that only change what is drawn.
-pub fn looks(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
-    let texture_code = |kind: TextureType| match kind {
-        TextureType::Flat2d => 0.0,
-        TextureType::Cube => 1.0,
-        TextureType::Skybox => 2.0,
-    };
+/// Returns the arrays that only change what is drawn.
+pub fn looks(m: &Model) -> Named {
+    [of_colours(m), of_lights(m), of_materials(m), of_views(m)].concat()
+}
+
+fn of_colours(m: &Model) -> Named {
     vec![
         ("geom_group", ids(&m.geom_group)),
         ("geom_rgba", flat(&m.geom_rgba)),
@@ -240,7 +298,27 @@ pub fn looks(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ("site_group", ids(&m.site_group)),
         ("site_rgba", flat(&m.site_rgba)),
         ("site_matid", optional(&m.site_matid)),
+    ]
+}
+
+fn of_lights(m: &Model) -> Named {
+    let light_code = |mode: LightMode| match mode {
+        LightMode::Fixed => 0.0,
+        LightMode::Track => 1.0,
+        LightMode::TrackCom => 2.0,
+        LightMode::TargetBody => 3.0,
+        LightMode::TargetBodyCom => 4.0,
+    };
+    vec![
         ("light_bodyid", m.lights.iter().map(|l| l.bodyid as f64).collect()),
+        ("light_mode", m.lights.iter().map(|l| light_code(l.mode)).collect()),
+        (
+            "light_targetbodyid",
+            optional(&m.lights.iter().map(|l| l.targetbodyid).collect::<Vec<_>>()),
+        ),
+        ("light_pos0", m.lights.iter().flat_map(|l| l.pos0).collect()),
+        ("light_poscom0", m.lights.iter().flat_map(|l| l.poscom0).collect()),
+        ("light_dir0", m.lights.iter().flat_map(|l| l.dir0).collect()),
         (
             "light_directional",
             m.lights.iter().map(|l| f64::from(u8::from(l.directional))).collect(),
@@ -260,6 +338,16 @@ pub fn looks(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
         ),
         ("light_cutoff", m.lights.iter().map(|l| l.cutoff).collect()),
         ("light_exponent", m.lights.iter().map(|l| l.exponent).collect()),
+    ]
+}
+
+fn of_materials(m: &Model) -> Named {
+    let texture_code = |kind: TextureType| match kind {
+        TextureType::Flat2d => 0.0,
+        TextureType::Cube => 1.0,
+        TextureType::Skybox => 2.0,
+    };
+    vec![
         ("mat_rgba", m.materials.iter().flat_map(|x| x.rgba).collect()),
         ("mat_specular", m.materials.iter().map(|x| x.specular).collect()),
         ("mat_shininess", m.materials.iter().map(|x| x.shininess).collect()),
@@ -278,6 +366,11 @@ pub fn looks(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
                 .collect(),
         ),
         ("tex_type", m.textures.iter().map(|t| texture_code(t.kind)).collect()),
+    ]
+}
+
+fn of_views(m: &Model) -> Named {
+    vec![
         ("vis_global__fovy", vec![m.vis.fovy]),
         ("vis_global__offwidth", vec![m.vis.offwidth as f64]),
         ("vis_global__offheight", vec![m.vis.offheight as f64]),
@@ -300,7 +393,8 @@ pub fn looks(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
     ]
 }
 
-/// Rows of MuJoCo's arrays are wider than ours where the models leave the rest at zero; the rest is checked to be zero.
+/// Cuts the rows of MuJoCo's arrays to the width of ours, after checking that the rest is unused (0 or -1).
+///
 /// `mat_texid` holds one texture per role, of which the models use the second (colour).
 pub fn narrowed(name: &str, recorded: &[f64]) -> Vec<f64> {
     let (wide, first, keep) = match name {
@@ -323,13 +417,14 @@ pub fn narrowed(name: &str, recorded: &[f64]) -> Vec<f64> {
     out
 }
 
-/// What follows from the dynamics at `qpos0`.
-pub fn derived(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+/// Returns the arrays that follow from the dynamics at `qpos0`.
+pub fn derived(m: &Model) -> Named {
     let s = &m.stat;
     vec![
         ("body_subtreemass", m.body_subtreemass.clone()),
         ("body_invweight0", flat(&m.body_invweight0)),
         ("dof_invweight0", m.dof_invweight0.clone()),
+        ("dof_M0", m.dof_m0.clone()),
         ("tendon_invweight0", m.tendon_invweight0.clone()),
         ("meaninertia", vec![s.meaninertia]),
         ("meanmass", vec![s.meanmass]),
@@ -339,8 +434,8 @@ pub fn derived(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
     ]
 }
 
-/// Options.
-pub fn options(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
+/// Returns the simulation options.
+pub fn options(m: &Model) -> Named {
     let o = &m.opt;
     vec![
         ("timestep", vec![o.timestep]),
@@ -355,7 +450,7 @@ pub fn options(m: &Model) -> Vec<(&'static str, Vec<f64>)> {
     ]
 }
 
-/// Names of elements by kind.
+/// Returns the names of elements by kind.
 pub fn names(m: &Model) -> Vec<(&'static str, Vec<String>)> {
     vec![
         ("body", m.body_name.clone()),

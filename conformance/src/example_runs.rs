@@ -1,20 +1,18 @@
-//! Short runs of the example configurations, in a directory `shared/reference` beside the repository: the settled state,
-//! the state after a reset with listed start actions, and 20 steps with actions from a formula.
-
-use std::fs::read_to_string;
+//! Short runs of the example configurations, in `data/example_runs`: the settled state, the state after a reset with
+//! listed start actions, and 20 steps with actions from a formula.
 
 use babybench::config::{ActuationModel, Compat, Config};
 use babybench::{Blueprint, Env};
 use serde_json::Value;
+use testkit::yardsticks::workspace;
 
+use crate::data;
 use crate::measure::relative;
 use crate::motion::Drift;
-use crate::recordings::{NO_SHARED, shared};
-use crate::statics::sensors;
 
 /// A recorded run.
 pub struct ExampleRun {
-    /// Configuration, scene and actuation model: `golden_NAME.json`.
+    /// Configuration, scene and actuation model.
     pub name: String,
     /// Its configuration, under `compat: reference`, without vision and touch.
     pub config: Config,
@@ -33,49 +31,41 @@ pub struct Moment {
     pub counts: [(usize, usize); 2],
 }
 
-/// All runs. Says so when there are none.
+/// Reads all runs.
 pub fn example_runs() -> Vec<ExampleRun> {
-    let Some(dir) = shared().map(|d| d.join("reference")) else {
-        crate::skipped("example runs", NO_SHARED);
-        return Vec::new();
-    };
-    let mut names: Vec<String> = std::fs::read_dir(dir.join("mimo_tables"))
+    data::names("example_runs", ".json.gz")
         .into_iter()
-        .flatten()
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter_map(|file| Some(file.strip_prefix("golden_")?.strip_suffix(".json")?.to_string()))
-        .collect();
-    names.sort();
-    assert!(!names.is_empty(), "{} holds no run", dir.display());
-    let mut runs = Vec::new();
-    for name in names {
-        let text = read_to_string(dir.join("mimo_tables").join(format!("golden_{name}.json"))).expect("readable run");
-        let json: Value = serde_json::from_str(&text).expect("valid JSON");
-        let word = |key: &str| json[key].as_str().expect("a name").to_string();
-        let file = format!("config_{}.yml", word("config"));
-        let text = read_to_string(dir.join("configs").join(&file)).expect("readable configuration");
-        let base = Config {
-            compat: Compat::Reference,
-            ..Config::default()
-        };
-        let config = Config {
-            vision_active: false,
-            touch_active: false,
-            actuation_model: ActuationModel::from_name(&word("actuation")).expect("an actuation model"),
-            ..base.overlay_yaml(&text, &file).expect("valid configuration")
-        };
-        runs.push(ExampleRun { name, config, json });
-    }
-    runs
+        .map(ExampleRun::read)
+        .collect()
 }
 
 impl ExampleRun {
-    /// What environments of the run share.
+    fn read(name: String) -> Self {
+        let json = data::json(&format!("example_runs/{name}.json.gz"));
+        let word = |key: &str| json[key].as_str().expect("a name").to_string();
+        let file = format!("config_{}.yml", word("config"));
+        let text = std::fs::read_to_string(workspace().join("configs").join(&file)).expect("an example configuration");
+        let config = Config {
+            compat: Compat::Reference,
+            vision_active: false,
+            touch_active: false,
+            actuation_model: ActuationModel::from_name(&word("actuation")).expect("an actuation model"),
+            ..Config::from_yaml(&text, &file).expect("a valid configuration")
+        };
+        Self { name, config, json }
+    }
+
+    /// Returns what was recorded after the reset.
+    pub fn after_reset(&self) -> &Value {
+        &self.json["after_reset"]
+    }
+
+    /// Builds the blueprint that environments of the run share.
     pub fn blueprint(&self) -> Blueprint {
         Blueprint::new(self.config.clone()).expect("the environment builds")
     }
 
-    /// Distance of the settled state.
+    /// Measures how far our settled state is from the recorded one.
     pub fn settled(&self, blueprint: &Blueprint) -> Drift {
         let (qpos, qvel) = (numbers(&self.json["init_qpos"]), numbers(&self.json["init_qvel"]));
         Drift::new(
@@ -86,8 +76,9 @@ impl ExampleRun {
         )
     }
 
-    /// Distances after the reset and at the recorded steps, from the recorded settled state and with the recorded start
-    /// actions.
+    /// Measures distances after the reset and at the recorded steps.
+    ///
+    /// The run begins at the recorded settled state, with the recorded start actions.
     pub fn run(&self, blueprint: &Blueprint) -> Vec<Moment> {
         let mut env = blueprint.env().expect("the environment builds");
         env.reset_to(&numbers(&self.json["init_qpos"]), &numbers(&self.json["init_qvel"]))
@@ -96,7 +87,7 @@ impl ExampleRun {
             let action: Vec<f32> = numbers(action).iter().map(|&v| v as f32).collect();
             env.step(&action).expect("a recorded step");
         }
-        let mut moments = vec![moment(&env, None, &self.json["after_reset"])];
+        let mut moments = vec![moment(&env, None, self.after_reset())];
         for k in 0..20 {
             let action = formula(&env, k);
             env.step(&action).expect("a recorded step");
@@ -119,7 +110,7 @@ impl ExampleRun {
     }
 }
 
-/// The action of step `k`.
+/// Computes the action of step `k`.
 fn formula(env: &Env, k: usize) -> Vec<f32> {
     let space = env.action_space();
     let bounds = space.low().iter().zip(space.high()).enumerate();
@@ -131,7 +122,8 @@ fn formula(env: &Env, k: usize) -> Vec<f32> {
         .collect()
 }
 
-fn numbers(json: &Value) -> Vec<f64> {
+/// Returns a list of numbers.
+pub fn numbers(json: &Value) -> Vec<f64> {
     json.as_array()
         .expect("a list")
         .iter()
@@ -145,12 +137,9 @@ fn moment(env: &Env, k: Option<usize>, recorded: &Value) -> Moment {
     let mut outputs = vec![
         (
             "observation",
-            relative(observation.observation, &numbers(&recorded["obs"])),
+            relative(observation.proprioception, &numbers(&recorded["obs"])),
         ),
-        (
-            "sensordata",
-            relative(&sensors(model, s), &numbers(&recorded["sensordata"])),
-        ),
+        ("sensordata", relative(&s.sensordata, &numbers(&recorded["sensordata"]))),
     ];
     if let Some(vestibular) = observation.vestibular {
         outputs.push(("vestibular", relative(vestibular, &numbers(&recorded["vestibular"]))));
@@ -160,6 +149,6 @@ fn moment(env: &Env, k: Option<usize>, recorded: &Value) -> Moment {
         k,
         drift: Drift::new(model, k.map_or(0, |k| k + 1), (&s.qpos, &s.qvel), (&qpos, &qvel)),
         outputs,
-        counts: [(s.contacts.len(), count("ncon")), (s.efc.nefc(), count("nefc"))],
+        counts: [(s.contact.len(), count("ncon")), (s.nefc(), count("nefc"))],
     }
 }

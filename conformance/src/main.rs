@@ -52,14 +52,14 @@ fn run(args: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A number, or what it is when left out.
+/// Parses a number; when it is left out, returns the default.
 fn number(name: &str, text: Option<String>, default: usize) -> Result<usize, String> {
     text.map_or(Ok(default), |n| {
         n.parse().map_err(|_| format!("{name} {n}: not a number"))
     })
 }
 
-/// The values of options, each of which may be left out.
+/// Returns the values of options, each of which may be left out.
 fn values<const N: usize>(options: &[String], names: [&str; N]) -> Result<[Option<String>; N], String> {
     let mut out = [const { None }; N];
     for pair in options.chunks(2) {

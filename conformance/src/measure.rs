@@ -14,7 +14,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of `values`; an error that is not a number counts as infinite.
+    /// Summarises `values`; an error that is not a number counts as infinite.
     pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
         let mut v: Vec<f64> = values
             .into_iter()
@@ -41,7 +41,7 @@ impl std::fmt::Display for Summary {
     }
 }
 
-/// Largest absolute difference.
+/// Returns the largest absolute difference.
 pub fn max_abs(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let mut max = 0.0_f64;
@@ -52,46 +52,46 @@ pub fn max_abs(a: &[f64], b: &[f64]) -> f64 {
     max
 }
 
-/// Largest absolute difference, relative to the largest absolute value of `b` (0 when that is 0 and all agree).
+/// Returns the largest absolute difference, relative to the largest absolute value of `b`; 0 when all agree.
 pub fn relative(a: &[f64], b: &[f64]) -> f64 {
     let scale = b.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let d = max_abs(a, b);
     if d == 0.0 { 0.0 } else { d / scale }
 }
 
-/// Largest absolute difference after a step, relative to the largest change of `b` since `before`.
+/// Returns the largest absolute difference after a step, relative to the largest change of `b` since `before`.
 pub fn relative_to_change(a: &[f64], b: &[f64], before: &[f64]) -> f64 {
     max_abs(a, b) / max_abs(b, before)
 }
 
-/// Root mean square difference.
+/// Returns the root mean square difference.
 pub fn rms(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     (a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>() / a.len().max(1) as f64).sqrt()
 }
 
-/// Whether `BB_TOL_SCALE=0` asks tests to print residuals instead of judging them.
+/// Tells whether `BB_TOL_SCALE=0` asks tests to print residuals instead of judging them.
 pub fn only_print() -> bool {
     std::env::var("BB_TOL_SCALE").is_ok_and(|v| v == "0")
 }
 
-/// Row `k` of a table of `n` columns.
+/// Returns row `k` of a table of `n` columns.
 pub fn row(table: &[f64], k: usize, n: usize) -> &[f64] {
     &table[k * n..(k + 1) * n]
 }
 
-/// The values at `indices`.
+/// Returns the values at `indices`.
 pub fn pick(values: &[f64], indices: &[usize]) -> Vec<f64> {
     indices.iter().map(|&k| values[k]).collect()
 }
 
-/// Largest of the differences, each relative to its own value of `b`.
+/// Returns the largest of the differences, each relative to its own value of `b`.
 pub fn relative_each(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).fold(0.0, |max, (x, y)| max.max(relative(&[*x], &[*y])))
 }
 
-/// Named figures in a line.
+/// Formats named figures as a line.
 pub fn line(figures: &[(&str, f64)]) -> String {
     figures
         .iter()
@@ -100,7 +100,7 @@ pub fn line(figures: &[(&str, f64)]) -> String {
         .join("  ")
 }
 
-/// Number of values that agree bit for bit, 0 and -0 counting as equal.
+/// Counts the values that agree bit for bit, 0 and -0 counting as equal.
 pub fn identical(a: &[f64], b: &[f64]) -> usize {
     a.iter().zip(b).filter(|(x, y)| x == y).count()
 }

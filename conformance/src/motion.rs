@@ -23,7 +23,7 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// Between a position and velocity of ours and MuJoCo's.
+    /// Compares a position and velocity of ours with MuJoCo's.
     pub fn new(model: &Model, step: usize, ours: (&[f64], &[f64]), theirs: (&[f64], &[f64])) -> Self {
         let free = |own: bool| -> Vec<usize> {
             let is_free = |&j: &usize| model.jnt_type[j] == JointType::Free && (model.jnt_name[j].is_empty() != own);
@@ -43,13 +43,13 @@ impl Drift {
         }
     }
 
-    /// Of the errors of MIMo's joints.
+    /// Summarises the errors of MIMo's joints.
     pub fn summary(&self) -> Summary {
         Summary::new(self.joints.iter().copied())
     }
 }
 
-/// 1000 steps without contacts, compared at the recorded steps; `run` is `cf` or, with locked joints, `cfl`.
+/// Takes 1000 steps without contacts, compared at the recorded steps; `run` is `cf` or, with locked joints, `cfl`.
 pub fn contact_free(reference: &Reference, run: &str) -> Vec<Drift> {
     let mut engine = reference.engine(true);
     let mut state = engine.new_state();
@@ -73,7 +73,7 @@ pub fn contact_free(reference: &Reference, run: &str) -> Vec<Drift> {
     drift
 }
 
-/// 100 steps from `qpos0` with contacts and ctrl 0, compared on the way and at the end.
+/// Takes 100 steps from `qpos0` with contacts and ctrl 0, compared on the way and at the end.
 pub fn settling(reference: &Reference) -> Vec<Drift> {
     let mut engine = reference.engine(false);
     let mut state = engine.new_state();

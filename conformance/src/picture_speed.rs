@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 use babybench::config::{Behavior, Scene};
-use babybench::npz::Npz;
-use babybench::render::{Poses, Renderer, View};
+use babybench::formats::npz::Npz;
+use babybench::render::{CpuRenderer, Poses, View};
 use babybench::{Config, Env};
 use conformance::live::speed::{cpu_time, quartiles};
 
@@ -106,7 +106,7 @@ fn rows() -> Result<Vec<Row>, String> {
         .collect()
 }
 
-/// Median CPU time of ours, ms.
+/// Measures the median CPU time of our pictures, ms.
 fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<f64, String> {
     let qvel = vec![0.0; env.state().qvel.len()];
     env.reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
@@ -116,7 +116,7 @@ fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<f64, String> {
     } else {
         (&["corner"], 480, 10)
     };
-    let mut renderer = Renderer::new();
+    let mut renderer = CpuRenderer::new();
     let mut picture = vec![0; 3 * size * size];
     let mut times = Vec::new();
     for _ in 0..repeat {

@@ -2,7 +2,7 @@
 //! `scripts/render_goldens.py` writes and describes.
 
 use babybench::config::{Behavior, Config, Scene};
-use babybench::npz::Npz;
+use babybench::formats::npz::Npz;
 
 /// Differences of two sets of pictures, bytes.
 #[derive(Clone, Debug, Default)]
@@ -41,17 +41,17 @@ impl Difference {
         self.ssim.extend(&other.ssim);
     }
 
-    /// Mean absolute difference.
+    /// Returns the mean absolute difference.
     pub fn mean(&self) -> f64 {
         self.sum as f64 / self.values as f64
     }
 
-    /// Percentage of pixels off by more than 2, and by more than 4.
+    /// Returns the percentage of pixels off by more than 2, and by more than 4.
     pub fn off(&self) -> [f64; 2] {
         self.off.map(|n| 100.0 * n as f64 / (self.values / 3) as f64)
     }
 
-    /// The least structural similarity of a picture.
+    /// Returns the lowest structural similarity of any picture.
     pub fn least_ssim(&self) -> f64 {
         self.ssim.iter().copied().fold(1.0, f64::min)
     }
@@ -70,7 +70,7 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// Mean structural similarity of the brightness over windows of 8 x 8 pixels, 4 apart.
+/// Computes the mean structural similarity of the brightness over windows of 8 x 8 pixels, 4 apart.
 fn ssim(a: &[u8], b: &[u8], width: usize) -> f64 {
     const C: [f64; 2] = [(0.01 * 255.0) * (0.01 * 255.0), (0.03 * 255.0) * (0.03 * 255.0)];
     let gray = |v: &[u8]| -> Vec<f64> {
@@ -98,7 +98,7 @@ fn ssim(a: &[u8], b: &[u8], width: usize) -> f64 {
     sum / f64::from(count)
 }
 
-/// What the pictures are of: MIMo v2 among the cubes, v1 elsewhere.
+/// Returns the configuration that the pictures show: MIMo v2 among the cubes, v1 elsewhere.
 pub fn config(scene: Scene) -> Config {
     Config {
         scene,
@@ -111,7 +111,7 @@ pub fn config(scene: Scene) -> Config {
     }
 }
 
-/// Width and height, and the pictures of an array of the data, each of which stores differences to the left.
+/// Decodes the pictures of an array of the data, which stores differences to the left; width and height come first.
 pub fn pictures(npz: &Npz, name: &str) -> ([usize; 2], Vec<Vec<u8>>) {
     let a = npz.get_f64(name).expect("committed data");
     let &[.., height, width, 3] = a.shape.as_slice() else {

@@ -1,87 +1,52 @@
-//! Recordings of the reference, in a directory `shared/golden` beside the repository.
-
-use std::path::{Path, PathBuf};
+//! Recordings of the reference, in `data/recordings`.
 
 use babybench::config::{Compat, Config};
-use babybench::eval::{Recording, Replay, replay};
-use babybench::npz::Npz;
+use babybench::formats::npz::Npz;
+use babybench::runs::{Recording, Replay, replay};
 use babybench::{Blueprint, Env};
+
+use crate::data;
 
 /// A recording with its configuration.
 pub struct Golden {
-    /// Name.
+    /// Its name.
     pub name: String,
-    /// Configuration, under `compat: reference`.
+    /// Its configuration, under `compat: reference`.
     pub config: Config,
-    /// Arrays.
+    /// Its arrays.
     pub npz: Npz,
-    /// The recording's floor: joint rms distance (rad) per step of MuJoCo from 1e-7 away, twice.
-    pub floor: Option<Vec<f64>>,
+    /// Its floor: the joint rms distance (rad) per step of MuJoCo from 1e-7 away, mean of two runs.
+    pub floor: Vec<f64>,
 }
 
-/// Why tests skip what they compare with companion material.
-pub const NO_SHARED: &str = "no directory ../shared beside the repository";
-
-/// The directory of companion material beside the repository, if it is there.
-pub fn shared() -> Option<PathBuf> {
-    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    dir.is_dir().then_some(dir)
-}
-
-/// Recordings of an actuation model. Says so when there are none.
+/// Reads the recordings of an actuation model.
 pub fn golden(actuation: &str) -> Vec<Golden> {
-    let Some(dir) = shared().map(|d| d.join("golden")) else {
-        crate::skipped("recordings", NO_SHARED);
-        return Vec::new();
-    };
-    let mut names: Vec<String> = std::fs::read_dir(&dir)
-        .into_iter()
-        .flatten()
-        .filter_map(|e| {
-            Some(
-                e.ok()?
-                    .file_name()
-                    .into_string()
-                    .ok()?
-                    .strip_suffix(".yml")?
-                    .to_string(),
-            )
-        })
-        .collect();
-    names.sort();
-    assert!(!names.is_empty(), "{} holds no recording", dir.display());
-    names
-        .into_iter()
-        .filter_map(|name| {
-            let text = std::fs::read_to_string(dir.join(format!("{name}.yml"))).expect("readable configuration");
-            let base = Config {
-                compat: Compat::Reference,
-                ..Config::default()
-            };
-            let config = base.overlay_yaml(&text, &name).expect("valid configuration");
-            if config.actuation_model.name() != actuation {
-                return None;
-            }
-            let npz = Npz::open(dir.join(format!("{name}.npz"))).expect("readable recording");
-            let floor = Npz::open(dir.join(format!("{name}_floor.npz")))
-                .ok()
-                .map(|f| f.get_f64("rms").expect("floor has rms"))
-                .map(|a| {
-                    let t = a.shape[1];
-                    (0..t).map(|k| 0.5 * (a.data[k] + a.data[t + k])).collect()
-                });
-            Some(Golden {
-                name,
-                config,
-                npz,
-                floor,
-            })
-        })
+    let all = data::names("recordings", ".yml").into_iter().map(Golden::read);
+    all.filter(|golden| golden.config.actuation_model.name() == actuation)
         .collect()
 }
 
 impl Golden {
-    /// An environment of the recording's configuration.
+    fn read(name: String) -> Self {
+        let base = Config {
+            compat: Compat::Reference,
+            ..Config::default()
+        };
+        let text = data::text(&format!("recordings/{name}.yml"));
+        let config = base.overlay_yaml(&text, &name).expect("a valid configuration");
+        let npz = data::npz(&format!("recordings/{name}.npz"));
+        let floor = npz.get_f64("floor").expect("committed data");
+        let steps = floor.shape[1];
+        let mean = |k: usize| 0.5 * (floor.data[k] + floor.data[steps + k]);
+        Self {
+            name,
+            config,
+            floor: (0..steps).map(mean).collect(),
+            npz,
+        }
+    }
+
+    /// Returns an environment of the recording's configuration.
     pub fn env(&self) -> Env {
         Blueprint::new(self.config.clone())
             .and_then(|b| b.env())
@@ -93,5 +58,32 @@ impl Golden {
         let recording = Recording::read(&self.npz, env).expect("the recording fits");
         let result = replay(env, &recording, one_step).expect("the replay runs");
         (recording, result)
+    }
+
+    /// Returns the recorded observations, row by row. Columns that are columns of other arrays are stored there only;
+    /// `scripts/pack_recordings.py` says how.
+    pub fn observation(&self) -> Vec<f64> {
+        const SOURCES: [&str; 9] = [
+            "observation_own",
+            "qpos",
+            "qvel",
+            "qacc",
+            "sensordata",
+            "ctrl",
+            "gear",
+            "actions",
+            "vestibular",
+        ];
+        let sources = SOURCES.map(|name| self.npz.get_f64(name).ok());
+        let columns = self.npz.get_i64("observation_from").expect("committed data").data;
+        let steps = self.npz.get_f64("qpos").expect("committed data").shape[0];
+        let value = |step: usize, from: &[i64]| {
+            let source = sources[from[0] as usize].as_ref().expect("committed data");
+            source.data[step * source.shape[1] + from[1] as usize]
+        };
+        let value = &value;
+        (0..steps)
+            .flat_map(|step| columns.chunks_exact(2).map(move |from| value(step, from)))
+            .collect()
     }
 }

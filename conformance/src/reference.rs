@@ -1,14 +1,15 @@
 //! MuJoCo's results for the six models, in `data/reference_*.npz`; `scripts/reference_states.py` writes them and says
 //! what is in them.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use babybench::Model;
 use babybench::config::{Behavior, Config, Scene};
+use babybench::formats::npz::{Array, Npz};
 use babybench::mimo::{Version, build_model, embedded};
-use babybench::npz::{Array, Npz};
 use babybench::physics::{SoftEngine, SoftOptions};
+
+use crate::data;
 
 /// A model and what MuJoCo computes for it.
 pub struct Reference {
@@ -22,9 +23,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Both versions of MIMo in all scenes.
+    /// Loads the references of both versions of MIMo in all scenes.
     pub fn all() -> Vec<Self> {
-        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
         let mut all = Vec::new();
         for behavior in [Behavior::None, Behavior::HandRegard] {
             for &scene in Scene::ALL {
@@ -34,7 +34,7 @@ impl Reference {
                     ..Config::default()
                 };
                 let name = format!("{}_{scene}", Version::of(behavior).name());
-                let npz = Npz::open(data.join(format!("reference_{name}.npz"))).expect("committed data");
+                let npz = data::npz(&format!("reference_{name}.npz"));
                 let model = Arc::new(build_model(&config, &embedded()).expect("the embedded assets load"));
                 all.push(Self {
                     name,
@@ -47,7 +47,7 @@ impl Reference {
         all
     }
 
-    /// An engine that counts the torque of welds as MuJoCo does.
+    /// Builds an engine that counts the torque of welds as MuJoCo does.
     pub fn engine(&self, disable_contacts: bool) -> SoftEngine {
         let options = SoftOptions {
             double_weld_torque: true,
@@ -57,12 +57,12 @@ impl Reference {
         SoftEngine::new(self.model.clone(), options)
     }
 
-    /// One of MuJoCo's arrays.
+    /// Returns one of MuJoCo's arrays.
     pub fn array(&self, name: &str) -> Array<f64> {
         self.npz.get_f64(name).expect("an array of the data")
     }
 
-    /// The rows of one of MuJoCo's arrays: its values for each value of the first index.
+    /// Returns the rows of one of MuJoCo's arrays: its values for each value of the first index.
     pub fn rows(&self, name: &str) -> Vec<Vec<f64>> {
         let Array { shape, data } = self.array(name);
         let n = shape[1..].iter().product::<usize>().max(1);

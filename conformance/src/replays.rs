@@ -1,6 +1,6 @@
 //! Distances of replays to their recordings.
 
-use babybench::eval::{Recording, Replay};
+use babybench::runs::{Recording, Replay};
 
 use crate::measure::{Summary, identical, max_abs, pick, relative, relative_to_change, rms, row};
 use crate::recordings::Golden;
@@ -51,7 +51,7 @@ pub fn one_step(g: &Golden) -> OneStep {
         }
     };
     let qvel = |k: usize| relative_to_change(row(&ours.qvel, k, nv), row(&recording.qvel, k, nv), before(k));
-    let observation = table("observation");
+    let observation = g.observation();
     let no = env.proprioception().len();
     let mut outputs = Vec::new();
     for (component, range) in env.proprioception().layout() {

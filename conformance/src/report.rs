@@ -48,7 +48,7 @@ struct Row {
 #[derive(Default)]
 struct Rows {
     rows: Vec<Row>,
-    /// Of the rows that are added.
+    /// The engine of the rows that are added.
     engine: String,
 }
 
@@ -76,7 +76,7 @@ impl Rows {
         self.add(quantity.into(), subject, [None, None, Some(value)], [None, None, floor]);
     }
 
-    /// Rows of one quantity stand together, quantities in the order of their first row.
+    /// Groups the rows by quantity, quantities in the order of their first row.
     fn grouped(self) -> Vec<Row> {
         let mut order: Vec<String> = Vec::new();
         for row in &self.rows {
@@ -94,8 +94,10 @@ fn three(s: Summary) -> [Option<f64>; 3] {
     [Some(s.p50), Some(s.p90), Some(s.max)]
 }
 
-/// The table and how to read it, in Markdown. Without MuJoCo or the recordings beside the repository it has what the rest
-/// gives, and says what is missing. Plots go to a folder.
+/// Writes the table and how to read it, in Markdown.
+///
+/// Without MuJoCo or the recordings beside the repository, the table contains what the rest yields and says what is
+/// missing. Plots go to the folder `plots`.
 pub fn table(states: usize, plots: Option<&Path>) -> Result<String, String> {
     let mut rows = Rows::default();
     let mut out = String::from(LEGEND);
@@ -146,7 +148,7 @@ pub fn table(states: usize, plots: Option<&Path>) -> Result<String, String> {
     Ok(out)
 }
 
-/// Both sides from the same states.
+/// Measures both sides live, from the same states.
 fn live(rows: &mut Rows, api: &'static Mujoco, states: usize, plots: Option<&Path>) -> Result<(), String> {
     let (cases, mut panels) = (Case::all(), Vec::new());
     for case in &cases {
@@ -219,7 +221,7 @@ fn single_steps(
     Ok(())
 }
 
-/// Rollouts of all engines and of later releases; gives their medians for a plot.
+/// Adds rollouts of all engines and of later releases; returns their medians for a plot.
 fn follow_paths(rows: &mut Rows, api: &'static Mujoco, case: &Case, plan: Plan) -> Result<Panel, String> {
     let paths = paths(api, case, plan)?;
     let what = |k: usize| format!("live {}: joints after {k} steps (rms, rad)", plan.motion.name());
@@ -275,7 +277,7 @@ fn follow_paths(rows: &mut Rows, api: &'static Mujoco, case: &Case, plan: Plan) 
     Ok(panel)
 }
 
-/// Recorded episodes: single steps over steps, open loop as rms over joints.
+/// Adds the recorded episodes: single steps over all steps, open loop as rms over joints.
 fn recordings(rows: &mut Rows) {
     for g in golden("spring_damper") {
         let step = replay_steps(&g);
@@ -290,7 +292,7 @@ fn recordings(rows: &mut Rows) {
         }
         let rms = open_loop(&g);
         for n in OPEN_LOOP.into_iter().filter(|&n| n <= rms.len()) {
-            let floor = g.floor.as_ref().map(|f| f[n - 1]);
+            let floor = g.floor.get(n - 1).copied();
             rows.single(
                 format!("open loop: joints after {n} steps (rms, rad)"),
                 &g.name,
@@ -301,7 +303,7 @@ fn recordings(rows: &mut Rows) {
     }
 }
 
-/// Motion without contacts and settling, over joints.
+/// Adds the motion without contacts and the settling, over joints.
 fn motion(rows: &mut Rows, reference: &Reference) {
     for (run, what) in [("cf", "1000 steps"), ("cfl", "1000 steps, joints locked")] {
         if let Some(last) = contact_free(reference, run).last() {
@@ -321,7 +323,7 @@ fn settled(rows: &mut Rows, subject: &str, drift: &Drift) {
     rows.spread("settled 100 steps: joints (rad)", subject, drift.summary());
 }
 
-/// Quantities of single states, over states.
+/// Adds the quantities of single states, over all states.
 fn statics(rows: &mut Rows, reference: &Reference) {
     let states = States::new(reference);
     let (poses, rest): (Vec<&Compared>, Vec<&Compared>) =

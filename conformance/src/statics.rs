@@ -1,9 +1,6 @@
 //! Quantities that follow from a state without advancing it, and one step.
 
-use babybench::Model;
-use babybench::physics::tiles::Tile;
-use babybench::physics::{Engine, SoftEngine, State, Topology};
-use babybench::sensors::sensordata;
+use babybench::physics::{Engine, SoftEngine, State};
 
 use crate::measure::{Summary, identical, max_abs, relative, relative_each, relative_to_change};
 use crate::reference::Reference;
@@ -58,7 +55,7 @@ impl Compared {
         self.values += theirs.len();
     }
 
-    /// Of the errors.
+    /// Summarises the errors.
     pub fn summary(&self) -> Summary {
         Summary::new(self.errors.iter().copied())
     }
@@ -75,7 +72,7 @@ pub struct States {
 }
 
 impl States {
-    /// Of a model.
+    /// Compares the quantities of a model in its recorded states.
     pub fn new(reference: &Reference) -> Self {
         let mut engine = reference.engine(false);
         let mut smooth: Vec<Compared> = SMOOTH.iter().map(|q| Compared::new(q.0, q.1)).collect();
@@ -104,8 +101,8 @@ impl States {
                 }
             }
             counts.push([
-                (at.contacts.len(), ncon[k][0] as usize),
-                (at.efc.nefc(), nefc[k][0] as usize),
+                (at.contact.len(), ncon[k][0] as usize),
+                (at.nefc(), nefc[k][0] as usize),
             ]);
             engine.step(&mut after).expect("a state that MuJoCo left");
             next.add(&after.qvel, &next_qvel[k], &qvel[k]);
@@ -130,7 +127,7 @@ const SMOOTH: [Quantity; 12] = [
     ("geom_xmat", Scale::Absolute, |_, s| s.geom_xmat.concat()),
     ("site_xpos", Scale::Absolute, |_, s| s.site_xpos.concat()),
     ("site_xmat", Scale::Absolute, |_, s| s.site_xmat.concat()),
-    ("qM", Scale::Absolute, |engine, s| full(engine.topology(), &s.qm)),
+    ("qM", Scale::Absolute, |engine, s| engine.full_m(s)),
     ("qfrc_bias", Scale::Absolute, |_, s| s.qfrc_bias.clone()),
     ("qfrc_passive", Scale::Absolute, |_, s| s.qfrc_passive.clone()),
     ("qfrc_actuator", Scale::Absolute, |_, s| s.qfrc_actuator.clone()),
@@ -140,31 +137,12 @@ const SMOOTH: [Quantity; 12] = [
 const CONSTRAINED: [Quantity; 3] = [
     ("qacc", Scale::Largest, |_, s| s.qacc.clone()),
     ("qfrc_constraint", Scale::Largest, |_, s| s.qfrc_constraint.clone()),
-    ("sensordata", Scale::Largest, |engine, s| sensors(engine.model(), s)),
+    ("sensordata", Scale::Largest, |_, s| s.sensordata.clone()),
 ];
 
-/// All sensors.
-pub fn sensors(model: &Model, s: &State) -> Vec<f64> {
-    let mut values = vec![0.0; model.nsensordata()];
-    sensordata(model, s, &mut values);
-    values
-}
-
-/// The symmetric matrix in tiles in full, row-major.
-pub fn full(topology: &Topology, tiles: &[Tile]) -> Vec<f64> {
-    let nv = topology.dof_tree.len();
-    let mut matrix = vec![0.0; nv * nv];
-    for i in 0..nv {
-        for (j, value) in topology.row(tiles, i) {
-            matrix[i * nv + j] = value;
-            matrix[j * nv + i] = value;
-        }
-    }
-    matrix
-}
-
-/// Constants of the model that follow from `qpos0`, with the largest relative error; for the centre of the model that is
-/// the error relative to the extent.
+/// Compares the constants of the model that follow from `qpos0`.
+///
+/// Each comes with its largest relative error; for the centre of the model that is the error relative to the extent.
 pub fn constants(reference: &Reference) -> [(&'static str, f64); 5] {
     let (m, stat) = (&reference.model, &reference.model.stat);
     let each = |name, ours: &[f64]| (name, relative_each(ours, &reference.array(name).data));

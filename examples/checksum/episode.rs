@@ -37,7 +37,7 @@ fn run(index: usize, steps: usize) -> Option<u64> {
     for values in [
         &state.qpos[..],
         &state.qvel[..],
-        seen.observation,
+        seen.proprioception,
         seen.vestibular.unwrap_or_default(),
     ] {
         values.iter().for_each(|v| fold(v.to_bits()));

@@ -1,4 +1,4 @@
-//! Prints checksums of episodes, to compare with those of another target, profile or number of threads.
+//! Prints checksums of episodes, to be compared with those of another target, profile or number of threads.
 //!
 //! ```sh
 //! cargo run --release --example checksum               # optionally the number of threads

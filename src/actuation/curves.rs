@@ -1,9 +1,9 @@
 //! Force of a muscle as a function of its length and velocity.
 //!
-//! The curves of MuJoCo's muscle model (documentation, "Modeling: Muscles"; after Millard et al. 2013), as MIMo uses them
-//! (Wochner et al. 2022, "Learning with muscles: benefits for data-efficiency and robustness in anthropomorphic tasks").
-//! Lengths are relative to the optimal length, velocities in optimal lengths per second, forces relative to the
-//! isometric maximum.
+//! The curves of MuJoCo's muscle model (documentation, "Modeling: Muscles"; after Millard et al. 2013), as MIMo uses
+//! them (Wochner et al. 2022, "Learning with muscles: benefits for data-efficiency and robustness in anthropomorphic
+//! tasks"). Lengths are relative to the optimal length, velocities in optimal lengths per second, forces relative to
+//! the isometric maximum.
 //!
 //! | length | 0.5 | 0.6 | 0.7 | 0.75 | 0.8375 | 0.95 | 1 | 1.1 | 1.3 | 1.45 | 1.6 |
 //! |---|---|---|---|---|---|---|---|---|---|---|---|
@@ -14,16 +14,16 @@
 //! |---|---|---|---|---|---|---|---|
 //! | [`force_velocity`] | 0 | 0.25 | 0.81 | 1 | 1.0875 | 1.15 | 1.2 |
 
-/// Shortest length at which a muscle is active.
+/// The shortest length at which a muscle is active.
 pub const LENGTH_MIN: f64 = 0.5;
-/// Longest length at which a muscle is active.
+/// The longest length at which a muscle is active.
 pub const LENGTH_MAX: f64 = 1.6;
-/// Force of a muscle that is lengthened fast.
+/// The force of a muscle that is lengthened fast.
 pub const FORCE_LENGTHENING: f64 = 1.2;
-/// Passive force at [`LENGTH_MAX`].
+/// The passive force at [`LENGTH_MAX`].
 pub const FORCE_PASSIVE: f64 = 1.3;
 
-/// A smooth bump on (`a`, `b`), 1 at `mid`, made of four parabolas.
+/// Returns a smooth bump on (`a`, `b`), 1 at `mid`, made of four parabolas.
 fn bump(length: f64, a: f64, mid: f64, b: f64) -> f64 {
     let (left, right) = (0.5 * (a + mid), 0.5 * (mid + b));
     let half_square = |from: f64, width: f64| 0.5 * (length - from) * (length - from) / (width * width);
@@ -40,12 +40,14 @@ fn bump(length: f64, a: f64, mid: f64, b: f64) -> f64 {
     }
 }
 
-/// Active force at a length: a bump on (0.5, 1.6) about the optimal length, and a smaller one on (0.5, 0.95).
+/// Returns the active force at a length: a bump on (0.5, 1.6) about the optimal length, and a smaller one on (0.5,
+/// 0.95).
 pub fn force_length(length: f64) -> f64 {
     bump(length, LENGTH_MIN, 1.0, LENGTH_MAX) + 0.15 * bump(length, LENGTH_MIN, 0.5 * (LENGTH_MIN + 0.95), 0.95)
 }
 
-/// Factor on the active force at a velocity (positive when the muscle lengthens), for a fastest shortening of `vmax`.
+/// Returns the factor on the active force at a velocity (positive when the muscle lengthens), for a fastest shortening
+/// of `vmax`.
 pub fn force_velocity(velocity: f64, vmax: f64) -> f64 {
     const C: f64 = FORCE_LENGTHENING - 1.0;
     let x = velocity / vmax;
@@ -60,7 +62,7 @@ pub fn force_velocity(velocity: f64, vmax: f64) -> f64 {
     }
 }
 
-/// Passive force at a length: cubic from the optimal length to 1.3, then a straight line.
+/// Returns the passive force at a length: cubic from the optimal length to 1.3, then a straight line.
 pub fn passive(length: f64) -> f64 {
     const B: f64 = 0.5 * (1.0 + LENGTH_MAX);
     const QUARTER: f64 = 0.25 * FORCE_PASSIVE;

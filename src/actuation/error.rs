@@ -1,13 +1,13 @@
-//! Why an actuation model does not fit a scene.
+//! Errors of actuation models that do not fit a scene.
 
 use thiserror::Error;
 
-/// An actuator that an actuation model cannot drive.
+/// An error in driving an actuator: which one, and why.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ActuationError {
     /// The actuator is of the wrong kind.
-    #[error("actuator {actuator:?} is not a {needs}, which actuation_model {model} needs")]
+    #[error("actuation_model {model} needs actuator {actuator:?} to be a {needs}")]
     Kind {
         /// Its name.
         actuator: String,

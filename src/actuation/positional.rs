@@ -1,13 +1,13 @@
 //! Position servos: the action is the desired angle.
 
-use crate::actuation::{Actuation, ActuationError, named};
+use crate::actuation::{Actuation, ActuationError, clear_muscles, named};
 use crate::config::Compat;
-use crate::env::BoxSpace;
 use crate::model::{BiasType, EqualityKind, Model};
 use crate::physics::State;
+use crate::spaces::BoxSpace;
 
-/// The positional model: a servo of 1 N m/rad on each joint pulls it to the action, an angle in rad within the joint's
-/// range.
+/// Drives joints by position servos: one of 1 N m/rad on each joint pulls it to the action, an angle in rad within the
+/// joint's range.
 ///
 /// The target of a joint that an active joint equality holds (the scene's or a lock) is 0, whatever the action. The
 /// observation is the clipped action itself, for those joints too.
@@ -17,15 +17,19 @@ use crate::physics::State;
 #[derive(Clone, Debug)]
 pub struct Positional {
     space: BoxSpace,
-    /// The clipped action (nu), rad.
-    control: Vec<f64>,
-    /// Joint equalities of actuated joints: equality and actuator.
-    equalities: Vec<(usize, usize)>,
+    holds: Vec<Hold>,
     compat: Compat,
 }
 
+/// A joint equality of an actuated joint.
+#[derive(Clone, Copy, Debug)]
+struct Hold {
+    equality: usize,
+    actuator: usize,
+}
+
 impl Positional {
-    /// For the servos of `model`.
+    /// Builds the actuation for the servos of `model`.
     ///
     /// # Errors
     /// An actuator that is not a servo, or whose joint has no range.
@@ -53,36 +57,38 @@ impl Positional {
             low.push(lo as f32);
             high.push(hi as f32);
         }
-        let mut equalities = Vec::new();
-        for (e, kind) in model.eq_kind.iter().enumerate() {
+        let mut holds = Vec::new();
+        for (equality, kind) in model.eq_kind.iter().enumerate() {
             if let EqualityKind::Joint { joint1, joint2, .. } = kind {
-                let holds = |j: usize| joint1.0 == j || joint2.is_some_and(|k| k.0 == j);
-                let of = |i: &usize| holds(model.actuator_trnid[*i]);
-                equalities.extend((0..model.nu()).filter(of).map(|i| (e, i)));
+                let on = |j: usize| *joint1 == j || *joint2 == Some(j);
+                let of = |i: &usize| on(model.actuator_trnid[*i]);
+                holds.extend((0..model.nu()).filter(of).map(|actuator| Hold { equality, actuator }));
             }
         }
         Ok(Self {
-            control: vec![0.0; low.len()],
             space: BoxSpace::new(low, high),
-            equalities,
+            holds,
             compat,
         })
     }
 
-    fn apply(&mut self, state: &mut State) {
-        state.ctrl.copy_from_slice(&self.control);
-        for &(e, i) in &self.equalities {
-            if state.params.eq_active[e] {
-                state.ctrl[i] = 0.0;
+    /// Passes the targets to the servos, and 0 to those of held joints.
+    fn update_ctrl(&self, state: &mut State) {
+        state.ctrl.clone_from(&state.actuator_target);
+        for hold in &self.holds {
+            if state.params.eq_active[hold.equality] {
+                state.ctrl[hold.actuator] = 0.0;
             }
         }
     }
 
-    fn zero(&mut self, state: &mut State) {
-        for (i, c) in self.control.iter_mut().enumerate() {
-            *c = f64::from(self.space.clip(i, 0.0));
+    /// Sets all targets to the action 0.
+    fn target_zero(&self, state: &mut State) {
+        state.actuator_target.resize(self.space.len(), 0.0);
+        for (i, target) in state.actuator_target.iter_mut().enumerate() {
+            *target = f64::from(self.space.clip(i, 0.0));
         }
-        self.apply(state);
+        self.update_ctrl(state);
     }
 }
 
@@ -95,47 +101,46 @@ impl Actuation for Positional {
         named(model, " angle")
     }
 
-    fn set_action(&mut self, _model: &Model, state: &mut State, action: &[f32]) {
-        for (i, (c, &a)) in self.control.iter_mut().zip(action).enumerate() {
-            *c = f64::from(self.space.clip(i, a));
-        }
-        self.apply(state);
+    fn prepare(&self, _model: &Model, state: &mut State) {
+        clear_muscles(state);
+        state.actuator_target.clear();
+        state.actuator_target.resize(self.space.len(), 0.0);
     }
 
-    fn substep(&mut self, _model: &Model, state: &mut State) {
+    fn set_action(&self, _model: &Model, state: &mut State, action: &[f32]) {
+        state.actuator_target.resize(self.space.len(), 0.0);
+        for (i, (target, &a)) in state.actuator_target.iter_mut().zip(action).enumerate() {
+            *target = f64::from(self.space.clip(i, a));
+        }
+        self.update_ctrl(state);
+    }
+
+    fn substep(&self, _model: &Model, state: &mut State) {
         if self.compat == Compat::Reference {
-            self.zero(state);
+            self.target_zero(state);
         }
     }
 
-    fn reset(&mut self, _model: &Model, state: &mut State) {
-        self.zero(state);
+    fn reset(&self, _model: &Model, state: &mut State) {
+        self.target_zero(state);
     }
 
     fn observation_len(&self) -> usize {
-        self.control.len()
+        self.space.len()
     }
 
     fn observation_names(&self, model: &Model) -> Vec<String> {
         named(model, " angle")
     }
 
-    /// The clipped action, rad.
-    fn observe(&self, _model: &Model, _state: &State, out: &mut [f64]) {
-        for (v, c) in out.iter_mut().zip(&self.control) {
-            *v = *c;
+    /// Writes the clipped action, rad.
+    fn observe(&self, _model: &Model, state: &State, out: &mut [f64]) {
+        for (v, target) in out.iter_mut().zip(&state.actuator_target) {
+            *v = *target;
         }
     }
 
     fn cost(&self, _model: &Model, _state: &State) -> f64 {
         0.0
-    }
-
-    fn memory(&self) -> Vec<&[f64]> {
-        vec![&self.control]
-    }
-
-    fn memory_mut(&mut self) -> Vec<&mut [f64]> {
-        vec![&mut self.control]
     }
 }

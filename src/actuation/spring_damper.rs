@@ -1,12 +1,12 @@
 //! Torque motors that respond at once; springs and dampers are in the joints.
 
-use crate::actuation::{Actuation, named};
+use crate::actuation::{Actuation, clear_muscles, named};
 use crate::config::Compat;
-use crate::env::BoxSpace;
 use crate::model::Model;
 use crate::physics::State;
+use crate::spaces::BoxSpace;
 
-/// The spring-damper model: the torque on a joint is gear times the control.
+/// Drives joints by torque motors: the torque on a joint is gear times the control.
 ///
 /// Under `compat: api` the action space is [-1, 1] and the motor's force range limits the torque; under
 /// `compat: reference` the action space is the force range itself.
@@ -17,7 +17,7 @@ pub struct SpringDamper {
 }
 
 impl SpringDamper {
-    /// For the motors of `model`.
+    /// Builds the actuation for the motors of `model`.
     pub fn new(model: &Model, compat: Compat) -> Self {
         let bounds = |i: usize| match compat {
             Compat::Api => [-1.0, 1.0],
@@ -31,8 +31,8 @@ impl SpringDamper {
         }
     }
 
-    /// Control before the gear: after the limits of the motor, or under `compat: reference` as it stands, where single
-    /// precision exceeds the limits in the last digits.
+    /// Returns the control before the gear: after the limits of the motor, or under `compat: reference` as it stands,
+    /// where single precision exceeds the limits in the last digits.
     fn effective(&self, model: &Model, state: &State, i: usize) -> f64 {
         let u = state.ctrl[i];
         if self.compat == Compat::Api && state.params.actuator_forcelimited[i] {
@@ -53,15 +53,20 @@ impl Actuation for SpringDamper {
         named(model, " control")
     }
 
-    fn set_action(&mut self, _model: &Model, state: &mut State, action: &[f32]) {
+    fn prepare(&self, _model: &Model, state: &mut State) {
+        clear_muscles(state);
+        state.actuator_target.clear();
+    }
+
+    fn set_action(&self, _model: &Model, state: &mut State, action: &[f32]) {
         for (i, (ctrl, &a)) in state.ctrl.iter_mut().zip(action).enumerate() {
             *ctrl = f64::from(self.space.clip(i, a));
         }
     }
 
-    fn substep(&mut self, _model: &Model, _state: &mut State) {}
+    fn substep(&self, _model: &Model, _state: &mut State) {}
 
-    fn reset(&mut self, _model: &Model, state: &mut State) {
+    fn reset(&self, _model: &Model, state: &mut State) {
         for (i, ctrl) in state.ctrl.iter_mut().enumerate() {
             *ctrl = f64::from(self.space.clip(i, 0.0));
         }
@@ -75,7 +80,7 @@ impl Actuation for SpringDamper {
         [named(model, " control"), named(model, " torque")].concat()
     }
 
-    /// Controls, then torques (N m): gear times the control within the motor's limits.
+    /// Writes controls, then torques (N m): gear times the control within the motor's limits.
     fn observe(&self, model: &Model, state: &State, out: &mut [f64]) {
         let (controls, torques) = out.split_at_mut(model.nu());
         controls.copy_from_slice(&state.ctrl);
@@ -84,7 +89,7 @@ impl Actuation for SpringDamper {
         }
     }
 
-    /// `sum |u^2 T| / (n sum T)` over the controls `u` within the motors' limits and the gears `T`.
+    /// Returns `sum |u^2 T| / (n sum T)` over the controls `u` within the motors' limits and the gears `T`.
     fn cost(&self, model: &Model, state: &State) -> f64 {
         let gears = &state.params.actuator_gear;
         let total: f64 = gears.iter().sum();

@@ -1,4 +1,4 @@
-//! The enumerations of the configuration, each with the names it has in a file.
+//! The enumerations of the configuration, with the names they have in a file.
 
 /// Defines an enumeration whose variants carry the name they have in a configuration file.
 macro_rules! choices {
@@ -13,14 +13,31 @@ macro_rules! choices {
             /// The names of [`Self::ALL`] in a configuration file.
             pub const NAMES: &'static [&'static str] = &[$($text),*];
 
-            /// The name in a configuration file.
+            /// Returns the name in a configuration file.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $text),* }
             }
 
-            /// The value with this name, if there is one.
+            /// Returns the value with this name; `None` if there is none.
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($text => Some(Self::$variant),)* _ => None }
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl serde::Serialize for $name {
+            /// Serializes the name.
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(self.name())
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl<'de> serde::Deserialize<'de> for $name {
+            /// Deserializes a value from its name.
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let name = <String as serde::Deserialize>::deserialize(deserializer)?;
+                Self::from_name(&name).ok_or_else(|| serde::de::Error::unknown_variant(&name, Self::NAMES))
             }
         }
 
@@ -33,9 +50,9 @@ macro_rules! choices {
 }
 
 choices! {
-    /// What is trained and scored (`behavior`).
+    /// The behavior that is trained and scored (`behavior`).
     Behavior {
-        /// Nothing is scored; MIMo v1.
+        /// No score; MIMo v1.
         #[default]
         None = "none",
         /// Touching one's own body with the palms; MIMo v1.
@@ -46,33 +63,33 @@ choices! {
 }
 
 choices! {
-    /// What stands around MIMo (`scene`).
+    /// The surroundings of MIMo (`scene`).
     Scene {
-        /// The floor alone; MIMo is free.
+        /// The bare floor; MIMo is free.
         #[default]
         Base = "base",
-        /// MIMo lies on the mattress of a crib, its lower body fixed.
+        /// The mattress of a crib, with MIMo lying on it, the lower body fixed.
         Crib = "crib",
-        /// MIMo sits among loose cubes and balls.
+        /// Loose cubes and balls, with MIMo sitting among them.
         Cubes = "cubes",
     }
 }
 
 choices! {
-    /// How an action becomes joint torques (`actuation_model`).
+    /// The model that turns actions into joint torques (`actuation_model`).
     ActuationModel {
         /// Torque motors with linear, instant response.
         #[default]
         SpringDamper = "spring_damper",
         /// Two opposing muscles per actuator.
         Muscle = "muscle",
-        /// The action is the desired joint angle.
+        /// Position servos: the action is the desired joint angle.
         Positional = "positional",
     }
 }
 
 choices! {
-    /// What a touch sensor reports (`touch_function`).
+    /// The quantity that a touch sensor reports (`touch_function`).
     TouchFunction {
         /// The normal force, one number per sensor, N, >= 0. Exists under [`Compat::Api`] only.
         #[default]
@@ -87,18 +104,18 @@ choices! {
 }
 
 choices! {
-    /// How a contact force is shared among touch sensors (`touch_response`).
+    /// The way a contact force is shared among touch sensors (`touch_response`).
     TouchResponse {
-        /// The nearest sensor takes all of it.
+        /// The nearest sensor takes the whole force.
         #[default]
         Nearest = "nearest",
-        /// Sensors within twice the sensor distance share it, with weights that fall linearly.
+        /// Sensors within twice the sensor distance share the force, with weights that fall linearly.
         SpreadLinear = "spread_linear",
     }
 }
 
 choices! {
-    /// What holds where the API page and the Python code of BabyBench 2025 disagree (`compat`).
+    /// The source to follow where the API page and the Python code of BabyBench 2025 disagree (`compat`).
     Compat {
         /// The API page.
         #[default]
@@ -109,19 +126,19 @@ choices! {
 }
 
 choices! {
-    /// What draws images (`renderer`).
+    /// The renderer of images (`renderer`).
     RendererKind {
         /// The renderer in pure Rust: the same bytes everywhere, no GPU, no driver.
         #[default]
         Cpu = "cpu",
-        /// wgpu: GPUs, and many environments at once. Needs the cargo feature `wgpu`.
+        /// wgpu: draws on GPUs, for many environments at once. Needs the cargo feature `wgpu`.
         Wgpu = "wgpu",
     }
 }
 
 choices! {
-    /// What moves the bodies (`engine`).
-    Engine {
+    /// The physics engine (`engine`).
+    EngineKind {
         /// Joint-space dynamics with MuJoCo's soft constraints; Rapier holds the scene.
         #[default]
         Soft = "soft",

@@ -1,17 +1,17 @@
-//! What can be wrong with a configuration, and where.
+//! The errors of configurations, each with its position.
 
 use std::fmt;
 
-/// Where in a file something stands; lines and columns count from 1.
+/// A position in a file; lines and columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The name given by whoever reads the file.
+pub struct Location {
+    /// Name of the file, as given by the caller.
     pub file: String,
-    /// Line and column in characters; `None` where no one position is at fault.
+    /// Line and column in characters; `None` where no single position is at fault.
     pub position: Option<(u32, u32)>,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.position {
             Some((line, column)) => write!(f, "{}:{line}:{column}", self.file),
@@ -20,137 +20,137 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a configuration was refused. Every message names the place, the key, the value and what is allowed.
+/// A reason why a configuration was refused. Every message names the location, the key, the value and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConfigError {
     /// The file could not be read.
     #[error("{file}: {source}")]
     Read {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// What the file system answered.
+        /// Error of the file system.
         source: std::io::Error,
     },
     /// The file is not UTF-8.
-    #[error("{place}: this is not UTF-8 text; save the file as UTF-8")]
+    #[error("{location}: this is not UTF-8 text; save the file as UTF-8")]
     Encoding {
-        /// The first byte at fault.
-        place: Place,
+        /// Position of the first byte at fault.
+        location: Location,
     },
-    /// The text is longer than [`super::MAX_BYTES`].
-    #[error("{place}: the configuration has more than {limit} bytes; a configuration needs a few thousand")]
+    /// The text is longer than [`crate::Limits::config_bytes`].
+    #[error("{location}: the configuration has more than {limit} bytes; a configuration needs a few thousand")]
     TooLarge {
-        /// The file.
-        place: Place,
-        /// The most bytes accepted.
+        /// Name of the file.
+        location: Location,
+        /// Greatest number of bytes accepted.
         limit: usize,
     },
     /// The text is not YAML.
-    #[error("{place}: {message}")]
+    #[error("{location}: {message}")]
     Syntax {
-        /// Where the parser gave up.
-        place: Place,
-        /// What it says.
+        /// Position at which parsing stopped.
+        location: Location,
+        /// Message of the parser.
         message: String,
     },
-    /// YAML, but none that a configuration has a use for.
-    #[error("{place}: {what}: a configuration is one flat list of `key: value` lines")]
+    /// The text uses a feature of YAML that configurations do not need.
+    #[error("{location}: {what}: a configuration is one flat list of `key: value` lines")]
     Unsupported {
-        /// Where it stands.
-        place: Place,
-        /// What it is.
+        /// Position of the feature.
+        location: Location,
+        /// Name of the feature.
         what: String,
     },
-    /// No such key.
-    #[error("{place}: unknown key `{key}`{}", hint(.nearest))]
+    /// The key is unknown.
+    #[error("{location}: unknown key `{key}`{}", hint(.nearest))]
     UnknownKey {
-        /// Where the key stands.
-        place: Place,
-        /// The key as written.
+        /// Position of the key.
+        location: Location,
+        /// Key as written.
         key: String,
-        /// The known key nearest to it, if one is near.
+        /// Known key nearest to it, if one is near.
         nearest: Option<&'static str>,
     },
-    /// The key was given before.
-    #[error("{place}: `{key}` was already given in line {first_line}; keep one of the two")]
+    /// The key was given twice.
+    #[error("{location}: `{key}` was already given in line {first_line}; keep one of the two")]
     DuplicateKey {
-        /// Where it stands the second time.
-        place: Place,
-        /// The key.
+        /// Position of the second occurrence.
+        location: Location,
+        /// Name of the key.
         key: &'static str,
-        /// The line where it stands first.
+        /// Line of the first occurrence.
         first_line: u32,
     },
     /// The key has no value, or null.
-    #[error("{place}: `{key}` needs a value: {expected}; leave the line out for the default")]
+    #[error("{location}: `{key}` needs a value: {expected}; leave the line out for the default")]
     MissingValue {
-        /// Where the value should stand.
-        place: Place,
-        /// The key.
+        /// Position where the value should be.
+        location: Location,
+        /// Name of the key.
         key: &'static str,
-        /// What is allowed.
+        /// Description of what is allowed.
         expected: String,
     },
-    /// The value is of another type.
-    #[error("{place}: `{key}` is {value}, expected {expected}")]
+    /// The value has the wrong type.
+    #[error("{location}: `{key}` is {value}, expected {expected}")]
     WrongType {
-        /// Where the value stands.
-        place: Place,
-        /// The key.
+        /// Position of the value.
+        location: Location,
+        /// Name of the key.
         key: &'static str,
-        /// The value as written.
+        /// Value as written.
         value: String,
-        /// What is allowed.
+        /// Description of what is allowed.
         expected: String,
     },
-    /// The value is of the right type but not allowed.
-    #[error("{place}: `{key}` is {value}, expected {expected}{}", hint(.nearest))]
+    /// The value has the right type but is not allowed.
+    #[error("{location}: `{key}` is {value}, expected {expected}{}", hint(.nearest))]
     OutOfRange {
-        /// Where the value stands.
-        place: Place,
-        /// The key.
+        /// Position of the value.
+        location: Location,
+        /// Name of the key.
         key: &'static str,
-        /// The value as written.
+        /// Value as written.
         value: String,
-        /// What is allowed.
+        /// Description of what is allowed.
         expected: String,
-        /// The allowed name nearest to the value, if one is near.
+        /// Allowed name nearest to the value, if one is near.
         nearest: Option<&'static str>,
     },
-    /// The value is not allowed together with the value of another key.
-    #[error("{place}: `{key}` is {value}, but {reason}")]
+    /// The value contradicts that of another key.
+    #[error("{location}: `{key}` is {value}, but {reason}")]
     Conflict {
-        /// Where the value stands.
-        place: Place,
-        /// The key.
+        /// Position of the value.
+        location: Location,
+        /// Name of the key.
         key: &'static str,
-        /// Its value.
+        /// Value of the key.
         value: String,
-        /// What it contradicts and what to do.
+        /// Explanation of the contradiction and its remedy.
         reason: String,
     },
 }
 
 impl ConfigError {
-    /// Line and column of the fault, counted from 1, where one position is at fault.
+    /// Returns the line and column of the fault, counted from 1, where one position is at fault.
     pub fn position(&self) -> Option<(u32, u32)> {
         match self {
             Self::Read { .. } => None,
-            Self::Encoding { place }
-            | Self::TooLarge { place, .. }
-            | Self::Syntax { place, .. }
-            | Self::Unsupported { place, .. }
-            | Self::UnknownKey { place, .. }
-            | Self::DuplicateKey { place, .. }
-            | Self::MissingValue { place, .. }
-            | Self::WrongType { place, .. }
-            | Self::OutOfRange { place, .. }
-            | Self::Conflict { place, .. } => place.position,
+            Self::Encoding { location }
+            | Self::TooLarge { location, .. }
+            | Self::Syntax { location, .. }
+            | Self::Unsupported { location, .. }
+            | Self::UnknownKey { location, .. }
+            | Self::DuplicateKey { location, .. }
+            | Self::MissingValue { location, .. }
+            | Self::WrongType { location, .. }
+            | Self::OutOfRange { location, .. }
+            | Self::Conflict { location, .. } => location.position,
         }
     }
 
-    /// The key at fault, as written.
+    /// Returns the key at fault, as written.
     pub fn key(&self) -> Option<&str> {
         match self {
             Self::UnknownKey { key, .. } => Some(key),
@@ -168,7 +168,7 @@ impl ConfigError {
     }
 }
 
-/// Text of a file as an error message may show it: escaped and cut short.
+/// Prepares text of a file for an error message: escaped and cut short.
 pub(super) fn shown(text: &str) -> String {
     const MOST: usize = 60;
     let mut out: String = text.chars().take(MOST).flat_map(char::escape_debug).collect();
@@ -178,7 +178,7 @@ pub(super) fn shown(text: &str) -> String {
     out
 }
 
-/// The known name nearest to `text`, if so near that it was probably meant.
+/// Returns the known name nearest to `text`, if it is so near that it was probably meant.
 pub(super) fn nearest(text: &str, known: impl Iterator<Item = &'static str>) -> Option<&'static str> {
     const LONGEST: usize = 64; // the distance costs the product of the lengths
     if text.len() > LONGEST {

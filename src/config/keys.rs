@@ -1,26 +1,26 @@
-//! The table of keys. Reading, writing, defaults, ranges and documentation all come from it.
+//! The table of keys, from which reading, writing, defaults, ranges and documentation all follow.
 
-use super::choices::{ActuationModel, Behavior, Compat, Engine, RendererKind, Scene, TouchFunction, TouchResponse};
+use super::choices::{ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse};
 use super::{Config, error};
-use crate::render::MAX_SIZE;
+use crate::spaces::MAX_IMAGE_SIZE;
 
-/// A value of a configuration, as the table of keys handles it.
+/// The value of a key.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum KeyValue {
     /// `true` or `false`.
     Bool(bool),
-    /// A whole number.
+    /// An integer.
     Whole(u64),
     /// A number.
     Number(f64),
     /// One of a few names.
     Choice(&'static str),
-    /// Free text.
+    /// Any text.
     Text(String),
 }
 
-impl Value {
-    /// The value as it stands in a YAML file.
+impl KeyValue {
+    /// Writes the value as YAML.
     pub fn to_yaml(&self) -> String {
         match self {
             Self::Bool(on) => on.to_string(),
@@ -32,27 +32,27 @@ impl Value {
     }
 }
 
-/// What a key accepts.
+/// The values that a key accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum KeyKind {
     /// `true` or `false`.
     Bool,
-    /// A whole number in a closed range.
+    /// An integer in a closed range.
     Whole {
-        /// The smallest.
+        /// Smallest value.
         min: u64,
-        /// The largest.
+        /// Largest value.
         max: u64,
     },
-    /// A finite number: 0, or at least this.
+    /// A finite number: 0, or at least the given one.
     ZeroOrAtLeast(f64),
-    /// One of these names.
+    /// One of the given names.
     Choice(&'static [&'static str]),
     /// Text of at least one character, without control characters.
     Text,
 }
 
-/// Why a value does not fit its key.
+/// A reason why a value does not fit its key.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Misfit {
     Missing,
@@ -62,13 +62,13 @@ pub(super) enum Misfit {
 
 const OUT_OF_RANGE: Misfit = Misfit::OutOfRange { nearest: None };
 
-impl Kind {
-    /// What is allowed, in words.
+impl KeyKind {
+    /// Describes in words what is allowed.
     pub fn expected(&self) -> String {
         match self {
             Self::Bool => "true or false".to_string(),
             Self::Whole { min, max } => format!("a whole number from {min} to {max}"),
-            Self::ZeroOrAtLeast(least) => format!("0 or a finite number from {least}"),
+            Self::ZeroOrAtLeast(least) => format!("0 or a finite number of at least {least}"),
             Self::Choice(names) => format!("one of {}", names.join(", ")),
             Self::Text => {
                 "text, at least one character and no control characters (in quotes if it looks like a number, a \
@@ -78,18 +78,18 @@ impl Kind {
         }
     }
 
-    /// The value of a YAML scalar: `plain` is false for text in quotes, which is text whatever it looks like.
-    pub(super) fn parse(&self, text: &str, plain: bool) -> Result<Value, Misfit> {
+    /// Parses a YAML scalar: `plain` is false for text in quotes, which is text whatever it looks like.
+    pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, Misfit> {
         if plain && matches!(text, "" | "~" | "null" | "Null" | "NULL") {
             return Err(Misfit::Missing);
         }
         let value = match self {
-            Self::Bool if plain => Value::Bool(boolean(text).ok_or(Misfit::WrongType)?),
-            Self::Whole { .. } if plain => Value::Whole(whole(text)?),
-            Self::ZeroOrAtLeast(_) if plain => Value::Number(number(text)?),
+            Self::Bool if plain => KeyValue::Bool(boolean(text).ok_or(Misfit::WrongType)?),
+            Self::Whole { .. } if plain => KeyValue::Whole(whole(text)?),
+            Self::ZeroOrAtLeast(_) if plain => KeyValue::Number(number(text)?),
             Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) => return Err(Misfit::WrongType),
             Self::Choice(names) => match names.iter().find(|name| **name == text) {
-                Some(name) => Value::Choice(name),
+                Some(name) => KeyValue::Choice(name),
                 None => {
                     return Err(Misfit::OutOfRange {
                         nearest: error::nearest(text, names.iter().copied()),
@@ -99,28 +99,28 @@ impl Kind {
             Self::Text if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) => {
                 return Err(Misfit::WrongType);
             }
-            Self::Text => Value::Text(text.to_string()),
+            Self::Text => KeyValue::Text(text.to_string()),
         };
         self.check(&value).map(|()| value)
     }
 
-    /// Whether a value of the right type is allowed.
-    pub(super) fn check(&self, value: &Value) -> Result<(), Misfit> {
+    /// Checks that a value of the right type is allowed.
+    pub(super) fn check(&self, value: &KeyValue) -> Result<(), Misfit> {
         let fits = match (self, value) {
-            (Self::Bool, Value::Bool(_)) => true,
-            (Self::Whole { min, max }, Value::Whole(number)) => (min..=max).contains(&number),
-            (Self::ZeroOrAtLeast(least), Value::Number(number)) => {
+            (Self::Bool, KeyValue::Bool(_)) => true,
+            (Self::Whole { min, max }, KeyValue::Whole(number)) => (min..=max).contains(&number),
+            (Self::ZeroOrAtLeast(least), KeyValue::Number(number)) => {
                 number.is_finite() && (*number == 0.0 || number >= least)
             }
-            (Self::Choice(names), Value::Choice(name)) => names.contains(name),
-            (Self::Text, Value::Text(text)) => !text.is_empty() && !text.chars().any(char::is_control),
+            (Self::Choice(names), KeyValue::Choice(name)) => names.contains(name),
+            (Self::Text, KeyValue::Text(text)) => !text.is_empty() && !text.chars().any(char::is_control),
             _ => return Err(Misfit::WrongType),
         };
         if fits { Ok(()) } else { Err(OUT_OF_RANGE) }
     }
 }
 
-/// YAML 1.1's words for true and false, which PyYAML reads; `y` and `n` are text to it and so here.
+/// Parses YAML 1.1's words for true and false, which PyYAML reads; `y` and `n` are text to it and so here.
 fn boolean(text: &str) -> Option<bool> {
     match text {
         "true" | "True" | "TRUE" | "yes" | "Yes" | "YES" | "on" | "On" | "ON" => Some(true),
@@ -129,8 +129,8 @@ fn boolean(text: &str) -> Option<bool> {
     }
 }
 
-/// Decimal digits with an optional sign and `_` between digits. A leading zero is refused: YAML 1.1 and 1.2 read it as
-/// different numbers.
+/// Parses decimal digits with an optional sign and `_` between digits. A leading zero is refused: YAML 1.1 and 1.2 read
+/// it as different numbers.
 fn whole(text: &str) -> Result<u64, Misfit> {
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     let decimal = digits.starts_with(|c: char| c.is_ascii_digit())
@@ -147,7 +147,7 @@ fn whole(text: &str) -> Result<u64, Misfit> {
     }
 }
 
-/// A whole number, or digits with a point or an exponent.
+/// Parses an integer, or digits with a point or an exponent.
 fn number(text: &str) -> Result<f64, Misfit> {
     let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
     if matches!(unsigned, ".inf" | ".Inf" | ".INF" | ".nan" | ".NaN" | ".NAN") {
@@ -163,7 +163,7 @@ fn number(text: &str) -> Result<f64, Misfit> {
     Ok(number + 0.0) // -0 becomes 0
 }
 
-/// Text in YAML's double quotes, everything unusual escaped.
+/// Writes text in YAML's double quotes, with everything unusual escaped.
 fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
@@ -178,22 +178,22 @@ fn quoted(text: &str) -> String {
     out
 }
 
-/// A field of [`Config`] as a [`Value`].
+/// A field of [`Config`] that converts to and from a [`KeyValue`].
 trait Field: Sized {
-    fn to_value(&self) -> Value;
-    fn from_value(value: &Value) -> Option<Self>;
+    fn to_value(&self) -> KeyValue;
+    fn from_value(value: &KeyValue) -> Option<Self>;
 }
 
 macro_rules! field {
     ($($type:ty, $variant:ident, $value:ident => $back:expr, |$field:ident| $there:expr;)*) => {$(
         impl Field for $type {
-            fn to_value(&self) -> Value {
+            fn to_value(&self) -> KeyValue {
                 let $field = self;
-                Value::$variant($there)
+                KeyValue::$variant($there)
             }
-            fn from_value(value: &Value) -> Option<Self> {
+            fn from_value(value: &KeyValue) -> Option<Self> {
                 match value {
-                    Value::$variant($value) => $back,
+                    KeyValue::$variant($value) => $back,
                     _ => None,
                 }
             }
@@ -213,48 +213,48 @@ field! {
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();
     TouchResponse, Choice, v => Self::from_name(v), |f| f.name();
     Compat, Choice, v => Self::from_name(v), |f| f.name();
-    Engine, Choice, v => Self::from_name(v), |f| f.name();
+    EngineKind, Choice, v => Self::from_name(v), |f| f.name();
     RendererKind, Choice, v => Self::from_name(v), |f| f.name();
 }
 
 /// One key of the configuration.
 #[derive(Debug)]
 pub struct Key {
-    /// Its name in a file.
+    /// Name in a file.
     pub name: &'static str,
-    /// The heading it stands under.
+    /// Heading of the section that it belongs to.
     pub section: &'static str,
-    /// What it accepts.
-    pub kind: Kind,
-    /// What it means, in one sentence.
+    /// Values that it accepts.
+    pub kind: KeyKind,
+    /// Meaning, in one sentence.
     pub doc: &'static str,
-    get: fn(&Config) -> Value,
-    set: fn(&mut Config, &Value) -> bool,
+    get: fn(&Config) -> KeyValue,
+    set: fn(&mut Config, &KeyValue) -> bool,
 }
 
 impl Key {
-    /// The key with this name.
+    /// Returns the key with this name; `None` if there is none.
     pub fn named(name: &str) -> Option<&'static Self> {
         KEYS.iter().find(|key| key.name == name)
     }
 
-    /// The value this key has in `config`.
-    pub fn value(&self, config: &Config) -> Value {
+    /// Returns the value of this key in `config`.
+    pub fn value(&self, config: &Config) -> KeyValue {
         (self.get)(config)
     }
 
-    /// The value this key has when a file leaves it out.
-    pub fn default_value(&self) -> Value {
+    /// Returns the value of this key when a file leaves it out.
+    pub fn default_value(&self) -> KeyValue {
         self.value(&Config::default())
     }
 
     /// Sets the field; `false` if the value is of another type.
-    pub(super) fn assign(&self, config: &mut Config, value: &Value) -> bool {
+    pub(super) fn assign(&self, config: &mut Config, value: &KeyValue) -> bool {
         (self.set)(config, value)
     }
 }
 
-/// The table: per section, the key, its field, what it accepts and what it means.
+/// Defines the table: per section, the key, its field, what it accepts and what it means.
 macro_rules! keys {
     ($($section:literal { $($name:ident = $($field:ident).+, $kind:expr, $doc:literal;)* })*) => {
         &[$($(Key {
@@ -268,34 +268,34 @@ macro_rules! keys {
     };
 }
 
-const fn whole_from_1_to(max: u64) -> Kind {
-    Kind::Whole { min: 1, max }
+const fn whole_from_1_to(max: u64) -> KeyKind {
+    KeyKind::Whole { min: 1, max }
 }
 
-const COUNT: Kind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
-const FRAMES: Kind = whole_from_1_to(u32::MAX as u64);
-const PIXELS: Kind = whole_from_1_to(MAX_SIZE as u64);
-const SEED: Kind = Kind::Whole { min: 0, max: u64::MAX };
-const SCALE: Kind = Kind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
+const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
+const FRAMES: KeyKind = whole_from_1_to(u32::MAX as u64);
+const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
+const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
+const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
 
-use Kind::{Bool, Choice, Text};
+use KeyKind::{Bool, Choice, Text};
 
-/// Every key, in the order of the API page, this implementation's own after its general ones.
+/// Every key, in the order of the API page, with this implementation's own after its general ones.
 pub(super) static KEYS: &[Key] = keys! {
     "General" {
         save_dir = save_dir, Text, "The folder of logs, videos and results.";
-        behavior = behavior, Choice(Behavior::NAMES), "What is trained and scored.";
-        scene = scene, Choice(Scene::NAMES), "What stands around MIMo.";
-        max_episode_steps = max_episode_steps, COUNT, "Steps after which an episode is truncated.";
+        behavior = behavior, Choice(Behavior::NAMES), "The behavior that is trained and scored.";
+        scene = scene, Choice(Scene::NAMES), "MIMo's surroundings.";
+        max_episode_steps = max_episode_steps, COUNT, "Number of steps after which an episode is truncated.";
         frame_skip = frame_skip, FRAMES, "Physics steps of 5 ms per action.";
         render_size = render_size, PIXELS, "Width and height of rendered images, pixels.";
         save_logs_every = save_logs_every, COUNT, "Episodes between two saves of the training log.";
     }
     "This implementation's own keys" {
-        compat = compat, Choice(Compat::NAMES), "What holds where API page and Python code disagree.";
-        engine = engine, Choice(Engine::NAMES), "What moves the bodies.";
-        renderer = renderer, Choice(RendererKind::NAMES), "What draws images.";
-        seed = seed, SEED, "The seed of every random choice until a reset is given another.";
+        compat = compat, Choice(Compat::NAMES), "Which of them to follow where the API page and the Python code disagree.";
+        engine = engine, Choice(EngineKind::NAMES), "The physics engine.";
+        renderer = renderer, Choice(RendererKind::NAMES), "The renderer of images.";
+        seed = seed, SEED, "The seed of all random choices until a reset is given another.";
     }
     "Proprioception" {
         proprio_velocity = proprio_velocity, Bool, "Joint velocities are observed.";
@@ -315,14 +315,14 @@ pub(super) static KEYS: &[Key] = keys! {
         touch_scale = touch_scale, SCALE, "Factor on the distance between sensors; 0 switches touch off.";
         touch_function = touch_function, Choice(TouchFunction::NAMES), "What a sensor reports.";
         touch_response = touch_response, Choice(TouchResponse::NAMES), "How sensors share a force.";
-        touch_hands = touch.hands, Bool, "The hands feel.";
-        touch_fingers = touch.fingers, Bool, "The fingers feel.";
-        touch_arms = touch.arms, Bool, "The arms feel.";
-        touch_feet = touch.feet, Bool, "The feet feel.";
-        touch_legs = touch.legs, Bool, "The legs feel.";
-        touch_body = touch.body, Bool, "The trunk feels.";
-        touch_head = touch.head, Bool, "The head feels.";
-        touch_eyes = touch.eyes, Bool, "The eyes feel.";
+        touch_hands = touch.hands, Bool, "The hands have touch sensors.";
+        touch_fingers = touch.fingers, Bool, "The fingers have touch sensors.";
+        touch_arms = touch.arms, Bool, "The arms have touch sensors.";
+        touch_feet = touch.feet, Bool, "The feet have touch sensors.";
+        touch_legs = touch.legs, Bool, "The legs have touch sensors.";
+        touch_body = touch.body, Bool, "The trunk has touch sensors.";
+        touch_head = touch.head, Bool, "The head has touch sensors.";
+        touch_eyes = touch.eyes, Bool, "The eyes have touch sensors.";
     }
     "Actuation" {
         actuation_model = actuation_model, Choice(ActuationModel::NAMES), "How actions become torques.";
@@ -336,13 +336,13 @@ pub(super) static KEYS: &[Key] = keys! {
         act_eyes = act.eyes, Bool, "The eyes are actuated.";
     }
     "Locked joints" {
-        lock_hands = lock.hands, Bool, "The hands' joints are held.";
-        lock_fingers = lock.fingers, Bool, "The fingers' joints are held.";
-        lock_arms = lock.arms, Bool, "The arms' joints are held.";
-        lock_feet = lock.feet, Bool, "The feet's joints are held.";
-        lock_legs = lock.legs, Bool, "The legs' joints are held.";
-        lock_body = lock.body, Bool, "The trunk's joints are held.";
-        lock_head = lock.head, Bool, "The head's joints are held.";
-        lock_eyes = lock.eyes, Bool, "The eyes' joints are held.";
+        lock_hands = lock.hands, Bool, "The joints of the hands are locked.";
+        lock_fingers = lock.fingers, Bool, "The joints of the fingers are locked.";
+        lock_arms = lock.arms, Bool, "The joints of the arms are locked.";
+        lock_feet = lock.feet, Bool, "The joints of the feet are locked.";
+        lock_legs = lock.legs, Bool, "The joints of the legs are locked.";
+        lock_body = lock.body, Bool, "The joints of the trunk are locked.";
+        lock_head = lock.head, Bool, "The joints of the head are locked.";
+        lock_eyes = lock.eyes, Bool, "The joints of the eyes are locked.";
     }
 };

@@ -1,7 +1,7 @@
-//! The configuration of an environment: every key of the API page, its default and its error.
+//! The configuration of an environment: every key of the API page with its default and its errors.
 //!
 //! A configuration file is a flat YAML mapping. Keys left out have their documented default; a key that does not exist,
-//! stands twice or has a value that is not allowed is an error that names place, key, value and what is allowed.
+//! stands twice or has a value that is not allowed is an error that names location, key, value and what is allowed.
 //! YAML 1.1's booleans (`True`, `yes`, `on` ...) are accepted as PyYAML accepts them; anchors, aliases and tags are not.
 //!
 //! ```
@@ -15,83 +15,90 @@
 //! assert_eq!(error.to_string(), "example.yml:1:1: unknown key `behaviour`; did you mean `behavior`?");
 //! # Ok::<(), babybench::config::ConfigError>(())
 //! ```
+//!
+//! With the feature `serde`, a [`Config`] is a flat map in every format that serde knows, with the same keys, defaults and
+//! checks.
 
 mod choices;
 mod error;
+mod examples;
 mod keys;
 mod parts;
+#[cfg(feature = "serde")]
+mod serial;
 mod yaml;
 
 #[cfg(test)]
 mod tests;
 
-pub use choices::{ActuationModel, Behavior, Compat, Engine, RendererKind, Scene, TouchFunction, TouchResponse};
-pub use error::{ConfigError, Place};
-pub use keys::{Key, Kind, Value};
+pub use choices::{ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse};
+pub use error::{ConfigError, Location};
+pub use examples::Example;
+pub use keys::{Key, KeyKind, KeyValue};
 pub use parts::{BodyParts, Part};
 
 use std::io::Read as _;
 use std::path::Path;
 
-/// The most bytes of a configuration file.
-pub const MAX_BYTES: usize = 1 << 20;
+use crate::limits::Limits;
 
-/// What an environment is made from. [`Config::default`] has the defaults of the API page.
+/// The configuration of an environment.
 ///
+/// [`Config::default`] has the defaults of the API page.
 /// After changing fields, [`Config::validate`] tells whether the whole is still allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The folder of logs, videos and results.
+    /// Folder of logs, videos and results.
     pub save_dir: String,
-    /// What is trained and scored; it also decides MIMo's version.
+    /// Behavior that is trained and scored; it also decides MIMo's version.
     pub behavior: Behavior,
-    /// What stands around MIMo.
+    /// Surroundings of MIMo.
     pub scene: Scene,
-    /// Steps after which an episode is truncated, >= 1.
+    /// Number of steps after which an episode is truncated, >= 1.
     pub max_episode_steps: u64,
-    /// Physics steps per action, >= 1.
+    /// Number of physics steps per action, >= 1.
     pub frame_skip: u32,
     /// Width and height of rendered images, 1 to 4096 pixels.
     pub render_size: u32,
-    /// Episodes between two saves of the training log, >= 1.
+    /// Number of episodes between two saves of the training log, >= 1.
     pub save_logs_every: u64,
-    /// What holds where the API page and the Python code disagree.
+    /// Source to follow where the API page and the Python code disagree.
     pub compat: Compat,
-    /// What moves the bodies.
-    pub engine: Engine,
-    /// What draws images.
+    /// Physics engine.
+    pub engine: EngineKind,
+    /// Renderer of images.
     pub renderer: RendererKind,
-    /// The seed of every random choice until a reset is given another.
+    /// Seed of every random choice, until a reset is given another.
     pub seed: u64,
-    /// Joint velocities are observed.
+    /// Whether joint velocities are observed.
     pub proprio_velocity: bool,
-    /// Joint torques are observed.
+    /// Whether joint torques are observed.
     pub proprio_torque: bool,
-    /// How far joints are into their limits is observed.
+    /// Whether the proximity of joints to their limits is observed.
     pub proprio_limits: bool,
-    /// The state of the actuators is observed.
+    /// Whether the state of the actuators is observed.
     pub proprio_actuation: bool,
-    /// The head's motion is observed.
+    /// Whether the head's motion is observed.
     pub vestibular_active: bool,
-    /// The images of both eyes are observed.
+    /// Whether the images of both eyes are observed.
     pub vision_active: bool,
     /// Width and height of an eye's image, 1 to 4096 pixels.
     pub vision_resolution: u32,
-    /// Touch is observed; see [`Config::touch_enabled`].
+    /// Whether touch is observed; see [`Config::touch_enabled`].
     pub touch_active: bool,
     /// Factor on the distance between touch sensors, 0 (touch is off) or >= 0.01.
     pub touch_scale: f64,
-    /// What a touch sensor reports.
+    /// Quantity that a touch sensor reports.
     pub touch_function: TouchFunction,
-    /// How touch sensors share a force.
+    /// Way that touch sensors share a force.
     pub touch_response: TouchResponse,
-    /// Which parts feel (`touch_hands` ...).
+    /// Parts that have touch sensors (`touch_hands` ...).
     pub touch: BodyParts<bool>,
-    /// How an action becomes joint torques.
+    /// Model that turns actions into joint torques.
     pub actuation_model: ActuationModel,
-    /// Which parts are actuated (`act_hands` ...).
+    /// Parts that are actuated (`act_hands` ...).
     pub act: BodyParts<bool>,
-    /// Which parts' joints are held (`lock_hands` ...).
+    /// Parts whose joints are locked (`lock_hands` ...).
     pub lock: BodyParts<bool>,
 }
 
@@ -106,7 +113,7 @@ impl Default for Config {
             render_size: 480,
             save_logs_every: 1000,
             compat: Compat::Api,
-            engine: Engine::Soft,
+            engine: EngineKind::Soft,
             renderer: RendererKind::Cpu,
             seed: 0,
             proprio_velocity: true,
@@ -135,7 +142,7 @@ impl Config {
     /// Reads a configuration; `file_name` only names the file in errors.
     ///
     /// # Errors
-    /// The first fault of the text, see [`ConfigError`].
+    /// Returns the first fault of the text, see [`ConfigError`].
     pub fn from_yaml(text: &str, file_name: &str) -> Result<Self, ConfigError> {
         Self::default().overlay_yaml(text, file_name)
     }
@@ -152,17 +159,23 @@ impl Config {
     /// ```
     ///
     /// # Errors
-    /// As [`Config::from_yaml`].
-    pub fn overlay_yaml(mut self, text: &str, file_name: &str) -> Result<Self, ConfigError> {
-        if text.len() > MAX_BYTES {
-            let place = Place {
+    /// Fails like [`Config::from_yaml`].
+    pub fn overlay_yaml(self, text: &str, file_name: &str) -> Result<Self, ConfigError> {
+        self.overlay_yaml_with(text, file_name, &Limits::default())
+    }
+
+    /// Reads a configuration as [`Config::overlay_yaml`] does, of at most [`Limits::config_bytes`].
+    ///
+    /// # Errors
+    /// Fails like [`Config::from_yaml`].
+    pub fn overlay_yaml_with(mut self, text: &str, file_name: &str, limits: &Limits) -> Result<Self, ConfigError> {
+        let limit = limits.config_bytes;
+        if text.len() > limit {
+            let location = Location {
                 file: file_name.to_string(),
                 position: None,
             };
-            return Err(ConfigError::TooLarge {
-                place,
-                limit: MAX_BYTES,
-            });
+            return Err(ConfigError::TooLarge { location, limit });
         }
         let positions = yaml::read(text, file_name, &mut self)?;
         let position = |name: &str| {
@@ -173,34 +186,41 @@ impl Config {
         Ok(self)
     }
 
-    /// Reads a configuration file of at most [`MAX_BYTES`].
+    /// Reads a configuration file.
     ///
     /// # Errors
-    /// As [`Config::from_yaml`], and when the file cannot be read or is not UTF-8.
+    /// Fails like [`Config::from_yaml`], and if the file cannot be read or is not UTF-8.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, ConfigError> {
         Self::default().overlay_file(path)
     }
 
-    /// [`Config::overlay_yaml`] from a file of at most [`MAX_BYTES`].
+    /// Reads a configuration file whose missing keys have the values of `self`, as [`Config::overlay_yaml`] does.
+    ///
+    /// # Errors
+    /// Fails like [`Config::from_file`].
+    pub fn overlay_file(self, path: impl AsRef<Path>) -> Result<Self, ConfigError> {
+        self.overlay_file_with(path, &Limits::default())
+    }
+
+    /// Reads a configuration file as [`Config::overlay_file`] does, of at most [`Limits::config_bytes`].
     ///
     /// # Errors
     /// As [`Config::from_file`].
-    pub fn overlay_file(self, path: impl AsRef<Path>) -> Result<Self, ConfigError> {
+    pub fn overlay_file_with(self, path: impl AsRef<Path>, limits: &Limits) -> Result<Self, ConfigError> {
         let file = path.as_ref().display().to_string();
         let mut bytes = Vec::new();
-        let limit = MAX_BYTES as u64 + 1;
-        match std::fs::File::open(path).and_then(|open| open.take(limit).read_to_end(&mut bytes)) {
+        let limit = limits.config_bytes;
+        let most = (limit as u64).saturating_add(1);
+        match std::fs::File::open(path).and_then(|open| open.take(most).read_to_end(&mut bytes)) {
             Ok(_) => {}
             Err(source) => return Err(ConfigError::Read { file, source }),
         }
-        if bytes.len() > MAX_BYTES {
-            return Err(ConfigError::TooLarge {
-                place: Place { file, position: None },
-                limit: MAX_BYTES,
-            });
+        if bytes.len() > limit {
+            let location = Location { file, position: None };
+            return Err(ConfigError::TooLarge { location, limit });
         }
         match std::str::from_utf8(&bytes) {
-            Ok(text) => self.overlay_yaml(text, &file),
+            Ok(text) => self.overlay_yaml_with(text, &file, limits),
             Err(error) => {
                 let good = &bytes[..error.valid_up_to()];
                 let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32;
@@ -210,7 +230,7 @@ impl Config {
                     .take_while(|c| *c != '\n')
                     .count() as u32;
                 Err(ConfigError::Encoding {
-                    place: Place {
+                    location: Location {
                         file,
                         position: Some((line, column)),
                     },
@@ -219,7 +239,7 @@ impl Config {
         }
     }
 
-    /// The configuration as a documented file that loads back equal.
+    /// Writes the configuration as a documented file that loads back equal.
     pub fn to_yaml(&self) -> String {
         let mut out = String::from("# Configuration of a BabyBench environment. Keys left out have their default.\n");
         let mut section = "";
@@ -229,7 +249,7 @@ impl Config {
                 out.push_str(&format!("\n# --- {section} ---\n"));
             }
             let options = match key.kind {
-                Kind::Choice(names) => format!(" Options: {}.", names.join(", ")),
+                KeyKind::Choice(names) => format!(" Options: {}.", names.join(", ")),
                 _ => String::new(),
             };
             let (doc, default) = (key.doc, key.default_value().to_yaml());
@@ -239,12 +259,12 @@ impl Config {
         out
     }
 
-    /// Every key with what it accepts and means, in the order of [`Config::to_yaml`].
+    /// Returns every key with what it accepts and means, in the order of [`Config::to_yaml`].
     pub fn keys() -> &'static [Key] {
         keys::KEYS
     }
 
-    /// Whether touch is observed: it is active and its scale is not 0.
+    /// Returns whether touch is observed: it is active and its scale is not 0.
     pub fn touch_enabled(&self) -> bool {
         self.touch_active && self.touch_scale > 0.0
     }
@@ -252,29 +272,34 @@ impl Config {
     /// Checks every value by itself and against the others, as reading a file does.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn validate(&self) -> Result<(), ConfigError> {
         self.check("configuration", |_| None)
     }
 
-    /// [`Config::validate`] with the place of each key.
+    /// Validates the configuration and names the position of a key at fault; see [`Config::validate`].
     fn check(&self, file: &str, position: impl Fn(&str) -> Option<(u32, u32)>) -> Result<(), ConfigError> {
-        let place = |position| Place {
+        let location = |position| Location {
             file: file.to_string(),
             position,
         };
         for key in Self::keys() {
             let value = key.value(self);
             if let Err(misfit) = key.kind.check(&value) {
-                return Err(yaml::refusal(key, misfit, value.to_yaml(), place(position(key.name))));
+                return Err(yaml::refusal(
+                    key,
+                    misfit,
+                    value.to_yaml(),
+                    location(position(key.name)),
+                ));
             }
         }
         match self.conflict() {
             Some((key, value, reason)) => {
                 // A default that conflicts is nowhere in the file: the choice that excludes it is.
-                let place = place(position(key).or_else(|| position("compat")));
+                let location = location(position(key).or_else(|| position("compat")));
                 Err(ConfigError::Conflict {
-                    place,
+                    location,
                     key,
                     value,
                     reason: reason.to_string(),
@@ -284,7 +309,7 @@ impl Config {
         }
     }
 
-    /// The first value that another excludes: key, value, and why.
+    /// Returns the first value that another one excludes: key, value, and why.
     fn conflict(&self) -> Option<(&'static str, String, &'static str)> {
         let touch = self.touch_enabled();
         let function = self.touch_function;
@@ -302,7 +327,7 @@ impl Config {
                 "the Python code that `compat: reference` follows does not have it; use force_vector, \
                  force_vector_global or normal_force",
             )),
-            // The Python code feels with the one-finger table, whose fingers MIMo v2 does not have.
+            // The Python code places touch sensors by the one-finger table, whose fingers MIMo v2 does not have.
             Compat::Reference if touch && self.touch.fingers && self.behavior == Behavior::HandRegard => Some((
                 "touch_fingers",
                 self.touch.fingers.to_string(),

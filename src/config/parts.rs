@@ -1,23 +1,23 @@
-//! The eight groups of body parts that touch, actuation and locks are switched by.
+//! The eight groups of body parts for which touch, actuation and locks are switched.
 
 /// A group of body parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
-    /// `*_hands`
+    /// The keys `*_hands`.
     Hands,
-    /// `*_fingers`
+    /// The keys `*_fingers`.
     Fingers,
-    /// `*_arms`
+    /// The keys `*_arms`.
     Arms,
-    /// `*_feet`
+    /// The keys `*_feet`.
     Feet,
-    /// `*_legs`
+    /// The keys `*_legs`.
     Legs,
-    /// `*_body`
+    /// The keys `*_body`.
     Body,
-    /// `*_head`
+    /// The keys `*_head`.
     Head,
-    /// `*_eyes`
+    /// The keys `*_eyes`.
     Eyes,
 }
 
@@ -34,7 +34,7 @@ impl Part {
         Self::Eyes,
     ];
 
-    /// The ending of the group's keys, such as `hands` in `touch_hands`.
+    /// Returns the ending of the group's keys, such as `hands` in `touch_hands`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hands => "hands",
@@ -60,26 +60,26 @@ impl Part {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct BodyParts<T> {
-    /// [`Part::Hands`]
+    /// Value of [`Part::Hands`].
     pub hands: T,
-    /// [`Part::Fingers`]
+    /// Value of [`Part::Fingers`].
     pub fingers: T,
-    /// [`Part::Arms`]
+    /// Value of [`Part::Arms`].
     pub arms: T,
-    /// [`Part::Feet`]
+    /// Value of [`Part::Feet`].
     pub feet: T,
-    /// [`Part::Legs`]
+    /// Value of [`Part::Legs`].
     pub legs: T,
-    /// [`Part::Body`]
+    /// Value of [`Part::Body`].
     pub body: T,
-    /// [`Part::Head`]
+    /// Value of [`Part::Head`].
     pub head: T,
-    /// [`Part::Eyes`]
+    /// Value of [`Part::Eyes`].
     pub eyes: T,
 }
 
 impl<T> BodyParts<T> {
-    /// The same value for every part.
+    /// Creates the same value for every part.
     pub const fn all(value: T) -> Self
     where
         T: Copy,
@@ -96,7 +96,7 @@ impl<T> BodyParts<T> {
         }
     }
 
-    /// The value of one part, by reference.
+    /// Returns a reference to the value of one part.
     pub fn get_ref(&self, part: Part) -> &T {
         match part {
             Part::Hands => &self.hands,
@@ -110,7 +110,7 @@ impl<T> BodyParts<T> {
         }
     }
 
-    /// The value of one part, to change it.
+    /// Returns a mutable reference to the value of one part.
     pub fn get_mut(&mut self, part: Part) -> &mut T {
         match part {
             Part::Hands => &mut self.hands,
@@ -124,7 +124,7 @@ impl<T> BodyParts<T> {
         }
     }
 
-    /// The value of one part.
+    /// Returns the value of one part.
     pub fn get(&self, part: Part) -> T
     where
         T: Copy,
@@ -132,14 +132,14 @@ impl<T> BodyParts<T> {
         *self.get_ref(part)
     }
 
-    /// Every part with its value, in the order of [`Part::ALL`].
+    /// Iterates over the parts with their values, in the order of [`Part::ALL`].
     pub fn iter(&self) -> impl Iterator<Item = (Part, &T)> {
         Part::ALL.into_iter().map(|part| (part, self.get_ref(part)))
     }
 }
 
 impl BodyParts<bool> {
-    /// Whether any part is on.
+    /// Returns whether any part is on.
     pub fn any(&self) -> bool {
         self.iter().any(|(_, on)| *on)
     }

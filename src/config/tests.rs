@@ -1,12 +1,21 @@
-//! One helper, [`check`]: what a text becomes, as the keys that differ from the defaults or as the error.
+//! Tests of the configuration; one helper, [`check`], says what a text becomes: the keys that differ from the defaults,
+//! or the error.
+
+mod keys;
+
+use testkit::Rng;
+use testkit::mutation::mutate_text;
 
 use super::*;
+
+/// The default of [`Limits::config_bytes`].
+const CONFIG_BYTES: usize = 1 << 20;
 
 fn read(input: &str) -> Result<Config, ConfigError> {
     Config::from_yaml(input, "c.yml")
 }
 
-/// The keys of `config` that differ from the defaults, or the error, in one line.
+/// Summarises in one line the keys of `config` that differ from the defaults, or the error.
 fn summary(result: Result<Config, ConfigError>) -> String {
     match result {
         Err(error) => format!("error {error}"),
@@ -51,114 +60,6 @@ fn defaults_are_those_of_the_api_page() {
     assert_eq!(ours.join(" "), page);
     check("{}", "");
     assert!(Config::default().validate().is_ok());
-}
-
-/// For every key of the table: other values load, are the only change, and survive `to_yaml`; a wrong type, null, a
-/// list and values past the range are errors naming key, value and line.
-#[test]
-fn every_key_takes_what_it_says_and_nothing_else() {
-    for key in Config::keys() {
-        let name = key.name;
-        let (good, wrong_type, out_of_range): (Vec<String>, &[&str], Vec<String>) = match key.kind {
-            Kind::Bool => {
-                let words = [
-                    "True", "TRUE", "true", "yes", "Yes", "on", "ON", "False", "FALSE", "no", "NO", "off",
-                ];
-                (
-                    words.map(String::from).into(),
-                    &["1", "y", "'True'", "tru", "[true]"],
-                    vec![],
-                )
-            }
-            Kind::Whole { min, max } => (
-                vec![min.to_string(), max.to_string(), "1_000".to_string(), "+7".to_string()],
-                &["1.0", "010", "1e3", "'1'", "many", "true", "0x10", "1__", "{a: 1}"][..6],
-                vec!["-1".to_string(), (i128::from(max) + 1).to_string(), "9".repeat(99)]
-                    .into_iter()
-                    .chain(min.checked_sub(1).map(|below| below.to_string()))
-                    .collect(),
-            ),
-            Kind::ZeroOrAtLeast(_) => (
-                ["0", "0.0", "-0.0", "0.01", "1.", ".5", "2", "1e3", "1.5e+3"]
-                    .map(String::from)
-                    .into(),
-                &["one", "true", "'1'", "1.2.3", "1e", "inf", "nan", "_1.", "+"],
-                ["-1", "0.001", "1e999", ".inf", "-.INF", ".nan"]
-                    .map(String::from)
-                    .into(),
-            ),
-            Kind::Choice(names) => {
-                // Values that hang on other keys have tests of their own.
-                let legal = |name: &&&str| !["normal_force", "reference"].contains(*name);
-                let good = names
-                    .iter()
-                    .filter(legal)
-                    .flat_map(|name| [name.to_string(), format!("'{name}'")]);
-                let bad = ["nonsense", "1", "true", "''"].map(String::from).to_vec();
-                (good.collect(), &["[none]"], bad)
-            }
-            Kind::Text => {
-                let good = [
-                    "out",
-                    "'2025'",
-                    "\"true\"",
-                    "a/b c",
-                    "C:\\new",
-                    "~/x",
-                    "\"\\u4e16 \\\"\"",
-                    ">\n a\n b",
-                ];
-                let bad = ["''", "\"a\\0b\"", "\"a\\nb\""].map(String::from).to_vec();
-                (good.map(String::from).into(), &["2025", "true", "1.5", "off"], bad)
-            }
-        };
-        for value in good {
-            // A block scalar ends with a line break, which no folder name may have, unless stripped.
-            let value = value.replace(">\n", ">-\n");
-            let config =
-                read(&format!("\n{name}: {value}\n")).unwrap_or_else(|error| panic!("{name}: {value}: {error}"));
-            for other in Config::keys().iter().filter(|other| other.name != name) {
-                assert_eq!(
-                    other.value(&config),
-                    other.default_value(),
-                    "{name} changes {}",
-                    other.name
-                );
-            }
-            assert_eq!(read(&config.to_yaml()).ok(), Some(config), "{name}: {value}");
-        }
-        let refused = |value: &str| match read(&format!("\n{name}: {value}\n")) {
-            Ok(_) => panic!("{name}: {value} was accepted"),
-            Err(error) => {
-                assert_eq!(
-                    (error.key(), error.position().map(|(line, _)| line)),
-                    (Some(name), Some(2)),
-                    "{error}"
-                );
-                let expected = key.kind.expected();
-                assert!(error.to_string().contains(&expected), "{error} does not say {expected}");
-                error
-            }
-        };
-        for value in wrong_type {
-            assert!(
-                matches!(refused(value), ConfigError::WrongType { .. }),
-                "{name}: {value}"
-            );
-        }
-        for value in &out_of_range {
-            assert!(
-                matches!(refused(value), ConfigError::OutOfRange { .. }),
-                "{name}: {value}"
-            );
-        }
-        for value in ["", "~", "null", "Null", "NULL"] {
-            assert!(
-                matches!(refused(value), ConfigError::MissingValue { .. }),
-                "{name}: {value}"
-            );
-        }
-    }
 }
 
 #[test]
@@ -225,7 +126,7 @@ fn errors_name_place_key_value_and_what_is_allowed() {
     );
     check_error(
         "touch_scale: -2.5",
-        ":1:14: `touch_scale` is -2.5, expected 0 or a finite number from 0.01",
+        ":1:14: `touch_scale` is -2.5, expected 0 or a finite number of at least 0.01",
     );
     check_error(
         "touch_active: 'True'",
@@ -379,13 +280,21 @@ fn files_are_read_within_the_limit_and_as_utf_8() {
         "{error}"
     );
     assert!(matches!(
-        read(&vec![b'#'; MAX_BYTES]),
+        read(&vec![b'#'; CONFIG_BYTES]),
         Err(ConfigError::Unsupported { .. })
     ));
     assert!(matches!(
-        read(&vec![b'#'; MAX_BYTES + 1]),
+        read(&vec![b'#'; CONFIG_BYTES + 1]),
         Err(ConfigError::TooLarge { .. })
     ));
+    let few = Limits {
+        config_bytes: 11,
+        ..Limits::default()
+    };
+    std::fs::write(&path, "scene: crib").unwrap();
+    assert!(Config::default().overlay_file_with(&path, &few).is_ok());
+    let error = Config::default().overlay_yaml_with("scene: cubes", "c.yml", &few);
+    assert!(matches!(error, Err(ConfigError::TooLarge { limit: 11, .. })));
     std::fs::remove_dir_all(&folder).unwrap();
     let error = Config::from_file(&path).unwrap_err();
     assert!(
@@ -394,68 +303,38 @@ fn files_are_read_within_the_limit_and_as_utf_8() {
     );
 }
 
-/// The example files of this repository, and, where they stand beside it, the reference's own and its recordings'.
 #[test]
-fn example_and_recorded_configurations_load() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let reference = Config {
-        compat: Compat::Reference,
-        ..Config::default()
-    };
-    let originals = root.join("../shared/reference/configs");
-    for folder in [root.join("configs"), originals.clone(), root.join("../shared/golden")] {
-        let Ok(entries) = std::fs::read_dir(&folder) else {
-            crate::files::skipped("configurations", &folder);
-            continue;
-        };
-        let files = entries
-            .map(|entry| entry.unwrap().path())
-            .filter(|path| path.extension().is_some_and(|e| e == "yml"));
-        let mut count = 0;
-        for path in files {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let name = path.display().to_string();
-            // A recording is one of the Python code.
-            let base = if folder.ends_with("golden") {
-                reference.clone()
-            } else {
-                Config::default()
-            };
-            let config = base
-                .overlay_yaml(&text, &name)
-                .unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(read(&config.to_yaml()).unwrap(), config, "{name}");
-            let original = originals.join(path.file_name().unwrap());
-            if folder.ends_with("configs") && original.exists() {
-                assert_eq!(
-                    Config::from_file(original).unwrap(),
-                    config,
-                    "{name} and the original differ"
-                );
-            }
-            count += 1;
-        }
-        assert!(count >= 3, "{} holds {count} configurations", folder.display());
+fn example_configurations_load() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");
+    let files = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut count = 0;
+    for path in files {
+        let name = path.display().to_string();
+        let config = Config::from_file(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(read(&config.to_yaml()).unwrap(), config, "{name}");
+        count += 1;
     }
+    assert!(count >= 3, "{} holds {count} configurations", folder.display());
 }
 
 #[test]
 fn bombs_end_in_an_error() {
+    let most = CONFIG_BYTES;
     let bombs = [
-        "[".repeat(MAX_BYTES),
-        "{".repeat(MAX_BYTES),
-        "? ".repeat(MAX_BYTES / 2),
-        "- ".repeat(MAX_BYTES / 2),
-        format!("seed: {}", "[".repeat(MAX_BYTES - 6)),
-        format!("? {}\n: 1", "k".repeat(MAX_BYTES - 8)),
-        format!("save_dir: {}\n{}", "x ".repeat(1000), "#\n".repeat(MAX_BYTES / 4)) + "x",
+        "[".repeat(most),
+        "{".repeat(most),
+        "? ".repeat(most / 2),
+        "- ".repeat(most / 2),
+        format!("seed: {}", "[".repeat(most - 6)),
+        format!("? {}\n: 1", "k".repeat(most - 8)),
+        format!("save_dir: {}\n{}", "x ".repeat(1000), "#\n".repeat(most / 4)) + "x",
         "a: &a [1]\nb: &b [*a,*a]\nc: &c [*b,*b]\n".repeat(1000),
-        "seed: 1\n".repeat(MAX_BYTES / 8),
-        "\n---".repeat(MAX_BYTES / 4),
-        "\t".repeat(MAX_BYTES),
-        "!".repeat(MAX_BYTES),
-        "\"".repeat(MAX_BYTES - 1),
-        "%x\n".repeat(MAX_BYTES / 4),
+        "seed: 1\n".repeat(most / 8),
+        "\n---".repeat(most / 4),
+        "\t".repeat(most),
+        "!".repeat(most),
+        "\"".repeat(most - 1),
+        "%x\n".repeat(most / 4),
     ];
     for bomb in bombs {
         let error = read(&bomb).unwrap_err().to_string();
@@ -470,25 +349,11 @@ fn damaged_files_never_panic() {
         "scene : crib # c\nsave_dir: \"\\u00e9\"\nseed: 1_0\ntouch_scale: 1.\n".to_string(),
         "{\"behavior\": 'none', ? seed : 3, touch_scale: -1e3}\n...\n".to_string(),
     ];
-    let mut random = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut next = |below: usize| {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        (random % below as u64) as usize
-    };
+    let mut rng = Rng::with_seed(1);
     let (mut good, mut bad) = (0, 0);
     for round in 0..6000 {
-        let mut bytes = seeds[round % seeds.len()].clone().into_bytes();
-        for _ in 0..=next(4) {
-            let at = next(bytes.len());
-            match next(3) {
-                0 => bytes[at] ^= 1 << next(8),
-                1 => bytes[at] = b"\0\t\n &*![]{}:?-|>'\"%@`#,~\\"[next(25)],
-                _ => drop(bytes.remove(at)),
-            }
-        }
-        match read(&String::from_utf8_lossy(&bytes)) {
+        let text = mutate_text(&seeds[round % seeds.len()], &mut rng);
+        match read(&text) {
             Ok(config) => {
                 good += 1;
                 assert_eq!(read(&config.to_yaml()).unwrap(), config);
@@ -502,5 +367,5 @@ fn damaged_files_never_panic() {
             }
         }
     }
-    assert!(good > 500 && bad > 500, "{good} loaded, {bad} refused"); // 2,600 and 3,400 when written
+    assert!(good > 500 && bad > 500, "{good} loaded, {bad} refused");
 }

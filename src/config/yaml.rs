@@ -1,14 +1,14 @@
-//! YAML text into a [`Config`], through the table of keys.
+//! The way from YAML text to a [`Config`], through the table of keys.
 //!
 //! The parser hands over one event at a time and anything but a flat mapping of scalars ends the reading at once, so
 //! neither nesting nor aliases can grow.
 
-use super::error::{self, Place};
+use super::error::{self, Location};
 use super::keys::{KEYS, Key, Misfit};
 use super::{Config, ConfigError};
 use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 
-/// Line and column, both from 1.
+/// Line and column, both counted from 1.
 pub(super) type Position = (u32, u32);
 
 /// Overwrites `config` with the keys of the text; returns where the value of each key of [`KEYS`] stands.
@@ -34,7 +34,7 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
             } else {
                 format!("'{written}' in quotes")
             };
-            return Err(refusal(key, misfit, written, reader.place(value.position)));
+            return Err(refusal(key, misfit, written, reader.location(value.position)));
         }
         positions[index] = Some(value.position);
     }
@@ -42,19 +42,23 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
     Ok(positions)
 }
 
-/// The error for a value that does not fit its key.
-pub(super) fn refusal(key: &'static Key, misfit: Misfit, value: String, place: Place) -> ConfigError {
+/// Creates the error for a value that does not fit its key.
+pub(super) fn refusal(key: &'static Key, misfit: Misfit, value: String, location: Location) -> ConfigError {
     let (key, expected) = (key.name, key.kind.expected());
     match misfit {
-        Misfit::Missing => ConfigError::MissingValue { place, key, expected },
+        Misfit::Missing => ConfigError::MissingValue {
+            location,
+            key,
+            expected,
+        },
         Misfit::WrongType => ConfigError::WrongType {
-            place,
+            location,
             key,
             value,
             expected,
         },
         Misfit::OutOfRange { nearest } => ConfigError::OutOfRange {
-            place,
+            location,
             key,
             value,
             expected,
@@ -83,8 +87,8 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    fn place(&self, position: Position) -> Place {
-        Place {
+    fn location(&self, position: Position) -> Location {
+        Location {
             file: self.file.to_string(),
             position: Some(position),
         }
@@ -92,7 +96,7 @@ impl<'t> Reader<'t> {
 
     fn unsupported<T>(&self, position: Position, what: &str) -> Result<T, ConfigError> {
         Err(ConfigError::Unsupported {
-            place: self.place(position),
+            location: self.location(position),
             what: what.to_string(),
         })
     }
@@ -107,9 +111,9 @@ impl<'t> Reader<'t> {
 
     fn syntax(&self, error: &ScanError) -> ConfigError {
         let mark = error.marker();
-        let place = self.place(position(mark));
+        let location = self.location(position(mark));
         ConfigError::Syntax {
-            place,
+            location,
             message: format!("not valid YAML: {}", error::shown(&error.info())),
         }
     }
@@ -127,7 +131,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// The next key, as an index into [`KEYS`], and its value; `None` after the last.
+    /// Reads the next key, as an index into [`KEYS`], and its value; `None` after the last.
     fn entry(&mut self, seen: &[Option<Position>]) -> Result<Option<(usize, Scalar)>, ConfigError> {
         let name = match self.next()? {
             (Event::MappingEnd, _) => return Ok(None),
@@ -144,17 +148,17 @@ impl<'t> Reader<'t> {
         };
         let Some(index) = KEYS.iter().position(|key| key.name == name.text) else {
             let nearest = error::nearest(&name.text, KEYS.iter().map(|key| key.name));
-            let place = self.place(name.position);
+            let location = self.location(name.position);
             return Err(ConfigError::UnknownKey {
-                place,
+                location,
                 key: error::shown(&name.text),
                 nearest,
             });
         };
         if let Some((first_line, _)) = seen[index] {
-            let place = self.place(name.position);
+            let location = self.location(name.position);
             return Err(ConfigError::DuplicateKey {
-                place,
+                location,
                 key: KEYS[index].name,
                 first_line,
             });
@@ -180,7 +184,7 @@ impl<'t> Reader<'t> {
             &KEYS[index],
             Misfit::WrongType,
             nested.0.to_string(),
-            self.place(nested.1),
+            self.location(nested.1),
         ))
     }
 

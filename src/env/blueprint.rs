@@ -3,13 +3,14 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::actuation;
-use crate::config::{ActuationModel, Compat, Config, Engine as EngineKind, Part, RendererKind};
+use crate::assets::AssetSource;
+use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
+use crate::env::snapshot::fingerprint;
 use crate::env::{Env, EnvError};
 use crate::mimo::{build_model, embedded, lock};
-use crate::mjcf_loader::AssetSource;
 use crate::model::Model;
 use crate::physics::{Engine, Params, RapierModel, RapierOptions, SoftEngine, SoftOptions};
-use crate::render::{Painter, RenderError, Visual};
+use crate::render::{RenderError, Renderer, Visual};
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use crate::render::{SharedGpu, gpu::GpuRenderer};
 use crate::sensors::SkinLayout;
@@ -38,6 +39,8 @@ pub struct Blueprint {
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
     embedded: bool,
+    /// What a snapshot must fit.
+    fingerprint: u64,
     skin: Option<Arc<SkinLayout>>,
     /// The look of the scene; of embedded assets it is made when it is first needed.
     visual: Arc<OnceLock<Arc<Visual>>>,
@@ -47,7 +50,7 @@ pub struct Blueprint {
 }
 
 impl Blueprint {
-    /// From the embedded assets.
+    /// Builds the scene from the embedded assets.
     ///
     /// # Errors
     /// As [`Blueprint::with_assets`].
@@ -57,7 +60,7 @@ impl Blueprint {
         Ok(blueprint)
     }
 
-    /// From other assets, laid out like the embedded ones.
+    /// Builds the scene from other assets, laid out like the embedded ones.
     ///
     /// Builds the scene, applies the locks (under `compat: reference` after settling) and lets the scene settle for 100
     /// steps from `qpos0` with the action 0.
@@ -85,6 +88,7 @@ impl Blueprint {
             let _ = visual.set(Arc::new(Visual::new(&model, assets)?));
         }
         Ok(Self {
+            fingerprint: fingerprint(&model, &config),
             config: Arc::new(config),
             model,
             engines,
@@ -99,7 +103,7 @@ impl Blueprint {
         })
     }
 
-    /// The same with another actuation model: settled anew, on the same compiled scene where the actuators are the same.
+    /// Returns the same blueprint with another actuation model: settled anew, on the same compiled scene where the actuators are the same.
     ///
     /// `spring_damper` and `muscle` share the scene's motors. To and from `positional`, whose actuators are servos, a scene
     /// of the embedded assets is compiled again; all that is not an actuator keeps its number.
@@ -124,6 +128,7 @@ impl Blueprint {
         let engines = Engines::new(&config, &model)?;
         let settled = Settled::new(&config, &engines, &model)?;
         Ok(Self {
+            fingerprint: fingerprint(&model, &config),
             config: Arc::new(config),
             model,
             engines,
@@ -134,7 +139,7 @@ impl Blueprint {
         })
     }
 
-    /// A new environment.
+    /// Creates an environment.
     ///
     /// # Errors
     /// Parts of the scene that the behavior needs are missing.
@@ -142,47 +147,52 @@ impl Blueprint {
         Env::from_blueprint(self)
     }
 
-    /// A new engine of the kind that the configuration asks for.
+    /// Creates an engine of the kind that the configuration asks for.
     pub fn engine(&self) -> Box<dyn Engine> {
         self.engines.make()
     }
 
-    /// The configuration.
+    /// Returns the configuration.
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// The compiled scene.
+    /// Returns the compiled scene.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 
-    /// Settled positions and velocities, shared.
+    /// Returns what a snapshot must fit to be restored.
+    pub(super) fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+
+    /// Returns the settled positions and velocities, shared.
     pub(crate) fn settled(&self) -> (Arc<Vec<f64>>, Arc<Vec<f64>>) {
         (self.init_qpos.clone(), self.init_qvel.clone())
     }
 
-    /// Settled positions (nq), from which episodes start.
+    /// Returns the settled positions (nq), from which episodes start.
     pub fn init_qpos(&self) -> &[f64] {
         &self.init_qpos
     }
 
-    /// Velocities (nv) after settling; not zero.
+    /// Returns the velocities (nv) after settling, which are not zero.
     pub fn init_qvel(&self) -> &[f64] {
         &self.init_qvel
     }
 
-    /// Parameters after a reset: the model's, with the configured locks active and the changes of the actuation model.
+    /// Returns the parameters after a reset: the model's, with the configured locks active and the changes of the actuation model.
     pub fn params(&self) -> &Params {
         &self.params
     }
 
-    /// Where the touch sensors are, if touch is active.
+    /// Returns where the touch sensors are, if touch is active.
     pub fn skin(&self) -> Option<&Arc<SkinLayout>> {
         self.skin.as_ref()
     }
 
-    /// The look of the scene, shared by its environments.
+    /// Returns the look of the scene, which its environments share.
     ///
     /// # Errors
     /// Textures that cannot be read.
@@ -194,15 +204,15 @@ impl Blueprint {
         Ok(self.visual.get_or_init(|| made).clone())
     }
 
-    /// The renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
+    /// Creates the renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
     ///
     /// # Errors
     /// Textures that cannot be read; for `renderer: wgpu` no graphics adapter, a build without it, a browser.
-    pub fn painter(&self) -> Result<Painter, EnvError> {
+    pub fn renderer(&self) -> Result<Renderer, EnvError> {
         match self.config.renderer {
-            RendererKind::Cpu => Ok(Painter::cpu(self.visual()?)),
+            RendererKind::Cpu => Ok(Renderer::cpu(self.visual()?)),
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            RendererKind::Wgpu => Ok(Painter::gpu(self.gpu()?)),
+            RendererKind::Wgpu => Ok(Renderer::gpu(self.gpu()?)),
             #[cfg(not(all(feature = "wgpu", not(target_arch = "wasm32"))))]
             RendererKind::Wgpu if cfg!(feature = "wgpu") => Err(RenderError::CannotWait.into()),
             #[cfg(not(all(feature = "wgpu", not(target_arch = "wasm32"))))]
@@ -210,7 +220,7 @@ impl Blueprint {
         }
     }
 
-    /// The renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
+    /// Returns the renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
     /// whatever renderer the configuration asks for.
     ///
     /// # Errors
@@ -226,7 +236,7 @@ impl Blueprint {
     }
 }
 
-/// Makes engines of one kind for one model.
+/// A maker of engines of one kind for one model.
 #[derive(Clone, Debug)]
 enum Engines {
     Soft(Arc<Model>, SoftOptions),
@@ -270,12 +280,12 @@ struct Settled {
 }
 
 impl Settled {
-    /// 100 steps from `qpos0` with the controls of the action 0, whose muscle forces are those at `qpos0` throughout.
+    /// Settles the scene: 100 steps from `qpos0` with the controls of the action 0, whose muscle forces are those at `qpos0` throughout.
     fn new(config: &Config, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
-        let mut actuation = actuation::build(model, config)?;
+        let actuation = actuation::build(model, config)?;
         let mut engine = engines.make();
         let mut state = engine.new_state();
-        actuation.prepare(model, &mut state.params);
+        actuation.prepare(model, &mut state);
         let mut params = state.params.clone();
         for part in Part::ALL {
             if config.lock.get(part) {

@@ -11,7 +11,7 @@ use crate::physics::{EngineError, RapierError};
 use crate::render::RenderError;
 use crate::sensors::touch::SkinError;
 
-/// Why an environment cannot be built, reset or stepped.
+/// An error in building, resetting or stepping an environment.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum EnvError {
@@ -28,15 +28,15 @@ pub enum EnvError {
     #[error("cannot draw the scene: {0}")]
     Render(#[from] RenderError),
     /// The eyes are asked for while vision is off.
-    #[error("the eyes see nothing: vision_active is False; set it to True")]
+    #[error("vision is off: set vision_active to True")]
     NoVision,
     /// An actuator does not fit the actuation model.
     #[error(transparent)]
     Actuation(#[from] ActuationError),
     /// The actuation model needs actuators that the scene does not have, and its assets are not at hand.
     #[error(
-        "actuation_model {wanted} needs other actuators than {present}, and the scene is not from the embedded assets: \
-         build it with Blueprint::with_assets"
+        "actuation_model {wanted} needs other actuators than {present}, and the scene does not come from the embedded \
+         assets; build it with Blueprint::with_assets"
     )]
     OtherActuators {
         /// Actuation model of the scene.
@@ -94,19 +94,7 @@ pub enum EnvError {
     /// `step` before the first `reset`.
     #[error("call reset before step")]
     NotReset,
-    /// A log cannot be read or written.
-    #[error(transparent)]
-    Log(#[from] crate::eval::LogError),
-    /// The scene cannot be written.
-    #[error(transparent)]
-    SceneFile(Box<crate::eval::SceneFileError>),
     /// The engine cannot go on.
     #[error(transparent)]
     Engine(#[from] EngineError),
-}
-
-impl From<crate::eval::SceneFileError> for EnvError {
-    fn from(e: crate::eval::SceneFileError) -> Self {
-        Self::SceneFile(Box::new(e))
-    }
 }

@@ -7,7 +7,7 @@ use crate::sensors::Vision;
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use {
     crate::render::gpu::Rgb,
-    crate::render::{RenderError, SharedGpu, Shot},
+    crate::render::{RenderError, RenderRequest, SharedGpu},
     std::sync::{Arc, PoisonError},
 };
 
@@ -54,13 +54,13 @@ impl Env {
     }
 
     fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
-        let vision = self.vision.as_mut().ok_or(EnvError::NoVision)?;
-        Ok((vision, &self.state))
+        let vision = self.senses.vision.as_mut().ok_or(EnvError::NoVision)?;
+        Ok((vision, &self.physics.state))
     }
 
-    /// Whether resets and steps leave the eyes' images as they are, for [`Env::draw_eyes`] to draw.
+    /// Sets whether resets and steps leave the eyes' images as they are, for [`Env::draw_eyes`] to draw.
     pub fn defer_vision(&mut self, deferred: bool) {
-        self.vision_deferred = deferred;
+        self.senses.vision_deferred = deferred;
     }
 
     /// Draws what the eyes of many environments see into their observations. With `renderer: wgpu`, all environments of a
@@ -89,23 +89,17 @@ impl Env {
         #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
         let mut batches: Vec<Batch> = Vec::new();
         for env in environments {
-            let Env {
-                vision: Some(vision),
-                state,
-                eye_values: [left, right],
-                ..
-            } = env
-            else {
-                continue;
-            };
+            let state = &env.physics.state;
+            let Some(vision) = &mut env.senses.vision else { continue };
+            let [left, right] = &mut env.senses.eye_values;
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            if let Some(gpu) = vision.painter().shared_gpu() {
+            if let Some(gpu) = vision.renderer().shared_gpu() {
                 let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
                 let index = known.unwrap_or(batches.len());
                 if known.is_none() {
                     batches.push(Batch::new(gpu.clone()));
                 }
-                batches[index].shots.extend(vision.shots(state));
+                batches[index].requests.extend(vision.requests(state));
                 batches[index].outs.extend([&mut left[..], &mut right[..]]);
                 continue;
             }
@@ -119,11 +113,11 @@ impl Env {
     }
 }
 
-/// What one GPU draws.
+/// The pictures that one GPU draws.
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 struct Batch<'e> {
     gpu: SharedGpu,
-    shots: Vec<Shot<'e>>,
+    requests: Vec<RenderRequest<'e>>,
     outs: Vec<&'e mut [u8]>,
 }
 
@@ -132,14 +126,14 @@ impl Batch<'_> {
     fn new(gpu: SharedGpu) -> Self {
         Self {
             gpu,
-            shots: Vec::new(),
+            requests: Vec::new(),
             outs: Vec::new(),
         }
     }
 
     fn draw(self) -> Result<(), RenderError> {
         let mut gpu = self.gpu.lock().unwrap_or_else(PoisonError::into_inner);
-        let pending = gpu.begin::<Rgb>(&self.shots)?;
+        let pending = gpu.begin::<Rgb>(&self.requests)?;
         drop(gpu);
         pending.wait_into(self.outs)
     }

@@ -1,40 +1,47 @@
 //! The environment: Gymnasium's reset and step.
 
 mod access;
-mod behavior;
 mod blueprint;
 mod details;
 mod error;
 mod eyes;
-mod rng;
+mod info;
+mod physics;
+mod senses;
+#[cfg(feature = "serde")]
+mod serial;
 mod snapshot;
-mod spaces;
+mod stage;
+mod tracker;
+mod viewer;
 
-pub use behavior::{BehaviorInfo, Info};
 pub use blueprint::Blueprint;
-pub use details::{Details, PartNames};
+pub use details::{InfoDetails, PartNames};
 pub use error::EnvError;
-pub use rng::NumpyRng;
-pub use snapshot::{Snapshot, SnapshotError};
-pub use spaces::{BoxSpace, Dtype, ObservationSpace};
+pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand};
+#[cfg(feature = "serde")]
+pub use serial::Detailed;
+pub use snapshot::{Snapshot, SnapshotError, SnapshotInfo};
+pub use stage::{EnvProbe, EnvStage};
+pub use viewer::Viewer;
 
 use crate::actuation::{self, Actuation};
 use crate::config::{Behavior, Compat, Config};
-use crate::env::behavior::Watcher;
-use crate::eval::logs::{LogError, TrainingLog};
-use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
-use crate::physics::{Engine, EngineError, Params, Stage, State};
-use crate::render::Painter;
-use crate::sensors::{EYES, Proprioception, Touch, Vestibular, Vision};
+use crate::mimo::{LockReport, LockTarget};
+use crate::physics::EngineError;
+use crate::spaces::NumpyRng;
+use physics::Physics;
+use senses::Senses;
+use tracker::BehaviorTracker;
 
 /// Steps with random actions at the start of an episode of `self_touch` and `hand_regard`.
 const START_ACTIONS: usize = 10;
 
-/// What MIMo senses. The vectors belong to the environment and change with the next step.
+/// The observation: what MIMo senses. The vectors belong to the environment and change with the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation<'a> {
-    /// Proprioception; [`Env::proprioception`] tells what stands where.
-    pub observation: &'a [f64],
+    /// Proprioception, Gymnasium's key `observation`; [`Env::proprioception`] tells what stands where.
+    pub proprioception: &'a [f64],
     /// What the skin feels, N, if `touch_active`; [`Env::touch`] tells what stands where.
     pub touch: Option<&'a [f32]>,
     /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active`.
@@ -45,7 +52,7 @@ pub struct Observation<'a> {
     pub vestibular: Option<&'a [f64]>,
 }
 
-/// What a step returns, in Gymnasium's order.
+/// The result of a step, in Gymnasium's order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<'a> {
     /// The observation.
@@ -71,7 +78,7 @@ pub struct Step<'a> {
 /// loop {
 ///     env.sample_action(&mut action);
 ///     let step = env.step(&action)?;
-///     assert!(step.observation.observation.iter().all(|v| v.is_finite()));
+///     assert!(step.observation.proprioception.iter().all(|v| v.is_finite()));
 ///     if step.truncated {
 ///         break;
 ///     }
@@ -81,34 +88,27 @@ pub struct Step<'a> {
 /// ```
 pub struct Env {
     blueprint: Blueprint,
-    engine: Box<dyn Engine>,
-    state: State,
-    /// Parameters after a reset: the blueprint's, with what [`Env::lock`] and [`Env::unlock`] changed.
-    base: Params,
-    fingerprint: u64,
+    physics: Physics,
     actuation: Box<dyn Actuation>,
-    proprioception: Proprioception,
-    touch: Option<Touch>,
-    vision: Option<Vision>,
-    vestibular: Option<Vestibular>,
-    watcher: Watcher,
-    rng: NumpyRng,
+    senses: Senses,
+    tracker: BehaviorTracker,
     info: Info,
-    /// Episodes go there as they end.
-    training: Option<TrainingLog>,
-    /// Information goes on from episode to episode.
-    accumulate: bool,
-    steps: u64,
-    ready: bool,
-    proprioception_values: Vec<f64>,
-    vestibular_values: Vec<f64>,
-    eye_values: [Vec<u8>; 2],
-    /// Whether [`Env::draw_eyes`] draws what the eyes see, instead of each step.
-    vision_deferred: bool,
-    /// For [`Env::render`], made when it is first needed.
-    painter: Option<Painter>,
-    picture: Vec<u8>,
+    episode: Episode,
+    rng: NumpyRng,
+    /// Room for the random actions at the start of an episode.
     action: Vec<f32>,
+    probe: Option<EnvProbe>,
+}
+
+/// The progress of an episode.
+#[derive(Clone, Copy, Debug, Default)]
+struct Episode {
+    /// Number of steps done.
+    steps: u64,
+    /// Whether a step may follow: there was a reset, and nothing diverged since.
+    ready: bool,
+    /// Whether information goes on from episode to episode.
+    accumulate: bool,
 }
 
 impl std::fmt::Debug for Env {
@@ -121,7 +121,7 @@ impl std::fmt::Debug for Env {
 }
 
 impl Env {
-    /// From the embedded assets. Several environments of one configuration are cheaper from one [`Blueprint`].
+    /// Builds an environment from the embedded assets. Several environments of one configuration are cheaper from one [`Blueprint`].
     ///
     /// # Errors
     /// As [`Blueprint::new`].
@@ -131,48 +131,21 @@ impl Env {
 
     fn from_blueprint(blueprint: &Blueprint) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
-        let engine = blueprint.engine();
-        let mut state = engine.new_state();
-        state.params.clone_from(blueprint.params());
         let actuation = actuation::build(model, config)?;
-        let proprioception = Proprioception::new(model, config, actuation.observation_len());
-        let touch = blueprint.skin().map(|skin| Touch::configured(skin.clone(), config));
-        let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
-        let vision = if config.vision_active {
-            let eyes = Vision::with_painter(model, blueprint.painter()?, config.vision_resolution as usize);
-            Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?)
-        } else {
-            None
-        };
-        let pixels = vision.as_ref().map_or(0, Vision::len);
-        let watcher = Watcher::new(model, config.behavior, config.compat)?;
+        let tracker = BehaviorTracker::new(model, config.behavior, config.compat)?;
         let mut info = Info::default();
-        watcher.reset(&mut info);
+        tracker.reset(&mut info);
         Ok(Self {
-            proprioception_values: vec![0.0; proprioception.len()],
-            vestibular_values: vec![0.0; vestibular.as_ref().map_or(0, Vestibular::len)],
-            eye_values: [vec![0; pixels], vec![0; pixels]],
-            vision_deferred: false,
-            painter: None,
-            picture: Vec::new(),
-            watcher,
+            physics: Physics::new(blueprint, &*actuation),
+            senses: Senses::new(blueprint, &*actuation)?,
             rng: NumpyRng::seed(config.seed),
             action: Vec::with_capacity(actuation.action_space().len()),
-            info,
-            training: None,
-            accumulate: false,
-            steps: 0,
-            ready: false,
+            episode: Episode::default(),
+            probe: None,
             blueprint: blueprint.clone(),
-            engine,
-            state,
-            base: blueprint.params().clone(),
-            fingerprint: snapshot::fingerprint(model, config),
             actuation,
-            proprioception,
-            touch,
-            vision,
-            vestibular,
+            tracker,
+            info,
         })
     }
 
@@ -193,9 +166,8 @@ impl Env {
         if self.blueprint.config().behavior != Behavior::None {
             for _ in 0..START_ACTIONS {
                 self.actuation.action_space().sample(&mut self.rng, &mut self.action);
-                self.actuation
-                    .set_action(self.blueprint.model(), &mut self.state, &self.action);
-                self.engine.step(&mut self.state)?;
+                let model = self.blueprint.model();
+                self.physics.step(model, &*self.actuation, &self.action, 1)?;
             }
         }
         self.begin_episode()?;
@@ -220,33 +192,14 @@ impl Env {
                 return Err(EnvError::StateLength { what, found, expected });
             }
         }
-        self.log_episode()?;
-        let model = self.blueprint.model();
-        self.ready = false;
-        let s = &mut self.state;
-        s.time = 0.0;
-        s.step = 0;
-        s.ctrl.fill(0.0);
-        s.qfrc_applied.fill(0.0);
-        s.qacc_warmstart.fill(0.0);
-        s.params.clone_from(&self.base);
-        if self.blueprint.config().compat == Compat::Reference {
-            // the reference resets its actuators before it sets the state
-            s.qpos.copy_from_slice(&model.qpos0);
-            s.qvel.fill(0.0);
-            self.actuation.reset(model, s);
-        }
-        s.qpos.copy_from_slice(qpos);
-        s.qvel.copy_from_slice(qvel);
-        if self.blueprint.config().compat == Compat::Api {
-            self.actuation.reset(model, s);
-        }
-        self.engine.forward(s)?;
+        self.end_episode();
+        let (model, compat) = (self.blueprint.model(), self.blueprint.config().compat);
+        self.physics.place(model, compat, &*self.actuation, qpos, qvel)?;
         Ok(())
     }
 
     /// Puts the scene at positions (nq) and velocities (nv) in the middle of an episode, with everything computed there.
-    /// Time, counters, information, locks, muscle activities and the start of the solver stay.
+    /// Time, counters, information, locks, muscle activations and the start of the solver stay.
     ///
     /// # Errors
     /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
@@ -254,23 +207,26 @@ impl Env {
         let model = self.blueprint.model();
         check_vector("qpos", qpos, model.nq)?;
         check_vector("qvel", qvel, model.nv)?;
-        self.state.qpos.copy_from_slice(qpos);
-        self.state.qvel.copy_from_slice(qvel);
-        if let Err(e) = self.engine.forward(&mut self.state) {
-            self.ready = false;
+        let Physics { engine, state, .. } = &mut self.physics;
+        state.qpos.copy_from_slice(qpos);
+        state.qvel.copy_from_slice(qvel);
+        if let Err(e) = engine.forward(state) {
+            self.episode.ready = false;
             return Err(e.into());
         }
         self.sense()?;
         Ok(self.observation())
     }
 
-    /// Sets the activities of the muscles, in the order of the action, each clipped to [0, 1].
+    /// Sets the activations of the muscles ([`act`](crate::physics::State::act)), in the order of the action, each clipped to [0, 1].
     ///
     /// # Errors
     /// A wrong length (models without muscles have none) or numbers that are not finite; nothing is changed then.
     pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
-        check_vector("activity", activity, self.actuation.activity().len())?;
-        self.actuation.set_activity(activity);
+        check_vector("activity", activity, self.physics.state.act.len())?;
+        for (act, &new) in self.physics.state.act.iter_mut().zip(activity) {
+            *act = new.clamp(0.0, 1.0);
+        }
         Ok(())
     }
 
@@ -294,76 +250,35 @@ impl Env {
     /// No such joint, a joint that cannot be locked, an angle that is not finite. Joints that the scene holds are not
     /// errors but in the report.
     pub fn lock<'a>(&mut self, target: impl Into<LockTarget<'a>>, angle: f64) -> Result<LockReport, EnvError> {
-        let report = lock(self.blueprint.model(), &mut self.state.params, target.into(), angle)?;
-        self.keep_locks(&report);
-        Ok(report)
+        self.physics.lock(self.blueprint.model(), target.into(), angle)
     }
 
-    /// Takes the lock off a joint, or all joints of a part, from the next step on and for later episodes.
+    /// Unlocks a joint, or all joints of a part, from the next step on and for later episodes.
     ///
     /// # Errors
     /// No such joint, a joint that cannot be locked.
     pub fn unlock<'a>(&mut self, target: impl Into<LockTarget<'a>>) -> Result<LockReport, EnvError> {
-        let report = unlock(self.blueprint.model(), &mut self.state.params, target.into())?;
-        self.keep_locks(&report);
-        Ok(report)
+        self.physics.unlock(self.blueprint.model(), target.into())
     }
 
-    fn keep_locks(&mut self, report: &LockReport) {
-        let (now, model) = (&self.state.params, self.blueprint.model());
-        for e in report.changed.iter().filter_map(|&j| lock_of(model, j)) {
-            self.base.eq_active[e.0] = now.eq_active[e.0];
-            self.base.eq_offset[e.0] = now.eq_offset[e.0];
-        }
+    /// Ends the episode and returns how many steps it had. The next step needs a reset.
+    pub fn end_episode(&mut self) -> u64 {
+        self.episode.ready = false;
+        std::mem::take(&mut self.episode.steps)
     }
 
-    /// Adds the episode that ends to the training log.
-    fn log_episode(&mut self) -> Result<(), LogError> {
-        let steps = std::mem::take(&mut self.steps);
-        match &mut self.training {
-            Some(log) => log.end_episode(steps, &self.info.behavior),
-            None => Ok(()),
-        }
-    }
-
-    /// Logs episodes from now on, or no longer; [`crate::make_env`] does it for training.
-    pub fn log_training(&mut self, log: Option<TrainingLog>) {
-        let names = (self.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(self.model()));
-        self.training = log.map(|log| log.with_names(names));
-    }
-
-    /// The episodes logged so far, if this environment logs.
-    pub fn training_log(&self) -> Option<&TrainingLog> {
-        self.training.as_ref()
-    }
-
-    /// Saves the training log, under `compat: api` with the running episode, which ends. Without a log, nothing happens.
-    ///
-    /// # Errors
-    /// What the file system says.
-    pub fn finish_training(&mut self) -> Result<(), EnvError> {
-        if self.training.is_some() && self.config().compat == Compat::Api {
-            self.ready = false;
-            self.log_episode()?;
-        }
-        match &self.training {
-            Some(log) => Ok(log.save()?),
-            None => Ok(()),
-        }
-    }
-
-    /// Whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
-    pub(crate) fn accumulate_info(&mut self, on: bool) {
-        self.accumulate = on;
+    /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
+    pub fn accumulate_info(&mut self, on: bool) {
+        self.episode.accumulate = on;
     }
 
     fn begin_episode(&mut self) -> Result<(), EnvError> {
-        self.steps = 0;
+        self.episode.steps = 0;
         self.info.steps = 0;
-        if !self.accumulate {
-            self.watcher.reset(&mut self.info);
+        if !self.episode.accumulate {
+            self.tracker.reset(&mut self.info);
         }
-        self.ready = true;
+        self.episode.ready = true;
         self.sense()
     }
 
@@ -375,35 +290,33 @@ impl Env {
     /// An action of wrong length or with numbers that are not finite, which leaves the state untouched; a simulation that
     /// diverged, after which [`Env::reset`] is needed.
     pub fn step(&mut self, action: &[f32]) -> Result<Step<'_>, EnvError> {
-        if !self.ready {
+        if !self.episode.ready {
             return Err(EnvError::NotReset);
         }
         self.check_action(action)?;
-        let model = self.blueprint.model();
-        self.actuation.set_action(model, &mut self.state, action);
-        for k in 0..self.blueprint.config().frame_skip {
-            if k > 0 {
-                self.actuation.substep(model, &mut self.state);
-            }
-            if let Err(e) = self.engine.step(&mut self.state) {
-                self.ready = false;
-                return Err(e.into());
-            }
+        self.mark(Some(EnvStage::Actuation));
+        let (model, config) = (self.blueprint.model(), self.blueprint.config());
+        let stepped = self.physics.step(model, &*self.actuation, action, config.frame_skip);
+        if let Err(e) = stepped {
+            self.episode.ready = false;
+            return Err(e.into());
         }
-        self.engine.mark(Some(Stage::Senses));
+        self.mark(Some(EnvStage::Senses));
         self.sense()?;
-        self.watcher.update(&self.state, &mut self.info);
-        self.info.steps = match self.blueprint.config().compat {
-            Compat::Api => self.steps + 1,
-            Compat::Reference => self.steps,
+        self.tracker.update(&self.physics.state, &mut self.info);
+        let (steps, config) = (&mut self.episode.steps, self.blueprint.config());
+        self.info.steps = match config.compat {
+            Compat::Api => *steps + 1,
+            Compat::Reference => *steps,
         };
-        self.steps += 1;
-        self.engine.mark(None);
+        *steps += 1;
+        let truncated = *steps >= config.max_episode_steps;
+        self.mark(None);
         Ok(Step {
             observation: self.observation(),
             reward: 0.0,
             terminated: false,
-            truncated: self.steps >= self.blueprint.config().max_episode_steps,
+            truncated,
             info: &self.info,
         })
     }
@@ -426,30 +339,12 @@ impl Env {
 
     fn sense(&mut self) -> Result<(), EnvError> {
         let model = self.blueprint.model();
-        self.proprioception
-            .observe(model, &self.state, &*self.actuation, &mut self.proprioception_values);
-        if let Some(t) = &mut self.touch {
-            t.observe(model, &self.state);
-        }
-        if let Some(v) = &self.vestibular {
-            v.observe(model, &self.state, &mut self.vestibular_values);
-        }
-        if let (Some(v), false) = (&mut self.vision, self.vision_deferred) {
-            let [left, right] = &mut self.eye_values;
-            v.observe(&self.state, [left, right])?;
-        }
-        Ok(())
+        self.senses.observe(model, &self.physics.state, &*self.actuation)
     }
 
-    /// The observation of the last reset or step.
+    /// Returns the observation of the last reset or step.
     pub fn observation(&self) -> Observation<'_> {
-        Observation {
-            observation: &self.proprioception_values,
-            touch: self.touch.as_ref().map(Touch::values),
-            eye_left: self.vision.as_ref().map(|_| &self.eye_values[0][..]),
-            eye_right: self.vision.as_ref().map(|_| &self.eye_values[1][..]),
-            vestibular: self.vestibular.as_ref().map(|_| &self.vestibular_values[..]),
-        }
+        self.senses.observation()
     }
 
     /// Fills `action` with a random action, the same that Gymnasium's `action_space.sample()` draws from the same seed.

@@ -7,33 +7,34 @@ use std::sync::{Mutex, PoisonError};
 use thiserror::Error;
 
 use super::evaluation::{Evaluation, EvaluationError};
-use super::make::for_evaluation;
-use super::policy::{Policy, PolicyError};
 use crate::config::Compat;
 use crate::env::{Blueprint, EnvError, Info};
+use crate::policy::{Policy, PolicyError};
+use crate::runs::for_evaluation;
 
-/// What is to be evaluated.
+/// A plan of an evaluation: how many episodes, how long, and what is recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Number of episodes; episode k is seeded with the configuration's seed + k.
     pub episodes: u64,
-    /// Most steps of an episode; it also ends when it is truncated.
+    /// Maximum number of steps of an episode; it also ends when it is truncated.
     pub duration: u64,
     /// Whether videos are made.
     pub render: bool,
     /// Frames per second of the videos.
     pub fps: u32,
-    /// Episodes at the same time. Results do not depend on it.
+    /// Number of episodes run in parallel; results do not depend on it.
     pub jobs: usize,
 }
 
-/// Why episodes fail.
+/// An error that ends evaluation episodes.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum EpisodeError {
-    /// Counters that go on from episode to episode need one after the other.
+    /// Episodes whose counters continue from one to the next cannot run in parallel.
     #[error(
-        "under compat: reference episodes continue each other's counters and run one after the other: use --jobs 1"
+        "under compat: reference each episode continues the counters of the one before, so episodes cannot run in \
+         parallel; use --jobs 1"
     )]
     Jobs,
     /// The environment fails.
@@ -41,15 +42,15 @@ pub enum EpisodeError {
     Env {
         /// The episode.
         episode: u64,
-        /// Why.
+        /// The cause.
         source: Box<EnvError>,
     },
-    /// Whoever was told of the progress wanted no more.
-    #[error("stopped after {done} of {planned} episodes; the logs of these are whole")]
+    /// The progress callback stopped the evaluation.
+    #[error("stopped after {done} of {planned} episodes; their logs are complete")]
     Stopped {
-        /// Episodes that are done and logged.
+        /// Number of episodes that are done and logged.
         done: u64,
-        /// Episodes that were planned.
+        /// Number of episodes that were planned.
         planned: u64,
     },
     /// The policy fails.
@@ -115,17 +116,17 @@ pub fn run_episodes(
     Ok(done.into_iter().map(|(_, info)| info).collect())
 }
 
-/// What jobs ask and tell.
+/// The callbacks that jobs share.
 struct Schedule<'a> {
-    /// The next episode, if there is one.
+    /// Returns the next episode, if there is one.
     next: &'a (dyn Fn() -> Option<u64> + Sync),
-    /// A step was done; whether to go on.
+    /// Reports a step; returns whether to go on.
     step: &'a (dyn Fn() -> ControlFlow<()> + Sync),
-    /// An episode was done, with its last information.
+    /// Reports a finished episode with its last information.
     done: &'a (dyn Fn(u64, Info) + Sync),
 }
 
-/// The episodes of one job, in its own environment.
+/// Runs the episodes of one job in an environment of its own.
 fn episodes(
     blueprint: &Blueprint,
     plan: &Plan,

@@ -1,18 +1,17 @@
 //! Evaluation of a training run and of a learned policy.
 
-use std::error::Error as StdError;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::film::RoomFilm;
-use super::logs::{EvaluationLog, LogError, read_training, training_path};
+use super::film::{Film, FilmError, RoomFilm};
 use super::scores::{Score, ScoreError};
-use super::video::DEFAULT_FPS;
 use crate::config::Behavior;
 use crate::env::Env;
+use crate::formats::avi::DEFAULT_FPS;
+use crate::runs::logs::{EvaluationLog, LogError, read_training, training_path};
 
-/// Why an evaluation fails.
+/// An error of an evaluation.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum EvaluationError {
@@ -24,13 +23,13 @@ pub enum EvaluationError {
     Score {
         /// The log.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: ScoreError,
     },
     /// The training log is of another behavior.
     #[error(
-        "{}: the log is of behavior {found}, but the environment's is {expected}: give its configuration the save_dir \
-         of a training of {expected}, or one of its own", path.display()
+        "{}: the log is for behavior {found}, but the environment's behavior is {expected}; set save_dir to the folder \
+         of a run with behavior {expected}, or to a new one", path.display()
     )]
     Behavior {
         /// The log.
@@ -51,33 +50,12 @@ pub enum EvaluationError {
     Video {
         /// The file.
         path: PathBuf,
-        /// What went wrong.
+        /// The cause.
         source: FilmError,
     },
 }
 
-/// Why a film fails.
-pub type FilmError = Box<dyn StdError + Send + Sync>;
-
-/// Makes the videos of evaluation episodes.
-pub trait Film {
-    /// Adds the frame of the environment's present step; the first one begins a video.
-    ///
-    /// # Errors
-    /// What the drawing, the coding or the file system says.
-    fn frame(&mut self, env: &Env) -> Result<(), FilmError>;
-
-    /// Ends the video: it is complete at `path`, replacing what was there. Its folder exists.
-    ///
-    /// # Errors
-    /// As [`Film::frame`].
-    fn end(&mut self, path: &Path) -> Result<(), FilmError>;
-
-    /// Drops the video that was begun.
-    fn discard(&mut self);
-}
-
-/// The score of the training log in the folder of a run.
+/// Returns the score of the training log in the folder of a run.
 ///
 /// # Errors
 /// No log, a damaged one, one without score.
@@ -131,7 +109,7 @@ impl std::fmt::Debug for Evaluation<'_> {
 }
 
 impl<'f> Evaluation<'f> {
-    /// Without video, into the `save_dir` of the environment's configuration.
+    /// Starts an evaluation without video, into the `save_dir` of the environment's configuration.
     pub fn new(env: &Env) -> Self {
         Self {
             behavior: env.config().behavior,
@@ -141,14 +119,14 @@ impl<'f> Evaluation<'f> {
         }
     }
 
-    /// Also makes videos of its own kind, `videos/evaluation_N.avi`.
+    /// Adds a film of the caller's own, written to `videos/evaluation_N.avi`.
     #[must_use]
     pub fn with_film(mut self, film: impl Film + 'f) -> Self {
         self.film = Some(Box::new(film));
         self
     }
 
-    /// Also makes videos of the room and what the behavior is about ([`RoomFilm`]), `videos/evaluation_N.avi`.
+    /// Adds videos of the room and of what the behavior is about ([`RoomFilm`]), `videos/evaluation_N.avi`.
     ///
     /// # Errors
     /// As [`RoomFilm::new`].
@@ -156,7 +134,7 @@ impl<'f> Evaluation<'f> {
         self.with_video_at(env, DEFAULT_FPS)
     }
 
-    /// [`Evaluation::with_video`] with another number of frames per second.
+    /// Adds videos with a given number of frames per second; see [`Evaluation::with_video`].
     ///
     /// # Errors
     /// As [`RoomFilm::new`].
@@ -168,19 +146,19 @@ impl<'f> Evaluation<'f> {
         }
     }
 
-    /// Into another folder; to be called before [`Evaluation::with_video`].
+    /// Sets another folder for the results; call it before [`Evaluation::with_video`].
     #[must_use]
     pub fn with_save_dir(mut self, save_dir: impl Into<PathBuf>) -> Self {
         self.save_dir = save_dir.into();
         self
     }
 
-    /// Where the video of an episode goes.
+    /// Returns the path of the video of an episode.
     pub fn video_path(&self, episode: u64) -> PathBuf {
         self.save_dir.join("videos").join(format!("evaluation_{episode}.avi"))
     }
 
-    /// The score of the training log.
+    /// Returns the score of the training log.
     ///
     /// # Errors
     /// No log, a damaged one, one of another behavior, one without score.
@@ -196,7 +174,7 @@ impl<'f> Evaluation<'f> {
         }
     }
 
-    /// Forgets the steps since the last end.
+    /// Discards the steps since the last end.
     pub fn reset(&mut self) {
         self.log = EvaluationLog::default();
         if let Some(film) = &mut self.film {
@@ -204,7 +182,7 @@ impl<'f> Evaluation<'f> {
         }
     }
 
-    /// Takes note of a step of the environment: positions, information and, for a video, a frame.
+    /// Records a step of the environment: positions, information and, for a video, a frame.
     ///
     /// # Errors
     /// The video fails.
@@ -219,8 +197,8 @@ impl<'f> Evaluation<'f> {
         Ok(())
     }
 
-    /// Ends an episode: writes `logs/evaluation_N.pkl`, the same as `.npz` where that is built in, and the video. Returns
-    /// the path of the log.
+    /// Ends an episode: writes `logs/evaluation_N.pkl`, the same as `.npz` with the feature `npz`, and the video.
+    /// Returns the path of the log.
     ///
     /// # Errors
     /// What the file system says; no steps since the last end.

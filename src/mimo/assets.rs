@@ -1,6 +1,6 @@
 //! The MJCF and textures embedded in the library.
 
-use crate::mjcf_loader::EmbeddedAssets;
+use crate::assets::EmbeddedAssets;
 
 macro_rules! embed {
     ($($path:literal),* $(,)?) => {
@@ -67,7 +67,7 @@ embed![
     "tex/sleeve_up.png",
 ];
 
-/// The embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`.
+/// Returns the embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`.
 pub fn embedded() -> EmbeddedAssets {
     EmbeddedAssets(FILES)
 }

@@ -1,4 +1,4 @@
-//! Locking joints: a soft constraint holds a joint at an angle.
+//! Locks: soft constraints that hold joints at an angle.
 //!
 //! MIMo's scenes carry one equality constraint per joint, named like the joint and switched off. A lock switches it on and
 //! sets its angle, in [`Params`]; the joint stays an observed, and perhaps actuated, joint. A locked joint gives way by
@@ -8,22 +8,22 @@ use thiserror::Error;
 
 use crate::config::Part;
 use crate::mimo::joint_part;
-use crate::model::{EqualityId, EqualityKind, JointId, JointType, Model};
+use crate::model::{EqualityKind, JointType, Model};
 use crate::physics::Params;
 
-/// What to lock or unlock.
+/// The joints to lock or unlock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LockTarget<'a> {
-    /// A joint.
-    Joint(JointId),
-    /// A joint by its name, such as `robot:right_elbow`.
+    /// A joint, by id.
+    Joint(usize),
+    /// A joint, by a name such as `robot:right_elbow`.
     Name(&'a str),
     /// All joints of a part.
     Part(Part),
 }
 
-impl From<JointId> for LockTarget<'_> {
-    fn from(joint: JointId) -> Self {
+impl From<usize> for LockTarget<'_> {
+    fn from(joint: usize) -> Self {
         Self::Joint(joint)
     }
 }
@@ -40,66 +40,66 @@ impl From<Part> for LockTarget<'_> {
     }
 }
 
-/// What locking or unlocking did.
+/// The outcome of locking or unlocking.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct LockReport {
-    /// Joints that were locked or unlocked.
-    pub changed: Vec<JointId>,
-    /// Joints that another active constraint of the scene holds, with that constraint: they are not locked, and not freed
-    /// by unlocking.
-    pub held: Vec<(JointId, EqualityId)>,
-    /// Locked joints whose range does not contain the angle: limit and lock will pull against each other.
-    pub beyond_limits: Vec<JointId>,
+    /// Joints that were locked or unlocked, by id.
+    pub changed: Vec<usize>,
+    /// Joints that another active constraint of the scene holds, with that constraint: they are neither locked nor
+    /// freed by unlocking.
+    pub held: Vec<(usize, usize)>,
+    /// Locked joints whose range does not contain the angle: limit and lock pull against each other.
+    pub beyond_limits: Vec<usize>,
 }
 
-/// Why something cannot be locked.
+/// A reason why a joint cannot be locked.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum LockError {
-    /// There is no such joint.
+    /// The joint does not exist.
     #[error("the scene has no joint {joint:?}")]
     NoJoint {
-        /// Its name or number.
+        /// Name or number of the joint.
         joint: String,
     },
     /// The joint has no constraint to lock it with.
     #[error("joint {joint:?} cannot be locked: the scene has no joint equality of that name")]
     NoLock {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
     },
     /// The angle is not finite.
     #[error("cannot lock at the angle {angle}: it must be finite, in radians")]
     Angle {
-        /// The angle.
+        /// Angle asked for, rad.
         angle: f64,
     },
 }
 
-/// The equality constraint that locks a joint: the one that carries its name and constrains nothing else.
-pub fn lock_of(model: &Model, joint: JointId) -> Option<EqualityId> {
-    let name = model.jnt_name.get(joint.0)?;
+/// Returns the equality constraint that locks a joint: the one that carries its name and constrains nothing else.
+pub fn lock_of(model: &Model, joint: usize) -> Option<usize> {
+    let name = model.jnt_name.get(joint)?;
     let lock = model.equality(name)?;
-    let alone = matches!(model.eq_kind[lock.0], EqualityKind::Joint { joint1, joint2: None, .. } if joint1 == joint);
-    (alone && model.jnt_type[joint.0] != JointType::Free).then_some(lock)
+    let alone = matches!(model.eq_kind[lock], EqualityKind::Joint { joint1, joint2: None, .. } if joint1 == joint);
+    (alone && model.jnt_type[joint] != JointType::Free).then_some(lock)
 }
 
-/// The first active joint equality on a joint other than its lock.
-pub fn held_by(model: &Model, params: &Params, joint: JointId) -> Option<EqualityId> {
+/// Returns the first active joint equality on a joint other than its lock.
+pub fn held_by(model: &Model, params: &Params, joint: usize) -> Option<usize> {
     let lock = lock_of(model, joint);
     let on = |e: &usize| {
-        Some(EqualityId(*e)) != lock
+        Some(*e) != lock
             && params.eq_active[*e]
             && matches!(model.eq_kind[*e], EqualityKind::Joint { joint1, joint2, .. }
                 if joint1 == joint || joint2 == Some(joint))
     };
-    (0..model.neq()).find(on).map(EqualityId)
+    (0..model.neq()).find(on)
 }
 
 /// Locks a joint, or all joints of a part, at an angle in rad. Joints that another active equality holds are left to it.
 ///
 /// # Errors
-/// No such joint, a joint without a lock, an angle that is not finite; nothing is changed then.
+/// Fails, and changes nothing, if a joint does not exist or has no lock, or the angle is not finite.
 pub fn lock(model: &Model, params: &mut Params, target: LockTarget, angle: f64) -> Result<LockReport, LockError> {
     if !angle.is_finite() {
         return Err(LockError::Angle { angle });
@@ -110,25 +110,25 @@ pub fn lock(model: &Model, params: &mut Params, target: LockTarget, angle: f64) 
             report.held.push((joint, other));
             continue;
         }
-        params.eq_active[lock.0] = true;
-        params.eq_offset[lock.0] = angle - model.qpos0[model.jnt_qposadr[joint.0]];
+        params.eq_active[lock] = true;
+        params.eq_offset[lock] = angle - model.qpos0[model.jnt_qposadr[joint]];
         report.changed.push(joint);
-        let [low, high] = model.jnt_range[joint.0];
-        if model.jnt_limited[joint.0] && !(low..=high).contains(&angle) {
+        let [low, high] = model.jnt_range[joint];
+        if model.jnt_limited[joint] && !(low..=high).contains(&angle) {
             report.beyond_limits.push(joint);
         }
     }
     Ok(report)
 }
 
-/// Takes the lock off a joint, or all joints of a part. Other constraints stay.
+/// Unlocks a joint, or all joints of a part. Other constraints stay.
 ///
 /// # Errors
-/// No such joint, a joint without a lock; nothing is changed then.
+/// Fails, and changes nothing, if a joint does not exist or has no lock.
 pub fn unlock(model: &Model, params: &mut Params, target: LockTarget) -> Result<LockReport, LockError> {
     let mut report = LockReport::default();
     for (joint, lock) in locks(model, target)? {
-        if std::mem::replace(&mut params.eq_active[lock.0], false) {
+        if std::mem::replace(&mut params.eq_active[lock], false) {
             report.changed.push(joint);
         }
         report.held.extend(held_by(model, params, joint).map(|e| (joint, e)));
@@ -136,23 +136,23 @@ pub fn unlock(model: &Model, params: &mut Params, target: LockTarget) -> Result<
     Ok(report)
 }
 
-/// The joints of a target and their locks. Joints of a part that have none are left out.
-fn locks(model: &Model, target: LockTarget) -> Result<Vec<(JointId, EqualityId)>, LockError> {
+/// Lists the joints of a target with their locks. Joints of a part that have none are left out.
+fn locks(model: &Model, target: LockTarget) -> Result<Vec<(usize, usize)>, LockError> {
     let no_joint = |joint: String| LockError::NoJoint { joint };
     let joint = match target {
         LockTarget::Part(part) => {
-            let joints = (0..model.njnt()).map(JointId);
+            let joints = 0..model.njnt();
             let of_part = joints.filter(|&j| joint_part(model, j) == Some(part));
             return Ok(of_part.filter_map(|j| Some((j, lock_of(model, j)?))).collect());
         }
         LockTarget::Name(name) => model.joint(name).ok_or_else(|| no_joint(name.to_string()))?,
-        LockTarget::Joint(joint) if joint.0 < model.njnt() => joint,
-        LockTarget::Joint(joint) => return Err(no_joint(joint.0.to_string())),
+        LockTarget::Joint(joint) if joint < model.njnt() => joint,
+        LockTarget::Joint(joint) => return Err(no_joint(joint.to_string())),
     };
     match lock_of(model, joint) {
         Some(lock) => Ok(vec![(joint, lock)]),
         None => Err(LockError::NoLock {
-            joint: model.jnt_name[joint.0].clone(),
+            joint: model.jnt_name[joint].clone(),
         }),
     }
 }

@@ -1,10 +1,12 @@
-//! MIMo and the scenes: which assets make up an environment, which bodies belong to which part, which joints are locked.
+//! MIMo and its scenes: the assets of an environment, the parts that bodies belong to, the locks of joints.
 
+mod anatomy;
 mod assets;
 mod locks;
 mod parts;
 mod scene;
 
+pub use anatomy::{BodyKind, body_kind};
 pub use assets::embedded;
 pub use locks::{LockError, LockReport, LockTarget, held_by, lock, lock_of, unlock};
 pub use parts::{MimoJoints, joint_part};

@@ -1,26 +1,27 @@
-//! The document that puts an environment together.
+//! The top MJCF document of an environment.
 
 use std::fmt::Write as _;
 
+use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Behavior, Config, Part, Scene};
-use crate::mjcf_loader::{AssetSource, LoadError, load_str};
+use crate::mjcf_loader::{LoadError, load_str};
 use crate::model::Model;
-use crate::physics::set_const;
+use crate::physics::compile;
 
-/// Path of the top document in the assets; includes and textures are found relative to it.
+/// Gives the path of the top document in the assets; includes and textures are found relative to it.
 pub const DOCUMENT: &str = "babybench/scene.xml";
 
-/// Versions of MIMo.
+/// A version of MIMo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Version {
-    /// Mitten hands and simple feet: 47 joints.
+    /// MIMo with mitten hands and simple feet: 47 joints.
     V1,
-    /// Five-fingered hands and big toes: 91 joints.
+    /// MIMo with five-fingered hands and big toes: 91 joints.
     V2,
 }
 
 impl Version {
-    /// The version for a behavior: hand regard has fingers to look at, everything else is faster without.
+    /// Returns the version for a behavior: hand regard has fingers to look at, everything else is faster without.
     pub fn of(behavior: Behavior) -> Self {
         match behavior {
             Behavior::HandRegard => Self::V2,
@@ -28,7 +29,7 @@ impl Version {
         }
     }
 
-    /// `v1` or `v2`.
+    /// Returns `v1` or `v2`.
     pub fn name(self) -> &'static str {
         match self {
             Self::V1 => "v1",
@@ -49,8 +50,8 @@ const ACTUATOR_GROUPS: [Part; 8] = [
     Part::Feet,
 ];
 
-/// The top document of an environment: MIMo at its place, the base, MIMo's settings, the actuators of the active groups,
-/// the scene. Element order fixes all ids, and is the reference's.
+/// Writes the top document of an environment: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
+/// active groups, the scene. Element order fixes all ids, and is the reference's.
 pub fn scene_xml(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     let pose = match config.scene {
@@ -91,12 +92,10 @@ pub fn scene_xml(config: &Config) -> String {
     xml
 }
 
-/// Loads and compiles the scene of a configuration from `assets`, with all derived constants.
+/// Loads and compiles the scene of a configuration from `assets`.
 ///
 /// # Errors
-/// Whatever is wrong with the assets, with file, line and element.
+/// Fails if the assets cannot be read or compiled; the error names file, line and element.
 pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, LoadError> {
-    let mut model = load_str(&scene_xml(config), DOCUMENT, assets)?;
-    set_const(&mut model);
-    Ok(model)
+    compile(load_str(&scene_xml(config), DOCUMENT, assets)?)
 }

@@ -1,404 +1,147 @@
-//! The typed document: every element with its defaults applied, references still by name, angles still as written.
+//! The typed document: every element with its defaults applied, references still by name, angles still as written. Here
+//! are the tables of bodies and what hangs on them, and the document as a whole.
 
 use crate::math::Vec3;
-use crate::model::{GeomType, JointType, Options, Statistic, Visual};
+use crate::model::{self, GeomType, JointType, LightMode, Options, Statistic};
 
+use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
+use super::attribute::{FLAG, Kind, TEXT, int, real, reals, some, words};
 use super::relation::{Actuator, Equality, Exclude, Pair, Sensor, Tendon};
-use super::schema::Element;
 use super::surface::{Material, Texture};
+use super::table::table;
+use super::words::{GREY, JOINTS, LIGHT_MODES, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
 
-pub(super) const SHAPES: &[GeomType] = &[
-    GeomType::Plane,
-    GeomType::Sphere,
-    GeomType::Capsule,
-    GeomType::Ellipsoid,
-    GeomType::Cylinder,
-    GeomType::Box,
-];
-const JOINT_TYPES: &[JointType] = &[JointType::Free, JointType::Slide, JointType::Hinge];
-pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
-pub(super) const SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
-const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
+pub(super) use super::settings::{Compiler, Size};
+pub(super) use super::words::{Frame, Orientation, Tri};
 
-/// A switch that may follow from whether a range is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tri {
-    No,
-    Yes,
-    Auto,
-}
-
-pub(super) const TRIS: &[Tri] = &[Tri::No, Tri::Yes, Tri::Auto];
-
-/// An orientation as written.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Orientation {
-    Quat([f64; 4]),
-    AxisAngle([f64; 4]),
-    XyAxes([f64; 6]),
-    ZAxis([f64; 3]),
-    Euler([f64; 3]),
-}
-
-/// A pose as written.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub pos: Vec3,
-    pub orientation: Orientation,
-}
-
-impl Frame {
-    pub const IDENTITY: Frame = Frame {
-        pos: [0.0; 3],
-        orientation: Orientation::Quat([1.0, 0.0, 0.0, 0.0]),
-    };
-
-    pub fn apply(&mut self, e: &Element) {
-        e.fill("pos", &mut self.pos);
-        let written = e
-            .array("quat")
-            .map(Orientation::Quat)
-            .or_else(|| e.array("axisangle").map(Orientation::AxisAngle))
-            .or_else(|| e.array("xyaxes").map(Orientation::XyAxes))
-            .or_else(|| e.array("zaxis").map(Orientation::ZAxis))
-            .or_else(|| e.array("euler").map(Orientation::Euler));
-        self.orientation = match (written, self.orientation) {
-            // a default class that turns by other means wins over a quaternion, as in MuJoCo
-            (Some(Orientation::Quat(_)), inherited) if !matches!(inherited, Orientation::Quat(_)) => inherited,
-            (written, inherited) => written.unwrap_or(inherited),
-        };
+table! {
+    /// `<joint>`.
+    element Joint {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Anchor in the body, m.";
+        "axis" axis: Vec3 = [0.0, 0.0, 1.0], reals(3, Any), "Axis in the body.";
+        "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
+        "range" range: [f64; 2] = [0.0; 2], reals(2, Any), "Lower and upper limit, angle or m.";
+        "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
+        "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring, N m/rad or N/m.";
+        "damping" damping: f64 = 0.0, real(NonNegative), "Damping, N m s/rad or N s/m.";
+        "armature" armature: f64 = 0.0, real(NonNegative), "Inertia of the rotor, kg m^2 or kg.";
+        "frictionloss" frictionloss: f64 = 0.0, real(NonNegative), "Dry friction, N m or N.";
+        "ref" reference: f64 = 0.0, real(Any), "Coordinate of the pose as written, angle or m.";
+        "springref" springref: f64 = 0.0, real(Any), "Coordinate at which the spring rests, angle or m.";
+        "solreflimit" solref_limit: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the limit.";
+        "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";
+        "solreffriction" solref_friction: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of dry friction.";
+        "solimpfriction" solimp_friction: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of dry friction.";
     }
 }
 
-#[derive(Clone)]
-pub(super) struct Joint {
-    pub at: usize,
-    pub name: String,
-    pub kind: JointType,
-    pub group: usize,
-    pub pos: Vec3,
-    pub axis: Vec3,
-    pub limited: Tri,
-    pub range: [f64; 2],
-    pub margin: f64,
-    pub stiffness: f64,
-    pub damping: f64,
-    pub armature: f64,
-    pub frictionloss: f64,
-    pub reference: f64,
-    pub springref: f64,
-    pub solref_limit: [f64; 2],
-    pub solimp_limit: [f64; 5],
-    pub solref_friction: [f64; 2],
-    pub solimp_friction: [f64; 5],
-}
-
-impl Default for Joint {
-    fn default() -> Self {
-        Joint {
-            at: 0,
-            name: String::new(),
-            kind: JointType::Hinge,
-            group: 0,
-            pos: [0.0; 3],
-            axis: [0.0, 0.0, 1.0],
-            limited: Tri::Auto,
-            range: [0.0; 2],
-            margin: 0.0,
-            stiffness: 0.0,
-            damping: 0.0,
-            armature: 0.0,
-            frictionloss: 0.0,
-            reference: 0.0,
-            springref: 0.0,
-            solref_limit: SOLREF,
-            solimp_limit: SOLIMP,
-            solref_friction: SOLREF,
-            solimp_friction: SOLIMP,
-        }
+table! {
+    /// `<freejoint>`. It takes no defaults: only `<joint type="free">` has a class.
+    element FreeJoint {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
     }
 }
 
-impl Joint {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_word("type", JOINT_TYPES, &mut self.kind);
-        e.set_int("group", &mut self.group);
-        e.fill("pos", &mut self.pos);
-        e.fill("axis", &mut self.axis);
-        e.set_word("limited", TRIS, &mut self.limited);
-        e.fill("range", &mut self.range);
-        e.set_real("margin", &mut self.margin);
-        e.set_real("stiffness", &mut self.stiffness);
-        e.set_real("damping", &mut self.damping);
-        e.set_real("armature", &mut self.armature);
-        e.set_real("frictionloss", &mut self.frictionloss);
-        e.set_real("ref", &mut self.reference);
-        e.set_real("springref", &mut self.springref);
-        e.fill("solreflimit", &mut self.solref_limit);
-        e.fill("solimplimit", &mut self.solimp_limit);
-        e.fill("solreffriction", &mut self.solref_friction);
-        e.fill("solimpfriction", &mut self.solimp_friction);
+table! {
+    /// `<geom>`.
+    element Geom {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "type" kind: GeomType = GeomType::Sphere, SHAPES, "Shape.";
+        "size" size: Vec3 = [0.0; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
+        "contype" contype: u32 = 1, int(0, MAX_BITS), "Bits that meet `conaffinity` of others.";
+        "conaffinity" conaffinity: u32 = 1, int(0, MAX_BITS), "Bits that meet `contype` of others.";
+        "condim" condim: usize = 3, int(1, 6), "Dimension of its contacts: 1, 3, 4 or 6.";
+        "priority" priority: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Priority where contact parameters are mixed.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "friction" friction: [f64; 3] = [1.0, 0.005, 0.0001], some(1, 3, NonNegative), "Sliding, torsional and rolling friction.";
+        "solmix" solmix: f64 = 1.0, real(NonNegative), "Weight where contact parameters are mixed.";
+        "solref" solref: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of contacts.";
+        "solimp" solimp: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of contacts.";
+        "margin" margin: f64 = 0.0, real(NonNegative), "Distance at which contacts are found, m.";
+        "gap" gap: f64 = 0.0, real(NonNegative), "Part of the margin in which contacts exert no force, m.";
+        "mass" mass: Option<f64> = None, real(NonNegative), "Mass, kg; else by density.";
+        "density" density: f64 = 1000.0, real(NonNegative), "Density, kg/m^3.";
+        "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
+        "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
+        "material" material: Option<String> = None, TEXT, "Material.";
+        with frame: Frame;
     }
 }
 
-#[derive(Clone)]
-pub(super) struct Geom {
-    pub at: usize,
-    pub name: String,
-    pub kind: GeomType,
-    pub size: Vec3,
-    pub contype: u32,
-    pub conaffinity: u32,
-    pub condim: usize,
-    pub priority: i32,
-    pub group: usize,
-    pub friction: [f64; 3],
-    pub solmix: f64,
-    pub solref: [f64; 2],
-    pub solimp: [f64; 5],
-    pub margin: f64,
-    pub gap: f64,
-    pub mass: Option<f64>,
-    pub density: f64,
-    pub frame: Frame,
-    pub fromto: Option<[f64; 6]>,
-    pub rgba: [f64; 4],
-    pub material: Option<String>,
-}
-
-impl Default for Geom {
-    fn default() -> Self {
-        Geom {
-            at: 0,
-            name: String::new(),
-            kind: GeomType::Sphere,
-            size: [0.0; 3],
-            contype: 1,
-            conaffinity: 1,
-            condim: 3,
-            priority: 0,
-            group: 0,
-            friction: [1.0, 0.005, 0.0001],
-            solmix: 1.0,
-            solref: SOLREF,
-            solimp: SOLIMP,
-            margin: 0.0,
-            gap: 0.0,
-            mass: None,
-            density: 1000.0,
-            frame: Frame::IDENTITY,
-            fromto: None,
-            rgba: GREY,
-            material: None,
-        }
+table! {
+    /// `<site>`.
+    element Site {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "type" kind: GeomType = GeomType::Sphere, SITE_SHAPES, "Shape.";
+        "size" size: Vec3 = [0.005; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
+        "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
+        "material" material: Option<String> = None, TEXT, "Material.";
+        with frame: Frame;
     }
 }
 
-impl Geom {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_word("type", SHAPES, &mut self.kind);
-        e.fill("size", &mut self.size);
-        e.set_int("contype", &mut self.contype);
-        e.set_int("conaffinity", &mut self.conaffinity);
-        e.set_int("condim", &mut self.condim);
-        e.set_int("priority", &mut self.priority);
-        e.set_int("group", &mut self.group);
-        e.fill("friction", &mut self.friction);
-        e.set_real("solmix", &mut self.solmix);
-        e.fill("solref", &mut self.solref);
-        e.fill("solimp", &mut self.solimp);
-        e.set_real("margin", &mut self.margin);
-        e.set_real("gap", &mut self.gap);
-        self.mass = e.array("mass").map(|[mass]| mass).or(self.mass);
-        e.set_real("density", &mut self.density);
-        self.frame.apply(e);
-        self.fromto = e.array("fromto").or(self.fromto);
-        e.fill("rgba", &mut self.rgba);
-        e.set_optional_text("material", &mut self.material);
+table! {
+    /// `<camera>`.
+    element Camera {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "mode" targets: bool = false, words! { "fixed" => false, "targetbody" => true }, "Whether it looks along its frame or at a body.";
+        "target" target: Option<String> = None, TEXT, own, "Body that it looks at.";
+        "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view, degrees.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        with frame: Frame;
     }
 }
 
-#[derive(Clone)]
-pub(super) struct Site {
-    pub at: usize,
-    pub name: String,
-    pub kind: GeomType,
-    pub size: Vec3,
-    pub group: usize,
-    pub frame: Frame,
-    pub fromto: Option<[f64; 6]>,
-    pub rgba: [f64; 4],
-    pub material: Option<String>,
-}
-
-impl Default for Site {
-    fn default() -> Self {
-        Site {
-            at: 0,
-            name: String::new(),
-            kind: GeomType::Sphere,
-            size: [0.005; 3],
-            group: 0,
-            frame: Frame::IDENTITY,
-            fromto: None,
-            rgba: GREY,
-            material: None,
-        }
+table! {
+    /// `<light>`.
+    element Light {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "mode" mode: LightMode = LightMode::Fixed, LIGHT_MODES, "How it is placed and aimed.";
+        "target" target: Option<String> = None, TEXT, own, "Body that it shines at in modes `targetbody` and `targetbodycom`.";
+        "directional" directional: bool = false, FLAG, "Whether its rays are parallel.";
+        "castshadow" castshadow: bool = true, FLAG, "Whether it casts shadows, which are not drawn.";
+        "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Position in the body, m.";
+        "dir" dir: Vec3 = [0.0, 0.0, -1.0], reals(3, Any), "Direction in the body.";
+        "ambient" ambient: [f64; 3] = [0.0; 3], reals(3, Unit), "Ambient colour.";
+        "diffuse" diffuse: [f64; 3] = [0.7; 3], reals(3, Unit), "Diffuse colour.";
+        "specular" specular: [f64; 3] = [0.3; 3], reals(3, Unit), "Colour of highlights.";
+        "attenuation" attenuation: [f64; 3] = [1.0, 0.0, 0.0], reals(3, NonNegative), "Constant, linear and quadratic attenuation.";
+        "cutoff" cutoff: f64 = 45.0, real(NonNegative), "Cutoff angle of a spot light, degrees.";
+        "exponent" exponent: f64 = 10.0, real(NonNegative), "Softness of a spot light.";
     }
 }
 
-impl Site {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        // Sites have no planes, so their words start one later.
-        e.set_word("type", &SHAPES[1..], &mut self.kind);
-        e.fill("size", &mut self.size);
-        e.set_int("group", &mut self.group);
-        self.frame.apply(e);
-        self.fromto = e.array("fromto").or(self.fromto);
-        e.fill("rgba", &mut self.rgba);
-        e.set_optional_text("material", &mut self.material);
+table! {
+    /// `<inertial>`: explicit inertia of a body.
+    element Inertial {
+        set "pos" => frame.pos, reals(3, Any), required, "Centre of mass in the body, m.";
+        "mass" mass: f64 = 0.0, real(NonNegative), required, "Mass, kg.";
+        "diaginertia" diaginertia: Vec3 = [0.0; 3], reals(3, NonNegative), inertia, "Principal moments of inertia, kg m^2.";
+        "fullinertia" fullinertia: Option<[f64; 6]> = None, reals(6, Any), inertia, "Inertia matrix, kg m^2: xx yy zz xy xz yz.";
+        with frame: Frame;
     }
 }
 
-#[derive(Clone)]
-pub(super) struct Camera {
-    pub at: usize,
-    pub name: String,
-    pub targets: bool,
-    pub target: Option<String>,
-    pub frame: Frame,
-    pub fovy: f64,
-}
-
-impl Default for Camera {
-    fn default() -> Self {
-        Camera {
-            at: 0,
-            name: String::new(),
-            targets: false,
-            target: None,
-            frame: Frame::IDENTITY,
-            fovy: 45.0,
-        }
+table! {
+    /// `<body>` with what hangs on it; children follow their parents in the list of bodies.
+    element Body {
+        also parent: usize = 0;
+        also inertial: Option<Inertial> = None;
+        also joints: Vec<Joint> = Vec::new();
+        also geoms: Vec<Geom> = Vec::new();
+        also sites: Vec<Site> = Vec::new();
+        also cameras: Vec<Camera> = Vec::new();
+        also lights: Vec<Light> = Vec::new();
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        check "childclass", TEXT, "Default class of the elements in it that name none.";
+        with frame: Frame;
     }
-}
-
-impl Camera {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_word("mode", &[false, true], &mut self.targets);
-        e.set_optional_text("target", &mut self.target);
-        self.frame.apply(e);
-        e.set_real("fovy", &mut self.fovy);
-    }
-}
-
-#[derive(Clone)]
-pub(super) struct Light {
-    pub at: usize,
-    pub name: String,
-    pub directional: bool,
-    pub castshadow: bool,
-    pub pos: Vec3,
-    pub dir: Vec3,
-    pub ambient: [f64; 3],
-    pub diffuse: [f64; 3],
-    pub specular: [f64; 3],
-    pub attenuation: [f64; 3],
-    pub cutoff: f64,
-    pub exponent: f64,
-}
-
-impl Default for Light {
-    fn default() -> Self {
-        Light {
-            at: 0,
-            name: String::new(),
-            directional: false,
-            castshadow: true,
-            pos: [0.0; 3],
-            dir: [0.0, 0.0, -1.0],
-            ambient: [0.0; 3],
-            diffuse: [0.7; 3],
-            specular: [0.3; 3],
-            attenuation: [1.0, 0.0, 0.0],
-            cutoff: 45.0,
-            exponent: 10.0,
-        }
-    }
-}
-
-impl Light {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_flag("directional", &mut self.directional);
-        e.set_flag("castshadow", &mut self.castshadow);
-        e.fill("pos", &mut self.pos);
-        e.fill("dir", &mut self.dir);
-        e.fill("ambient", &mut self.ambient);
-        e.fill("diffuse", &mut self.diffuse);
-        e.fill("specular", &mut self.specular);
-        e.fill("attenuation", &mut self.attenuation);
-        e.set_real("cutoff", &mut self.cutoff);
-        e.set_real("exponent", &mut self.exponent);
-    }
-}
-
-/// Explicit inertia of a body.
-pub(super) struct Inertial {
-    pub at: usize,
-    pub frame: Frame,
-    pub mass: f64,
-    pub diaginertia: Vec3,
-    pub fullinertia: Option<[f64; 6]>,
-}
-
-/// A body with what hangs on it; children follow their parents in the list of bodies.
-pub(super) struct Body {
-    pub at: usize,
-    pub name: String,
-    pub parent: usize,
-    pub frame: Frame,
-    pub inertial: Option<Inertial>,
-    pub joints: Vec<Joint>,
-    pub geoms: Vec<Geom>,
-    pub sites: Vec<Site>,
-    pub cameras: Vec<Camera>,
-    pub lights: Vec<Light>,
-}
-
-impl Body {
-    pub fn new(at: usize, name: String, parent: usize) -> Body {
-        Body {
-            at,
-            name,
-            parent,
-            frame: Frame::IDENTITY,
-            inertial: None,
-            joints: Vec::new(),
-            geoms: Vec::new(),
-            sites: Vec::new(),
-            cameras: Vec::new(),
-            lights: Vec::new(),
-        }
-    }
-}
-
-/// `<compiler>`.
-pub(super) struct Compiler {
-    pub degree: bool,
-    pub eulerseq: [u8; 3],
-    pub inertiafromgeom: Tri,
-    pub autolimits: bool,
-    pub texturedir: String,
 }
 
 /// Everything a document says.
@@ -406,9 +149,9 @@ pub(super) struct Document {
     pub model: String,
     pub compiler: Compiler,
     pub option: Options,
-    pub visual: Visual,
+    pub visual: model::Visual,
     pub statistic: Statistic,
-    pub nuser_actuator: Option<usize>,
+    pub size: Size,
     pub textures: Vec<Texture>,
     pub materials: Vec<Material>,
     pub bodies: Vec<Body>,

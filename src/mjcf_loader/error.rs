@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::assets::AssetError;
+use crate::assets::AssetError;
 
-/// Where an error was found.
+/// The place in a document where an error was found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// Path of the document in the asset source.
@@ -30,15 +30,15 @@ impl fmt::Display for Place {
     }
 }
 
-/// A document that cannot be loaded: what is wrong and where.
+/// Reports what is wrong with a document that makes no model, and where.
 ///
 /// Prints as `babybench/mimo_v1.xml:12:5: mujoco/body/geom: unknown attribute "foo"`.
 #[derive(Debug, thiserror::Error)]
 #[error("{place}: {kind}")]
 pub struct LoadError {
-    /// Where.
+    /// The place in the document.
     pub place: Box<Place>,
-    /// What.
+    /// What is wrong there.
     pub kind: ErrorKind,
 }
 
@@ -101,7 +101,7 @@ pub enum ErrorKind {
     #[error("attribute \"{0}\" is required")]
     MissingAttribute(&'static str),
     /// Attributes that contradict each other.
-    #[error("attributes \"{0}\" and \"{1}\" exclude each other")]
+    #[error("attributes \"{0}\" and \"{1}\" are mutually exclusive")]
     Conflict(&'static str, &'static str),
     /// A word that is not one of those allowed here.
     #[error("{attribute}=\"{text}\": not one of {}", .allowed.join(", "))]
@@ -122,7 +122,7 @@ pub enum ErrorKind {
         text: String,
     },
     /// A number that is not zero but too near it for its digits to be kept.
-    #[error("{attribute}: \"{text}\" is too small a number; write 0")]
+    #[error("{attribute}: \"{text}\" is too small to represent; write 0")]
     TooSmall {
         /// The attribute.
         attribute: &'static str,
@@ -138,6 +138,16 @@ pub enum ErrorKind {
         value: f64,
         /// What is allowed.
         want: &'static str,
+    },
+    /// A number above [`crate::Limits::real`] in magnitude.
+    #[error("{attribute}: {value} must be at most {limit:e} in magnitude")]
+    TooGreat {
+        /// The attribute.
+        attribute: &'static str,
+        /// The number.
+        value: f64,
+        /// The limit.
+        limit: f64,
     },
     /// Too few or too many values.
     #[error("{attribute}: {found} values, expected {min} to {max}")]

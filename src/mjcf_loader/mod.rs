@@ -1,92 +1,111 @@
-//! MJCF text -> compiled [`Model`].
+//! MJCF text -> [`Spec`], of which [`crate::physics::compile`] makes a [`crate::Model`].
 //!
 //! Three stages, each its own type: a tree of XML elements with includes spliced in, a typed document with default
-//! classes applied and references by name, and the [`Model`] with MuJoCo 3.3.0's ids and units. Nothing here knows
-//! physics: constants that follow from the dynamics (`*_invweight0` and the statistics a document does not give) stay 0
-//! until [`crate::physics`] fills them.
+//! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
+//! physics: what needs dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) comes with the last step.
 //!
 //! What is understood is what the models of this project and the original BabyBench files use; the elements and
-//! attributes stand in one table (`tables.rs`). Everything else is an error that names the place. Ignored are only the
-//! memory reservations in `size` and the matrix format `jacobian`, which change no result; and contact cones are elliptic
-//! also where a document leaves `cone` out, where MuJoCo's would be pyramidal.
+//! attributes are listed by [`elements`]. Everything else is an error that names the place. Ignored are only the
+//! memory reservations in `size`, the matrix format `jacobian`, and the colours in `visual/rgba` of what only MuJoCo's
+//! viewer draws: none changes a compiled array of physics. User data (`user` of actuators and cameras, `nuser_*`) are kept
+//! and mean nothing. Contact cones are elliptic also where a document leaves `cone` out, where MuJoCo's would be pyramidal.
 //!
-//! Text may come from anywhere. Whatever it says, loading ends with a model or a [`LoadError`]; the limits below bound
-//! stack and memory.
+//! Text may come from anywhere. Whatever it says, loading ends with a [`Spec`] or a [`LoadError`]; [`Limits`] bound stack
+//! and memory.
 //!
 //! ```
-//! use babybench::mjcf_loader::{MemoryAssets, load_str};
+//! use babybench::assets::MemoryAssets;
+//! use babybench::{mjcf_loader, physics};
+//!
 //! let text = r#"<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"#;
-//! let model = load_str(text, "ball.xml", &MemoryAssets::new())?;
-//! assert_eq!((model.nq, model.nv, model.nbody()), (7, 6, 2));
+//! let spec = mjcf_loader::load_str(text, "ball.xml", &MemoryAssets::new())?;
+//! assert_eq!((spec.nq(), spec.nv(), spec.nbody()), (7, 6, 2));
+//! let model = physics::compile(spec)?;
+//! assert_eq!(model.body("ball").map(|ball| model.body_mass[ball] > 4.0), Some(true));
 //! # Ok::<(), babybench::mjcf_loader::LoadError>(())
 //! ```
 
-mod assets;
-mod body;
+mod attribute;
 mod compile;
 mod document;
+mod elements;
 mod error;
-mod geometry;
 #[cfg(test)]
-mod mutations;
+mod limit_tests;
+mod listing;
 mod read;
 mod relation;
 mod schema;
+mod settings;
+mod spec;
 mod surface;
-mod tables;
+mod table;
 #[cfg(test)]
 mod tests;
+mod words;
 mod xml;
 
-pub use assets::DirAssets;
-pub use assets::{AssetError, AssetSource, EmbeddedAssets, MAX_ASSET_BYTES, MemoryAssets, Overlay, resolve};
 pub use error::{ErrorKind, LoadError, Place};
+pub use listing::{AttributeInfo, ElementInfo, elements};
+pub(crate) use spec::Places;
+pub use spec::Spec;
+pub(crate) use xml::Tree;
 
-use crate::model::Model;
-
-/// Most bytes of XML in a document and its includes.
-pub const MAX_DOCUMENT_BYTES: usize = 4 << 20;
-/// Most elements in a document and its includes.
-pub const MAX_ELEMENTS: usize = 100_000;
-/// Most attributes of an element.
-pub const MAX_ATTRIBUTES: usize = 64;
-/// Deepest nesting of elements, across includes.
-pub const MAX_DEPTH: usize = 100;
-/// Deepest nesting of includes.
-pub const MAX_INCLUDE_DEPTH: usize = 16;
-/// Most bytes of a name or any other attribute that is text. Default classes copy them, so they must be short.
-pub const MAX_TEXT_BYTES: usize = 256;
-/// Most default classes.
-pub const MAX_CLASSES: usize = 1000;
-/// Largest magnitude of a number. Products of a few numbers stay finite, so everything compiled is finite.
-pub const MAX_REAL: f64 = 1e30;
-/// Most user values of an actuator.
-pub const MAX_USER: usize = 64;
+use crate::assets::{AssetSource, directory, resolve};
+use crate::limits::Limits;
 
 /// Loads the document at `path` in `source`.
 ///
 /// # Errors
-/// When a file is missing or anything in it is not understood; see [`ErrorKind`].
-pub fn load(source: &dyn AssetSource, path: &str) -> Result<Model, LoadError> {
+/// A file that is missing, text that is not understood; see [`ErrorKind`].
+pub fn load(source: &dyn AssetSource, path: &str) -> Result<Spec, LoadError> {
+    load_with(source, path, &Limits::default())
+}
+
+/// Loads the document at `path` in `source` within other limits than the default ones.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(source: &dyn AssetSource, path: &str, limits: &Limits) -> Result<Spec, LoadError> {
     let path = resolve("", path).map_err(|e| LoadError::in_file(path, e))?;
     let bytes = source.read(&path).map_err(|e| LoadError::in_file(&path, e))?;
     let text = std::str::from_utf8(&bytes).map_err(|_| LoadError::in_file(&path, ErrorKind::NotUtf8))?;
-    load_str(text, &path, source)
+    load_str_with(text, &path, source, limits)
 }
 
-/// Loads a document given as text, as if it were the file `virtual_path` of `source`: what it includes and the textures
-/// it names are looked up relative to the directory of that path.
+/// Loads a document given as text, as if it were the file `virtual_path` of `source`.
+///
+/// What it includes and the textures it names are looked up relative to the directory of that path.
 ///
 /// # Errors
-/// When a file is missing or anything in it is not understood; see [`ErrorKind`].
-pub fn load_str(xml: &str, virtual_path: &str, source: &dyn AssetSource) -> Result<Model, LoadError> {
+/// As [`load`].
+pub fn load_str(xml: &str, virtual_path: &str, source: &dyn AssetSource) -> Result<Spec, LoadError> {
+    load_str_with(xml, virtual_path, source, &Limits::default())
+}
+
+/// Loads a document given as text, as [`load_str`] does, within other limits than the default ones.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_str_with(
+    xml: &str,
+    virtual_path: &str,
+    source: &dyn AssetSource,
+    limits: &Limits,
+) -> Result<Spec, LoadError> {
     let path = resolve("", virtual_path).map_err(|e| LoadError::in_file(virtual_path, e))?;
-    let (tree, root) = xml::Tree::read(xml, &path, source)?;
+    let (tree, root) = Tree::read(xml, &path, source, limits)?;
     let name = &tree.nodes[root].name;
     if name != "mujoco" {
         return Err(tree.error(root, ErrorKind::WrongRoot(name.clone())));
     }
-    let checked = schema::check(&tree, root, &tables::MUJOCO)?;
+    let checked = schema::check(&tree, root, &elements::MUJOCO)?;
     let document = read::read(&tree, &checked)?;
-    compile::compile(&tree, document, source, assets::directory(&path))
+    let arrays = compile::compile(&tree, &document, source, directory(&path))?;
+    let places = spec::Places {
+        bodies: document.bodies.iter().map(|body| body.at).collect(),
+        tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),
+        tree,
+    };
+    Ok(Spec { arrays, places })
 }

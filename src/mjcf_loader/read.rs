@@ -2,20 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{JointType, Options, SensorType, Statistic, Visual};
+use crate::model::{JointType, Options, SensorType, Statistic};
 
-use super::MAX_CLASSES;
-use super::document::{Body, Camera, Compiler, Document, Frame, Geom, Inertial, Joint, Light, Site, TRIS, Tri};
+use super::document::{Body, Camera, Compiler, Document, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
 use super::error::{ErrorKind, LoadError};
-use super::relation::{Actuator, Equality, Exclude, Pair, Sensor, Tendon};
-use super::schema::Element;
+use super::relation::{Actuator, Equality, Exclude, Pair, Sensor, Tendon, Wrap};
+use super::schema::{DEFAULT, Element};
+use super::settings::{Root, Visual};
 use super::surface::{Material, Texture};
+use super::table::Table;
 use super::xml::Tree;
-
-/// Rounds as the reference does where it stores single precision.
-pub(super) fn single(value: f64) -> f64 {
-    f64::from(value as f32)
-}
 
 /// The defaults of a class: one prototype per kind of element.
 #[derive(Clone, Default)]
@@ -43,7 +39,7 @@ impl Class {
             "pair" => self.pair.apply(e),
             "equality" => self.equality.apply(e),
             "tendon" => self.tendon.apply(e),
-            "motor" | "position" => self.actuator.apply(e),
+            "motor" | "position" => self.actuator.drive(e),
             "material" => self.material.apply(e),
             _ => {}
         }
@@ -65,7 +61,7 @@ impl<'t> Classes<'t> {
         section
             .children
             .iter()
-            .filter(|e| e.name == "default")
+            .filter(|e| e.name == DEFAULT)
             .try_for_each(|nested| self.read(nested, Some(&name)))
     }
 
@@ -82,12 +78,12 @@ impl<'t> Classes<'t> {
             }
             Some(_) => given,
         };
-        if self.by_name.len() > MAX_CLASSES {
+        if self.by_name.len() > self.tree.limits.classes {
             return Err(self.error(
                 section,
                 ErrorKind::TooMuch {
                     what: "default classes",
-                    limit: MAX_CLASSES,
+                    limit: self.tree.limits.classes,
                 },
             ));
         }
@@ -99,7 +95,7 @@ impl<'t> Classes<'t> {
         Ok(name.to_owned())
     }
 
-    /// The class of an element: its own, else that of the bodies around it.
+    /// Returns the class of an element: its own, or else that of the bodies around it.
     fn of(&self, element: &Element, around: &str) -> Result<&Class, LoadError> {
         let name = element.text("class").unwrap_or(around);
         self.by_name
@@ -114,22 +110,21 @@ impl<'t> Classes<'t> {
 
 /// Reads the whole document.
 pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
+    let world = Body {
+        at: root.at,
+        name: "world".to_owned(),
+        ..Body::initial()
+    };
     let mut document = Document {
-        model: root.text("model").unwrap_or("MuJoCo Model").to_owned(),
-        compiler: Compiler {
-            degree: true,
-            eulerseq: *b"xyz",
-            inertiafromgeom: Tri::Auto,
-            autolimits: true,
-            texturedir: String::new(),
-        },
-        option: default_options(),
-        visual: default_visual(),
-        statistic: Statistic::default(),
-        nuser_actuator: None,
+        model: Root::read(root).model,
+        compiler: Compiler::initial(),
+        option: Options::initial(),
+        visual: Visual::default().compiled(),
+        statistic: Statistic::initial(),
+        size: Size::initial(),
         textures: Vec::new(),
         materials: Vec::new(),
-        bodies: vec![Body::new(root.at, "world".to_owned(), 0)],
+        bodies: vec![world],
         pairs: Vec::new(),
         excludes: Vec::new(),
         equalities: Vec::new(),
@@ -143,218 +138,58 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     };
     let sections = |name: &'static str| root.children.iter().filter(move |e| e.name == name);
     for section in sections("compiler") {
-        compiler(tree, section, &mut document.compiler)?;
+        document.compiler.apply(section);
     }
-    for section in sections("default") {
+    for section in sections(DEFAULT) {
         classes.read(section, None)?;
     }
+    let mut visual = Visual::default();
     for section in &root.children {
         match section.name {
-            "option" => option(section, &mut document.option),
-            "size" => {
-                let mut count = -1i64;
-                section.set_int("nuser_actuator", &mut count);
-                document.nuser_actuator = usize::try_from(count).ok().or(document.nuser_actuator);
-            }
-            "visual" => section.children.iter().for_each(|e| visual(e, &mut document.visual)),
-            "statistic" => statistic(section, &mut document.statistic),
-            "asset" => asset(section, &classes, &mut document)?,
+            "option" => document.option.apply(section),
+            "size" => document.size.apply(section),
+            "visual" => section.children.iter().for_each(|e| visual.apply(e)),
+            "statistic" => document.statistic.apply(section),
             "worldbody" => content(section, 0, MAIN, &classes, &mut document.bodies)?,
-            "contact" => contact(section, &classes, &mut document)?,
-            "equality" => {
-                for e in &section.children {
-                    let mut equality = classes.of(e, MAIN)?.equality.clone();
-                    equality.apply(e);
-                    document.equalities.push(equality);
-                }
-            }
-            "tendon" => {
-                for e in &section.children {
-                    let mut tendon = classes.of(e, MAIN)?.tendon.clone();
-                    tendon.apply(e);
-                    document.tendons.push(tendon);
-                }
-            }
-            "actuator" => {
-                for e in &section.children {
-                    let mut actuator = classes.of(e, MAIN)?.actuator.clone();
-                    actuator.apply(e);
-                    document.actuators.push(actuator);
-                }
-            }
-            "sensor" => document.sensors.extend(section.children.iter().filter_map(sensor)),
-            _ => {}
+            _ => section
+                .children
+                .iter()
+                .try_for_each(|e| add(e, section.name, &classes, &mut document))?,
         }
     }
+    document.visual = visual.compiled();
     Ok(document)
 }
 
-fn default_options() -> Options {
-    Options {
-        timestep: 0.002,
-        gravity: [0.0, 0.0, -9.81],
-        iterations: 100,
-        tolerance: 1e-8,
-        ls_iterations: 50,
-        ls_tolerance: 0.01,
-        impratio: 1.0,
-        ccd_iterations: 50,
-        ccd_tolerance: 1e-6,
-    }
-}
-
-fn default_visual() -> Visual {
-    Visual {
-        fovy: 45.0,
-        znear: single(0.01),
-        zfar: 50.0,
-        fogstart: 3.0,
-        fogend: 10.0,
-        haze: single(0.3),
-        shadowclip: 1.0,
-        force: single(0.005),
-        shadowsize: 4096,
-        offsamples: 4,
-        offwidth: 640,
-        offheight: 480,
-        headlight_active: true,
-        headlight_ambient: [single(0.1); 3],
-        headlight_diffuse: [single(0.4); 3],
-        headlight_specular: [0.5; 3],
-    }
-}
-
-fn compiler(tree: &Tree, e: &Element, compiler: &mut Compiler) -> Result<(), LoadError> {
-    e.set_word("angle", &[false, true], &mut compiler.degree);
-    e.set_word("inertiafromgeom", TRIS, &mut compiler.inertiafromgeom);
-    e.set_flag("autolimits", &mut compiler.autolimits);
-    e.set_text("texturedir", &mut compiler.texturedir);
-    if let Some(text) = e.text("eulerseq") {
-        let letters: Option<[u8; 3]> = text.as_bytes().try_into().ok();
-        match letters.filter(|letters| letters.iter().all(|letter| b"xyzXYZ".contains(letter))) {
-            Some(letters) => compiler.eulerseq = letters,
-            None => return Err(tree.error(e.at, ErrorKind::Invalid("eulerseq must be three letters of xyzXYZ"))),
+/// Adds an element of a section that lists its elements one after another.
+fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -> Result<(), LoadError> {
+    let class = || classes.of(e, MAIN);
+    match (section, e.name) {
+        ("asset", "texture") => document.textures.push(Texture::read(e)),
+        ("asset", _) => document.materials.push(with(&class()?.material, e, Material::apply)),
+        ("contact", "pair") => document.pairs.push(with(&class()?.pair, e, Pair::apply)),
+        ("contact", _) => document.excludes.push(Exclude::read(e)),
+        ("equality", _) => document.equalities.push(with(&class()?.equality, e, Equality::hold)),
+        ("tendon", _) => {
+            let mut tendon = with(&class()?.tendon, e, Tendon::apply);
+            tendon.wrap = e.children.iter().map(Wrap::read).collect();
+            document.tendons.push(tendon);
         }
-    }
-    Ok(())
-}
-
-fn option(e: &Element, option: &mut Options) {
-    e.set_real("timestep", &mut option.timestep);
-    e.fill("gravity", &mut option.gravity);
-    e.set_int("iterations", &mut option.iterations);
-    e.set_real("tolerance", &mut option.tolerance);
-    e.set_int("ls_iterations", &mut option.ls_iterations);
-    e.set_real("ls_tolerance", &mut option.ls_tolerance);
-    e.set_real("impratio", &mut option.impratio);
-    e.set_int("ccd_iterations", &mut option.ccd_iterations);
-    e.set_real("ccd_tolerance", &mut option.ccd_tolerance);
-}
-
-fn visual(e: &Element, visual: &mut Visual) {
-    match e.name {
-        "global" => {
-            e.set_real("fovy", &mut visual.fovy);
-            e.set_int("offwidth", &mut visual.offwidth);
-            e.set_int("offheight", &mut visual.offheight);
-        }
-        "map" => {
-            e.set_real("znear", &mut visual.znear);
-            e.set_real("zfar", &mut visual.zfar);
-            e.set_real("fogstart", &mut visual.fogstart);
-            e.set_real("fogend", &mut visual.fogend);
-            e.set_real("haze", &mut visual.haze);
-            e.set_real("shadowclip", &mut visual.shadowclip);
-            e.set_real("force", &mut visual.force);
-        }
-        "quality" => {
-            e.set_int("shadowsize", &mut visual.shadowsize);
-            e.set_int("offsamples", &mut visual.offsamples);
-        }
-        _ => {
-            let mut active = i64::from(visual.headlight_active);
-            e.set_int("active", &mut active);
-            visual.headlight_active = active != 0;
-            e.fill("ambient", &mut visual.headlight_ambient);
-            e.fill("diffuse", &mut visual.headlight_diffuse);
-            e.fill("specular", &mut visual.headlight_specular);
-        }
-    }
-    let scalars = [
-        &mut visual.fovy,
-        &mut visual.znear,
-        &mut visual.zfar,
-        &mut visual.fogstart,
-        &mut visual.fogend,
-        &mut visual.haze,
-        &mut visual.shadowclip,
-        &mut visual.force,
-    ];
-    let colours = [
-        &mut visual.headlight_ambient,
-        &mut visual.headlight_diffuse,
-        &mut visual.headlight_specular,
-    ];
-    scalars
-        .into_iter()
-        .chain(colours.into_iter().flatten())
-        .for_each(|value| *value = single(*value));
-}
-
-fn statistic(e: &Element, statistic: &mut Statistic) {
-    e.set_real("meaninertia", &mut statistic.meaninertia);
-    e.set_real("meanmass", &mut statistic.meanmass);
-    e.set_real("meansize", &mut statistic.meansize);
-    e.set_real("extent", &mut statistic.extent);
-    e.fill("center", &mut statistic.center);
-}
-
-fn asset(section: &Element, classes: &Classes, document: &mut Document) -> Result<(), LoadError> {
-    for e in &section.children {
-        if e.name == "texture" {
-            document.textures.push(Texture::read(e));
-        } else {
-            let mut material = classes.of(e, MAIN)?.material.clone();
-            material.apply(e);
-            document.materials.push(material);
-        }
-    }
-    Ok(())
-}
-
-fn contact(section: &Element, classes: &Classes, document: &mut Document) -> Result<(), LoadError> {
-    let owned = |e: &Element, name: &str| e.text(name).unwrap_or_default().to_owned();
-    for e in &section.children {
-        if e.name == "pair" {
-            let mut pair = classes.of(e, MAIN)?.pair.clone();
-            pair.apply(e);
-            document.pairs.push(pair);
-        } else {
-            document.excludes.push(Exclude {
-                at: e.at,
-                name: owned(e, "name"),
-                body1: owned(e, "body1"),
-                body2: owned(e, "body2"),
+        ("actuator", _) => document.actuators.push(with(&class()?.actuator, e, Actuator::drive)),
+        ("sensor", name) => {
+            let kind = match name {
+                "accelerometer" => SensorType::Accelerometer,
+                "torque" => SensorType::Torque,
+                _ => SensorType::Gyro,
+            };
+            document.sensors.push(Sensor {
+                kind,
+                ..Sensor::read(e)
             });
         }
+        _ => {}
     }
     Ok(())
-}
-
-fn sensor(e: &Element) -> Option<Sensor> {
-    let kind = match e.name {
-        "accelerometer" => SensorType::Accelerometer,
-        "gyro" => SensorType::Gyro,
-        "torque" => SensorType::Torque,
-        _ => return None,
-    };
-    let owned = |name: &str| e.text(name).unwrap_or_default().to_owned();
-    Some(Sensor {
-        at: e.at,
-        name: owned("name"),
-        kind,
-        site: owned("site"),
-    })
 }
 
 /// Reads what hangs on a body, and its child bodies depth first.
@@ -389,8 +224,10 @@ fn child(
     if !classes.by_name.contains_key(inner) {
         return Err(classes.error(e, ErrorKind::UnknownClass(inner.to_owned())));
     }
-    let mut body = Body::new(e.at, e.text("name").unwrap_or_default().to_owned(), parent);
-    body.frame.apply(e);
+    let body = Body {
+        parent,
+        ..Body::read(e)
+    };
     bodies.push(body);
     Ok(bodies.len() - 1)
 }
@@ -400,15 +237,16 @@ fn child(
 fn hang(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
     let body = &mut bodies[body];
     match e.name {
-        "inertial" => body.inertial = Some(inertial(e)),
+        "inertial" => body.inertial = Some(Inertial::read(e)),
         "freejoint" => {
-            // Takes no defaults: only `<joint type="free">` has a class.
-            let mut joint = Joint {
+            let FreeJoint { at, name, group } = FreeJoint::read(e);
+            body.joints.push(Joint {
+                at,
+                name,
                 kind: JointType::Free,
-                ..Joint::default()
-            };
-            joint.apply(e);
-            body.joints.push(joint);
+                group,
+                ..Joint::initial()
+            });
         }
         "joint" => body.joints.push(with(&classes.of(e, around)?.joint, e, Joint::apply)),
         "geom" => body.geoms.push(with(&classes.of(e, around)?.geom, e, Geom::apply)),
@@ -422,21 +260,9 @@ fn hang(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mut 
     Ok(())
 }
 
-/// A copy of the class's prototype with the attributes of the element.
+/// Copies the class's prototype and applies the attributes of the element.
 fn with<T: Clone>(prototype: &T, e: &Element, apply: fn(&mut T, &Element)) -> T {
     let mut copy = prototype.clone();
     apply(&mut copy, e);
     copy
-}
-
-fn inertial(e: &Element) -> Inertial {
-    let mut frame = Frame::IDENTITY;
-    frame.apply(e);
-    Inertial {
-        at: e.at,
-        frame,
-        mass: e.array("mass").map_or(0.0, |[mass]| mass),
-        diaginertia: e.array("diaginertia").unwrap_or([0.0; 3]),
-        fullinertia: e.array("fullinertia"),
-    }
 }

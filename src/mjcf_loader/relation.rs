@@ -1,245 +1,145 @@
-//! The part of the typed document that refers to bodies, joints, geoms and sites: contact, equalities, tendons,
-//! actuators, sensors.
+//! Tables of what refers to bodies, joints, geoms and sites: contact, equalities, tendons, actuators, sensors.
 
 use crate::math::Vec3;
 use crate::model::{BiasType, SensorType};
 
-use super::document::{SOLIMP, SOLREF, TRIS, Tri};
+use super::attribute::Sign::{Any, NonNegative};
+use super::attribute::{FLAG, Kind, TEXT, int, real, reals, some};
 use super::schema::Element;
+use super::table::{Table, table};
+use super::words::{SOLIMP, SOLREF, TRI, Tri};
 
-#[derive(Clone)]
-pub(super) struct Pair {
-    pub at: usize,
-    pub name: String,
-    pub geom1: String,
-    pub geom2: String,
-    pub condim: usize,
-    pub friction: [f64; 5],
-    pub solref: [f64; 2],
-    pub solreffriction: [f64; 2],
-    pub solimp: [f64; 5],
-    pub margin: f64,
-    pub gap: f64,
-}
-
-impl Default for Pair {
-    fn default() -> Self {
-        Pair {
-            at: 0,
-            name: String::new(),
-            geom1: String::new(),
-            geom2: String::new(),
-            condim: 3,
-            friction: [1.0, 1.0, 0.005, 0.0001, 0.0001],
-            solref: SOLREF,
-            solreffriction: [0.0; 2],
-            solimp: SOLIMP,
-            margin: 0.0,
-            gap: 0.0,
-        }
+table! {
+    /// `<pair>`.
+    element Pair {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "geom1" geom1: String = String::new(), TEXT, required, "First geom.";
+        "geom2" geom2: String = String::new(), TEXT, required, "Second geom.";
+        "condim" condim: usize = 3, int(1, 6), "Dimension of the contacts: 1, 3, 4 or 6.";
+        "friction" friction: [f64; 5] = [1.0, 1.0, 0.005, 0.0001, 0.0001], some(1, 5, NonNegative), "Friction: two sliding, one torsional, two rolling.";
+        "solref" solref: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the normal force.";
+        "solreffriction" solreffriction: [f64; 2] = [0.0; 2], some(1, 2, Any), "`solref` of friction; zeros for that of the normal force.";
+        "solimp" solimp: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the contacts.";
+        "margin" margin: f64 = 0.0, real(NonNegative), "Distance at which contacts are found, m.";
+        "gap" gap: f64 = 0.0, real(NonNegative), "Part of the margin in which contacts exert no force, m.";
     }
 }
 
-impl Pair {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_text("geom1", &mut self.geom1);
-        e.set_text("geom2", &mut self.geom2);
-        e.set_int("condim", &mut self.condim);
-        e.fill("friction", &mut self.friction);
-        e.fill("solref", &mut self.solref);
-        e.fill("solreffriction", &mut self.solreffriction);
-        e.fill("solimp", &mut self.solimp);
-        e.set_real("margin", &mut self.margin);
-        e.set_real("gap", &mut self.gap);
+table! {
+    /// `<exclude>`.
+    element Exclude {
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "body1" body1: String = String::new(), TEXT, required, "First body.";
+        "body2" body2: String = String::new(), TEXT, required, "Second body.";
     }
 }
 
-pub(super) struct Exclude {
-    pub at: usize,
-    pub name: String,
-    pub body1: String,
-    pub body2: String,
+table! {
+    /// What `<equality><joint>` holds.
+    group JointEquality {
+        "joint1" joint1: String = String::new(), TEXT, required, "Joint that is held.";
+        "joint2" joint2: Option<String> = None, TEXT, own, "Joint that it follows; none for a constant.";
+        "polycoef" polycoef: [f64; 5] = [0.0, 1.0, 0.0, 0.0, 0.0], some(1, 5, Any), own, "Coefficients of the polynomial in the second joint.";
+    }
+}
+
+table! {
+    /// What `<equality><weld>` holds.
+    group WeldEquality {
+        "body1" body1: String = String::new(), TEXT, required, "First body.";
+        "body2" body2: Option<String> = None, TEXT, own, "Second body; else the world.";
+        "relpose" relpose: [f64; 7] = [0.0; 7], reals(7, Any), own, "Pose of the second body in the first; that at `qpos0` if the quaternion is zero.";
+        "anchor" anchor: Vec3 = [0.0; 3], reals(3, Any), own, "Point of the second body that is held, m.";
+        "torquescale" torquescale: f64 = 1.0, real(NonNegative), own, "Scale of rotational errors, m.";
+    }
 }
 
 /// What an equality holds, by name.
 #[derive(Clone)]
 pub(super) enum Held {
-    Joint {
-        joint1: String,
-        joint2: Option<String>,
-        polycoef: [f64; 5],
-    },
-    Weld {
-        body1: String,
-        body2: Option<String>,
-        relpose: [f64; 7],
-        anchor: Vec3,
-        torquescale: f64,
-    },
+    Joint(JointEquality),
+    Weld(WeldEquality),
 }
 
-#[derive(Clone)]
-pub(super) struct Equality {
-    pub at: usize,
-    pub name: String,
-    pub held: Held,
-    pub active: bool,
-    pub solref: [f64; 2],
-    pub solimp: [f64; 5],
-}
-
-impl Default for Equality {
-    fn default() -> Self {
-        let held = Held::Joint {
-            joint1: String::new(),
-            joint2: None,
-            polycoef: [0.0; 5],
-        };
-        Equality {
-            at: 0,
-            name: String::new(),
-            held,
-            active: true,
-            solref: SOLREF,
-            solimp: SOLIMP,
-        }
+table! {
+    /// What all equalities have in common.
+    element Equality {
+        also held: Held = Held::Joint(JointEquality::initial());
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "active" active: bool = true, FLAG, "Whether it holds after a reset.";
+        "solref" solref: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the constraint.";
+        "solimp" solimp: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the constraint.";
     }
 }
 
 impl Equality {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_flag("active", &mut self.active);
-        e.fill("solref", &mut self.solref);
-        e.fill("solimp", &mut self.solimp);
-        let owned = |name: &str| e.text(name).map(str::to_owned);
-        match e.name {
-            "joint" => {
-                let mut polycoef = [0.0, 1.0, 0.0, 0.0, 0.0];
-                e.fill("polycoef", &mut polycoef);
-                self.held = Held::Joint {
-                    joint1: owned("joint1").unwrap_or_default(),
-                    joint2: owned("joint2"),
-                    polycoef,
-                };
-            }
-            "weld" => {
-                self.held = Held::Weld {
-                    body1: owned("body1").unwrap_or_default(),
-                    body2: owned("body2"),
-                    // A zero quaternion asks for the relative pose at `qpos0`.
-                    relpose: e.array("relpose").unwrap_or([0.0; 7]),
-                    anchor: e.array("anchor").unwrap_or([0.0; 3]),
-                    torquescale: e.array("torquescale").map_or(1.0, |[scale]| scale),
-                }
-            }
-            _ => {}
-        }
+    /// Reads the element with what it holds.
+    pub fn hold(&mut self, e: &Element) {
+        self.apply(e);
+        self.held = match e.name {
+            "weld" => Held::Weld(WeldEquality::read(e)),
+            _ => Held::Joint(JointEquality::read(e)),
+        };
     }
 }
 
-#[derive(Clone)]
-pub(super) struct Tendon {
-    pub at: usize,
-    pub name: String,
-    pub limited: Tri,
-    pub range: [f64; 2],
-    pub margin: f64,
-    pub solref_limit: [f64; 2],
-    pub solimp_limit: [f64; 5],
-    /// Place, joint, coefficient.
-    pub wrap: Vec<(usize, String, f64)>,
-}
-
-impl Default for Tendon {
-    fn default() -> Self {
-        Tendon {
-            at: 0,
-            name: String::new(),
-            limited: Tri::Auto,
-            range: [0.0; 2],
-            margin: 0.0,
-            solref_limit: SOLREF,
-            solimp_limit: SOLIMP,
-            wrap: Vec::new(),
-        }
+table! {
+    /// A `<joint>` of a tendon.
+    element Wrap {
+        "joint" joint: String = String::new(), TEXT, required, "Joint.";
+        "coef" coef: f64 = 0.0, real(Any), required, "Length of the tendon per coordinate of the joint.";
     }
 }
 
-impl Tendon {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_word("limited", TRIS, &mut self.limited);
-        e.fill("range", &mut self.range);
-        e.set_real("margin", &mut self.margin);
-        e.fill("solreflimit", &mut self.solref_limit);
-        e.fill("solimplimit", &mut self.solimp_limit);
-        for joint in &e.children {
-            let coef = joint.array("coef").map_or(0.0, |[coef]| coef);
-            self.wrap
-                .push((joint.at, joint.text("joint").unwrap_or_default().to_owned(), coef));
-        }
+table! {
+    /// `<tendon><fixed>`.
+    element Tendon {
+        also wrap: Vec<Wrap> = Vec::new();
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
+        "range" range: [f64; 2] = [0.0; 2], reals(2, Any), "Shortest and longest length.";
+        "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
+        "solreflimit" solref_limit: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the limit.";
+        "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";
     }
 }
 
-/// Motors and position servos share one default per class, as in the reference: a `motor` default reaches servos too.
-#[derive(Clone)]
-pub(super) struct Actuator {
-    pub at: usize,
-    pub name: String,
-    pub joint: String,
-    pub gear: f64,
-    pub ctrllimited: Tri,
-    pub ctrlrange: [f64; 2],
-    pub forcelimited: Tri,
-    pub forcerange: [f64; 2],
-    pub gain: f64,
-    pub biastype: BiasType,
-    pub biasprm: [f64; 3],
-    pub user: Vec<f64>,
+table! {
+    /// What all actuators have in common. Motors and position servos share one default per class, as in MuJoCo: a `motor`
+    /// default reaches servos too.
+    element Actuator {
+        also gain: f64 = 1.0;
+        also biastype: BiasType = BiasType::None;
+        also biasprm: [f64; 3] = [0.0; 3];
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "joint" joint: String = String::new(), TEXT, required, "Joint that it drives.";
+        "ctrllimited" ctrllimited: Tri = Tri::Auto, TRI, "Whether `ctrlrange` is enforced.";
+        "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
+        "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the control.";
+        "forcerange" forcerange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force.";
+        "gear" gear: f64 = 1.0, real(Any), "Ratio of the force on the joint to the actuator's force.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+    }
 }
 
-impl Default for Actuator {
-    fn default() -> Self {
-        Actuator {
-            at: 0,
-            name: String::new(),
-            joint: String::new(),
-            gear: 1.0,
-            ctrllimited: Tri::Auto,
-            ctrlrange: [0.0; 2],
-            forcelimited: Tri::Auto,
-            forcerange: [0.0; 2],
-            gain: 1.0,
-            biastype: BiasType::None,
-            biasprm: [0.0; 3],
-            user: Vec::new(),
-        }
+table! {
+    /// What `<position>` has beyond other actuators.
+    group Servo {
+        "kp" kp: Option<f64> = None, real(NonNegative), "Gain of the position error; 1 if no default gives another.";
+        "kv" kv: Option<f64> = None, real(NonNegative), "Damping; 0 if no default gives another.";
     }
 }
 
 impl Actuator {
-    pub fn apply(&mut self, e: &Element) {
-        self.at = e.at;
-        e.set_text("name", &mut self.name);
-        e.set_text("joint", &mut self.joint);
-        e.set_real("gear", &mut self.gear);
-        e.set_word("ctrllimited", TRIS, &mut self.ctrllimited);
-        e.fill("ctrlrange", &mut self.ctrlrange);
-        e.set_word("forcelimited", TRIS, &mut self.forcelimited);
-        e.fill("forcerange", &mut self.forcerange);
-        if let Some(user) = e.reals("user") {
-            self.user = user.to_vec();
-        }
+    /// Reads a motor or a position servo.
+    pub fn drive(&mut self, e: &Element) {
+        self.apply(e);
         if e.name == "position" {
-            e.set_real("kp", &mut self.gain);
+            let servo = Servo::read(e);
+            self.gain = servo.kp.unwrap_or(self.gain);
             self.biastype = BiasType::Affine;
             self.biasprm[1] = -self.gain;
-            if let Some([kv]) = e.array("kv") {
+            if let Some(kv) = servo.kv {
                 self.biasprm[2] = -kv;
             }
         } else {
@@ -250,9 +150,11 @@ impl Actuator {
     }
 }
 
-pub(super) struct Sensor {
-    pub at: usize,
-    pub name: String,
-    pub kind: SensorType,
-    pub site: String,
+table! {
+    /// A sensor.
+    element Sensor {
+        also kind: SensorType = SensorType::Gyro;
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "site" site: String = String::new(), TEXT, required, "Site that it sits on.";
+    }
 }

@@ -6,12 +6,13 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use super::assets::{AssetSource, directory, resolve};
 use super::error::{ErrorKind, LoadError, Place};
-use super::{MAX_ATTRIBUTES, MAX_DEPTH, MAX_DOCUMENT_BYTES, MAX_ELEMENTS, MAX_INCLUDE_DEPTH};
+use crate::assets::{AssetSource, directory, resolve};
+use crate::limits::Limits;
 
 /// An element. Children may come from other files, the parent is the one in its own file.
-pub(super) struct Node {
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
     pub name: String,
     pub attributes: Vec<(String, String)>,
     pub children: Vec<usize>,
@@ -23,17 +24,23 @@ pub(super) struct Node {
 }
 
 /// All elements of a document and its includes, by index.
-#[derive(Default)]
-pub(super) struct Tree {
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
     pub nodes: Vec<Node>,
+    /// What this document may contain.
+    pub limits: Limits,
     files: Vec<String>,
 }
 
 impl Tree {
     /// Reads the main document and everything it includes. Returns the tree and its root.
-    pub fn read(text: &str, path: &str, source: &dyn AssetSource) -> Result<(Tree, usize), LoadError> {
+    pub fn read(text: &str, path: &str, source: &dyn AssetSource, limits: &Limits) -> Result<(Tree, usize), LoadError> {
         let mut reading = Reading {
-            tree: Tree::default(),
+            tree: Tree {
+                nodes: Vec::new(),
+                limits: limits.clone(),
+                files: Vec::new(),
+            },
             source,
             // MuJoCo resolves every reference against the main document, also those in included files.
             dir: directory(path).to_owned(),
@@ -44,7 +51,7 @@ impl Tree {
         Ok((reading.tree, root))
     }
 
-    /// An error at an element.
+    /// Builds an error at an element.
     pub fn error(&self, at: usize, kind: impl Into<ErrorKind>) -> LoadError {
         LoadError {
             place: Box::new(self.place(at)),
@@ -70,6 +77,62 @@ impl Tree {
             element: names.join("/"),
         }
     }
+
+    #[cfg(feature = "eval")]
+    /// Appends the element `root` and all below it to `out`, one tag a line. `replace` may give an attribute of an element
+    /// another value.
+    pub fn write<E>(
+        &self,
+        root: usize,
+        out: &mut String,
+        mut replace: impl FnMut(&str, &str, &str) -> Result<Option<String>, E>,
+    ) -> Result<(), E> {
+        // elements that are open, with their next child; depth costs no stack
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        let mut next = Some(root);
+        while let Some(at) = next {
+            indent(out, open.len());
+            self.write_start(at, out, &mut replace)?;
+            if !self.nodes[at].children.is_empty() {
+                open.push((at, 0));
+            }
+            next = None;
+            while let (None, Some((parent, child))) = (next, open.last_mut()) {
+                let node = &self.nodes[*parent];
+                next = node.children.get(*child).copied();
+                *child += 1;
+                if next.is_none() {
+                    open.pop();
+                    indent(out, open.len());
+                    out.push_str(&format!("</{}>\n", node.name));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[cfg(feature = "eval")]
+    fn write_start<E>(
+        &self,
+        at: usize,
+        out: &mut String,
+        replace: &mut impl FnMut(&str, &str, &str) -> Result<Option<String>, E>,
+    ) -> Result<(), E> {
+        let node = &self.nodes[at];
+        out.push_str(&format!("<{}", node.name));
+        for (name, value) in &node.attributes {
+            let other = replace(&node.name, name, value)?;
+            let value = quick_xml::escape::escape(other.as_deref().unwrap_or(value));
+            out.push_str(&format!(" {name}=\"{value}\""));
+        }
+        out.push_str(if node.children.is_empty() { "/>\n" } else { ">\n" });
+        Ok(())
+    }
+}
+
+#[cfg(feature = "eval")]
+fn indent(out: &mut String, depth: usize) {
+    out.extend(std::iter::repeat_n("  ", depth));
 }
 
 struct Reading<'s> {
@@ -84,16 +147,16 @@ impl Reading<'_> {
     /// Parses one file and splices its includes. `depth` is the nesting depth of the element it stands for.
     fn file(&mut self, text: &str, path: &str, depth: usize, level: usize) -> Result<usize, LoadError> {
         self.bytes = self.bytes.saturating_add(text.len());
-        if self.bytes > MAX_DOCUMENT_BYTES {
+        if self.bytes > self.tree.limits.document_bytes {
             let kind = ErrorKind::TooMuch {
-                what: "bytes of XML in all",
-                limit: MAX_DOCUMENT_BYTES,
+                what: "bytes of XML in total",
+                limit: self.tree.limits.document_bytes,
             };
             return Err(LoadError::in_file(path, kind));
         }
         let first = self.tree.nodes.len();
         self.tree.files.push(path.to_owned());
-        let root = parse(&mut self.tree, text, depth)?;
+        let root = Parser::new(&mut self.tree, text, depth).run()?;
         let last = self.tree.nodes.len();
         for at in first..last {
             if self.tree.nodes[at]
@@ -136,10 +199,10 @@ impl Reading<'_> {
         let Some((_, file)) = node.attributes.first() else {
             return fail(ErrorKind::MissingAttribute("file"));
         };
-        if level > MAX_INCLUDE_DEPTH {
+        if level > self.tree.limits.include_depth {
             return fail(ErrorKind::TooMuch {
                 what: "nested includes",
-                limit: MAX_INCLUDE_DEPTH,
+                limit: self.tree.limits.include_depth,
             });
         }
         let path = resolve(&self.dir, file).map_err(|e| self.tree.error(at, e))?;
@@ -187,116 +250,129 @@ impl Cursor<'_> {
 }
 
 /// Parses the text of the last file of the tree. Keeps its own stack, so depth costs no stack.
-fn parse(tree: &mut Tree, text: &str, base_depth: usize) -> Result<usize, LoadError> {
-    let file = tree.files.len() - 1;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut reader = Reader::from_str(text);
-    let mut cursor = Cursor {
-        text,
-        offset: 0,
-        line: 1,
-        column: 1,
-    };
-    let mut open: Vec<usize> = Vec::new();
-    let mut root = None;
-    loop {
-        cursor.advance(reader.buffer_position());
-        let event = reader.read_event();
-        let fail = |tree: &Tree, cursor: &Cursor, kind: ErrorKind| {
-            let mut place = open.last().map_or_else(Place::default, |&at| tree.place(at));
-            place.file.clone_from(&tree.files[file]);
-            (place.line, place.column) = (cursor.line, cursor.column);
-            Err(LoadError {
-                place: Box::new(place),
-                kind,
-            })
+struct Parser<'t> {
+    tree: &'t mut Tree,
+    file: usize,
+    /// Nesting depth of the element that the file stands for.
+    base_depth: usize,
+    cursor: Cursor<'t>,
+    open: Vec<usize>,
+    root: Option<usize>,
+}
+
+impl<'t> Parser<'t> {
+    fn new(tree: &'t mut Tree, text: &'t str, base_depth: usize) -> Self {
+        let cursor = Cursor {
+            text: text.strip_prefix('\u{feff}').unwrap_or(text),
+            offset: 0,
+            line: 1,
+            column: 1,
         };
-        let (start, closed) = match event {
-            Ok(Event::Start(start)) => (start, false),
-            Ok(Event::Empty(start)) => (start, true),
-            Ok(Event::End(_)) => {
-                open.pop();
-                continue;
-            }
-            Ok(Event::Eof) => {
-                if !open.is_empty() {
-                    return fail(tree, &cursor, ErrorKind::Xml("the file ends inside an element".into()));
+        Parser {
+            file: tree.files.len() - 1,
+            tree,
+            base_depth,
+            cursor,
+            open: Vec::new(),
+            root: None,
+        }
+    }
+
+    /// Builds an error at the cursor.
+    fn fail(&self, kind: ErrorKind) -> LoadError {
+        let mut place = self.open.last().map_or_else(Place::default, |&at| self.tree.place(at));
+        place.file.clone_from(&self.tree.files[self.file]);
+        (place.line, place.column) = (self.cursor.line, self.cursor.column);
+        LoadError {
+            place: Box::new(place),
+            kind,
+        }
+    }
+
+    /// Returns the root of the file.
+    fn run(mut self) -> Result<usize, LoadError> {
+        let mut reader = Reader::from_str(self.cursor.text);
+        loop {
+            self.cursor.advance(reader.buffer_position());
+            match reader.read_event() {
+                Ok(Event::Start(start)) => {
+                    let at = self.element(&start)?;
+                    self.open.push(at);
                 }
-                return match root {
-                    Some(root) => Ok(root),
-                    None => fail(tree, &cursor, ErrorKind::Xml("there is no root element".into())),
-                };
+                Ok(Event::Empty(start)) => {
+                    self.element(&start)?;
+                }
+                Ok(Event::End(_)) => {
+                    self.open.pop();
+                }
+                Ok(Event::Eof) => return self.end(),
+                Ok(Event::Comment(_) | Event::Decl(_)) => {}
+                Ok(Event::Text(content)) if content.trim().is_empty() => {}
+                Ok(Event::Text(_) | Event::GeneralRef(_)) => return Err(self.fail(ErrorKind::Forbidden("text"))),
+                Ok(Event::CData(_)) => return Err(self.fail(ErrorKind::Forbidden("a CDATA section"))),
+                Ok(Event::PI(_)) => return Err(self.fail(ErrorKind::Forbidden("a processing instruction"))),
+                Ok(Event::DocType(_)) => return Err(self.fail(ErrorKind::Forbidden("a document type"))),
+                Err(error) => {
+                    self.cursor.advance(reader.error_position());
+                    return Err(self.fail(ErrorKind::Xml(error.to_string())));
+                }
             }
-            Ok(Event::Comment(_) | Event::Decl(_)) => continue,
-            Ok(Event::Text(content)) if content.trim().is_empty() => continue,
-            Ok(Event::Text(_) | Event::GeneralRef(_)) => return fail(tree, &cursor, ErrorKind::Forbidden("text")),
-            Ok(Event::CData(_)) => return fail(tree, &cursor, ErrorKind::Forbidden("a CDATA section")),
-            Ok(Event::PI(_)) => return fail(tree, &cursor, ErrorKind::Forbidden("a processing instruction")),
-            Ok(Event::DocType(_)) => return fail(tree, &cursor, ErrorKind::Forbidden("a document type")),
-            Err(error) => {
-                cursor.advance(reader.error_position());
-                return fail(tree, &cursor, ErrorKind::Xml(error.to_string()));
-            }
-        };
-        let depth = base_depth + open.len() + 1;
-        if depth > MAX_DEPTH {
-            return fail(
-                tree,
-                &cursor,
-                ErrorKind::TooMuch {
-                    what: "nested elements",
-                    limit: MAX_DEPTH,
-                },
-            );
         }
-        if tree.nodes.len() >= MAX_ELEMENTS {
-            return fail(
-                tree,
-                &cursor,
-                ErrorKind::TooMuch {
-                    what: "elements",
-                    limit: MAX_ELEMENTS,
-                },
-            );
+    }
+
+    fn end(&self) -> Result<usize, LoadError> {
+        let broken = |message: &str| self.fail(ErrorKind::Xml(message.to_owned()));
+        if !self.open.is_empty() {
+            return Err(broken("the file ends inside an element"));
         }
-        if open.is_empty() && root.is_some() {
-            return fail(tree, &cursor, ErrorKind::Xml("there is a second root element".into()));
+        self.root.ok_or_else(|| broken("there is no root element"))
+    }
+
+    /// Adds an element to the tree.
+    fn element(&mut self, start: &BytesStart) -> Result<usize, LoadError> {
+        let limits = &self.tree.limits;
+        let depth = self.base_depth + self.open.len() + 1;
+        let too_much = |what, limit| Err(self.fail(ErrorKind::TooMuch { what, limit }));
+        if depth > limits.depth {
+            return too_much("nested elements", limits.depth);
         }
-        let at = tree.nodes.len();
-        tree.nodes.push(Node {
+        if self.tree.nodes.len() >= limits.elements {
+            return too_much("elements", limits.elements);
+        }
+        if self.open.is_empty() && self.root.is_some() {
+            return Err(self.fail(ErrorKind::Xml("there is a second root element".into())));
+        }
+        let at = self.tree.nodes.len();
+        let found = attributes(start, limits.attributes);
+        self.tree.nodes.push(Node {
             name: start.name().as_ref().to_owned(),
             attributes: Vec::new(),
             children: Vec::new(),
             depth,
-            file,
-            line: cursor.line,
-            column: cursor.column,
-            parent: open.last().copied(),
+            file: self.file,
+            line: self.cursor.line,
+            column: self.cursor.column,
+            parent: self.open.last().copied(),
         });
-        match attributes(&start) {
-            Ok(found) => tree.nodes[at].attributes = found,
-            Err(kind) => return Err(tree.error(at, kind)),
+        self.tree.nodes[at].attributes = found.map_err(|kind| self.tree.error(at, kind))?;
+        match self.open.last() {
+            Some(&parent) => self.tree.nodes[parent].children.push(at),
+            None => self.root = Some(at),
         }
-        match open.last() {
-            Some(&parent) => tree.nodes[parent].children.push(at),
-            None => root = Some(at),
-        }
-        if !closed {
-            open.push(at);
-        }
+        Ok(at)
     }
 }
 
-fn attributes(start: &BytesStart) -> Result<Vec<(String, String)>, ErrorKind> {
+fn attributes(start: &BytesStart, limit: usize) -> Result<Vec<(String, String)>, ErrorKind> {
     let mut found: Vec<(String, String)> = Vec::new();
     // The check for duplicates is ours: with the limit it cannot become quadratic in the size of the file.
     for attribute in start.attributes().with_checks(false) {
         let attribute = attribute.map_err(|e| ErrorKind::Xml(e.to_string()))?;
         let name: &str = attribute.key.as_ref();
-        if found.len() >= MAX_ATTRIBUTES {
+        if found.len() >= limit {
             return Err(ErrorKind::TooMuch {
                 what: "attributes of an element",
-                limit: MAX_ATTRIBUTES,
+                limit,
             });
         }
         if found.iter().any(|(other, _)| other == name) {

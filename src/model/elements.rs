@@ -1,9 +1,8 @@
 //! Types of the elements of a model.
 
 use crate::math::{QUAT_ID, Quat, Vec3};
-use crate::model::{BodyId, JointId};
 
-/// Joint types.
+/// The type of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JointType {
     /// Six degrees of freedom; `qpos` is position (3) and quaternion (4), `qvel` linear velocity in the world frame (3)
@@ -16,17 +15,19 @@ pub enum JointType {
 }
 
 impl JointType {
-    /// Number of position coordinates.
+    /// Returns the number of position coordinates.
     pub fn nq(self) -> usize {
         if self == JointType::Free { 7 } else { 1 }
     }
-    /// Number of degrees of freedom.
+    /// Returns the number of degrees of freedom.
     pub fn nv(self) -> usize {
         if self == JointType::Free { 6 } else { 1 }
     }
 }
 
-/// Geom and site shapes, with the meaning of `size`. The order is MuJoCo's, by which pairs are arranged.
+/// The shape of a geom or site, with the meaning of `size`.
+///
+/// The order is MuJoCo's, by which pairs are arranged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum GeomType {
     /// Infinite for collision; `size` is half width, half length, grid spacing.
@@ -43,8 +44,9 @@ pub enum GeomType {
     Box,
 }
 
-/// Whether the frame of something in a body is one that is known already. MuJoCo copies such frames instead of composing
-/// them, which shows in the last bits.
+/// The known frame, if any, that the frame of something in a body coincides with.
+///
+/// MuJoCo copies such frames instead of composing them, which shows in the last bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SameFrame {
     /// A frame of its own.
@@ -79,33 +81,33 @@ impl SameFrame {
     }
 }
 
-/// Camera modes.
+/// The mode of a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CameraMode {
     /// Fixed in its body.
     Fixed,
     /// Fixed in its body, turned so that it looks at a target body.
-    TargetBody(BodyId),
+    TargetBody(usize),
 }
 
-/// What an equality constraint holds.
+/// An equality constraint, with what it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EqualityKind {
     /// `y - y0 = polycoef(x - x0)` with `y` the first joint and `x` the second; without a second joint `y - y0 = polycoef[0]`.
     Joint {
         /// The constrained joint.
-        joint1: JointId,
+        joint1: usize,
         /// The joint it follows.
-        joint2: Option<JointId>,
+        joint2: Option<usize>,
         /// Coefficients of the quartic polynomial.
         polycoef: [f64; 5],
     },
     /// Body 1 keeps its pose relative to body 2.
     Weld {
         /// First body.
-        body1: BodyId,
+        body1: usize,
         /// Second body; the world by default.
-        body2: BodyId,
+        body2: usize,
         /// Point of the constraint in body 2, m.
         anchor: Vec3,
         /// Position of body 2 relative to body 1 at the anchor, in body 1, m (MuJoCo's `relpose`).
@@ -117,7 +119,7 @@ pub enum EqualityKind {
     },
 }
 
-/// Actuator bias.
+/// The type of an actuator's bias.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BiasType {
     /// No bias (motor).
@@ -126,7 +128,7 @@ pub enum BiasType {
     Affine,
 }
 
-/// Sensors of the models.
+/// The type of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SensorType {
     /// Specific force at a site, m/s^2, site frame (3).
@@ -137,7 +139,7 @@ pub enum SensorType {
     Torque,
 }
 
-/// Texture layout.
+/// The layout of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TextureType {
     /// One image.
@@ -148,7 +150,7 @@ pub enum TextureType {
     Skybox,
 }
 
-/// A procedural texture.
+/// The procedure that paints a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Builtin {
     /// None: from files, or `rgb1`.
@@ -161,7 +163,7 @@ pub enum Builtin {
     Flat,
 }
 
-/// Marks drawn over a procedural texture.
+/// The marks drawn over a procedural texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mark {
     /// None.
@@ -174,7 +176,9 @@ pub enum Mark {
     Random,
 }
 
-/// How a texture is made. Pixels are decoded by the renderer; the model keeps the recipe.
+/// The recipe of a texture.
+///
+/// Pixels are decoded by the renderer; the model keeps the recipe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// Name; may be empty (skybox).
@@ -203,12 +207,12 @@ pub struct Texture {
     pub cube_files: [Option<String>; 6],
 }
 
-/// A surface.
+/// A material: the look of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name.
     pub name: String,
-    /// Index into [`crate::Model::textures`].
+    /// Index into [`crate::model::Arrays::textures`].
     pub texture: Option<usize>,
     /// Colour and opacity, 0..1.
     pub rgba: [f64; 4],
@@ -226,6 +230,21 @@ pub struct Material {
     pub texuniform: bool,
 }
 
+/// The mode of a light: how it is placed and aimed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightMode {
+    /// Moves and turns with its body.
+    Fixed,
+    /// Keeps its direction in the world and its distance from the origin of its body.
+    Track,
+    /// Keeps its direction in the world and its distance from the centre of mass of its body and those below it.
+    TrackCom,
+    /// Moves with its body and shines at the origin of the target.
+    TargetBody,
+    /// Moves with its body and shines at the centre of mass of the target and the bodies below it.
+    TargetBodyCom,
+}
+
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -233,14 +252,25 @@ pub struct Light {
     pub name: String,
     /// Body that carries it.
     pub bodyid: usize,
-    /// Parallel light.
+    /// Whether the light is directional: parallel, from far away.
     pub directional: bool,
-    /// Casts shadows.
+    /// Whether it casts shadows.
     pub castshadow: bool,
     /// Position in the body, m.
     pub pos: Vec3,
     /// Unit direction in the body.
     pub dir: Vec3,
+    /// How it is placed and aimed.
+    pub mode: LightMode,
+    /// Body that it shines at in modes that aim at one.
+    pub targetbodyid: Option<usize>,
+    /// Position at `qpos0` relative to the origin of its body, along the axes of the world, m.
+    pub pos0: Vec3,
+    /// Position at `qpos0` relative to the centre of mass of the target, or else its body, and those below,
+    /// along the axes of the world, m.
+    pub poscom0: Vec3,
+    /// Unit direction at `qpos0` in the world.
+    pub dir0: Vec3,
     /// Colours, 0..1.
     pub ambient: [f64; 3],
     /// Colours, 0..1.
@@ -255,30 +285,30 @@ pub struct Light {
     pub exponent: f64,
 }
 
-/// Solver and integrator options (`<option>`).
+/// The options of solver and integrator (`<option>`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Time step, s.
     pub timestep: f64,
     /// Gravity, m/s^2.
     pub gravity: Vec3,
-    /// Most Newton iterations per step.
+    /// Greatest number of Newton iterations per step.
     pub iterations: usize,
-    /// Newton stops when the scaled improvement or gradient is below this.
+    /// Scaled improvement or gradient below which Newton's method stops.
     pub tolerance: f64,
-    /// Most line-search iterations per Newton iteration.
+    /// Greatest number of line-search iterations per Newton iteration.
     pub ls_iterations: usize,
     /// Line-search tolerance.
     pub ls_tolerance: f64,
     /// Ratio of frictional to normal constraint impedance.
     pub impratio: f64,
-    /// Most iterations of the convex collision routine.
+    /// Greatest number of iterations of the convex collision routine.
     pub ccd_iterations: usize,
     /// Tolerance of the convex collision routine, m.
     pub ccd_tolerance: f64,
 }
 
-/// Visual settings (`<visual>`), as the reference stores them (single precision where it does).
+/// The visual settings (`<visual>`) as MuJoCo stores them, in single precision where it does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visual {
     /// Vertical field of view of the free camera, degrees.
@@ -305,7 +335,7 @@ pub struct Visual {
     pub offwidth: usize,
     /// Offscreen height, pixels.
     pub offheight: usize,
-    /// Headlight on.
+    /// Whether the headlight is on.
     pub headlight_active: bool,
     /// Headlight colours, 0..1.
     pub headlight_ambient: [f64; 3],
@@ -315,7 +345,7 @@ pub struct Visual {
     pub headlight_specular: [f64; 3],
 }
 
-/// Statistics of the model (`<statistic>`).
+/// The statistics of a model (`<statistic>`), given or computed.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Statistic {
     /// Mean diagonal of the joint-space inertia, kg m^2.

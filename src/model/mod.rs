@@ -1,55 +1,41 @@
 //! The compiled model: everything about a scene that does not change while it runs.
 //!
-//! Arrays carry MuJoCo's names, ids and units (SI, radians), one entry per element in document order, so a number here
-//! can be laid beside the same number there. A [`Model`] is immutable after compilation and is shared in an
-//! [`std::sync::Arc`]; what changes at run time lives in [`crate::physics::State`].
+//! [`Arrays`] carry MuJoCo's names, ids and units (SI, radians), one entry per element in document order, so a number here
+//! can be laid beside the same number there. A [`Model`] owns complete arrays, lets them be read (`model.body_mass[b]`)
+//! and never be changed; [`crate::physics::compile`] alone makes one. It is shared in an [`std::sync::Arc`]; what changes at
+//! run time lives in [`crate::physics::State`].
 
+mod complete;
 mod elements;
 
+pub use complete::Model;
+pub(crate) use complete::{Constants, LightPose, WeldPose};
 pub use elements::*;
 
 use crate::math::{Quat, Vec3};
 
-macro_rules! id {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub struct $name(pub usize);
-    )*};
-}
-
-id! {
-    /// Index of a body; 0 is the world.
-    BodyId,
-    /// Index of a joint.
-    JointId,
-    /// Index of a degree of freedom.
-    DofId,
-    /// Index of a geom.
-    GeomId,
-    /// Index of a site.
-    SiteId,
-    /// Index of a camera.
-    CameraId,
-    /// Index of an actuator.
-    ActuatorId,
-    /// Index of an equality constraint.
-    EqualityId,
-    /// Index of a tendon.
-    TendonId,
-    /// Index of a sensor.
-    SensorId,
-}
-
-macro_rules! model {
-    ($($(#[$doc:meta])* $field:ident : $ty:ty),* $(,)?) => {
-        /// A compiled scene. See the [module documentation](self).
+macro_rules! arrays {
+    ($($(#[$setting_doc:meta])* $setting:ident : $setting_ty:ty),*; $($(#[$doc:meta])* $field:ident : $ty:ty),* $(,)?) => {
+        /// The numbers of a scene under MuJoCo's names, as a [`Model`] shows them.
+        ///
+        /// See the [module documentation](self).
         #[derive(Clone, Debug, PartialEq)]
-        pub struct Model { $($(#[$doc])* pub $field: $ty,)* }
+        #[non_exhaustive]
+        pub struct Arrays {
+            $($(#[$setting_doc])* pub $setting: $setting_ty,)*
+            $($(#[$doc])* pub $field: $ty,)*
+        }
+
+        impl Arrays {
+            /// Makes arrays that hold settings and no elements.
+            pub(crate) fn without_elements($($setting: $setting_ty),*) -> Self {
+                Self { $($setting,)* $($field: Default::default(),)* }
+            }
+        }
     };
 }
 
-model! {
+arrays! {
     /// Name of the model.
     name: String,
     /// Options.
@@ -57,7 +43,7 @@ model! {
     /// Visual settings.
     vis: Visual,
     /// Statistics.
-    stat: Statistic,
+    stat: Statistic;
 
     /// Number of position coordinates.
     nq: usize,
@@ -70,7 +56,7 @@ model! {
     body_parentid: Vec<usize>,
     /// Top body of the tree that holds the body (the ancestor that is a child of the world).
     body_rootid: Vec<usize>,
-    /// Body it is rigidly welded to: itself when it has joints, else its parent's.
+    /// Body that it is rigidly welded to: itself when it has joints, else its parent's.
     body_weldid: Vec<usize>,
     /// First joint, `njnt` range start.
     body_jntadr: Vec<usize>,
@@ -144,8 +130,10 @@ model! {
     dof_damping: Vec<f64>,
     /// Dry friction, N m.
     dof_frictionloss: Vec<f64>,
-    /// Diagonal of the inverse inertia at `qpos0`.
+    /// Diagonal of the inverse inertia at `qpos0`, 1/kg or 1/(kg m^2).
     dof_invweight0: Vec<f64>,
+    /// Diagonal of the inertia at `qpos0` (MuJoCo's `dof_M0`), kg or kg m^2.
+    dof_m0: Vec<f64>,
     /// `solref` of dry friction.
     dof_solref: Vec<[f64; 2]>,
     /// `solimp` of dry friction.
@@ -196,7 +184,7 @@ model! {
     geom_group: Vec<usize>,
     /// Own colour, 0..1.
     geom_rgba: Vec<[f64; 4]>,
-    /// Index into [`Model::materials`].
+    /// Index into [`Arrays::materials`].
     geom_matid: Vec<Option<usize>>,
 
     /// Site names.
@@ -217,7 +205,7 @@ model! {
     site_group: Vec<usize>,
     /// Colour, 0..1.
     site_rgba: Vec<[f64; 4]>,
-    /// Index into [`Model::materials`].
+    /// Index into [`Arrays::materials`].
     site_matid: Vec<Option<usize>>,
 
     /// Camera names.
@@ -232,6 +220,8 @@ model! {
     cam_quat: Vec<Quat>,
     /// Vertical field of view, degrees.
     cam_fovy: Vec<f64>,
+    /// Numbers for programs, `nuser_cam` for each camera. They mean nothing to physics and pictures.
+    cam_user: Vec<Vec<f64>>,
 
     /// Lights.
     lights: Vec<Light>,
@@ -256,14 +246,14 @@ model! {
     pair_margin: Vec<f64>,
     /// Explicit pair: gap, m.
     pair_gap: Vec<f64>,
-    /// Excluded body pairs, lower id first, sorted.
+    /// Body pairs excluded from collision, lower id first, sorted.
     exclude: Vec<[usize; 2]>,
 
     /// Equality names.
     eq_name: Vec<String>,
-    /// What is held.
+    /// Kind of each constraint, with what it holds.
     eq_kind: Vec<EqualityKind>,
-    /// Active after a reset.
+    /// Whether it is active after a reset.
     eq_active0: Vec<bool>,
     /// `solref`.
     eq_solref: Vec<[f64; 2]>,
@@ -314,39 +304,39 @@ model! {
     sensor_name: Vec<String>,
     /// Sensor type.
     sensor_type: Vec<SensorType>,
-    /// Site it is attached to.
+    /// Site that it is attached to.
     sensor_objid: Vec<usize>,
     /// First entry in `sensordata`.
     sensor_adr: Vec<usize>,
 }
 
 macro_rules! lookup {
-    ($($fun:ident $field:ident $id:ident $what:literal),* $(,)?) => {
-        impl Model {$(
-            #[doc = concat!("Id of the ", $what, " called `name`.")]
-            pub fn $fun(&self, name: &str) -> Option<$id> {
-                self.$field.iter().position(|n| n == name).map($id)
+    ($($fun:ident $field:ident $what:literal),* $(,)?) => {
+        impl Arrays {$(
+            #[doc = concat!("Returns the id of the ", $what, " called `name`.")]
+            pub fn $fun(&self, name: &str) -> Option<usize> {
+                self.$field.iter().position(|n| n == name)
             }
         )*}
     };
 }
 
 lookup! {
-    body body_name BodyId "body",
-    joint jnt_name JointId "joint",
-    geom geom_name GeomId "geom",
-    site site_name SiteId "site",
-    camera cam_name CameraId "camera",
-    actuator actuator_name ActuatorId "actuator",
-    equality eq_name EqualityId "equality constraint",
-    tendon tendon_name TendonId "tendon",
-    sensor sensor_name SensorId "sensor",
+    body body_name "body",
+    joint jnt_name "joint",
+    geom geom_name "geom",
+    site site_name "site",
+    camera cam_name "camera",
+    actuator actuator_name "actuator",
+    equality eq_name "equality constraint",
+    tendon tendon_name "tendon",
+    sensor sensor_name "sensor",
 }
 
 macro_rules! sizes {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {
-        impl Model {$(
-            #[doc = concat!("Number of ", $what, ".")]
+        impl Arrays {$(
+            #[doc = concat!("Returns the number of ", $what, ".")]
             pub fn $fun(&self) -> usize { self.$field.len() }
         )*}
     };
@@ -365,13 +355,13 @@ sizes! {
     npair pair_geom "explicit contact pairs",
 }
 
-impl Model {
-    /// Length of `sensordata`: three per sensor.
+impl Arrays {
+    /// Returns the length of `sensordata`: three per sensor.
     pub fn nsensordata(&self) -> usize {
         3 * self.nsensor()
     }
 
-    /// Whether `body` is `ancestor` or lies below it; false for a body that does not exist.
+    /// Returns whether `body` is `ancestor` or lies below it; false for a body that does not exist.
     pub fn in_subtree(&self, mut body: usize, ancestor: usize) -> bool {
         loop {
             if body == ancestor {

@@ -7,31 +7,48 @@ use thiserror::Error;
 use crate::model::Model;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
-use crate::physics::world::{PairTable, Scene};
+use crate::physics::world::{PairTable, RapierScene};
 
 /// Coordinates and velocities beyond this count as divergence (MuJoCo's `mjMAXVAL`).
 const MAXVAL: f64 = 1e10;
 
-/// Advances a [`State`] of a [`Model`]. The state is all there is: an engine remembers nothing that changes a later step.
+/// Advances a [`State`] of a [`Model`]. An engine remembers nothing that changes a later step: the state is all there
+/// is.
 pub trait Engine: Send + Sync {
-    /// The compiled scene.
+    /// Returns the compiled scene.
     fn model(&self) -> &Arc<Model>;
 
-    /// Derived structure of the model.
+    /// Returns what the engine derived from the tree of the model.
     fn topology(&self) -> &Topology;
 
-    /// Geom pairs that may touch, in contact order.
+    /// Returns the geom pairs that may touch, in contact order.
     fn pairs(&self) -> &PairTable;
 
-    /// The live scene in Rapier, with the poses of the last forward or step.
-    fn scene(&self) -> &Scene;
+    /// Returns the live scene in Rapier, with the poses of the last forward or step.
+    fn scene(&self) -> &RapierScene;
 
-    /// The live scene, to run Rapier's collision pipeline and queries on.
-    fn scene_mut(&mut self) -> &mut Scene;
+    /// Returns the live scene, to run Rapier's collision pipeline and queries on.
+    fn scene_mut(&mut self) -> &mut RapierScene;
 
-    /// A state at `qpos0`, at rest, of which nothing has been computed.
+    /// Returns a state at `qpos0`, at rest, of which nothing has been computed.
     fn new_state(&self) -> State {
         State::new(self.model(), self.topology())
+    }
+
+    /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`.
+    ///
+    /// # Panics
+    /// The state is of another model.
+    fn full_m(&self, state: &State) -> Vec<f64> {
+        self.topology().full(&state.qm)
+    }
+
+    /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows.
+    ///
+    /// # Panics
+    /// The state is of another model.
+    fn efc_j(&self, state: &State, row: usize) -> Option<Vec<f64>> {
+        state.efc.jacobian_row(self.topology(), row)
     }
 
     /// Computes everything that follows from `qpos`, `qvel` and `ctrl`, without advancing.
@@ -46,14 +63,11 @@ pub trait Engine: Send + Sync {
     /// As [`Engine::forward`].
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
 
-    /// Installs or removes a probe that is told when each stage of a step begins.
+    /// Installs or removes a probe that is told when each stage of a step begins, and when the step is done.
     fn set_probe(&mut self, probe: Option<Probe>);
-
-    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
-    fn mark(&mut self, stage: Option<Stage>);
 }
 
-/// A part of the work of a step.
+/// A part of the work of a physics step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// Poses and inertia.
@@ -68,17 +82,15 @@ pub enum Stage {
     Forces,
     /// Newton's method.
     Solver,
-    /// Accelerations and internal wrenches for sensors.
+    /// Accelerations and internal wrenches, and the sensors of the model.
     Wrenches,
     /// Integration.
     Integration,
-    /// Observations and information.
-    Senses,
 }
 
 impl Stage {
-    /// All stages, in the order of a step.
-    pub const ALL: [Self; 9] = [
+    /// Lists all stages, in the order of a step.
+    pub const ALL: [Self; 8] = [
         Self::Kinematics,
         Self::Scene,
         Self::Collision,
@@ -87,10 +99,9 @@ impl Stage {
         Self::Solver,
         Self::Wrenches,
         Self::Integration,
-        Self::Senses,
     ];
 
-    /// Name for people.
+    /// Returns the name for people.
     pub fn name(self) -> &'static str {
         match self {
             Self::Kinematics => "kinematics",
@@ -101,15 +112,15 @@ impl Stage {
             Self::Solver => "solver",
             Self::Wrenches => "wrenches",
             Self::Integration => "integration",
-            Self::Senses => "senses",
         }
     }
 }
 
-/// Called when a stage begins, and with `None` when a step is done; for timing, as the library has no clock.
+/// A function that is called when a stage begins, and with `None` when a step is done; for timing, as the library has no
+/// clock.
 pub type Probe = Box<dyn FnMut(Option<Stage>) + Send + Sync>;
 
-/// Why a state could not be advanced.
+/// An error in advancing a state.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum EngineError {
@@ -153,10 +164,13 @@ pub enum EngineError {
 /// Checks sizes of what a step reads, and that it is finite.
 pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
     let p = &s.params;
-    let fields: [(&'static str, &[f64], usize); 8] = [
+    // empty without muscles
+    let muscles = if s.muscle_torque.is_empty() { 0 } else { m.nu() };
+    let fields: [(&'static str, &[f64], usize); 9] = [
         ("qpos", &s.qpos, m.nq),
         ("qvel", &s.qvel, m.nv),
         ("ctrl", &s.ctrl, m.nu()),
+        ("muscle_torque", &s.muscle_torque, muscles),
         ("qfrc_applied", &s.qfrc_applied, m.nv),
         ("params.eq_offset", &p.eq_offset, m.neq()),
         ("params.jnt_stiffness", &p.jnt_stiffness, m.njnt()),
@@ -199,7 +213,7 @@ pub(super) fn check_output(model: &Model, s: &State) -> Result<(), EngineError> 
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
 }
 
-/// [`check_output`] of positions and velocities alone.
+/// Checks positions and velocities alone; see [`check_output`].
 pub(super) fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel)])
 }

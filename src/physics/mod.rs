@@ -3,21 +3,26 @@
 //! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space, on a scene that lives in Rapier.
 //! [`RapierEngine`] lets Rapier's own pipeline solve the same model, as multibodies.
 
-pub mod constraint;
+mod compile;
+mod constraint;
 pub mod contact;
-pub mod dynamics;
+mod dynamics;
 mod engine;
+mod params;
 pub mod rapier;
 mod soft;
-pub mod spatial;
+mod spatial;
 mod state;
-pub mod tiles;
+mod tiles;
 mod topology;
 pub mod world;
 
-pub use dynamics::set_const;
+pub use compile::compile;
+pub use constraint::{ConstraintType, EfcRow};
+pub use dynamics::{cameras, kinematics};
 pub use engine::{Engine, EngineError, Probe, Stage};
+pub use params::Params;
 pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions};
 pub use soft::{SoftEngine, SoftOptions};
-pub use state::{Contact, Params, State};
+pub use state::{Contact, State};
 pub use topology::Topology;

@@ -4,36 +4,38 @@ use std::sync::Arc;
 
 use crate::model::Model;
 use crate::physics::constraint::{Newton, RowBuilder};
-use crate::physics::contact::{Options, Quirks};
+use crate::physics::contact::{ContactOptions, Quirks};
 use crate::physics::dynamics::*;
 use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_input, check_output};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
-use crate::physics::world::{PairTable, Scene, Sweep};
+use crate::physics::world::{PairTable, RapierScene, Sweep};
 
-/// Choices of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque sensors.
+/// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
+/// sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SoftOptions {
     /// Peculiarities of MuJoCo 3.3.0's contact geometry to keep.
     pub contact_quirks: Quirks,
-    /// Count the rotational multipliers of a weld as its torque in `cfrc_ext`, as MuJoCo 3.3.0 does: about twice the true
-    /// torque, visible in torque sensors between the weld and the root of the tree.
+    /// Count the rotational multipliers of a weld as its torque in `cfrc_ext`, as MuJoCo 3.3.0 does: about twice the
+    /// true torque, visible in torque sensors between the weld and the root of the tree.
     pub double_weld_torque: bool,
     /// Detect no contacts.
     pub disable_contacts: bool,
 }
 
-/// MuJoCo's formulation in joint space, with the scene in Rapier.
+/// Advances a state by MuJoCo's formulation in joint space, with the scene in Rapier.
 ///
 /// A step computes kinematics, inertia, contacts, constraint rows, velocities, forces, solves for the acceleration with
-/// Newton's method, and integrates with semi-implicit Euler and implicit joint damping. After warm-up it allocates nothing.
+/// Newton's method, and integrates with semi-implicit Euler and implicit joint damping. After warm-up it allocates
+/// nothing.
 pub struct SoftEngine {
     model: Arc<Model>,
     options: SoftOptions,
     topology: Topology,
     pairs: PairTable,
     sweep: Sweep,
-    scene: Scene,
+    scene: RapierScene,
     rows: RowBuilder,
     newton: Newton,
     integrator: Integrator,
@@ -51,10 +53,10 @@ impl std::fmt::Debug for SoftEngine {
 }
 
 impl SoftEngine {
-    /// For `model`, whose constants [`set_const`] has filled.
+    /// Creates an engine for `model`.
     pub fn new(model: Arc<Model>, options: SoftOptions) -> Self {
         let pairs = PairTable::new(&model);
-        let contact = Options {
+        let contact = ContactOptions {
             ccd_tolerance: model.opt.ccd_tolerance,
             ccd_iterations: model.opt.ccd_iterations,
             quirks: options.contact_quirks,
@@ -63,7 +65,7 @@ impl SoftEngine {
         Self {
             options,
             sweep: Sweep::new(&model, &pairs, contact),
-            scene: Scene::new(&model, &pairs, contact),
+            scene: RapierScene::new(&model, &pairs, contact),
             pairs,
             rows: RowBuilder::new(&model, &topology),
             newton: Newton::with_capacity(model.nv, RESERVED_CONTACTS),
@@ -76,7 +78,15 @@ impl SoftEngine {
         }
     }
 
-    /// Position stage: poses, inertia, contacts, constraint rows.
+    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    #[inline]
+    fn mark(&mut self, stage: Option<Stage>) {
+        if let Some(p) = &mut self.probe {
+            p(stage);
+        }
+    }
+
+    /// Computes the position stage: poses, inertia, contacts, constraint rows.
     fn fwd_position(&mut self, s: &mut State) {
         self.mark(Some(Stage::Kinematics));
         let model = &*self.model;
@@ -89,7 +99,7 @@ impl SoftEngine {
         self.scene.sync(s);
         self.mark(Some(Stage::Collision));
         if self.options.disable_contacts {
-            s.contacts.clear();
+            s.contact.clear();
         } else {
             self.sweep.contacts(&self.model, &self.pairs, s);
         }
@@ -107,6 +117,7 @@ impl SoftEngine {
         self.newton.solve(&self.model, &self.topology, s);
         self.mark(Some(Stage::Wrenches));
         rne_post_constraint(&self.model, s, self.options.double_weld_torque);
+        sensors(&self.model, s);
         check_output(&self.model, s)
     }
 }
@@ -124,33 +135,29 @@ impl Engine for SoftEngine {
         &self.pairs
     }
 
-    fn scene(&self) -> &Scene {
+    fn scene(&self) -> &RapierScene {
         &self.scene
     }
 
-    fn scene_mut(&mut self) -> &mut Scene {
+    fn scene_mut(&mut self) -> &mut RapierScene {
         &mut self.scene
     }
 
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError> {
-        self.compute(state)
+        let done = self.compute(state);
+        self.mark(None);
+        done
     }
 
     fn step(&mut self, state: &mut State) -> Result<(), EngineError> {
         self.compute(state)?;
         self.mark(Some(Stage::Integration));
         self.integrator.advance(&self.model, &mut self.bodies, state);
+        self.mark(None);
         check_output(&self.model, state)
     }
 
     fn set_probe(&mut self, probe: Option<Probe>) {
         self.probe = probe;
-    }
-
-    #[inline]
-    fn mark(&mut self, stage: Option<Stage>) {
-        if let Some(p) = &mut self.probe {
-            p(stage);
-        }
     }
 }

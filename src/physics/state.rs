@@ -1,8 +1,9 @@
 //! Everything about a scene that changes while it runs.
 
 use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3};
-use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::Efc;
+use crate::model::Arrays;
+use crate::physics::constraint::{Efc, EfcRow};
+use crate::physics::params::Params;
 use crate::physics::spatial::{Inertia, Spatial};
 use crate::physics::tiles::{Lanes, Tile};
 use crate::physics::topology::Topology;
@@ -35,72 +36,19 @@ pub struct Contact {
     pub includemargin: f64,
     /// First constraint row, when it is a constraint.
     pub efc_address: Option<usize>,
-    /// Force that the first geom exerts on the second, and torque, in the contact frame, N and N m. Filled by the solver.
+    /// Force that the first geom exerts on the second, and torque, in the contact frame, N and N m. Filled by the
+    /// solver.
     pub force: [f64; 6],
 }
 
-/// Parameters that a program may change while the scene runs; copied from the model at construction.
-#[derive(Debug, PartialEq)]
-pub struct Params {
-    /// Which equality constraints hold (neq).
-    pub eq_active: Vec<bool>,
-    /// Constant term of each joint equality (neq), rad; unused for welds.
-    pub eq_offset: Vec<f64>,
-    /// Joint stiffness (njnt), N m/rad.
-    pub jnt_stiffness: Vec<f64>,
-    /// Damping (nv), N m s/rad.
-    pub dof_damping: Vec<f64>,
-    /// Actuator gear (nu).
-    pub actuator_gear: Vec<f64>,
-    /// Whether the actuator force is limited (nu).
-    pub actuator_forcelimited: Vec<bool>,
-}
-
-impl Clone for Params {
-    fn clone(&self) -> Self {
-        Self {
-            eq_active: self.eq_active.clone(),
-            eq_offset: self.eq_offset.clone(),
-            jnt_stiffness: self.jnt_stiffness.clone(),
-            dof_damping: self.dof_damping.clone(),
-            actuator_gear: self.actuator_gear.clone(),
-            actuator_forcelimited: self.actuator_forcelimited.clone(),
-        }
-    }
-
-    /// Keeps the memory, so that a reset does not allocate.
-    fn clone_from(&mut self, other: &Self) {
-        self.eq_active.clone_from(&other.eq_active);
-        self.eq_offset.clone_from(&other.eq_offset);
-        self.jnt_stiffness.clone_from(&other.jnt_stiffness);
-        self.dof_damping.clone_from(&other.dof_damping);
-        self.actuator_gear.clone_from(&other.actuator_gear);
-        self.actuator_forcelimited.clone_from(&other.actuator_forcelimited);
-    }
-}
-
-impl Params {
-    /// The model's own values.
-    pub fn new(model: &Model) -> Self {
-        let offset = |k: &EqualityKind| match k {
-            EqualityKind::Joint { polycoef, .. } => polycoef[0],
-            EqualityKind::Weld { .. } => 0.0,
-        };
-        Self {
-            eq_active: model.eq_active0.clone(),
-            eq_offset: model.eq_kind.iter().map(offset).collect(),
-            jnt_stiffness: model.jnt_stiffness.clone(),
-            dof_damping: model.dof_damping.clone(),
-            actuator_gear: model.actuator_gear.clone(),
-            actuator_forcelimited: model.actuator_forcelimited.clone(),
-        }
-    }
-}
-
-/// The state of a scene and every quantity computed from it.
+/// Everything that changes while a scene runs, and every quantity computed from it: MuJoCo's `mjData`.
 ///
-/// `qpos` and `qvel` are advanced by a step; everything under "position stage" and later describes the *start* of the
-/// last step, before integration, as in MuJoCo.
+/// The fields up to `params` decide how a run goes on, with any engine and any actuation model: a copy of them
+/// ([`State::copy_dynamic_from`]) continues with the same bits. A step advances `qpos` and `qvel`; all computed
+/// quantities describe the *start* of the last step, before integration, as in MuJoCo.
+///
+/// Constraint rows are read with [`State::efc_rows`], their Jacobian and the inertia matrix with
+/// [`Engine::efc_j`](crate::physics::Engine::efc_j) and [`Engine::full_m`](crate::physics::Engine::full_m).
 #[derive(Clone, Debug)]
 pub struct State {
     /// Simulated time, s.
@@ -111,8 +59,18 @@ pub struct State {
     pub qpos: Vec<f64>,
     /// Velocities (nv): m/s, rad/s.
     pub qvel: Vec<f64>,
-    /// Controls (nu).
+    /// Controls of the actuators (nu). With muscles 1 while they pull and 0 while they do not.
     pub ctrl: Vec<f64>,
+    /// Activations of the muscles (na), 0..1: muscle 1 of every actuator, then muscle 2. Empty without muscles.
+    pub act: Vec<f64>,
+    /// What the actuators were last told to reach: excitations of muscles (na), 0..1, or desired angles of position
+    /// servos (nu), rad. Empty for motors.
+    pub actuator_target: Vec<f64>,
+    /// Forces of the muscles (na) at the last activation, relative to their isometric maxima. Empty without muscles.
+    pub muscle_force: Vec<f64>,
+    /// Torques of the muscles on the joints of the actuators (nu), N m, which act at control 1 in place of the
+    /// actuators' own. Empty without muscles.
+    pub muscle_torque: Vec<f64>,
     /// Generalised force applied from outside (nv), N and N m.
     pub qfrc_applied: Vec<f64>,
     /// Start of the solver (nv): the last acceleration.
@@ -149,33 +107,33 @@ pub struct State {
     pub cam_xmat: Vec<Mat3>,
     /// Centre of mass of each subtree (nbody), world, m.
     pub subtree_com: Vec<Vec3>,
+    /// Motion axes (nv) about the centre of mass of their tree: rotation, translation.
+    pub cdof: Vec<[f64; 6]>,
     /// Body inertias (nbody) about the centre of mass of their tree.
-    pub cinert: Vec<Inertia>,
-    /// Motion axes (nv) about the centre of mass of their tree.
-    pub cdof: Vec<Spatial>,
+    pub(crate) cinert: Vec<Inertia>,
     /// Composite inertias of subtrees (nbody).
-    pub crb: Vec<Inertia>,
+    pub(crate) crb: Vec<Inertia>,
     /// Motion axes by tile: six values for each lane, zeros where there is none.
-    pub cdof_lanes: Vec<[Lanes; 6]>,
+    pub(crate) cdof_lanes: Vec<[Lanes; 6]>,
     /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal.
-    pub qm: Vec<Tile>,
+    pub(crate) qm: Vec<Tile>,
     /// Contacts in MuJoCo's order.
-    pub contacts: Vec<Contact>,
+    pub contact: Vec<Contact>,
     /// Constraint rows.
-    pub efc: Efc,
+    pub(crate) efc: Efc,
 
     // velocity stage
-    /// Body velocities (nbody) about the centre of mass of their tree.
-    pub cvel: Vec<Spatial>,
+    /// Body velocities (nbody) about the centre of mass of their tree: rotation, rad/s, translation, m/s.
+    pub cvel: Vec<[f64; 6]>,
     /// Rates of the motion axes (nv).
-    pub cdof_dot: Vec<Spatial>,
+    pub(crate) cdof_dot: Vec<Spatial>,
     /// Coriolis, centrifugal and gravity force (nv).
     pub qfrc_bias: Vec<f64>,
     /// Spring and damper force (nv).
     pub qfrc_passive: Vec<f64>,
 
     // acceleration stage
-    /// Actuator force before the gear (nu).
+    /// Actuator force before the gear (nu); with muscles their torque on the joint, N m.
     pub actuator_force: Vec<f64>,
     /// Actuator force on the joints (nv).
     pub qfrc_actuator: Vec<f64>,
@@ -191,17 +149,20 @@ pub struct State {
     pub solver_iterations: usize,
 
     // after constraints
-    /// Body accelerations (nbody), gravity as upward acceleration of the world.
-    pub cacc: Vec<Spatial>,
-    /// External wrench on each body (nbody): contacts and welds.
-    pub cfrc_ext: Vec<Spatial>,
-    /// Wrench that the parent exerts on each body (nbody).
-    pub cfrc_int: Vec<Spatial>,
+    /// Body accelerations (nbody), gravity as upward acceleration of the world: rotation, rad/s^2, translation, m/s^2.
+    pub cacc: Vec<[f64; 6]>,
+    /// External wrench on each body (nbody), of contacts and welds: torque, N m, force, N.
+    pub cfrc_ext: Vec<[f64; 6]>,
+    /// Wrench that the parent exerts on each body (nbody): torque, N m, force, N.
+    pub cfrc_int: Vec<[f64; 6]>,
+    /// Values of the model's sensors (nsensordata), three for each, in the frame of its site: linear acceleration minus
+    /// gravity, m/s^2; angular velocity, rad/s; torque that the parent exerts on the site's body about the site, N m.
+    pub sensordata: Vec<f64>,
 }
 
 impl State {
-    /// The reference configuration at rest; nothing is computed yet, all frames are at the origin.
-    pub fn new(model: &Model, topology: &Topology) -> Self {
+    /// Returns the reference configuration at rest, of which nothing is computed yet: all frames are at the origin.
+    pub fn new(model: &Arrays, topology: &Topology) -> Self {
         let (nv, nb, ng) = (model.nv, model.nbody(), model.ngeom());
         Self {
             time: 0.0,
@@ -209,6 +170,10 @@ impl State {
             qpos: model.qpos0.clone(),
             qvel: vec![0.0; nv],
             ctrl: vec![0.0; model.nu()],
+            act: Vec::new(),
+            actuator_target: Vec::new(),
+            muscle_force: Vec::new(),
+            muscle_torque: Vec::new(),
             qfrc_applied: vec![0.0; nv],
             qacc_warmstart: vec![0.0; nv],
             params: Params::new(model),
@@ -231,7 +196,7 @@ impl State {
             crb: vec![[0.0; 10]; nb],
             cdof_lanes: vec![[[0.0; 4]; 6]; topology.tiles.rows()],
             qm: topology.new_tiles(),
-            contacts: Vec::with_capacity(RESERVED_CONTACTS),
+            contact: Vec::with_capacity(RESERVED_CONTACTS),
             efc: Efc::with_capacity(nv, RESERVED_CONTACTS),
             cvel: vec![[0.0; 6]; nb],
             cdof_dot: vec![[0.0; 6]; nv],
@@ -247,19 +212,45 @@ impl State {
             cacc: vec![[0.0; 6]; nb],
             cfrc_ext: vec![[0.0; 6]; nb],
             cfrc_int: vec![[0.0; 6]; nb],
+            sensordata: vec![0.0; model.nsensordata()],
         }
     }
 
-    /// Copies what a later continuation depends on: time, positions, velocities, controls, applied forces, warm start
-    /// and parameters. Everything else is recomputed by the next step.
+    /// Copies what a continuation depends on: time, positions, velocities, controls, muscles, applied forces, warm
+    /// start and parameters. Everything else is computed anew by the next step. Between states of one model and one
+    /// actuation model nothing is allocated.
     pub fn copy_dynamic_from(&mut self, other: &State) {
         self.time = other.time;
         self.step = other.step;
-        self.qpos.copy_from_slice(&other.qpos);
-        self.qvel.copy_from_slice(&other.qvel);
-        self.ctrl.copy_from_slice(&other.ctrl);
-        self.qfrc_applied.copy_from_slice(&other.qfrc_applied);
-        self.qacc_warmstart.copy_from_slice(&other.qacc_warmstart);
+        self.qpos.clone_from(&other.qpos);
+        self.qvel.clone_from(&other.qvel);
+        self.ctrl.clone_from(&other.ctrl);
+        self.act.clone_from(&other.act);
+        self.actuator_target.clone_from(&other.actuator_target);
+        self.muscle_force.clone_from(&other.muscle_force);
+        self.muscle_torque.clone_from(&other.muscle_torque);
+        self.qfrc_applied.clone_from(&other.qfrc_applied);
+        self.qacc_warmstart.clone_from(&other.qacc_warmstart);
         self.params.clone_from(&other.params);
+    }
+
+    /// Returns the gears (nu) that the reference shows: its muscles act through the gears of the actuators, so with
+    /// muscles these are the muscles' torques, N m, and otherwise `params.actuator_gear`.
+    pub fn reference_gear(&self) -> &[f64] {
+        if self.muscle_torque.is_empty() {
+            &self.params.actuator_gear
+        } else {
+            &self.muscle_torque
+        }
+    }
+
+    /// Returns the number of constraint rows.
+    pub fn nefc(&self) -> usize {
+        self.efc.nefc()
+    }
+
+    /// Returns the constraint rows of the last step, in MuJoCo's order.
+    pub fn efc_rows(&self) -> impl Iterator<Item = EfcRow> + '_ {
+        self.efc.rows()
     }
 }

@@ -1,9 +1,9 @@
 //! Sparse symmetric matrices in tiles of four by four.
 //!
 //! Degrees of freedom are dealt to *lanes*, four to a tile, so that those of a tile follow each other in a chain of the
-//! tree ([`crate::physics::Topology::slot`]); lanes left over have a unit diagonal and nothing else. A limb touches only
-//! its own chain, so few tiles are nonzero, and every operation runs on tiles of fixed size, which compilers unroll into
-//! vector instructions.
+//! tree ([`crate::physics::Topology::slot`]); lanes left over have a unit diagonal and nothing else. A limb touches
+//! only its own chain, so few tiles are nonzero, and every operation runs on tiles of fixed size, which compilers
+//! unroll into vector instructions.
 
 /// Four values, of the degrees of freedom in a tile.
 pub type Lanes = [f64; 4];
@@ -14,7 +14,7 @@ pub type Tile = [Lanes; 4];
 /// No tile.
 pub const ZERO: Tile = [[0.0; 4]; 4];
 
-/// Which tiles of a symmetric matrix are stored: of each row those up to the diagonal, ascending.
+/// The tiles of a symmetric matrix that are stored: of each row those up to the diagonal, ascending.
 #[derive(Clone, Debug, Default)]
 pub struct Pattern {
     adr: Vec<usize>,
@@ -22,7 +22,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// With memory for `rows` rows and `tiles` tiles.
+    /// Reserves memory for `rows` rows and `tiles` tiles.
     pub fn with_capacity(rows: usize, tiles: usize) -> Self {
         let mut pattern = Self {
             adr: Vec::with_capacity(rows + 1),
@@ -51,32 +51,32 @@ impl Pattern {
         self.adr.push(self.cols.len());
     }
 
-    /// Number of rows of tiles.
+    /// Returns the number of rows of tiles.
     #[inline]
     pub fn rows(&self) -> usize {
         self.adr.len() - 1
     }
 
-    /// Number of tiles.
+    /// Returns the number of tiles.
     #[inline]
     pub fn tiles(&self) -> usize {
         self.cols.len()
     }
 
-    /// First tile of a row; of the number of rows, one past the last tile.
+    /// Returns the first tile of a row; of the number of rows, one past the last tile.
     #[inline]
     pub fn start(&self, row: usize) -> usize {
         self.adr[row]
     }
 
-    /// Columns of a row, the diagonal last.
+    /// Returns the columns of a row, the diagonal last.
     #[inline]
     pub fn cols(&self, row: usize) -> &[u32] {
         &self.cols[self.adr[row]..self.adr[row + 1]]
     }
 }
 
-/// `c -= a' b` for a diagonal tile: below the diagonal, and some of the rest.
+/// Computes `c -= a' b` for a diagonal tile: on and below the diagonal, and for some of the rest.
 #[inline(always)]
 pub(super) fn sub_transposed_product_diagonal(c: &mut Tile, a: &Tile, b: &Tile) {
     let mut sum = *c;
@@ -91,7 +91,7 @@ pub(super) fn sub_transposed_product_diagonal(c: &mut Tile, a: &Tile, b: &Tile) 
     *c = sum;
 }
 
-/// `c -= a' b`
+/// Computes `c -= a' b`.
 #[inline(always)]
 pub(super) fn sub_transposed_product(c: &mut Tile, a: &Tile, b: &Tile) {
     let mut sum = *c;
@@ -105,7 +105,7 @@ pub(super) fn sub_transposed_product(c: &mut Tile, a: &Tile, b: &Tile) {
     *c = sum;
 }
 
-/// `y += a' x`
+/// Computes `y += a' x`.
 #[inline(always)]
 fn add_transposed(y: &mut Lanes, a: &Tile, x: &Lanes) {
     let mut sum = *y;
@@ -117,7 +117,7 @@ fn add_transposed(y: &mut Lanes, a: &Tile, x: &Lanes) {
     *y = sum;
 }
 
-/// `sums += a x`, the terms of a row apart
+/// Computes `sums += a x`, keeping the terms of each row apart.
 #[inline(always)]
 fn add_products(sums: &mut Tile, a: &Tile, x: &Lanes) {
     for i in 0..4 {
@@ -127,13 +127,15 @@ fn add_products(sums: &mut Tile, a: &Tile, x: &Lanes) {
     }
 }
 
-/// Sum of the lanes.
+/// Returns the sum of the lanes.
 #[inline(always)]
 pub fn total(x: &Lanes) -> f64 {
     (x[0] + x[2]) + (x[1] + x[3])
 }
 
-/// `L' D L` of the lower triangle of a diagonal tile: `L` below its diagonal, and the inverse of `D`.
+/// Factors the lower triangle of a diagonal tile as `L' D L`, and returns the inverse of `D`.
+///
+/// `L` is left below the diagonal.
 #[inline(always)]
 pub(super) fn factor_diagonal(h: &mut Tile) -> Lanes {
     let mut inv = [0.0; 4];
@@ -170,7 +172,7 @@ pub(super) fn solve_columns(l: &Tile, b: &mut Tile) {
     *b = [b0, b1, b2, b3];
 }
 
-/// A tile whose rows are multiplied by `factor`.
+/// Returns a tile whose rows are multiplied by `factor`.
 #[inline(always)]
 pub(super) fn scale_rows(a: &Tile, factor: &Lanes) -> Tile {
     let mut out = *a;
@@ -182,7 +184,7 @@ pub(super) fn scale_rows(a: &Tile, factor: &Lanes) -> Tile {
     out
 }
 
-/// `c += a' b` for any number of rows of four values.
+/// Computes `c += a' b` for any number of rows of four values.
 #[inline(always)]
 pub(super) fn add_outer_products(c: &mut Tile, a: &[Lanes], b: &[Lanes]) {
     let mut sum = *c;
@@ -196,8 +198,8 @@ pub(super) fn add_outer_products(c: &mut Tile, a: &[Lanes], b: &[Lanes]) {
     *c = sum;
 }
 
-/// Solves `H x = b` in place, for `H = L' D L`: the diagonal tiles hold `L` below their diagonal, the others `D L`; `inv` is
-/// the inverse of `D`.
+/// Solves `H x = b` in place, for `H = L' D L`: the diagonal tiles hold `L` below their diagonal, the others `D L`;
+/// `inv` is the inverse of `D`.
 pub(super) fn solve(pattern: &Pattern, h: &[Tile], inv: &[Lanes], x: &mut [Lanes]) {
     let n = pattern.rows();
     for i in (0..n).rev() {
@@ -235,7 +237,7 @@ pub(super) fn solve(pattern: &Pattern, h: &[Tile], inv: &[Lanes], x: &mut [Lanes
     }
 }
 
-/// `out = H x`; the diagonal tiles must hold both triangles.
+/// Computes `out = H x`; the diagonal tiles must hold both triangles.
 pub fn mul(pattern: &Pattern, h: &[Tile], x: &[Lanes], out: &mut [Lanes]) {
     for i in 0..pattern.rows() {
         let (head, tail) = out.split_at_mut(i);
@@ -256,7 +258,7 @@ pub fn mul(pattern: &Pattern, h: &[Tile], x: &[Lanes], out: &mut [Lanes]) {
 mod tests {
     use super::*;
 
-    /// Two limbs on a trunk, and a coupling of the limbs.
+    /// Builds the matrix of two limbs on a trunk, with a coupling of the limbs.
     fn example() -> (Pattern, Vec<Tile>) {
         let mut pattern = Pattern::with_capacity(4, 8);
         for cols in [&[0][..], &[0, 1], &[0, 2], &[0, 2, 3]] {

@@ -1,33 +1,33 @@
 //! What the dynamics derives from a model's tree once: ancestor chains, trees, the layout of the inertia.
 
-use crate::model::Model;
+use crate::model::Arrays;
 use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 
-/// Derived structure of a [`Model`].
+/// What the dynamics derives from the tree of a [`crate::Model`]: ancestor chains, trees, the layout of matrices.
 ///
 /// A *tree* is a set of degrees of freedom that depend on each other, a consecutive range. Row `i` of the joint-space
-/// inertia is nonzero for `i` and its ancestors only; the chain of an ancestor is a prefix of the chain of its descendant.
-/// Matrices are stored in tiles of four by four ([`crate::physics::tiles`]).
+/// inertia is nonzero for `i` and its ancestors only; the chain of an ancestor is a prefix of the chain of its
+/// descendant. Matrices are stored in tiles of four by four.
 #[derive(Clone, Debug)]
 pub struct Topology {
     /// First degree of freedom of each tree, and one past the last: `ntree + 1` values.
-    pub tree_adr: Vec<usize>,
+    pub(crate) tree_adr: Vec<usize>,
     /// Tree of each degree of freedom.
-    pub dof_tree: Vec<usize>,
+    pub(crate) dof_tree: Vec<usize>,
     /// Start of each degree of freedom in `chain`; `nv + 1` values.
     row_adr: Vec<usize>,
     /// Ancestors of each degree of freedom, ascending, itself last.
     chain: Vec<u32>,
     /// The last degree of freedom that moves a body, if any does.
-    pub body_last_dof: Vec<Option<usize>>,
+    pub(crate) body_last_dof: Vec<Option<usize>>,
     /// Lane of each degree of freedom: four times its tile, plus its place there. Those of a tile follow each other.
-    pub slot: Vec<u32>,
+    pub(crate) slot: Vec<u32>,
     /// First degree of freedom of each tile, and one past the last.
-    pub tile_dof: Vec<usize>,
+    pub(crate) tile_dof: Vec<usize>,
     /// First tile of each tree, and one past the last: `ntree + 1` values.
-    pub tile_adr: Vec<usize>,
+    pub(crate) tile_adr: Vec<usize>,
     /// Tiles of the inertia: each row of tiles has the tiles of its ancestors, which are a prefix of its descendants'.
-    pub tiles: Pattern,
+    pub(crate) tiles: Pattern,
     /// Tiles that move each body, with how many of their lanes do.
     body_tiles: Vec<(u32, u32)>,
     body_tile_adr: Vec<usize>,
@@ -35,7 +35,7 @@ pub struct Topology {
 
 impl Topology {
     /// Derives the structure of `model`.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &Arrays) -> Self {
         let nv = model.nv;
         let mut tree_adr = Vec::new();
         let mut dof_tree = vec![0; nv];
@@ -76,7 +76,7 @@ impl Topology {
     }
 
     /// Deals degrees of freedom to tiles: as long as each is the child of the one before, four to a tile.
-    fn deal_tiles(&mut self, model: &Model) {
+    fn deal_tiles(&mut self, model: &Arrays) {
         for d in 0..model.nv {
             let slot = match model.dof_parentid[d] {
                 Some(p) if p + 1 == d && self.slot[p] % 4 < 3 => self.slot[p] + 1,
@@ -119,34 +119,34 @@ impl Topology {
         self.body_tile_adr.push(self.body_tiles.len());
     }
 
-    /// Tiles that move `body`, ascending, with how many of their lanes do: the first ones.
+    /// Returns the tiles that move `body`, ascending, with how many of their lanes do: the first ones.
     #[inline]
-    pub fn body_tiles(&self, body: usize) -> &[(u32, u32)] {
+    pub(crate) fn body_tiles(&self, body: usize) -> &[(u32, u32)] {
         &self.body_tiles[self.body_tile_adr[body]..self.body_tile_adr[body + 1]]
     }
 
-    /// Trace of the inverse of a tree's inertia at `qpos0`: how far unit forces accelerate it at most.
+    /// Returns the trace of a tree's inverse inertia at `qpos0`, a bound on its acceleration under unit forces.
     #[inline]
-    pub fn mobility(&self, model: &Model, tree: usize) -> f64 {
+    pub(crate) fn mobility(&self, model: &Arrays, tree: usize) -> f64 {
         model.dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
             .iter()
             .sum()
     }
 
-    /// Number of lanes of a tile that have a degree of freedom.
+    /// Returns the number of lanes of a tile that have a degree of freedom.
     #[inline]
-    pub fn lanes(&self, tile: usize) -> usize {
+    pub(crate) fn lanes(&self, tile: usize) -> usize {
         self.tile_dof[tile + 1] - self.tile_dof[tile]
     }
 
-    /// Tree of a tile.
+    /// Returns the tree of a tile.
     #[inline]
-    pub fn tile_tree(&self, tile: usize) -> usize {
+    pub(crate) fn tile_tree(&self, tile: usize) -> usize {
         self.dof_tree[self.tile_dof[tile]]
     }
 
-    /// Tiles of a matrix without entries: ones on the diagonal of the lanes that no degree of freedom has.
-    pub fn new_tiles(&self) -> Vec<Tile> {
+    /// Returns the tiles of a matrix without entries: ones on the diagonal of the lanes that have no degree of freedom.
+    pub(crate) fn new_tiles(&self) -> Vec<Tile> {
         let mut tiles = vec![ZERO; self.tiles.tiles()];
         for row in 0..self.tiles.rows() {
             let diagonal = &mut tiles[self.tiles.start(row + 1) - 1];
@@ -157,8 +157,8 @@ impl Topology {
         tiles
     }
 
-    /// Row `dof` of a matrix in tiles, over the ancestors of `dof` and itself, ascending.
-    pub fn row<'a>(&'a self, tiles: &'a [Tile], dof: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
+    /// Iterates over row `dof` of a matrix in tiles, over the ancestors of `dof` and itself, ascending.
+    pub(crate) fn row<'a>(&'a self, tiles: &'a [Tile], dof: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
         let (row, r) = (self.slot[dof] as usize / 4, self.slot[dof] as usize % 4);
         let cols = self.tiles.cols(row);
         self.dof_chain(dof).iter().map(move |&a| {
@@ -168,36 +168,49 @@ impl Topology {
         })
     }
 
-    /// `lanes` of a vector over the degrees of freedom; the lanes of none keep their values.
+    /// Expands the symmetric matrix in `tiles` to the full matrix (nv, nv), row by row.
+    pub(crate) fn full(&self, tiles: &[Tile]) -> Vec<f64> {
+        let nv = self.dof_tree.len();
+        let mut matrix = vec![0.0; nv * nv];
+        for i in 0..nv {
+            for (j, value) in self.row(tiles, i) {
+                matrix[i * nv + j] = value;
+                matrix[j * nv + i] = value;
+            }
+        }
+        matrix
+    }
+
+    /// Copies a vector over the degrees of freedom to `lanes`; lanes without a degree of freedom keep their values.
     #[inline]
-    pub fn to_lanes(&self, x: &[f64], lanes: &mut [Lanes]) {
+    pub(crate) fn to_lanes(&self, x: &[f64], lanes: &mut [Lanes]) {
         for (&slot, &v) in self.slot.iter().zip(x) {
             lanes[slot as usize / 4][slot as usize % 4] = v;
         }
     }
 
-    /// The vector over the degrees of freedom in `lanes`.
+    /// Copies the values of the degrees of freedom from `lanes` to the vector `x`.
     #[inline]
-    pub fn from_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
+    pub(crate) fn read_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
         for (&slot, v) in self.slot.iter().zip(x) {
             *v = lanes[slot as usize / 4][slot as usize % 4];
         }
     }
 
-    /// Number of trees.
-    pub fn ntree(&self) -> usize {
+    /// Returns the number of trees.
+    pub(crate) fn ntree(&self) -> usize {
         self.tree_adr.len() - 1
     }
 
-    /// Ancestors of `dof`, ascending, itself last.
+    /// Returns the ancestors of `dof`, ascending, itself last.
     #[inline]
-    pub fn dof_chain(&self, dof: usize) -> &[u32] {
+    pub(crate) fn dof_chain(&self, dof: usize) -> &[u32] {
         &self.chain[self.row_adr[dof]..self.row_adr[dof + 1]]
     }
 
-    /// Degrees of freedom that move `body`, ascending.
+    /// Returns the degrees of freedom that move `body`, ascending.
     #[inline]
-    pub fn body_chain(&self, body: usize) -> &[u32] {
+    pub(crate) fn body_chain(&self, body: usize) -> &[u32] {
         match self.body_last_dof[body] {
             Some(d) => self.dof_chain(d),
             None => &[],

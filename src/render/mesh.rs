@@ -1,5 +1,5 @@
-//! The tessellations that MuJoCo's classic renderer draws: 28 slices, 16 stacks, 4 quads per box edge. Silhouettes and
-//! shading depend on them. Vertices lie on unit shapes; a [`Part`] is placed by a matrix of its own.
+//! The tessellations of MuJoCo's classic renderer: 28 slices, 16 stacks, 4 quads per box edge. Silhouettes and shading
+//! depend on them. Vertices lie on unit shapes; each [`MeshPart`] has a transform of its own.
 
 use std::f64::consts::PI;
 
@@ -7,10 +7,10 @@ const SLICES: usize = 28;
 const STACKS: usize = 16;
 const QUADS: usize = 4;
 
-/// Which list of the shape a vertex belongs to: capsules put their caps at the ends of the scaled cylinder.
+/// A part of a mesh with a transform of its own: the caps of a capsule stay at the ends of the scaled cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Scaled by the size.
+pub enum MeshPart {
+    /// Vertices scaled by the size.
     Body,
     /// The upper cap of a capsule, z from 1 to 2.
     Top,
@@ -18,30 +18,38 @@ pub enum Part {
     Bottom,
 }
 
-/// The number of vertices of each part is a multiple of this.
+/// Number of vertices of which the length of each part is a multiple.
 pub const LANES: usize = 8;
 
-/// Triangles of a unit shape, counterclockwise from outside.
+/// A triangle mesh of a unit shape, counterclockwise from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Coordinates of the vertices. Those that fill up a part belong to no triangle.
+    /// Coordinates x of the vertices. Vertices that only pad a part belong to no triangle.
     pub x: Vec<f32>,
-    /// See `x`.
+    /// Coordinates y of the vertices.
     pub y: Vec<f32>,
-    /// See `x`.
+    /// Coordinates z of the vertices.
     pub z: Vec<f32>,
-    /// Unit normals.
+    /// Unit normals of the vertices.
     pub normal: Vec<[f32; 3]>,
-    /// Parts and the end of their range of vertices, in order.
-    pub parts: Vec<(Part, usize)>,
-    /// Vertices of each triangle.
+    /// Parts with the ends of their vertex ranges, in order.
+    pub parts: Vec<(MeshPart, usize)>,
+    /// Indices of the vertices of each triangle.
     pub triangles: Vec<[u16; 3]>,
 }
 
 type Point = ([f32; 3], [f32; 3]);
 
 impl Mesh {
-    /// Index of a vertex of the current part, adding it when it is new.
+    /// Returns the part that a vertex belongs to.
+    pub fn part_of(&self, vertex: usize) -> MeshPart {
+        self.parts
+            .iter()
+            .find(|(_, end)| vertex < *end)
+            .map_or(MeshPart::Body, |(part, _)| *part)
+    }
+
+    /// Returns the index of a vertex of the current part, after adding it if it is new.
     fn vertex(&mut self, (p, n): Point) -> u16 {
         let first = self.parts.len().checked_sub(2).map_or(0, |k| self.parts[k].1);
         let known = (first..self.x.len()).rev().find(|&i| {
@@ -68,7 +76,7 @@ impl Mesh {
     }
 
     /// Begins a part.
-    fn part(&mut self, part: Part) {
+    fn part(&mut self, part: MeshPart) {
         self.fill();
         self.parts.push((part, self.x.len()));
     }
@@ -87,7 +95,7 @@ impl Mesh {
         self.triangles.push(t);
     }
 
-    /// Split along the diagonal that Mesa chooses.
+    /// Adds a quadrilateral, split along the diagonal that Mesa chooses.
     fn quad(&mut self, corners: [Point; 4]) {
         let [a, b, c, d] = corners.map(|p| self.vertex(p));
         self.triangles.push([a, b, d]);
@@ -102,7 +110,7 @@ impl Mesh {
         self.triangle(if outward { [a, b, c] } else { [c, b, a] });
     }
 
-    /// Half of a sphere, shifted along z by `shift`.
+    /// Adds one half of a sphere, shifted along z by `shift`.
     fn half_sphere(&mut self, sign: f64, shift: f64) {
         let stacks = STACKS / 2;
         let up = sign > 0.0;
@@ -182,33 +190,33 @@ impl Mesh {
         }
     }
 
-    /// Sphere or ellipsoid.
+    /// Creates a unit sphere, which scaling turns into an ellipsoid.
     pub fn sphere() -> Self {
         let mut m = Self::default();
-        m.part(Part::Body);
+        m.part(MeshPart::Body);
         m.half_sphere(-1.0, 0.0);
         m.half_sphere(1.0, 0.0);
         m.fill();
         m
     }
 
-    /// Cylinder with two half spheres.
+    /// Creates a capsule: a cylinder with two half spheres.
     pub fn capsule() -> Self {
         let mut m = Self::default();
-        m.part(Part::Body);
+        m.part(MeshPart::Body);
         m.open_cylinder();
-        m.part(Part::Top);
+        m.part(MeshPart::Top);
         m.half_sphere(1.0, 1.0);
-        m.part(Part::Bottom);
+        m.part(MeshPart::Bottom);
         m.half_sphere(-1.0, -1.0);
         m.fill();
         m
     }
 
-    /// Closed cylinder.
+    /// Creates a closed cylinder.
     pub fn cylinder() -> Self {
         let mut m = Self::default();
-        m.part(Part::Body);
+        m.part(MeshPart::Body);
         m.disk(-1.0);
         m.open_cylinder();
         m.disk(1.0);
@@ -216,10 +224,10 @@ impl Mesh {
         m
     }
 
-    /// Box.
+    /// Creates a box.
     pub fn cube() -> Self {
         let mut m = Self::default();
-        m.part(Part::Body);
+        m.part(MeshPart::Body);
         for axis in 0..3 {
             m.face(axis, 1.0);
             m.face(axis, -1.0);
@@ -228,10 +236,11 @@ impl Mesh {
         m
     }
 
-    /// Rectangle at z = 0. MuJoCo draws a fine grid, which looks the same under parallel light without highlights.
+    /// Creates a rectangle at z = 0. MuJoCo draws a fine grid, which looks the same under parallel light without
+    /// highlights.
     pub fn plane() -> Self {
         let mut m = Self::default();
-        m.part(Part::Body);
+        m.part(MeshPart::Body);
         let at = |x, y| ([x, y, 0.0], [0.0, 0.0, 1.0]);
         m.quad([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
         m.fill();
@@ -239,7 +248,7 @@ impl Mesh {
     }
 }
 
-/// Sine and cosine of the angle of a slice; the angle is rounded to single precision, as in MuJoCo.
+/// Returns the sine and cosine of the angle of a slice; the angle is rounded to single precision, as in MuJoCo.
 fn azimuth(j: usize) -> (f64, f64) {
     pxfm::f_sincos(f64::from((2.0 * PI * j as f64 / SLICES as f64) as f32))
 }

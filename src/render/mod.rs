@@ -1,10 +1,10 @@
-//! Drawing: a [`Visual`] is built once from a [`Model`](crate::Model), and drawn from poses.
+//! Rendering: a [`Visual`] is built once from a [`Model`](crate::Model), and drawn from poses.
 //!
 //! ```
 //! use babybench::config::Config;
 //! use babybench::mimo::{build_model, embedded};
 //! use babybench::physics::{Engine, SoftEngine, SoftOptions};
-//! use babybench::render::{Poses, Renderer, View, Visual};
+//! use babybench::render::{Poses, CpuRenderer, View, Visual};
 //!
 //! let model = build_model(&Config::default(), &embedded())?;
 //! let visual = Visual::new(&model, &embedded())?;
@@ -15,13 +15,13 @@
 //! let mut state = engine.new_state();
 //! engine.forward(&mut state)?;
 //! let mut image = vec![0; view.rgb_len()];
-//! Renderer::new().rgb(&visual, &Poses::from(&state), &view, &mut image)?;
+//! CpuRenderer::new().rgb(&visual, &Poses::from(&state), &view, &mut image)?;
 //! assert!(image.iter().any(|&v| v != image[0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The look is that of MuJoCo's classic renderer: its tessellations, light per vertex, textures with mip levels, four
-//! samples per pixel, no shadows, no gamma. [`Renderer`] is pure Rust and gives the same bytes on every target.
+//! samples per pixel, no shadows, no gamma. [`CpuRenderer`] is pure Rust and gives the same bytes on every target.
 //!
 //! Not drawn: shadows, reflections, fog, haze. Planes without a size are drawn as far as the far plane.
 
@@ -29,25 +29,27 @@ mod cpu;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod mesh;
-mod painter;
+mod renderer;
 mod texture;
+mod view;
 mod visual;
 
-pub use cpu::Renderer;
+pub use cpu::CpuRenderer;
+#[cfg(any(feature = "eval", feature = "wgpu"))]
 pub(crate) use cpu::luma;
-pub use mesh::{Mesh, Part};
-pub use painter::Painter;
+pub use mesh::{Mesh, MeshPart};
+pub use renderer::Renderer;
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-pub use painter::SharedGpu;
+pub use renderer::SharedGpu;
 pub use texture::{Face, Level, MAX_TEXTURE, Texture};
-pub use visual::{Camera, Drawable, Element, Lamp, Poses, Shape, Shot, View, Visual};
+pub use view::{Poses, RenderRequest, View};
+pub use visual::{Aim, Camera, Drawable, Element, Light, Shape, Visual};
 
-use crate::mjcf_loader::AssetError;
+use crate::assets::AssetError;
 
-/// Largest width and height of a picture.
-pub const MAX_SIZE: usize = 4096;
+pub use crate::spaces::MAX_IMAGE_SIZE as MAX_SIZE;
 
-/// Why something cannot be drawn.
+/// A reason why something cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -57,34 +59,44 @@ pub enum RenderError {
     /// An image cannot be decoded.
     #[error("image \"{path}\": {message}")]
     Image {
-        /// Its path.
+        /// Path of the image.
         path: String,
-        /// What is wrong.
+        /// Description of the fault.
         message: String,
     },
     /// A texture cannot be made.
     #[error("texture \"{name}\": {message}")]
     Texture {
-        /// Its name.
+        /// Name of the texture.
         name: String,
-        /// What is wrong.
+        /// Description of the fault.
         message: String,
     },
     /// The model has no such camera.
-    #[error("there is no camera {0}; the model has {1}")]
-    Camera(usize, usize),
-    /// A picture that is empty or too large.
-    #[error("a picture cannot have {0} x {1} pixels; allowed are 1 to {MAX_SIZE}")]
-    Size(usize, usize),
-    /// A buffer has the wrong length.
-    #[error("the buffer for the picture has {found} values but needs {expected}")]
+    #[error("there is no camera {camera}; the model has {count}")]
+    Camera {
+        /// Camera asked for, by id.
+        camera: usize,
+        /// Number of cameras.
+        count: usize,
+    },
+    /// The image is empty or too large.
+    #[error("an image cannot have {width} x {height} pixels; a side has 1 to {MAX_SIZE}")]
+    Size {
+        /// Width asked for, pixels.
+        width: usize,
+        /// Height asked for, pixels.
+        height: usize,
+    },
+    /// The buffer has the wrong length.
+    #[error("the buffer for the image has {found} values but needs {expected}")]
     Buffer {
-        /// Its length.
+        /// Length of the buffer.
         found: usize,
         /// Length needed.
         expected: usize,
     },
-    /// Poses do not fit the model.
+    /// The poses do not fit the model.
     #[error("there are {found} poses of {what} but the model has {expected}")]
     Poses {
         /// Kind of element.
@@ -96,14 +108,13 @@ pub enum RenderError {
     },
     /// The configuration asks for a renderer that this build does not have.
     #[error(
-        "renderer: wgpu is not in this build; build with the cargo feature `wgpu` (cargo run --features wgpu), or use \
+        "this build has no wgpu renderer: build with the cargo feature `wgpu` (cargo run --features wgpu), or use \
          renderer: cpu, which needs nothing"
     )]
     NoWgpu,
-    /// An environment cannot wait for the GPU.
+    /// An environment cannot wait for the GPU in a browser.
     #[error(
-        "renderer: wgpu cannot be waited for in a browser; use renderer: cpu, or draw with GpuRenderer::begin and \
-         Pending::read"
+        "a browser cannot wait for renderer: wgpu; use renderer: cpu, or draw with GpuRenderer::begin and Pending::read"
     )]
     CannotWait,
     /// The GPU cannot draw.

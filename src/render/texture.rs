@@ -6,25 +6,26 @@ use std::sync::Arc;
 
 use image::{DynamicImage, ImageDecoder};
 
-use crate::mjcf_loader::AssetSource;
+use crate::assets::AssetSource;
 use crate::model::{Builtin, Mark, Texture as Recipe, TextureType};
 use crate::render::RenderError;
 
-/// Images are halved while loading until they fit, so that the original's textures of 2500 and 5000 pixels stay small.
+/// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
+/// of 2500 and 5000 pixels stay small.
 pub const MAX_TEXTURE: usize = 1024;
-/// Largest image that is decoded.
+/// Largest side of an image that is decoded, pixels.
 const MAX_DECODED: u32 = 8192;
-/// Most memory for the decoding of one image.
+/// Limit on the memory for decoding one image.
 const MAX_DECODED_BYTES: u64 = 160 << 20;
 
-/// One image of a texture, red, green, blue and an unused byte.
+/// One mip level of an image: red, green, blue and an unused byte for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Level {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
-    /// Rows from the top.
+    /// Pixels, rows from the top.
     pub pixels: Vec<[u8; 4]>,
 }
 
@@ -34,7 +35,7 @@ pub type Face = Arc<Vec<Level>>;
 /// A texture ready for sampling.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Texture {
-    /// One image, repeated.
+    /// One image, repeated in both directions.
     Flat(Face),
     /// Images on the sides of a cube: +x, -x, +y, -y, +z, -z.
     Cube([Face; 6]),
@@ -52,7 +53,7 @@ impl Level {
         Self { width, height, pixels }
     }
 
-    /// The next mip level: a bilinear reduction with rounding to bytes.
+    /// Creates the next mip level: a bilinear reduction, rounded to bytes.
     fn halved(&self) -> Self {
         let (w, h) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mut pixels = Vec::with_capacity(w * h);
@@ -105,14 +106,14 @@ impl Level {
     }
 }
 
-/// Reads textures; an image used by several is decoded once.
+/// A loader of textures that decodes an image used by several only once.
 pub struct Loader<'a> {
     assets: &'a dyn AssetSource,
     faces: BTreeMap<String, Face>,
 }
 
 impl<'a> Loader<'a> {
-    /// From `assets`.
+    /// Creates a loader that reads images from `assets`.
     pub fn new(assets: &'a dyn AssetSource) -> Self {
         Self {
             assets,
@@ -120,10 +121,10 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Makes a texture.
+    /// Creates a texture.
     ///
     /// # Errors
-    /// Images that are missing, broken, too large or of a shape that does not fit.
+    /// Fails if an image is missing, broken, too large or of a shape that does not fit.
     pub fn texture(&mut self, recipe: &Recipe) -> Result<Texture, RenderError> {
         let wrong = |message: String| RenderError::Texture {
             name: recipe.name.clone(),
@@ -133,7 +134,7 @@ impl<'a> Loader<'a> {
             if (1..=MAX_DECODED as usize).contains(&n) {
                 Ok(n)
             } else {
-                Err(wrong(format!("its size is {n} pixels; allowed are 1 to {MAX_DECODED}")))
+                Err(wrong(format!("its size is {n} pixels; a side has 1 to {MAX_DECODED}")))
             }
         };
         let flat = recipe.kind == TextureType::Flat2d;
@@ -160,7 +161,7 @@ impl<'a> Loader<'a> {
             )));
         }
         if flat {
-            return Err(wrong("it has neither an image nor a procedure".to_string()));
+            return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
         }
         let mut faces: [Option<Face>; 6] = Default::default();
         let mut side = None;
@@ -177,7 +178,7 @@ impl<'a> Loader<'a> {
             *face = Some(image);
         }
         let Some(side) = side else {
-            return Err(wrong("it has neither an image nor a procedure".to_string()));
+            return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
         };
         let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
         Ok(Texture::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
@@ -218,12 +219,12 @@ fn decode(path: &str, bytes: Cow<'_, [u8]>) -> Result<Level, RenderError> {
     Ok(Level { width, height, pixels })
 }
 
-/// Bytes of a colour, cut off as MuJoCo does.
+/// Converts a colour to bytes, rounding down as MuJoCo does.
 fn truncated(rgb: [f64; 3]) -> [u8; 3] {
     rgb.map(|v| (255.0 * v) as u8)
 }
 
-/// MuJoCo's soft step from `b` to `a`.
+/// Interpolates from `b` to `a` along MuJoCo's soft step.
 fn interpolate(a: [f64; 3], b: [f64; 3], pos: f64) -> [u8; 3] {
     let alpha = (0.5 * (1.0 + pos / (1.0 + pos * pos).sqrt() * std::f64::consts::SQRT_2)).clamp(0.0, 1.0);
     [0, 1, 2].map(|k| (255.0 * (alpha * a[k] + (1.0 - alpha) * b[k])) as u8)
@@ -232,7 +233,7 @@ fn interpolate(a: [f64; 3], b: [f64; 3], pos: f64) -> [u8; 3] {
 /// Seed of random marks.
 const MARK_SEED: u64 = 42;
 
-/// The Mersenne Twister with 64-bit words (Matsumoto and Nishimura), with which MuJoCo throws random marks.
+/// The 64-bit Mersenne Twister (Matsumoto and Nishimura), with which MuJoCo places random marks.
 struct Mt19937 {
     words: [u64; 312],
     next: usize,
@@ -268,7 +269,7 @@ impl Mt19937 {
         x ^ x >> 43
     }
 
-    /// From 0 to 1.
+    /// Draws a number in 0..1.
     fn uniform(&mut self) -> f64 {
         self.next() as f64 / 18_446_744_073_709_551_616.0
     }
@@ -294,7 +295,7 @@ fn marked(recipe: &Recipe, mut level: Level, dice: &mut Mt19937) -> Level {
     level
 }
 
-/// From -1 to 1 along an edge.
+/// Maps a pixel to -1..1 along an edge.
 fn across(i: usize, n: usize) -> f64 {
     2.0 * i as f64 / (n as f64 - 1.0).max(1.0) - 1.0
 }

@@ -1,107 +1,41 @@
-//! What a model looks like: everything a renderer needs that does not move.
+//! The look of a model: everything a renderer needs that does not move.
 
-use crate::math::{Mat3, Vec3};
-use crate::mjcf_loader::AssetSource;
-use crate::model::{CameraId, GeomType, Model, TextureType};
+use crate::assets::AssetSource;
+use crate::math::{Vec3, unit};
+use crate::model::{GeomType, LightMode, Model, TextureType};
+use crate::render::RenderError;
 use crate::render::mesh::Mesh;
 use crate::render::texture::{Loader, Texture};
-use crate::render::{MAX_SIZE, RenderError};
+use crate::render::view::{Poses, View};
 
-/// Groups of geoms and sites that are drawn.
+/// Groups of geoms and sites that are visible.
 const VISIBLE_GROUPS: std::ops::Range<usize> = 0..3;
-/// A geom of this colour takes that of its material.
+/// Default colour of a geom; a geom that has it takes the colour of its material.
 const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
-/// Lights that fixed-function OpenGL guarantees.
+/// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
 
-/// A picture to draw: which camera, how many pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct View {
-    /// Camera of the model.
-    pub camera: CameraId,
-    /// Width in pixels.
-    pub width: usize,
-    /// Height in pixels.
-    pub height: usize,
-}
-
-impl View {
-    /// Number of pixels; of a size that [`View::check`] refuses it may be the largest number.
-    pub fn pixels(&self) -> usize {
-        self.width.saturating_mul(self.height)
-    }
-
-    /// Whether the size is allowed.
-    ///
-    /// # Errors
-    /// A width or height of 0 or above [`MAX_SIZE`].
-    pub fn check(&self) -> Result<(), RenderError> {
-        let fine = 1..=MAX_SIZE;
-        if fine.contains(&self.width) && fine.contains(&self.height) {
-            Ok(())
-        } else {
-            Err(RenderError::Size(self.width, self.height))
-        }
-    }
-
-    /// Length of the buffer for red, green and blue.
-    pub fn rgb_len(&self) -> usize {
-        self.pixels().saturating_mul(3)
-    }
-}
-
-/// Where everything is, in the world, indexed as in the model; positions in m, matrices row-major with the local axes as
-/// columns. Cameras look along their -z.
-#[derive(Clone, Copy, Debug)]
-pub struct Poses<'a> {
-    /// Positions of the geoms.
-    pub geom_xpos: &'a [Vec3],
-    /// Orientations of the geoms.
-    pub geom_xmat: &'a [Mat3],
-    /// Positions of the sites.
-    pub site_xpos: &'a [Vec3],
-    /// Orientations of the sites.
-    pub site_xmat: &'a [Mat3],
-    /// Positions of the cameras.
-    pub cam_xpos: &'a [Vec3],
-    /// Orientations of the cameras.
-    pub cam_xmat: &'a [Mat3],
-    /// Positions of the bodies, which carry the lights.
-    pub xpos: &'a [Vec3],
-    /// Orientations of the bodies.
-    pub xmat: &'a [Mat3],
-}
-
-/// A picture to draw, of one environment.
-#[derive(Clone, Copy, Debug)]
-pub struct Shot<'a> {
-    /// Where everything is.
-    pub poses: Poses<'a>,
-    /// From where, and how large.
-    pub view: View,
-}
-
-/// Which element of the model a [`Drawable`] is.
+/// The element of the model that a [`Drawable`] shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Element {
-    /// A geom.
+    /// A geom, by id.
     Geom(usize),
-    /// A site.
+    /// A site, by id.
     Site(usize),
 }
 
-/// Which mesh a [`Drawable`] uses.
+/// The mesh that a [`Drawable`] uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shape {
-    /// [`Mesh::plane`]
+    /// A rectangle: [`Mesh::plane`].
     Plane,
-    /// [`Mesh::sphere`]
+    /// A sphere or ellipsoid: [`Mesh::sphere`].
     Sphere,
-    /// [`Mesh::capsule`]
+    /// A capsule: [`Mesh::capsule`].
     Capsule,
-    /// [`Mesh::cylinder`]
+    /// A cylinder: [`Mesh::cylinder`].
     Cylinder,
-    /// [`Mesh::cube`]
+    /// A box: [`Mesh::cube`].
     Box,
 }
 
@@ -113,17 +47,17 @@ impl Shape {
 /// A visible geom or site.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawable {
-    /// What it is in the model.
+    /// Element of the model.
     pub element: Element,
-    /// Its mesh.
+    /// Mesh.
     pub shape: Shape,
     /// Scale of the unit shape, m; a capsule's is radius, radius, half length.
     pub size: [f32; 3],
-    /// Radius of a sphere around its origin that contains it, m.
+    /// Radius of the bounding sphere around its origin, m.
     pub radius: f32,
     /// Colour and opacity.
     pub rgba: [f32; 4],
-    /// Share of the colour that needs no light.
+    /// Share of the colour that is emitted.
     pub emission: f32,
     /// Strength of highlights.
     pub specular: f32,
@@ -131,21 +65,23 @@ pub struct Drawable {
     pub exponent: f32,
     /// Index into [`Visual::textures`].
     pub texture: Option<usize>,
-    /// Texture coordinates are those of the unit shape times this, plus `texture_offset`.
+    /// Scale of texture coordinates: they are those of the unit shape times this, plus `texture_offset`.
     pub texture_scale: [f32; 3],
-    /// See `texture_scale`.
+    /// Offset of texture coordinates, see `texture_scale`.
     pub texture_offset: f32,
 }
 
-/// A light.
+/// A light, as the model has it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lamp {
-    /// Body that carries it.
+pub struct Light {
+    /// Body that carries it, by id.
     pub body: usize,
-    /// Position in the body, m; none for parallel light.
+    /// Position in the body, m; `None` for directional light.
     pub pos: Option<Vec3>,
     /// Unit direction in the body.
     pub dir: Vec3,
+    /// What it follows.
+    pub aim: Aim,
     /// Ambient colour.
     pub ambient: [f32; 3],
     /// Diffuse colour.
@@ -154,23 +90,58 @@ pub struct Lamp {
     pub specular: [f32; 3],
     /// Constant, linear and quadratic attenuation.
     pub attenuation: [f32; 3],
-    /// Cosine of the cutoff angle; -1 shines to all sides.
+    /// Cosine of the cutoff angle; -1 for a light that shines in all directions.
     pub cos_cutoff: f32,
-    /// Softness.
+    /// Exponent of the falloff towards the cutoff.
     pub exponent: f32,
 }
 
-/// A camera.
+/// The way a light follows its body or another, as its [`LightMode`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aim {
+    /// Moves and turns with its body.
+    Body,
+    /// Keeps its direction and its offset from the origin of its body.
+    Track {
+        /// Offset in the world, m.
+        offset: Vec3,
+        /// Unit direction in the world.
+        dir: Vec3,
+    },
+    /// Keeps its direction and its offset from the centre of mass of its body and those below it.
+    TrackCom {
+        /// Offset in the world, m.
+        offset: Vec3,
+        /// Unit direction in the world.
+        dir: Vec3,
+    },
+    /// Moves with its body and shines at the origin of another.
+    Target {
+        /// The other body.
+        body: usize,
+        /// Position of the light in its body, m.
+        pos: Vec3,
+    },
+    /// Moves with its body and shines at the centre of mass of another and those below it.
+    TargetCom {
+        /// The other body.
+        body: usize,
+        /// Position of the light in its body, m.
+        pos: Vec3,
+    },
+}
+
+/// A camera, as the model has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Vertical field of view, degrees.
     pub fovy: f64,
 }
 
-/// The look of a model. It is immutable; environments of one blueprint share it in an [`std::sync::Arc`].
+/// The look of a model: immutable, and shared by the environments of one blueprint in an [`std::sync::Arc`].
 #[derive(Clone, Debug)]
 pub struct Visual {
-    /// What is drawn, in the order of the model.
+    /// Visible geoms and sites, in the order of the model.
     pub drawables: Vec<Drawable>,
     /// Meshes, in the order of [`Shape::ALL`].
     pub meshes: [Mesh; 5],
@@ -179,8 +150,8 @@ pub struct Visual {
     /// Index of the background in `textures`.
     pub sky: Option<usize>,
     /// Lights; the headlight, if it is on, is not among them.
-    pub lamps: Vec<Lamp>,
-    /// Ambient, diffuse and specular colour of the light that shines along every camera, if it is on.
+    pub lights: Vec<Light>,
+    /// Ambient, diffuse and specular colour of the headlight, which shines along every camera; `None` if it is off.
     pub headlight: Option<[[f32; 3]; 3]>,
     /// Cameras of the model.
     pub cameras: Vec<Camera>,
@@ -196,13 +167,25 @@ impl Visual {
     /// Decodes the textures that visible geoms use, from `assets`.
     ///
     /// # Errors
-    /// Images that are missing, broken or of a shape that does not fit.
+    /// Fails if an image is missing, broken or of a shape that does not fit.
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Result<Self, RenderError> {
-        let mut loader = Loader::new(assets);
+        Self::build(model, Some(Loader::new(assets)))
+    }
+
+    #[cfg(feature = "report")]
+    /// Leaves textures out, as if the model had none.
+    ///
+    /// # Errors
+    /// None: only textures can fail.
+    pub(crate) fn without_textures(model: &Model) -> Result<Self, RenderError> {
+        Self::build(model, None)
+    }
+
+    fn build(model: &Model, mut loader: Option<Loader>) -> Result<Self, RenderError> {
         let mut textures = Vec::new();
         let mut index = vec![None; model.textures.len()];
         let mut use_texture = |id: usize, textures: &mut Vec<Texture>| -> Result<Option<usize>, RenderError> {
-            let Some(recipe) = model.textures.get(id) else {
+            let (Some(recipe), Some(loader)) = (model.textures.get(id), &mut loader) else {
                 return Ok(None);
             };
             if index[id].is_none() {
@@ -247,7 +230,7 @@ impl Visual {
             ],
             textures,
             sky,
-            lamps: model.lights.iter().take(room).map(Lamp::new).collect(),
+            lights: model.lights.iter().take(room).map(Light::new).collect(),
             headlight,
             cameras: model.cam_fovy.iter().map(|&fovy| Camera { fovy }).collect(),
             near: vis.znear * model.stat.extent,
@@ -256,7 +239,7 @@ impl Visual {
         })
     }
 
-    /// Bytes of all textures.
+    /// Returns the memory used by all textures, bytes.
     pub fn texture_bytes(&self) -> usize {
         let mut faces: Vec<_> = self
             .textures
@@ -271,11 +254,14 @@ impl Visual {
         faces.iter().flat_map(|f| f.iter()).map(|l| 4 * l.pixels.len()).sum()
     }
 
-    /// Whether a view of poses can be drawn.
+    /// Checks that a view of these poses can be drawn.
     pub(super) fn check(&self, poses: &Poses, view: &View) -> Result<(), RenderError> {
-        let camera = view.camera.0;
+        let camera = view.camera;
         if camera >= self.cameras.len() {
-            return Err(RenderError::Camera(camera, self.cameras.len()));
+            return Err(RenderError::Camera {
+                camera,
+                count: self.cameras.len(),
+            });
         }
         view.check()?;
         let [geoms, sites, bodies] = self.sizes;
@@ -289,6 +275,7 @@ impl Visual {
                 self.cameras.len(),
             ),
             ("bodies", poses.xpos.len(), poses.xmat.len(), bodies),
+            ("bodies", poses.subtree_com.len(), poses.subtree_com.len(), bodies),
         ] {
             let found = positions.min(matrices);
             if found != expected || positions != matrices {
@@ -299,7 +286,7 @@ impl Visual {
     }
 }
 
-/// Elements of visible groups, in the order in which MuJoCo draws them.
+/// Lists the elements of visible groups, in the order in which MuJoCo draws them.
 fn visible(model: &Model) -> impl Iterator<Item = Element> {
     let geoms = (0..model.ngeom()).filter(|&g| VISIBLE_GROUPS.contains(&model.geom_group[g]));
     let sites = (0..model.nsite()).filter(|&s| VISIBLE_GROUPS.contains(&model.site_group[s]));
@@ -362,7 +349,7 @@ impl Drawable {
         drawable
     }
 
-    /// Texture coordinates follow from the material's repetition and the kind of texture.
+    /// Derives texture coordinates from the material's repetition and the kind of texture.
     fn place_texture(&mut self, model: &Model, textures: &[Texture]) {
         let (Some(texture), Some(m)) = (self.texture, material(model, self.element)) else {
             return;
@@ -380,13 +367,34 @@ impl Drawable {
     }
 }
 
-impl Lamp {
+impl Aim {
+    fn new(light: &crate::model::Light) -> Self {
+        let (pos, dir) = (light.pos, light.dir0);
+        match (light.mode, light.targetbodyid) {
+            (LightMode::Track, _) => Self::Track {
+                offset: light.pos0,
+                dir,
+            },
+            (LightMode::TrackCom, _) => Self::TrackCom {
+                offset: light.poscom0,
+                dir,
+            },
+            (LightMode::TargetBody, Some(body)) => Self::Target { body, pos },
+            (LightMode::TargetBodyCom, Some(body)) => Self::TargetCom { body, pos },
+            // Without a target a light shines along its frame.
+            (LightMode::Fixed | LightMode::TargetBody | LightMode::TargetBodyCom, _) => Self::Body,
+        }
+    }
+}
+
+impl Light {
     fn new(light: &crate::model::Light) -> Self {
         let all_round = light.directional || light.cutoff >= 180.0;
         Self {
             body: light.bodyid,
             pos: (!light.directional).then_some(light.pos),
-            dir: crate::math::unit(light.dir).0,
+            dir: unit(light.dir).0,
+            aim: Aim::new(light),
             ambient: single(light.ambient),
             diffuse: single(light.diffuse),
             specular: single(light.specular),

@@ -4,13 +4,11 @@
 //! step, so torques, accelerations, contacts and images lag by one step, as in the reference.
 
 mod proprioception;
-mod sensordata;
 pub mod touch;
 mod vestibular;
 mod vision;
 
 pub use proprioception::{Component, Entry, Proprioception, limit_activation};
-pub use sensordata::{sensor_value, sensordata};
 pub use touch::{SkinLayout, Touch};
 pub use vestibular::Vestibular;
 pub use vision::{EYES, Vision};

@@ -1,4 +1,5 @@
-//! The sense of the own body: joint angles, velocities, torques, limits and the state of the actuators.
+//! Proprioception, the sense of one's own body: joint angles, velocities, torques, limits and the state of the
+//! actuators.
 
 use std::ops::Range;
 
@@ -7,12 +8,11 @@ use crate::config::{Compat, Config};
 use crate::mimo::MimoJoints;
 use crate::model::{Model, SensorType};
 use crate::physics::State;
-use crate::sensors::sensor_value;
 
 /// Width of the band before a joint limit in which the limit is felt, rad.
 const LIMIT_THRESHOLD: f64 = 0.035;
 
-/// Parts of the proprioceptive vector.
+/// A part of the proprioceptive vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Component {
     /// Joint angles, rad.
@@ -21,14 +21,14 @@ pub enum Component {
     Velocities,
     /// Torque sensors, N m, three values each.
     Torques,
-    /// How far each joint is into the band around its limits, see [`limit_activation`].
+    /// Proximity of each joint to its limits, see [`limit_activation`].
     Limits,
     /// State of the actuators, as the actuation model defines it.
     Actuation,
 }
 
 impl Component {
-    /// Name for people.
+    /// Returns the name of the component, for logs and labels.
     pub fn name(self) -> &'static str {
         match self {
             Self::Angles => "angles",
@@ -40,18 +40,19 @@ impl Component {
     }
 }
 
-/// What a stretch of the proprioceptive vector is.
+/// One entry of the proprioceptive vector: a single number, or the three of a torque sensor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Where it stands.
+    /// Range of the vector.
     pub range: Range<usize>,
-    /// The component it is part of.
+    /// Component that it belongs to.
     pub component: Component,
-    /// The joint for angles, velocities and limits; the torque sensor; what the actuation model calls it.
+    /// Name of the joint for angles, velocities and limits, or of the torque sensor; for actuation, the name that the
+    /// actuation model gives.
     pub name: String,
 }
 
-/// The proprioceptive vector: which components, in which order.
+/// The layout of the proprioceptive vector: which components, in which order.
 ///
 /// Under `compat: api` the order is angles, velocities, torques, limits, actuation, of which all but the angles can be
 /// switched off; under `compat: reference` all are on, in the order actuation, limits, angles, velocities, torques.
@@ -63,7 +64,7 @@ pub struct Proprioception {
 }
 
 impl Proprioception {
-    /// For `model`, whose actuation contributes `actuation_len` values.
+    /// Lays out the observation of `model`, to which actuation contributes `actuation_len` values.
     pub fn new(model: &Model, config: &Config, actuation_len: usize) -> Self {
         use Component::*;
         let joints = MimoJoints::new(model);
@@ -102,28 +103,28 @@ impl Proprioception {
         }
     }
 
-    /// Length of the vector.
+    /// Returns the length of the vector.
     pub fn len(&self) -> usize {
         self.layout.last().map_or(0, |l| l.1.end)
     }
 
-    /// Whether the vector is empty.
+    /// Returns whether the vector is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Components and their ranges, in order.
+    /// Returns the components and their ranges, in order.
     pub fn layout(&self) -> &[(Component, Range<usize>)] {
         &self.layout
     }
 
-    /// Range of one component, if it is on.
+    /// Returns the range of one component; `None` if it is off.
     pub fn range(&self, component: Component) -> Option<Range<usize>> {
         self.layout.iter().find(|l| l.0 == component).map(|l| l.1.clone())
     }
 
-    /// Every stretch of the vector in order: single numbers, and three for each torque sensor. `actuation` is the model
-    /// that the vector was laid out for.
+    /// Iterates over the entries of the vector in order: single numbers, and three for each torque sensor. `actuation`
+    /// is the model that the vector was laid out for.
     pub fn entries(&self, model: &Model, actuation: &dyn Actuation) -> Vec<Entry> {
         let mut entries = Vec::new();
         for (component, range) in &self.layout {
@@ -144,8 +145,8 @@ impl Proprioception {
         entries
     }
 
-    /// Where the number of a joint stands in angles, velocities or limits, or those of a torque sensor in torques, by
-    /// name. `None` for a component that is off, for [`Component::Actuation`] (see [`Self::entries`]) and unknown names.
+    /// Returns where a joint's number stands in angles, velocities or limits, or a sensor's three in torques, by name.
+    /// `None` for a component that is off, for [`Component::Actuation`] (see [`Self::entries`]) and unknown names.
     pub fn find(&self, model: &Model, component: Component, name: &str) -> Option<Range<usize>> {
         let start = self.range(component)?.start;
         let (k, width) = match component {
@@ -158,17 +159,17 @@ impl Proprioception {
         Some(start + width * k..start + width * (k + 1))
     }
 
-    /// MIMo's joints, in the order of angles, velocities and limits.
+    /// Returns MIMo's joints, in the order of angles, velocities and limits.
     pub fn joints(&self) -> &MimoJoints {
         &self.joints
     }
 
-    /// Names of the joints.
+    /// Iterates over the names of the joints.
     pub fn joint_names<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = &'a str> {
         self.joints.joint.iter().map(|&j| model.jnt_name[j].as_str())
     }
 
-    /// Names of the torque sensors.
+    /// Iterates over the names of the torque sensors.
     pub fn sensor_names<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = &'a str> {
         self.torque_sensors.iter().map(|&i| model.sensor_name[i].as_str())
     }
@@ -184,7 +185,7 @@ impl Proprioception {
                 Component::Velocities => gather(&s.qvel, &self.joints.dof, out),
                 Component::Torques => {
                     for (values, &i) in out.chunks_exact_mut(3).zip(&self.torque_sensors) {
-                        values.copy_from_slice(&sensor_value(model, s, i));
+                        values.copy_from_slice(&s.sensordata[3 * i..3 * i + 3]);
                     }
                 }
                 Component::Limits => {
@@ -204,8 +205,8 @@ fn gather(from: &[f64], at: &[usize], out: &mut [f64]) {
     }
 }
 
-/// How strongly a joint limit is felt at angle `q` (rad): 0 inside the range, rising linearly to 1 over the last
-/// 0.035 rad before either limit, and on beyond it.
+/// Returns how strongly a joint limit is felt at angle `q` (rad): 0 inside the range, rising linearly to 1 over the
+/// last 0.035 rad before either limit, and further beyond it.
 pub fn limit_activation(q: f64, range: [f64; 2]) -> f64 {
     let inside = (q - (range[0] + LIMIT_THRESHOLD)).min((range[1] - LIMIT_THRESHOLD) - q);
     (-(inside / LIMIT_THRESHOLD)).max(0.0)

@@ -1,20 +1,19 @@
-//! The vestibular sense: what the inner ear feels.
+//! The vestibular sense: acceleration and rotation of the head.
 
 use std::ops::Range;
 
 use crate::model::{Model, SensorType};
 use crate::physics::State;
-use crate::sensors::sensor_value;
 
-/// Linear acceleration of the head including gravity (m/s^2) and its angular velocity (rad/s), in the frame of the site
-/// in the middle of the head: the accelerometers and gyros of the model, in their order.
+/// The vestibular sense: linear acceleration of the head including gravity (m/s^2) and its angular velocity (rad/s), in
+/// the frame of the site in the middle of the head; the model's accelerometers and gyros, in their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vestibular {
     sensors: Vec<usize>,
 }
 
 impl Vestibular {
-    /// Of `model`.
+    /// Finds the vestibular sensors of `model`.
     pub fn new(model: &Model) -> Self {
         let felt = |i: &usize| model.sensor_type[*i] != SensorType::Torque;
         Self {
@@ -22,17 +21,17 @@ impl Vestibular {
         }
     }
 
-    /// Number of values: 6.
+    /// Returns the number of values: 6.
     pub fn len(&self) -> usize {
         3 * self.sensors.len()
     }
 
-    /// Whether the model has no such sensor.
+    /// Returns whether the model has no such sensor.
     pub fn is_empty(&self) -> bool {
         self.sensors.is_empty()
     }
 
-    /// Names of the sensors and their ranges in the observation.
+    /// Iterates over the names of the sensors and their ranges in the observation.
     pub fn layout<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (&'a str, Range<usize>)> {
         self.sensors
             .iter()
@@ -41,9 +40,9 @@ impl Vestibular {
     }
 
     /// Writes the observation, of length [`Self::len`].
-    pub fn observe(&self, model: &Model, s: &State, out: &mut [f64]) {
+    pub fn observe(&self, s: &State, out: &mut [f64]) {
         for (values, &i) in out.chunks_exact_mut(3).zip(&self.sensors) {
-            values.copy_from_slice(&sensor_value(model, s, i));
+            values.copy_from_slice(&s.sensordata[3 * i..3 * i + 3]);
         }
     }
 }

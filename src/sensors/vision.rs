@@ -1,16 +1,16 @@
-//! Vision: what the two eyes see.
+//! Vision: images from the two eyes.
 
 use std::sync::Arc;
 
-use crate::model::{CameraId, Model};
+use crate::model::Model;
 use crate::physics::State;
-use crate::render::{Painter, Poses, RenderError, Shot, View, Visual};
+use crate::render::{Poses, RenderError, RenderRequest, Renderer, View, Visual};
 
-/// Names of the cameras in the eyes, left and right, which are the keys of the observation.
+/// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
 pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
 
 impl<'a> From<&'a State> for Poses<'a> {
-    /// Where everything was at the start of the last physics step.
+    /// Returns the poses at the start of the last physics step.
     fn from(s: &'a State) -> Self {
         Self {
             geom_xpos: &s.geom_xpos,
@@ -21,99 +21,101 @@ impl<'a> From<&'a State> for Poses<'a> {
             cam_xmat: &s.cam_xmat,
             xpos: &s.xpos,
             xmat: &s.xmat,
+            subtree_com: &s.subtree_com,
         }
     }
 }
 
-/// The pictures of both eyes: (resolution, resolution, 3) bytes each, red, green and blue, rows from the top.
+/// The two eyes: images of (resolution, resolution, 3) bytes each, red, green and blue, rows from the top.
 #[derive(Debug)]
 pub struct Vision {
-    painter: Painter,
-    eyes: [CameraId; 2],
+    renderer: Renderer,
+    eyes: [usize; 2],
     resolution: usize,
 }
 
 impl Vision {
-    /// Through the cameras [`EYES`] of `model`, or nothing if it has no eyes. `visual` is that of the model.
+    /// Creates the eyes of `model`, its cameras [`EYES`], drawn on the CPU; `None` if it has no eyes. `visual` is the
+    /// look of the same model.
     pub fn new(model: &Model, visual: Arc<Visual>, resolution: usize) -> Option<Self> {
-        Self::with_painter(model, Painter::cpu(visual), resolution)
+        Self::with_renderer(model, Renderer::cpu(visual), resolution)
     }
 
-    /// As [`Self::new`], by any renderer of the model's look.
-    pub fn with_painter(model: &Model, painter: Painter, resolution: usize) -> Option<Self> {
+    /// Creates the eyes of `model`, drawn by any renderer of its look.
+    pub fn with_renderer(model: &Model, renderer: Renderer, resolution: usize) -> Option<Self> {
         Some(Self {
-            painter,
+            renderer,
             eyes: [model.camera(EYES[0])?, model.camera(EYES[1])?],
             resolution,
         })
     }
 
-    /// Shape of a picture: rows, columns, colours.
+    /// Returns the shape of an image: rows, columns, colours.
     pub fn shape(&self) -> [usize; 3] {
         [self.resolution, self.resolution, 3]
     }
 
-    /// Bytes of a picture.
+    /// Returns the number of bytes of an image.
     pub fn len(&self) -> usize {
         self.shape().into_iter().fold(1, usize::saturating_mul)
     }
 
-    /// Whether the pictures have no pixels.
+    /// Returns whether the images have no pixels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The look of the scene.
+    /// Returns the look of the scene.
     pub fn visual(&self) -> &Arc<Visual> {
-        self.painter.visual()
+        self.renderer.visual()
     }
 
-    /// What draws the pictures.
-    pub fn painter(&self) -> &Painter {
-        &self.painter
+    /// Returns the renderer that draws the images.
+    pub fn renderer(&self) -> &Renderer {
+        &self.renderer
     }
 
-    /// Draws both pictures, left and right, of length [`Self::len`] each. Poses are those of the start of the last physics
+    /// Draws both images, left and right, of length [`Self::len`] each. Poses are those of the start of the last physics
     /// step, as in the reference.
     ///
     /// # Errors
-    /// Pictures of wrong length.
+    /// Fails if a buffer has the wrong length.
     pub fn observe(&mut self, s: &State, eyes: [&mut [u8]; 2]) -> Result<(), RenderError> {
-        let shots = self.shots(s);
-        self.painter.rgb(&shots, eyes)
+        let requests = self.requests(s);
+        self.renderer.rgb(&requests, eyes)
     }
 
-    /// Draws both pictures in grey: a byte for each pixel, (resolution, resolution).
+    /// Draws both images in grey: a byte for each pixel, (resolution, resolution).
     ///
     /// # Errors
-    /// Pictures of wrong length.
+    /// Fails if a buffer has the wrong length.
     pub fn gray(&mut self, s: &State, eyes: [&mut [u8]; 2]) -> Result<(), RenderError> {
-        let shots = self.shots(s);
-        self.painter.gray(&shots, eyes)
+        let requests = self.requests(s);
+        self.renderer.gray(&requests, eyes)
     }
 
-    /// Draws for both eyes the distance of what each pixel shows from the camera's plane, m, (resolution, resolution); infinite
-    /// where nothing is.
+    /// Draws for both eyes the distance of what each pixel shows from the camera's plane, m, (resolution, resolution);
+    /// infinite where nothing is.
     ///
     /// # Errors
-    /// Pictures of wrong length.
+    /// Fails if a buffer has the wrong length.
     pub fn depth(&mut self, s: &State, eyes: [&mut [f32]; 2]) -> Result<(), RenderError> {
-        let shots = self.shots(s);
-        self.painter.depth(&shots, eyes)
+        let requests = self.requests(s);
+        self.renderer.depth(&requests, eyes)
     }
 
     /// Draws for both eyes the id of the geom that each pixel shows, (resolution, resolution); -1 where none is.
     ///
     /// # Errors
-    /// Pictures of wrong length.
+    /// Fails if a buffer has the wrong length.
     pub fn segmentation(&mut self, s: &State, eyes: [&mut [i32]; 2]) -> Result<(), RenderError> {
-        let shots = self.shots(s);
-        self.painter.segmentation(&shots, eyes)
+        let requests = self.requests(s);
+        self.renderer.segmentation(&requests, eyes)
     }
 
-    /// What [`Self::observe`] draws, left and right.
-    pub fn shots<'a>(&self, s: &'a State) -> [Shot<'a>; 2] {
-        self.eyes.map(|camera| Shot {
+    /// Returns the images that [`Self::observe`] draws, left and right.
+    pub fn requests<'a>(&self, s: &'a State) -> [RenderRequest<'a>; 2] {
+        self.eyes.map(|camera| RenderRequest {
             poses: Poses::from(s),
             view: View {
                 camera,

@@ -4,9 +4,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use babybench::assets::MemoryAssets;
 use babybench::config::{Behavior, BodyParts, Scene};
-use babybench::physics::State;
-use babybench::{Blueprint, Config, Env};
+use babybench::mjcf_loader::load_str;
+use babybench::physics::{State, compile};
+use babybench::runs::complete_scene;
+use babybench::{Blueprint, Config, Env, Model};
 
 /// The example configurations: name, text.
 pub const EXAMPLES: [(&str, &str); 3] = [
@@ -17,12 +20,6 @@ pub const EXAMPLES: [(&str, &str); 3] = [
         include_str!("../../configs/config_test_installation.yml"),
     ),
 ];
-
-/// Says on the standard error that something is left out; not by `eprintln`, which the test harness hides.
-pub fn skipped(what: &str, why: impl std::fmt::Display) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stderr(), "SKIPPED {what}: {why}");
-}
 
 /// What pictures are drawn of: all default senses but touch, MIMo v2 among the cubes and v1 elsewhere.
 pub fn seen(scene: Scene) -> Config {
@@ -74,6 +71,17 @@ pub fn free(behavior: Behavior, scene: Scene) -> Config {
         lock: BodyParts::all(false),
         ..Config::default()
     }
+}
+
+/// The model of a configuration's scene whose text was changed; every tag of the text stands on a line of its own.
+pub fn edited(config: &Config, edit: impl FnOnce(String) -> String) -> Model {
+    let scene = complete_scene(config).expect("the embedded assets load");
+    let mut assets = MemoryAssets::new();
+    for (path, image) in scene.images {
+        assets.insert(&path, image).expect("a relative path");
+    }
+    let spec = load_str(&edit(scene.xml), "scene.xml", &assets);
+    spec.and_then(compile).expect("the scene compiles")
 }
 
 /// A fresh environment, not reset.

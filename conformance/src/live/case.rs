@@ -5,7 +5,8 @@ use std::sync::Arc;
 use babybench::Model;
 use babybench::config::{Behavior, BodyParts, Config, Part, Scene};
 use babybench::mimo::{DOCUMENT, Version, build_model, embedded, lock, scene_xml};
-use babybench::physics::{Engine, Params, RapierEngine, RapierOptions, SoftEngine, SoftOptions};
+use babybench::mjcf_loader::load_str;
+use babybench::physics::{Engine, Params, RapierEngine, RapierOptions, SoftEngine, SoftOptions, compile};
 
 use crate::mujoco::{Mujoco, Release, Simulation};
 
@@ -44,7 +45,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Of a configuration.
+    /// Builds the case of a configuration.
     pub fn new(name: String, config: Config) -> Self {
         let model = Arc::new(build_model(&config, &embedded()).expect("the embedded assets load"));
         let mut params = Params::new(&model);
@@ -61,7 +62,7 @@ impl Case {
         }
     }
 
-    /// Both versions of MIMo in all scenes, everything actuated and nothing locked.
+    /// Returns both versions of MIMo in all scenes, everything actuated and nothing locked.
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for behavior in [Behavior::None, Behavior::HandRegard] {
@@ -80,8 +81,9 @@ impl Case {
         all
     }
 
-    /// Both versions in all scenes, actuated and locked as in the example configurations: v1 in base as in
-    /// `test_installation`, elsewhere as in `selftouch`; v2 as in `handregard`.
+    /// Returns both versions in all scenes, actuated and locked as in the example configurations.
+    ///
+    /// v1 follows `test_installation` in the base scene and `selftouch` elsewhere; v2 follows `handregard`.
     pub fn examples() -> Vec<Self> {
         let read = |text, name| Config::from_yaml(text, name).expect("the examples are valid");
         let installation = read(
@@ -120,7 +122,7 @@ impl Case {
         load(&folder.path().join(DOCUMENT).to_string_lossy())
     }
 
-    /// The scene in MuJoCo 3.3.0, at `qpos0` with the parameters of the start.
+    /// Loads the scene into MuJoCo 3.3.0, at `qpos0` with the initial parameters.
     ///
     /// # Errors
     /// MuJoCo's message.
@@ -130,7 +132,7 @@ impl Case {
         Ok(simulation)
     }
 
-    /// The scene in another release.
+    /// Loads the scene into another release.
     ///
     /// # Errors
     /// MuJoCo's message.
@@ -138,12 +140,19 @@ impl Case {
         self.with_files(|path| Release::new(api, version, path))
     }
 
-    /// Our default engine on the scene, counting the torque of welds as MuJoCo does.
+    /// Builds our default engine on the scene, counting the torque of welds as MuJoCo does.
     pub fn soft(&self) -> Box<dyn Engine> {
         self.soft_with(self.model.clone())
     }
 
-    /// Our default engine on another model, such as this one with other tolerances.
+    /// Compiles our model with other options, given as attributes of an `option` element.
+    pub fn model_with(&self, option: &str) -> Arc<Model> {
+        let xml = scene_xml(&self.config).replace("</mujoco>", &format!("<option {option}/></mujoco>"));
+        let spec = load_str(&xml, DOCUMENT, &embedded()).expect("the embedded assets load");
+        Arc::new(compile(spec).expect("the scenes compile"))
+    }
+
+    /// Builds our default engine on another model, such as this one with other tolerances.
     pub fn soft_with(&self, model: Arc<Model>) -> Box<dyn Engine> {
         let options = SoftOptions {
             double_weld_torque: true,
@@ -152,7 +161,7 @@ impl Case {
         Box::new(SoftEngine::new(model, options))
     }
 
-    /// The same model in Rapier's own pipeline.
+    /// Builds an engine that steps the same model in Rapier's own pipeline.
     pub fn rapier(&self) -> Box<dyn Engine> {
         let options = RapierOptions {
             double_weld_torque: true,
@@ -161,7 +170,7 @@ impl Case {
         Box::new(RapierEngine::new(self.model.clone(), options).expect("MIMo fits Rapier's multibodies"))
     }
 
-    /// Whether a degree of freedom belongs to an object, not to MIMo.
+    /// Lists the degrees of freedom that belong to objects, not to MIMo.
     pub fn object_dofs(&self) -> Vec<usize> {
         let m = &self.model;
         let of_object = |&d: &usize| m.jnt_name[m.dof_jntid[d]].is_empty();

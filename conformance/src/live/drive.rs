@@ -31,7 +31,7 @@ impl Motion {
         Self::Topple,
     ];
 
-    /// Name for people.
+    /// Returns the name of the motion for people to read.
     pub fn name(self) -> &'static str {
         match self {
             Self::Passive => "passive",
@@ -53,7 +53,7 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// For a model; the seed decides everything random.
+    /// Creates a drive for a model; the seed decides everything random.
     pub fn new(model: &Model, motion: Motion, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let range = model.actuator_ctrlrange.clone();
@@ -69,7 +69,7 @@ impl Drive {
         }
     }
 
-    /// The generator, for what else is random in the episode.
+    /// Returns the random number generator, for whatever else is random in the episode.
     pub fn rng(&mut self) -> &mut Rng {
         &mut self.rng
     }

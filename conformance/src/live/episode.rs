@@ -19,7 +19,7 @@ pub struct Episode {
 }
 
 impl Episode {
-    /// `n` episodes that take turns with all motions.
+    /// Returns `n` episodes that cycle through all motions.
     pub fn mixed(n: usize) -> Vec<Self> {
         let motion = |k: usize| Motion::ALL[k % Motion::ALL.len()];
         (0..n)
@@ -45,7 +45,7 @@ impl Episode {
                 _ => m.jnt_range[j][0] + (m.jnt_range[j][1] - m.jnt_range[j][0]) * rng.f64(),
             };
             // joints that other constraints hold stay theirs
-            let _ = lock(m, &mut params, babybench::model::JointId(j).into(), angle);
+            let _ = lock(m, &mut params, j.into(), angle);
         }
         params
     }

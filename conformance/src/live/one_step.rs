@@ -74,23 +74,25 @@ impl OneStep {
         self.worst.truncate(5);
     }
 
-    /// Of the acceleration.
+    /// Summarises the errors of the acceleration.
     pub fn qacc(&self) -> Summary {
         Summary::new(self.qacc.iter().copied())
     }
 
-    /// The largest error of the acceleration where MuJoCo does not jump as far when the last bits of the positions change.
+    /// Returns the largest error of the acceleration that no jump of MuJoCo's own explains.
+    ///
+    /// A jump explains an error if it is at least a third as large, when the last bits of the positions change.
     pub fn unexplained(&self) -> f64 {
         let jumps = |error: &f64| self.large.iter().any(|(e, own)| e == error && *error <= 3.0 * own);
         self.qacc.iter().filter(|e| !jumps(e)).fold(0.0, |a: f64, &b| a.max(b))
     }
 
-    /// Of the contact forces.
+    /// Summarises the errors of the contact forces.
     pub fn force(&self) -> Summary {
         Summary::new(self.force.iter().copied())
     }
 
-    /// Of the acceleration of MuJoCo against itself.
+    /// Summarises the errors of MuJoCo's acceleration against its own converged one.
     pub fn floor(&self) -> Summary {
         Summary::new(self.floor.iter().copied())
     }
@@ -193,7 +195,7 @@ impl<'a> Pair<'a> {
         out
     }
 
-    /// How far MuJoCo's acceleration jumps when the last bits of `qpos` change.
+    /// Measures how far MuJoCo's acceleration jumps when the last bits of `qpos` change.
     fn jump(&mut self, start: &State) -> f64 {
         let mut start = start.clone();
         let qpos = start.qpos.clone();
@@ -227,15 +229,15 @@ impl<'a> Pair<'a> {
         out.qvel.push(max_abs(&ours.qvel, theirs.qvel()));
         out.qpos.push(max_abs(&ours.qpos, theirs.qpos()));
         let contacts = theirs.contacts();
-        let same = ours.contacts.len() == contacts.len()
+        let same = ours.contact.len() == contacts.len()
             && ours
-                .contacts
+                .contact
                 .iter()
                 .zip(&contacts)
                 .all(|(a, b)| a.geom == b.geom && a.dim == b.dim);
         out.contacts += contacts.len();
         if same {
-            for (a, b) in ours.contacts.iter().zip(&contacts) {
+            for (a, b) in ours.contact.iter().zip(&contacts) {
                 out.force.push(relative(&a.force, &b.force));
                 out.dist.push((a.dist - b.dist).abs());
             }
@@ -249,9 +251,9 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The first contact that differs.
+    /// Describes the first contact that differs.
     fn mismatch(&self, theirs: &[Contact]) -> String {
-        let ours = &self.state.contacts;
+        let ours = &self.state.contact;
         let counts = format!("{} contacts, MuJoCo has {}", ours.len(), theirs.len());
         let name = |geom: [usize; 2]| {
             geom.map(|g| format!("{g} {:?}", self.case.model.geom_type[g]))
@@ -267,19 +269,14 @@ impl<'a> Pair<'a> {
         format!("{counts}; number {k} is {ours:?}, MuJoCo's {theirs:?}")
     }
 
-    /// The contact whose place differs most, if one does.
+    /// Describes the contact whose place differs most; empty if none does.
     fn farthest_contact(&self) -> String {
         let theirs = self.simulation.contacts();
         let error = |a: &babybench::physics::Contact, b: &Contact| {
             let place = max_abs(&a.pos, &b.pos).max((a.dist - b.dist).abs());
             place.max(max_abs(&a.frame, &b.frame))
         };
-        let pairs = self
-            .state
-            .contacts
-            .iter()
-            .zip(&theirs)
-            .filter(|(a, b)| a.geom == b.geom);
+        let pairs = self.state.contact.iter().zip(&theirs).filter(|(a, b)| a.geom == b.geom);
         let Some((a, b)) = pairs.max_by(|(a, b), (c, d)| error(a, b).total_cmp(&error(c, d))) else {
             return String::new();
         };

@@ -3,7 +3,7 @@
 use babybench::mimo::MimoJoints;
 use babybench::model::EqualityKind;
 use babybench::physics::Engine;
-use babybench::physics::constraint::RowKind;
+use babybench::physics::{ConstraintType, EfcRow};
 
 use super::one_step::Maker;
 use super::speed::copy_motion;
@@ -50,31 +50,31 @@ pub struct Distance {
     pub free: Vec<f64>,
     /// Acceleration of the first step, relative to its largest value.
     pub first_qacc: f64,
-    /// Why it ended early.
+    /// Why it ended early, if it did.
     pub failure: Option<String>,
 }
 
 /// A rollout with its floor.
 pub struct Rollout {
-    /// Of the engine.
+    /// Distances of the engine.
     pub ours: Distance,
     /// MuJoCo from each of some starts 1e-7 away: rms over joints, rad.
     pub floors: Vec<Vec<f64>>,
 }
 
 impl Rollout {
-    /// Our distance after each step.
+    /// Returns our distance after step `k`, rad; infinite if the rollout ended before it.
     pub fn ours_at(&self, k: usize) -> f64 {
         self.ours.joints.get(k).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The average of MuJoCo's distances from itself after a step.
+    /// Returns the average of MuJoCo's distances from itself after step `k`, rad.
     pub fn floor_at(&self, k: usize) -> f64 {
         self.floors.iter().map(|f| f[k]).sum::<f64>() / self.floors.len() as f64
     }
 }
 
-/// Distances of some rollouts after a step, ours and the averaged floors.
+/// Summarises the distances of some rollouts after a step: ours and the averaged floors.
 pub fn at(rollouts: &[Rollout], k: usize) -> [Summary; 2] {
     [
         Summary::new(rollouts.iter().map(|r| r.ours_at(k))),
@@ -131,7 +131,7 @@ fn path(case: &Case, simulation: &mut Simulation, plan: Plan, seed: u64) -> Path
     out
 }
 
-/// Where distances are measured.
+/// The coordinates over which distances are measured.
 struct Ruler {
     joints: Vec<usize>,
     free: Vec<usize>,
@@ -174,7 +174,7 @@ pub fn follow(case: &Case, engine: &mut dyn Engine, path: &Path) -> Distance {
     out
 }
 
-/// MuJoCo 3.3.0 along a rollout from a start 1e-7 rad away in each joint: rms over joints after each step.
+/// Rolls MuJoCo 3.3.0 out from a start 1e-7 rad away in each joint: rms over joints after each step, rad.
 fn floor(case: &Case, simulation: &mut Simulation, path: &Path, start: u64) -> Vec<f64> {
     let ruler = Ruler::new(case);
     let mut rng = fastrand::Rng::with_seed(1000 * path.seed + start);
@@ -245,9 +245,9 @@ pub fn follow_release(version: &str, case: &Case, paths: &[Path]) -> Result<Vec<
 
 /// Vertical forces on MIMo, N.
 pub struct Resting {
-    /// Of contacts with the world and objects.
+    /// From contacts with the world and objects.
     pub contacts: f64,
-    /// Of welds to the world.
+    /// From welds to the world.
     pub welds: f64,
     /// Its weight.
     pub weight: f64,
@@ -256,13 +256,13 @@ pub struct Resting {
 }
 
 impl Resting {
-    /// What is missing to its weight, relative to it.
+    /// Returns how far the forces are from balancing MIMo's weight, relative to that weight.
     pub fn error(&self) -> f64 {
         ((self.contacts + self.welds) / self.weight - 1.0).abs()
     }
 }
 
-/// Forces on MIMo after `steps` steps without controls.
+/// Measures the forces on MIMo after `steps` steps without controls.
 ///
 /// # Errors
 /// MuJoCo does not load the scene; the engine fails.
@@ -283,7 +283,7 @@ pub fn resting(api: &'static Mujoco, case: &Case, make: Maker, steps: usize) -> 
         weight: -m.opt.gravity[2] * m.body_subtreemass[root],
         number: 0,
     };
-    for c in &state.contacts {
+    for c in &state.contact {
         let [first, second] = c.geom.map(|g| m.body_rootid[m.geom_bodyid[g]] == root);
         if first != second {
             let up: f64 = (0..3).map(|k| c.force[k] * c.frame[3 * k + 2]).sum();
@@ -291,14 +291,15 @@ pub fn resting(api: &'static Mujoco, case: &Case, make: Maker, steps: usize) -> 
             out.number += 1;
         }
     }
-    for b in state.efc.blocks.iter().filter(|b| b.kind == RowKind::Equality) {
-        let EqualityKind::Weld { body1, body2, .. } = m.eq_kind[b.id] else {
+    for (id, kind) in m.eq_kind.iter().enumerate() {
+        let EqualityKind::Weld { body1, body2, .. } = *kind else {
             continue;
         };
+        let of_weld = |row: &EfcRow| row.kind == ConstraintType::Equality && row.id == id;
         // rows push the first body along x, y and z, and the second body back
-        let up = state.efc.force[b.row + 2];
-        out.welds += if m.body_rootid[body1.0] == root { up } else { 0.0 };
-        out.welds -= if m.body_rootid[body2.0] == root { up } else { 0.0 };
+        let up = state.efc_rows().filter(of_weld).nth(2).map_or(0.0, |row| row.force);
+        out.welds += if m.body_rootid[body1] == root { up } else { 0.0 };
+        out.welds -= if m.body_rootid[body2] == root { up } else { 0.0 };
     }
     Ok(out)
 }

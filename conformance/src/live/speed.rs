@@ -28,13 +28,13 @@ pub struct Speed {
     pub contacts: f64,
 }
 
-/// CPU time of this thread, s.
+/// Returns the CPU time of this thread, s.
 pub fn cpu_time() -> f64 {
     let t = clock_gettime(ClockId::ThreadCPUTime);
     t.tv_sec as f64 + 1e-9 * t.tv_nsec as f64
 }
 
-/// First quartile, median, third quartile.
+/// Returns the first quartile, the median and the third quartile.
 pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     [1, 2, 3].map(|q| {
@@ -67,15 +67,7 @@ pub fn measure(
     let mut contacts = 0;
     let mut ctrl = vec![vec![0.0; case.model.nu()]; BATCH];
     for batch in 0..batches + 1 {
-        for k in 0..BATCH {
-            if k > 0 {
-                let (done, rest) = ctrl.split_at_mut(k);
-                rest[0].copy_from_slice(&done[k - 1]);
-            } else if let [first, .., last] = &mut ctrl[..] {
-                first.copy_from_slice(last);
-            }
-            drive.set(batch * BATCH + k, &mut ctrl[k]);
-        }
+        controls(&mut drive, batch, &mut ctrl);
         copy_motion(&simulation, &mut state);
         let ours = |state: &mut State, engine: &mut dyn Engine| -> Result<f64, EngineError> {
             let start = cpu_time();
@@ -119,7 +111,20 @@ pub fn measure(
     })
 }
 
-/// Positions, velocities and warm start of MuJoCo's, for ours to go on from.
+/// Creates the controls of a batch, each of which goes on from the one before.
+fn controls(drive: &mut Drive, batch: usize, ctrl: &mut [Vec<f64>]) {
+    for k in 0..BATCH {
+        if k > 0 {
+            let (done, rest) = ctrl.split_at_mut(k);
+            rest[0].copy_from_slice(&done[k - 1]);
+        } else if let [first, .., last] = &mut *ctrl {
+            first.copy_from_slice(last);
+        }
+        drive.set(batch * BATCH + k, &mut ctrl[k]);
+    }
+}
+
+/// Copies positions, velocities and warm start from MuJoCo, for our engine to go on from.
 pub fn copy_motion(simulation: &Simulation, state: &mut State) {
     state.qpos.copy_from_slice(simulation.qpos());
     state.qvel.copy_from_slice(simulation.qvel());

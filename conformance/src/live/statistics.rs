@@ -30,14 +30,14 @@ type Samples = [Vec<f64>; QUANTITIES.len()];
 pub struct Spread {
     /// What.
     pub quantity: &'static str,
-    /// Of our runs.
+    /// Distances of our runs.
     pub ours: Vec<f64>,
-    /// Of MuJoCo's own.
+    /// Distances of MuJoCo's own runs.
     pub mujoco: Vec<f64>,
 }
 
 impl Spread {
-    /// Whether our runs are on average no farther than MuJoCo's farthest.
+    /// Tells whether our runs are on average no farther than MuJoCo's farthest.
     pub fn inside(&self) -> bool {
         let mean = self.ours.iter().sum::<f64>() / self.ours.len() as f64;
         mean <= self.mujoco.iter().fold(0.0, |a: f64, &b| a.max(b))
@@ -91,7 +91,7 @@ pub fn spreads(
     Ok((0..QUANTITIES.len()).map(spread).collect())
 }
 
-/// Largest difference of two cumulative distribution functions.
+/// Returns the largest difference between the cumulative distribution functions of two samples.
 fn distance(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
     a.sort_by(f64::total_cmp);
     b.sort_by(f64::total_cmp);
@@ -134,7 +134,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// MuJoCo evaluates the energies of both sides.
+    /// Samples the energies of some motions, which MuJoCo evaluates for both sides.
     fn energies(&mut self, evaluator: &mut Simulation, motions: &[[Vec<f64>; 2]]) {
         for [qpos, qvel] in motions {
             let [potential, kinetic] = evaluator.energy_at(qpos, qvel);
@@ -187,8 +187,8 @@ fn run_ours(
             .step(&mut state)
             .map_err(|e| format!("{} seed {seed}: {e}", case.name))?;
         if wanted(k) {
-            let normal = state.contacts.iter().map(|c| c.force[0]).sum();
-            sampler.add(&state.qpos, &state.qvel, state.contacts.len(), normal);
+            let normal = state.contact.iter().map(|c| c.force[0]).sum();
+            sampler.add(&state.qpos, &state.qvel, state.contact.len(), normal);
             motions.push([state.qpos.clone(), state.qvel.clone()]);
         }
     }

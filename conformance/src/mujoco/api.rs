@@ -48,7 +48,7 @@ pub struct Mujoco {
     _library: Library,
 }
 
-/// MuJoCo would write warnings to a file in the current directory.
+/// Swallows warnings, which MuJoCo would otherwise write to a file in the current directory.
 unsafe extern "C" fn ignore(_: *const c_char) {}
 
 impl Mujoco {
@@ -98,7 +98,7 @@ impl Mujoco {
         })
     }
 
-    /// Version, such as 330.
+    /// Returns the version, such as 330.
     pub fn version(&self) -> i32 {
         self.version
     }

@@ -1,4 +1,4 @@
-//! How a field of one of MuJoCo's structures is found.
+//! Lookup of the fields of MuJoCo's structures.
 
 /// A member of a structure: a number, some numbers, or a pointer to an array of `rows` by `cols`.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub enum Size {
     Named(&'static str),
 }
 
-/// The field of a name, found at compile time: a name that does not exist stops the build.
+/// Returns the field with a name, found at compile time: a name that does not exist stops the build.
 pub const fn field(table: &[Field], name: &str) -> Field {
     match position(table, name) {
         Some(k) => table[k],
@@ -45,7 +45,7 @@ pub const fn field(table: &[Field], name: &str) -> Field {
     }
 }
 
-/// Where a field stands in a table.
+/// Returns the position of a field in a table, if it is there.
 pub const fn position(table: &[Field], name: &str) -> Option<usize> {
     let mut k = 0;
     while k < table.len() {

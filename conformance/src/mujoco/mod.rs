@@ -17,20 +17,20 @@ pub use simulation::{Contact, Simulation};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use testkit::harness::Need;
+use testkit::yardsticks::{REQUIRED, set_up};
+
 /// The release that babybench reproduces.
 pub const REFERENCE: &str = "3.3.0";
 
-/// Set to `required`, a missing MuJoCo is a failure instead of a skipped test.
-pub const REQUIRED: &str = "MUJOCO_CONFORMANCE";
-
-/// Where a release is, once fetched.
+/// Returns the folder that a release is fetched to.
 pub fn folder(version: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../target/mujoco")
         .join(version)
 }
 
-/// The releases that are there, oldest first.
+/// Lists the releases that have been fetched, oldest first.
 pub fn fetched() -> Vec<String> {
     let entries = std::fs::read_dir(folder("")).into_iter().flatten();
     let names = entries.filter_map(|e| e.ok()?.file_name().into_string().ok());
@@ -43,10 +43,10 @@ fn library(version: &str) -> PathBuf {
     folder(version).join(format!("mujoco/libmujoco.so.{version}"))
 }
 
-/// MuJoCo 3.3.0, loaded once.
+/// Returns MuJoCo 3.3.0, loaded once.
 ///
 /// # Errors
-/// It is not there, and how to get it; it cannot be loaded; it is another release.
+/// It is missing (the message says how to get it), it cannot be loaded, or it is another release.
 pub fn reference() -> Result<&'static Mujoco, String> {
     static LOADED: OnceLock<Result<Mujoco, String>> = OnceLock::new();
     let load = || {
@@ -70,19 +70,16 @@ pub fn reference() -> Result<&'static Mujoco, String> {
     LOADED.get_or_init(load).as_ref().map_err(String::clone)
 }
 
-/// MuJoCo 3.3.0 for a test, which is skipped without it: this is said on the standard error, where cargo does not hide it.
+/// MuJoCo 3.3.0, fetched where it is missing.
+pub const MUJOCO: Need = Need::new("MuJoCo", Some(REQUIRED), || {
+    set_up("fetch_mujoco.sh", &library(REFERENCE))?;
+    reference().map(drop)
+});
+
+/// Returns MuJoCo 3.3.0 to a test that has the need [`MUJOCO`].
 ///
 /// # Panics
-/// When it is missing and `MUJOCO_CONFORMANCE=required` is set.
-pub fn reference_or_skip(test: &str) -> Option<&'static Mujoco> {
-    match reference() {
-        Ok(mujoco) => Some(mujoco),
-        Err(why) if std::env::var(REQUIRED).is_ok_and(|v| v == "required") => {
-            panic!("{test}: {REQUIRED}=required, but {why}")
-        }
-        Err(why) => {
-            crate::skipped(test, why);
-            None
-        }
-    }
+/// When it is missing.
+pub fn needed() -> &'static Mujoco {
+    reference().unwrap_or_else(|e| panic!("{e}"))
 }

@@ -41,7 +41,7 @@ pub fn load(version: &str) -> Result<&'static Mujoco, String> {
     Ok(Box::leak(Box::new(Mujoco::load(&path)?)))
 }
 
-/// The bit of each part of the state, from the headers: `mjSTATE_QPOS = 1<<1`.
+/// Reads the bit of each part of the state from the headers, such as `mjSTATE_QPOS = 1<<1`.
 fn bits(version: &str) -> Result<[u32; PARTS.len()], String> {
     let headers = folder(version).join("mujoco/include/mujoco");
     let mut text = String::new();
@@ -108,7 +108,7 @@ impl Release {
         }
     }
 
-    /// To a motion, with the start of the solver and the switches of equalities.
+    /// Sets positions, velocities, the solver's warm start and which equalities are active.
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64], warmstart: &[f64], eq_active: &[bool]) {
         self.set(0, qpos);
         self.set(1, qvel);
@@ -124,17 +124,17 @@ impl Release {
         unsafe { (self.api.step)(self.model, self.data) }
     }
 
-    /// Positions.
+    /// Returns the positions.
     pub fn qpos(&self) -> Vec<f64> {
         self.get(0)
     }
 
-    /// Velocities.
+    /// Returns the velocities.
     pub fn qvel(&self) -> Vec<f64> {
         self.get(1)
     }
 
-    /// The acceleration of the last step, which is the start of the next step's solver.
+    /// Returns the acceleration of the last step, which is the warm start of the next step's solver.
     pub fn qacc(&self) -> Vec<f64> {
         self.get(2)
     }

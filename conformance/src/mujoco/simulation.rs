@@ -133,6 +133,8 @@ data! {
     efc_force,
 }
 
+/// Returns the `n` values behind the pointer at `base + at`.
+///
 /// # Safety
 /// `base + at` must hold a pointer to `n` values of type `T`, valid for `'a`, or anything when `n` is 0.
 unsafe fn array<'a, T>(base: Handle, at: usize, n: usize) -> &'a [T] {
@@ -143,6 +145,8 @@ unsafe fn array<'a, T>(base: Handle, at: usize, n: usize) -> &'a [T] {
     unsafe { slice::from_raw_parts(*base.byte_add(at).cast::<*const T>(), n) }
 }
 
+/// Returns the `n` values behind the pointer at `base + at`, to write to.
+///
 /// # Safety
 /// As [`array`], and nothing else may refer to the values.
 unsafe fn array_mut<'a, T>(base: Handle, at: usize, n: usize) -> &'a mut [T] {
@@ -182,13 +186,13 @@ impl Simulation {
         usize::try_from(n).unwrap_or(0)
     }
 
-    /// A size of the model, such as `nq`; `None` when mjModel has none of that name.
+    /// Returns a size of the model, such as `nq`; `None` when mjModel has none of that name.
     pub fn known_size(&self, name: &str) -> Option<usize> {
         let size = MODEL_SIZES.iter().find(|f| f.name == name)?;
         Some(self.number(Count::OfModel(size.at)))
     }
 
-    /// A size of the model, such as `nq`.
+    /// Returns a size of the model, such as `nq`.
     ///
     /// # Panics
     /// There is no such size.
@@ -197,7 +201,7 @@ impl Simulation {
             .unwrap_or_else(|| panic!("mjModel has no size {name}"))
     }
 
-    /// An array of the model, as numbers; `None` when mjModel has none of that name.
+    /// Returns an array of the model, as numbers; `None` when mjModel has none of that name.
     pub fn model_array(&self, name: &str) -> Option<Vec<f64>> {
         let f = MODEL.iter().find(|f| f.name == name)?;
         let n = self.number(count(f.rows)) * self.number(count(f.cols));
@@ -218,7 +222,7 @@ impl Simulation {
         })
     }
 
-    /// An option or a statistic of the model, as numbers.
+    /// Returns an option or a statistic of the model, as numbers.
     pub fn model_value(&self, name: &str) -> Option<Vec<f64>> {
         let part = |name| field(PARTS, name).at;
         let find = |table: &'static [Field]| table.iter().find(|f| f.name == name);
@@ -242,7 +246,7 @@ impl Simulation {
         })
     }
 
-    /// Names of the elements of a kind: `body`, `jnt`, `geom` and so on.
+    /// Returns the names of the elements of a kind: `body`, `jnt`, `geom` and so on.
     pub fn names(&self, kind: &str) -> Vec<String> {
         let Some((_, object, size)) = NAMED.iter().find(|n| n.0 == kind) else {
             return Vec::new();
@@ -266,7 +270,7 @@ impl Simulation {
         unsafe { &mut *self.model.byte_add(at).cast::<T>() }
     }
 
-    /// Tolerances of Newton's method and of its line search, and the most iterations.
+    /// Sets the tolerances of Newton's method and of its line search, and the largest number of iterations.
     pub fn set_tolerance(&mut self, tolerance: f64, ls_tolerance: f64, iterations: usize) {
         *self.option("tolerance", Kind::F64) = tolerance;
         *self.option("ls_tolerance", Kind::F64) = ls_tolerance;
@@ -288,7 +292,7 @@ impl Simulation {
         self.disable(DISABLE_CONTACT, off);
     }
 
-    /// To `qpos0` at rest.
+    /// Resets the simulation to `qpos0` at rest.
     pub fn reset(&mut self) {
         // SAFETY: model and data are valid.
         unsafe { (self.api.reset_data)(self.model, self.data) }
@@ -317,6 +321,7 @@ impl Simulation {
         self.data_mut(field(DATA, "qfrc_applied"))
             .copy_from_slice(&s.qfrc_applied);
         self.set_params(model, &s.params);
+        self.set_gear(s.reference_gear());
     }
 
     /// Takes over switches and parameters.
@@ -343,11 +348,7 @@ impl Simulation {
             .copy_from_slice(&p.jnt_stiffness);
         self.model_mut(field(MODEL, "dof_damping"))
             .copy_from_slice(&p.dof_damping);
-        let gears = self.model_mut(field(MODEL, "actuator_gear"));
-        gears
-            .chunks_exact_mut(6)
-            .zip(&p.actuator_gear)
-            .for_each(|(row, &gear)| row[0] = gear);
+        self.set_gear(&p.actuator_gear);
         let limited = field(MODEL, "actuator_forcelimited");
         let n = self.size("nu");
         // SAFETY: `actuator_forcelimited` has a byte for each actuator.
@@ -356,6 +357,14 @@ impl Simulation {
             .iter_mut()
             .zip(&p.actuator_forcelimited)
             .for_each(|(to, &from)| *to = u8::from(from));
+    }
+
+    /// Sets the gears of the actuators.
+    fn set_gear(&mut self, gear: &[f64]) {
+        let rows = self.model_mut(field(MODEL, "actuator_gear"));
+        for (row, &gear) in rows.chunks_exact_mut(6).zip(gear) {
+            row[0] = gear;
+        }
     }
 
     /// Sets positions and velocities.
@@ -388,30 +397,30 @@ impl Simulation {
         unsafe { array_mut(self.model, f.at, n) }
     }
 
-    /// Which equalities hold.
+    /// Returns which equalities are active.
     pub fn eq_active(&self) -> Vec<bool> {
         // SAFETY: `eq_active` has a byte for each equality.
         let bytes = unsafe { array::<u8>(self.data, const { field(DATA, "eq_active").at }, self.size("neq")) };
         bytes.iter().map(|&v| v != 0).collect()
     }
 
-    /// Number of contacts.
+    /// Returns the number of contacts.
     pub fn ncon(&self) -> usize {
         self.number(const { Count::OfData(field(DATA_SIZES, "ncon").at) })
     }
 
-    /// Number of constraint rows.
+    /// Returns the number of constraint rows.
     pub fn nefc(&self) -> usize {
         self.number(const { Count::OfData(field(DATA_SIZES, "nefc").at) })
     }
 
-    /// Simulated time, s.
+    /// Returns the simulated time, s.
     pub fn time(&self) -> f64 {
         // SAFETY: the time lies at this offset in mjData.
         unsafe { *self.data.byte_add(const { field(DATA_SIZES, "time").at }).cast::<f64>() }
     }
 
-    /// Newton iterations of the last step, of the first island.
+    /// Returns the number of Newton iterations of the last step, in the first island.
     pub fn solver_iterations(&self) -> usize {
         // SAFETY: the number lies at this offset in mjData.
         let n = unsafe {
@@ -423,7 +432,7 @@ impl Simulation {
         usize::try_from(n).unwrap_or(0)
     }
 
-    /// The contacts of the last step, with their forces.
+    /// Returns the contacts of the last step, with their forces.
     pub fn contacts(&self) -> Vec<Contact> {
         let at = const { field(PARTS, "contact").at };
         // SAFETY: `contact` points to `ncon` structures of this size.
@@ -456,7 +465,7 @@ impl Simulation {
         }
     }
 
-    /// Potential and kinetic energy at a motion, J. Leaves the simulation there.
+    /// Computes the potential and kinetic energy at a motion, J, and leaves the simulation there.
     pub fn energy_at(&mut self, qpos: &[f64], qvel: &[f64]) -> [f64; 2] {
         self.set_motion(qpos, qvel);
         self.forward();
@@ -471,7 +480,7 @@ impl Simulation {
         }
     }
 
-    /// The full inertia matrix (nv, nv).
+    /// Returns the full inertia matrix (nv, nv).
     pub fn full_inertia(&self) -> Vec<f64> {
         let nv = self.size("nv");
         let mut out = vec![0.0; nv * nv];
@@ -480,8 +489,9 @@ impl Simulation {
         out
     }
 
-    /// Positions, velocities, warm start and controls by `mj_getState`, which knows the layout by itself: a check of the
-    /// offsets.
+    /// Returns positions, velocities, warm start and controls from `mj_getState`.
+    ///
+    /// MuJoCo knows the layout itself, so this checks the offsets.
     pub fn state_by_mujoco(&self) -> [Vec<f64>; 4] {
         [1, 2, 4, 5].map(|bit| {
             // SAFETY: the buffer has the size that MuJoCo asks for.

@@ -2,7 +2,7 @@
 
 use crate::physics::constraint::{Block, Efc};
 
-/// Where a contact is on its cost.
+/// The zone of its cost in which a contact is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(super) enum Zone {
     /// No force, no curvature.
@@ -57,7 +57,7 @@ struct Line {
 }
 
 impl Cone {
-    /// The contact of a block.
+    /// Creates the cone of a contact from its block of rows.
     pub(super) fn new(b: &Block, efc: &Efc) -> Self {
         let mut cone = Self {
             dim: b.dim,
@@ -73,7 +73,7 @@ impl Cone {
         cone
     }
 
-    /// Cost; fills force and zone.
+    /// Computes the cost, and fills in force and zone.
     #[inline]
     pub(super) fn evaluate(&mut self) -> f64 {
         let (jar, mu) = (&self.jar, self.mu);
@@ -108,7 +108,7 @@ impl Cone {
         }
     }
 
-    /// Hessian of the cost on the surface of the cone with respect to `jar`.
+    /// Computes the Hessian of the cost on the surface of the cone with respect to `jar`.
     ///
     /// The cost is `dm/2 y^2` with `y = n - mu t`, `n = mu jar_0` and `t` the length of `u_k = friction_k jar_k`.
     #[inline]
@@ -192,12 +192,12 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::constraint::RowKind;
+    use crate::physics::constraint::ConstraintType;
 
-    /// A contact with torsional friction, regularised as the row builder does it.
+    /// Builds a contact with torsional friction, regularised as the row builder does it.
     fn contact(jar: [f64; 4]) -> Cone {
         let block = Block {
-            kind: RowKind::Elliptic,
+            kind: ConstraintType::ContactElliptic,
             dim: 4,
             mu: 0.8,
             friction: [0.8, 0.8, 0.05, 0.0, 0.0],

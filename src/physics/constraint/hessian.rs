@@ -2,18 +2,21 @@
 
 use crate::physics::constraint::Efc;
 use crate::physics::constraint::cone::Zone;
-use crate::physics::constraint::island::{Island, Jacobian};
+use crate::physics::constraint::island::Island;
+use crate::physics::constraint::jacobian::Jacobian;
 use crate::physics::tiles::{
     Lanes, Pattern, Tile, ZERO, add_outer_products, factor_diagonal, scale_rows, solve, solve_columns,
     sub_transposed_product, sub_transposed_product_diagonal,
 };
 
+mod pattern;
+
 /// A symmetric positive matrix over the lanes of an island, kept up to date from one iteration to the next.
 ///
 /// Elimination goes from the last row of tiles to the first, by fronts: a row, and the *update* that it and those
-/// eliminated into it make to the rows of its other columns. From one iteration to the next few constraints change sides,
-/// so few rows change; what has not changed, and depends on nothing that has, is kept. Kept and computed again are the
-/// same bits.
+/// eliminated into it make to the rows of its other columns. From one iteration to the next few constraints change
+/// sides, so few rows change; what has not changed, and depends on nothing that has, is kept. Kept and computed again
+/// are the same bits.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hessian {
     words: usize,
@@ -44,7 +47,7 @@ pub(super) struct Hessian {
 const NONE: u32 = u32::MAX;
 
 impl Hessian {
-    /// With memory for `nv` degrees of freedom and `contacts` contacts.
+    /// Reserves memory for `nv` degrees of freedom and `contacts` contacts.
     pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
         // tiles are mostly full
         let (rows, tiles) = (nv, nv * (nv + 1) / 16);
@@ -65,84 +68,6 @@ impl Hessian {
             zone: Vec::with_capacity(contacts),
             weighted: Vec::with_capacity(6 * rows),
         }
-    }
-
-    /// Finds the pattern for an island.
-    pub(super) fn analyse(&mut self, island: &Island) {
-        let n = island.tiles();
-        self.words = n.div_ceil(64);
-        let words = self.words;
-        self.bits.clear();
-        self.bits.resize(n * words, 0);
-        for i in 0..n {
-            for &j in island.m_pattern.cols(i) {
-                set(&mut self.bits[i * words..], j);
-            }
-        }
-        let several = island.several.iter().map(|s| &s.1);
-        for j in several.chain(island.cones.iter().map(|c| &c.1)) {
-            // elimination hands the coupling down to the lower rows
-            if let [cols @ .., last] = island.cols(j) {
-                let row = *last as usize * words;
-                cols.iter().for_each(|&c| set(&mut self.bits[row..], c));
-            }
-        }
-        self.eliminate(n);
-        let tiles = self.pattern.tiles();
-        self.h.resize(tiles, ZERO);
-        self.factor.resize(tiles, ZERO);
-        self.inv.resize(n, [0.0; 4]);
-        self.changed.clear();
-        self.changed.resize(n, true);
-        self.weight.clear();
-        self.zone.clear();
-    }
-
-    /// Symbolic elimination, then the columns of each row.
-    fn eliminate(&mut self, n: usize) {
-        let words = self.words;
-        self.child.clear();
-        self.child.resize(n, NONE);
-        self.sibling.clear();
-        self.sibling.resize(n, NONE);
-        for i in (0..n).rev() {
-            let (head, row) = self.bits.split_at_mut(i * words);
-            row[i / 64] &= !(1 << (i % 64));
-            // a row hands its pattern to its last nonzero column
-            if let Some(w) = (0..words).rev().find(|&w| row[w] != 0) {
-                let j = w * 64 + 63 - row[w].leading_zeros() as usize;
-                let target = &mut head[j * words..(j + 1) * words];
-                for (t, r) in target.iter_mut().zip(&row[..words]) {
-                    *t |= r;
-                }
-                self.sibling[i] = self.child[j];
-                self.child[j] = i as u32;
-            }
-        }
-        self.pattern.clear();
-        self.place.resize((n * n).max(self.place.len()), 0);
-        self.update_adr.clear();
-        let mut updates = 0;
-        for i in 0..n {
-            let start = self.pattern.tiles();
-            let mut push = |col: usize| {
-                self.place[i * n + col] = self.pattern.tiles() as u32;
-                self.pattern.push_col(col as u32);
-            };
-            for w in 0..words {
-                let mut bits = self.bits[i * words + w];
-                while bits != 0 {
-                    push(w * 64 + bits.trailing_zeros() as usize);
-                    bits &= bits - 1;
-                }
-            }
-            push(i);
-            self.pattern.end_row();
-            let cols = self.pattern.tiles() - start - 1;
-            self.update_adr.push(updates);
-            updates += cols * (cols + 1) / 2;
-        }
-        self.update.resize(updates, ZERO);
     }
 
     /// Assembles and factorises what has changed.
@@ -250,7 +175,7 @@ impl Hessian {
         island.cols(j).iter().any(|&c| self.changed[c as usize])
     }
 
-    /// `weighted = diag(weight) J`
+    /// Computes `weighted = diag(weight) J`.
     fn weigh_diagonal(&mut self, jac: &[Lanes], weight: &[f64; 6], dim: usize) {
         self.weighted.clear();
         for rows in jac.chunks_exact(dim) {
@@ -259,7 +184,7 @@ impl Hessian {
         }
     }
 
-    /// `weighted = C J`
+    /// Computes `weighted = C J`.
     fn weigh(&mut self, jac: &[Lanes], c: &[[f64; 6]; 6], dim: usize) {
         self.weighted.clear();
         for rows in jac.chunks_exact(dim) {
@@ -369,7 +294,8 @@ impl Hessian {
     }
 }
 
-/// Adds the update of a row with `child_cols` to the row with `cols` that it is eliminated into, and to that row's update.
+/// Adds the update of a row with `child_cols` to the row with `cols` that it is eliminated into, and to that row's
+/// update.
 fn extend_add(cols: &[u32], child_cols: &[u32], row: &mut [Tile], update: &mut [Tile], child: &[Tile]) {
     let mut child = child.iter();
     let mut a = 0;
@@ -399,9 +325,4 @@ fn add(a: &mut Tile, b: &Tile) {
             a[i][j] += b[i][j];
         }
     }
-}
-
-#[inline]
-fn set(bits: &mut [u64], i: u32) {
-    bits[i as usize / 64] |= 1 << (i % 64);
 }

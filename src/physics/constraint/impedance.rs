@@ -2,7 +2,7 @@
 
 use crate::math::MINVAL;
 
-/// Stiffness, damping and impedance of a row.
+/// The stiffness, damping and impedance of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impedance {
     /// Stiffness, 1/s^2.
@@ -17,9 +17,10 @@ pub struct Impedance {
 const MINIMP: f64 = 0.0001;
 const MAXIMP: f64 = 0.9999;
 
-/// `solref` is (time constant, damping ratio), or, when not positive, (-stiffness, -damping); a time constant below two
-/// time steps counts as two time steps. `solimp` is (dmin, dmax, width, midpoint, power): the impedance grows from dmin to
-/// dmax as `|pos|` goes from 0 to width, along two power curves that meet at the midpoint. `pos` is the violation, m or rad.
+/// Computes the impedance of a row. `solref` is (time constant, damping ratio), or, when not positive, (-stiffness,
+/// -damping); a time constant below two time steps counts as two time steps. `solimp` is (dmin, dmax, width, midpoint,
+/// power): the impedance grows from dmin to dmax as `|pos|` goes from 0 to width, along two power curves that meet at
+/// the midpoint. `pos` is the violation, m or rad.
 pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, timestep: f64) -> Impedance {
     let dmin = solimp[0].clamp(MINIMP, MAXIMP);
     let dmax = solimp[1].clamp(MINIMP, MAXIMP);
@@ -51,7 +52,7 @@ pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, timestep: f64) ->
     Impedance { k, b, imp }
 }
 
-/// Two power curves from (0, 0) to (1, 1) that meet at `x = midpoint`.
+/// Evaluates a sigmoid: two power curves from (0, 0) to (1, 1) that meet at `x = midpoint`.
 fn sigmoid(x: f64, midpoint: f64, power: f64) -> f64 {
     if power == 1.0 {
         x

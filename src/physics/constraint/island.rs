@@ -1,122 +1,12 @@
 //! The problem of one island, in lanes: what the solver minimises, and its value, force and slopes at a point.
 
 use crate::physics::constraint::cone::{Cone, Zone};
-use crate::physics::constraint::{Block, Efc, RowKind};
+use crate::physics::constraint::jacobian::{Jacobian, Single, add_transposed_product, product};
+use crate::physics::constraint::quad::{NO_ROWS, NONE, Quad};
+use crate::physics::constraint::{Block, ConstraintType, Efc};
 use crate::physics::state::State;
 use crate::physics::tiles::{Lanes, Pattern, Tile, mul, total};
 use crate::physics::topology::Topology;
-
-/// No row.
-const NONE: u32 = u32::MAX;
-
-/// Four rows whose force is `-d jar`, clamped: by nothing (equalities), to the dry friction, to one sign (limits and
-/// contacts without friction). Rows that are not there are zero.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Quad {
-    /// Inverse of the regularisation.
-    pub(super) d: Lanes,
-    /// Regularisation.
-    r: Lanes,
-    /// Bounds of `d jar`.
-    low: Lanes,
-    high: Lanes,
-    aref: Lanes,
-    /// `J a - aref`
-    pub(super) jar: Lanes,
-    /// `J` times the search direction.
-    pub(super) jv: Lanes,
-    force: Lanes,
-    /// Curvature: `d` between the bounds, else 0.
-    pub(super) weight: Lanes,
-    /// Rows of [`Efc`].
-    row: [u32; 4],
-}
-
-const NO_ROWS: Quad = Quad {
-    d: [0.0; 4],
-    r: [0.0; 4],
-    low: [0.0; 4],
-    high: [0.0; 4],
-    aref: [0.0; 4],
-    jar: [0.0; 4],
-    jv: [0.0; 4],
-    force: [0.0; 4],
-    weight: [0.0; 4],
-    row: [NONE; 4],
-};
-
-impl Jacobian {
-    /// Values: for each tile of columns, `dim` rows.
-    pub(super) fn values<'a>(&self, efc: &'a Efc) -> &'a [Lanes] {
-        &efc.jac[self.jac..self.jac + self.dim * self.ncol]
-    }
-}
-
-impl Quad {
-    fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
-        let (low, high) = match b.kind {
-            RowKind::FrictionLoss => (-b.frictionloss, b.frictionloss),
-            RowKind::Limit | RowKind::Frictionless => (f64::NEG_INFINITY, 0.0),
-            RowKind::Equality | RowKind::Elliptic => (f64::NEG_INFINITY, f64::INFINITY),
-        };
-        (self.d[k], self.r[k], self.aref[k]) = (efc.d[row], efc.r[row], efc.aref[row]);
-        (self.low[k], self.high[k], self.row[k]) = (low, high, row as u32);
-    }
-
-    /// Fills force and weight; returns the costs.
-    #[inline(always)]
-    fn evaluate(&mut self) -> Lanes {
-        let mut cost = [0.0; 4];
-        for k in 0..4 {
-            let pull = self.d[k] * self.jar[k];
-            let clamped = clamp(pull, self.low[k], self.high[k]);
-            self.weight[k] = if clamped == pull { self.d[k] } else { 0.0 };
-            self.force[k] = -clamped;
-            cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
-        }
-        cost
-    }
-
-    /// Adds first and second derivatives of the cost at `jar + alpha jv`.
-    #[inline(always)]
-    pub(super) fn add_slopes(&self, alpha: f64, first: &mut Lanes, second: &mut Lanes) {
-        for k in 0..4 {
-            let pull = self.d[k] * (self.jar[k] + alpha * self.jv[k]);
-            let clamped = clamp(pull, self.low[k], self.high[k]);
-            let curvature = self.d[k] * self.jv[k] * self.jv[k];
-            first[k] += clamped * self.jv[k];
-            second[k] += if clamped == pull { curvature } else { 0.0 };
-        }
-    }
-}
-
-#[inline(always)]
-fn clamp(x: f64, low: f64, high: f64) -> f64 {
-    let x = if x < low { low } else { x };
-    if x > high { high } else { x }
-}
-
-/// Jacobian of some rows over the tiles that they have entries in.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Jacobian {
-    /// Number of rows.
-    pub(super) dim: usize,
-    /// First entry in [`Island::cols`], and their number.
-    pub(super) col: usize,
-    pub(super) ncol: usize,
-    /// First entry in [`Efc::jac`].
-    jac: usize,
-}
-
-/// A row on one degree of freedom.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Single {
-    /// Where in the quads.
-    pub(super) row: usize,
-    /// Lane of the degree of freedom.
-    pub(super) slot: usize,
-    pub(super) value: f64,
-}
 
 /// The cost along the search direction, where the search starts.
 #[derive(Clone, Copy, Debug)]
@@ -165,7 +55,7 @@ pub(super) struct Island {
 }
 
 impl Island {
-    /// With memory for `nv` degrees of freedom and `contacts` contacts.
+    /// Reserves memory for `nv` degrees of freedom and `contacts` contacts.
     pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
         let lanes = || Vec::with_capacity(nv);
         Self {
@@ -190,12 +80,12 @@ impl Island {
         }
     }
 
-    /// Number of tiles of degrees of freedom.
+    /// Returns the number of tiles of degrees of freedom.
     pub(super) fn tiles(&self) -> usize {
         self.m_pattern.rows()
     }
 
-    /// Takes in the trees and blocks (indices into `efc.blocks`) of an island.
+    /// Reads the trees and blocks (indices into `efc.blocks`) of an island.
     pub(super) fn load(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc, s: &State) {
         self.load_trees(topology, trees, s);
         let lanes = self.tiles();
@@ -243,7 +133,7 @@ impl Island {
         }
     }
 
-    /// Lane of a degree of freedom.
+    /// Returns the lane of a degree of freedom, counted over the tiles of the island.
     fn slot(&self, topology: &Topology, dof: usize) -> usize {
         (topology.slot[dof] as usize).wrapping_add(self.shift[topology.dof_tree[dof]])
     }
@@ -255,7 +145,7 @@ impl Island {
         self.cones.clear();
         self.cols.clear();
         let block = |k: &u32| &efc.blocks[*k as usize];
-        let friction = |b: &Block| b.kind == RowKind::FrictionLoss;
+        let friction = |b: &Block| b.kind == ConstraintType::FrictionDof;
         self.friction_tiles = if blocks.iter().any(|k| friction(block(k))) {
             self.tiles()
         } else {
@@ -267,7 +157,7 @@ impl Island {
             if friction(b) {
                 let slot = self.slot(topology, b.id);
                 self.quads[slot / 4].set(slot % 4, efc, b.row, b);
-            } else if b.kind == RowKind::Elliptic {
+            } else if b.kind == ConstraintType::ContactElliptic {
                 let jacobian = self.load_jacobian(topology, b, efc);
                 self.cones.push((Cone::new(b, efc), jacobian));
             } else {
@@ -304,7 +194,7 @@ impl Island {
         }
     }
 
-    /// Tiles of the columns, ascending.
+    /// Returns the tiles of the columns, ascending.
     pub(super) fn cols(&self, j: &Jacobian) -> &[u32] {
         &self.cols[j.col..j.col + j.ncol]
     }
@@ -354,7 +244,7 @@ impl Island {
         self.search = x;
     }
 
-    /// `jv = J x`
+    /// Computes `jv = J x`.
     fn rates(&mut self, x: &[Lanes], efc: &Efc) {
         for (q, x) in self.quads[..self.friction_tiles].iter_mut().zip(x) {
             q.jv = *x;
@@ -373,7 +263,7 @@ impl Island {
         }
     }
 
-    /// Goes `alpha` along the search direction.
+    /// Moves by `alpha` along the search direction.
     pub(super) fn advance(&mut self, alpha: f64) {
         let axpy = |x: &mut Lanes, v: &Lanes| {
             for k in 0..4 {
@@ -392,7 +282,7 @@ impl Island {
         }
     }
 
-    /// Cost at the acceleration; fills forces and curvatures.
+    /// Returns the cost at the acceleration; fills in forces and curvatures.
     pub(super) fn evaluate(&mut self) -> f64 {
         let mut cost = [0.0; 4];
         for (((ma, f), a), b) in self
@@ -419,7 +309,9 @@ impl Island {
         cost
     }
 
-    /// `constraint_force = J' force`, `gradient = M acc - qfrc_smooth - J' force`; returns the length of the gradient.
+    /// Computes the gradient of the cost and returns its length.
+    ///
+    /// `constraint_force = J' force`, `gradient = M acc - qfrc_smooth - J' force`.
     pub(super) fn differentiate(&mut self, efc: &Efc) -> f64 {
         let out = &mut self.constraint_force;
         if self.friction_tiles > 0 {
@@ -454,7 +346,7 @@ impl Island {
         total(&length2).sqrt()
     }
 
-    /// What the line search starts from.
+    /// Computes the sums along the search direction that the line search starts from.
     pub(super) fn along_search(&self) -> AlongSearch {
         let mut sums = [[0.0; 4]; 4];
         for ((((s, ms), ma), f), g) in self
@@ -499,54 +391,5 @@ impl Island {
         for (c, j) in &self.cones {
             efc.force[c.row..c.row + j.dim].copy_from_slice(&c.force[..j.dim]);
         }
-    }
-}
-
-/// `J x`
-#[inline]
-fn product(cols: &[u32], jac: &[Lanes], j: &Jacobian, x: &[Lanes]) -> [f64; 6] {
-    let mut out = [0.0; 6];
-    let mut first = 0;
-    while first + 3 <= j.dim {
-        let [a, b, c] = some_products::<3>(cols, jac, j, first, x);
-        out[first..first + 3].copy_from_slice(&[a, b, c]);
-        first += 3;
-    }
-    while first < j.dim {
-        [out[first]] = some_products::<1>(cols, jac, j, first, x);
-        first += 1;
-    }
-    out
-}
-
-/// Rows from `first` on of `J x`.
-#[inline(always)]
-fn some_products<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, first: usize, x: &[Lanes]) -> [f64; N] {
-    let mut sums = [[0.0; 4]; N];
-    let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
-    for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
-        let x = x[c as usize];
-        for (sum, row) in sums.iter_mut().zip(&rows[first..first + N]) {
-            for k in 0..4 {
-                sum[k] += row[k] * x[k];
-            }
-        }
-    }
-    sums.map(|s| total(&s))
-}
-
-/// `out += J' force`
-#[inline]
-fn add_transposed_product(cols: &[u32], jac: &[Lanes], j: &Jacobian, force: &[f64; 6], out: &mut [Lanes]) {
-    let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
-    for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
-        let out = &mut out[c as usize];
-        let mut sum = *out;
-        for (row, f) in rows.iter().zip(force) {
-            for k in 0..4 {
-                sum[k] += row[k] * f;
-            }
-        }
-        *out = sum;
     }
 }

@@ -13,7 +13,7 @@ pub(super) struct LineSearch<'a> {
 }
 
 impl LineSearch<'_> {
-    /// First and second derivative at `alpha`.
+    /// Computes the first and second derivative of the cost at `alpha`.
     fn derivatives(&self, alpha: f64) -> (f64, f64) {
         let (mut first, mut second) = ([0.0; 4], [0.0; 4]);
         for q in &self.island.quads {
@@ -27,8 +27,9 @@ impl LineSearch<'_> {
         (g, h)
     }
 
-    /// Step length at which the derivative vanishes to within `tolerance`, from a first guess. Newton's method on the
-    /// derivative (which is monotone), kept inside a bracket.
+    /// Finds the step length at which the derivative vanishes to within `tolerance`, from a first guess.
+    ///
+    /// This is Newton's method on the derivative (which is monotone), kept inside a bracket.
     pub(super) fn minimise(&self, guess: f64, tolerance: f64, iterations: usize) -> f64 {
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut alpha = guess;

@@ -1,48 +1,57 @@
 //! Soft constraints in MuJoCo's formulation: rows and the Newton solver.
 //!
 //! A constraint row `i` has a Jacobian row `J_i`, a reference acceleration `aref_i = -b vel_i - k imp pos_i`, and a
-//! regularisation `R_i = (1 - imp)/imp * diagApprox_i`, with impedance `imp` from `solimp` and stiffness `k`, damping `b`
-//! from `solref`. The solver minimises `1/2 (a - a_smooth)' M (a - a_smooth) + sum s_i(J a - aref)` over accelerations
-//! `a`, where `s_i` is a quadratic on the active side of each constraint and, for contacts, that of the elliptic friction
-//! cone ("Computation" chapter of MuJoCo's documentation).
+//! regularisation `R_i = (1 - imp)/imp * diagApprox_i`, with impedance `imp` from `solimp` and stiffness `k`, damping
+//! `b` from `solref`. The solver minimises `1/2 (a - a_smooth)' M (a - a_smooth) + sum s_i(J a - aref)` over
+//! accelerations `a`, where `s_i` is a quadratic on the active side of each constraint and, for contacts, that of the
+//! elliptic friction cone ("Computation" chapter of MuJoCo's documentation).
 
+mod append;
 mod cone;
 mod hessian;
 mod impedance;
 mod island;
+mod jacobian;
 mod line_search;
 mod newton;
+mod quad;
 mod rows;
+mod view;
+mod weld;
 
-pub use impedance::{Impedance, impedance};
+pub use impedance::impedance;
 pub use newton::Newton;
-pub use rows::{RowBuilder, Weld, weld_points};
+pub use rows::RowBuilder;
+pub use view::EfcRow;
+pub use weld::{Weld, weld_points};
 
 use crate::physics::tiles::Lanes;
 use crate::physics::topology::Topology;
 
-/// What a block of rows constrains; blocks stand in this order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub enum RowKind {
-    /// Equality: force of either sign.
+/// The type of a constraint row: what it constrains, as in MuJoCo's `efc_type`. Rows stand in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum ConstraintType {
+    /// An equality: the force may have either sign.
     #[default]
     Equality,
-    /// Dry friction: force within plus and minus `frictionloss`.
-    FrictionLoss,
-    /// Limit of a joint or tendon: force not negative.
-    Limit,
-    /// Contact without friction: force not negative.
-    Frictionless,
-    /// Contact with an elliptic friction cone.
-    Elliptic,
+    /// Dry friction of a degree of freedom: the force stays within plus and minus `frictionloss`.
+    FrictionDof,
+    /// A limit of a joint: the force is not negative.
+    LimitJoint,
+    /// A limit of a tendon: the force is not negative.
+    LimitTendon,
+    /// A contact without friction: the force is not negative.
+    ContactFrictionless,
+    /// A contact with an elliptic friction cone.
+    ContactElliptic,
 }
 
 /// Rows that belong together and share their columns.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Block {
     /// What it is.
-    pub kind: RowKind,
-    /// Equality, degree of freedom, joint, tendon or contact that it comes from.
+    pub kind: ConstraintType,
+    /// Id of the equality, degree of freedom, joint, tendon or contact that it comes from.
     pub id: usize,
     /// First row.
     pub row: usize,
@@ -92,12 +101,12 @@ pub struct Efc {
 }
 
 impl Efc {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn nefc(&self) -> usize {
         self.pos.len()
     }
 
-    /// With memory for `contacts` contacts and the rows of `nv` degrees of freedom.
+    /// Reserves memory for `contacts` contacts and the rows of `nv` degrees of freedom.
     pub fn with_capacity(nv: usize, contacts: usize) -> Self {
         let rows = 4 * contacts + 3 * nv;
         let reserved = || Vec::with_capacity(rows);
@@ -135,13 +144,13 @@ impl Efc {
         }
     }
 
-    /// Tiles of a block, and for each of them `dim` rows.
+    /// Returns the tiles of a block, and for each of them `dim` rows.
     pub fn tiles(&self, b: &Block) -> impl Iterator<Item = (u32, &[Lanes])> {
         let rows = self.jac[b.jac..b.jac + b.dim * b.ncol].chunks_exact(b.dim.max(1));
         self.cols[b.col..b.col + b.ncol].iter().copied().zip(rows)
     }
 
-    /// Entries of the Jacobian of a block: row in the block, degree of freedom, value.
+    /// Returns the entries of the Jacobian of a block: row in the block, degree of freedom, value.
     pub fn entries(&self, topology: &Topology, b: &Block) -> impl Iterator<Item = (usize, usize, f64)> {
         self.tiles(b).flat_map(move |(tile, rows)| {
             let (first, lanes) = (topology.tile_dof[tile as usize], topology.lanes(tile as usize));

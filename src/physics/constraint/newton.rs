@@ -11,7 +11,7 @@ use crate::physics::constraint::line_search::LineSearch;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
-/// The constraint solver and its working memory.
+/// Solves for the accelerations under constraints; holds the working memory.
 #[derive(Clone, Debug, Default)]
 pub struct Newton {
     island: Island,
@@ -29,7 +29,7 @@ pub struct Newton {
 }
 
 impl Newton {
-    /// With memory for `nv` degrees of freedom and `contacts` contacts, so that solving need not allocate.
+    /// Reserves memory for `nv` degrees of freedom and `contacts` contacts, so that solving need not allocate.
     pub fn with_capacity(nv: usize, contacts: usize) -> Self {
         let blocks = contacts + 4 * nv;
         Self {
@@ -65,7 +65,7 @@ impl Newton {
             }
             s.efc = efc;
         }
-        for c in &mut s.contacts {
+        for c in &mut s.contact {
             c.force = [0.0; 6];
             if let Some(row) = c.efc_address {
                 c.force[..c.dim].copy_from_slice(&s.efc.force[row..row + c.dim]);
@@ -74,7 +74,9 @@ impl Newton {
         s.qacc_warmstart.copy_from_slice(&s.qacc);
     }
 
-    /// Trees that share a block belong together; the island's name is its first tree. Sorts the blocks by island.
+    /// Finds the islands and sorts the blocks by island.
+    ///
+    /// Trees that share a block belong together; the island's name is its first tree.
     fn find_islands(&mut self, topology: &Topology, efc: &Efc) {
         let ntree = topology.ntree();
         self.parent.clear();
@@ -170,7 +172,7 @@ impl Newton {
     }
 }
 
-/// Root of a tree's island, with path halving.
+/// Finds the root of a tree's island, with path halving.
 fn find(parent: &mut [usize], mut t: usize) -> usize {
     while parent[t] != t {
         parent[t] = parent[parent[t]];

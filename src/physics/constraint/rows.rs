@@ -2,79 +2,11 @@
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::{Block, Efc, RowKind, impedance};
+use crate::physics::constraint::append::{Rows, Spec};
+use crate::physics::constraint::{Block, ConstraintType, Efc, impedance, weld_points};
 use crate::physics::state::State;
 use crate::physics::tiles::{Lanes, total};
 use crate::physics::topology::Topology;
-
-/// Pose error of a weld and what its Jacobian needs.
-#[derive(Clone, Copy, Debug)]
-pub struct Weld {
-    /// Constrained point as body 1 carries it, world, m.
-    pub point1: Vec3,
-    /// Constrained point as body 2 carries it, world, m.
-    pub point2: Vec3,
-    /// Position error (m) and `torquescale` times the vector part of the relative quaternion.
-    pub error: [f64; 6],
-    quat1: Quat,
-    quat2_conj: Quat,
-    torquescale: f64,
-}
-
-impl Weld {
-    /// Rate of the rotational error under a relative angular velocity `w` of body 1 (world, rad/s).
-    pub fn rotation_rate(&self, w: Vec3) -> Vec3 {
-        let q = quat_mul(quat_mul(self.quat2_conj, [0.0, w[0], w[1], w[2]]), self.quat1);
-        scale([q[1], q[2], q[3]], 0.5 * self.torquescale)
-    }
-
-    /// Torque on body 1 (world, N m) of the multipliers of the rotational rows: the transpose of [`Self::rotation_rate`].
-    pub fn torque_of_rows(&self, f: Vec3) -> Vec3 {
-        std::array::from_fn(|k| {
-            let mut axis = [0.0; 3];
-            axis[k] = 1.0;
-            dot(self.rotation_rate(axis), f)
-        })
-    }
-}
-
-/// The current state of weld `id`; `None` when that equality is not a weld.
-pub fn weld_points(model: &Model, s: &State, id: usize) -> Option<Weld> {
-    let EqualityKind::Weld {
-        body1,
-        body2,
-        anchor,
-        relpos,
-        relquat,
-        torquescale,
-    } = model.eq_kind[id]
-    else {
-        return None;
-    };
-    let (b1, b2) = (body1.0, body2.0);
-    let point1 = add(mat_vec(&s.xmat[b1], relpos), s.xpos[b1]);
-    let point2 = add(mat_vec(&s.xmat[b2], anchor), s.xpos[b2]);
-    let quat1 = quat_mul(s.xquat[b1], relquat);
-    let quat2_conj = quat_conj(s.xquat[b2]);
-    let q = quat_mul(quat2_conj, quat1);
-    let p = sub(point1, point2);
-    let error = [
-        p[0],
-        p[1],
-        p[2],
-        torquescale * q[1],
-        torquescale * q[2],
-        torquescale * q[3],
-    ];
-    Some(Weld {
-        point1,
-        point2,
-        error,
-        quat1,
-        quat2_conj,
-        torquescale,
-    })
-}
 
 /// Builds the constraint rows. Keeps those of dry friction, which are always the same.
 #[derive(Clone, Debug, Default)]
@@ -87,7 +19,7 @@ pub struct RowBuilder {
 }
 
 impl RowBuilder {
-    /// For `model`.
+    /// Prepares the rows of `model` that are always the same.
     pub fn new(model: &Model, topology: &Topology) -> Self {
         let mut friction = Efc::default();
         let mut rows = Rows {
@@ -103,7 +35,7 @@ impl RowBuilder {
                     solimp: model.dof_solimp[d],
                     diag: model.dof_invweight0[d],
                 };
-                rows.single(RowKind::FrictionLoss, d, d, 1.0);
+                rows.single(ConstraintType::FrictionDof, d, d, 1.0);
                 rows.block_mut().frictionloss = loss;
                 rows.row(0.0, 0.0, 0.0, spec);
             }
@@ -128,8 +60,9 @@ impl RowBuilder {
         };
         equalities(&mut rows, s);
         self.add_friction(rows.efc, s);
-        limits(&mut rows, s);
-        for i in 0..s.contacts.len() {
+        joint_limits(&mut rows, s);
+        tendon_limits(&mut rows, s);
+        for i in 0..s.contact.len() {
             contact(&mut rows, s, i);
         }
         self.add_velocities(&mut efc, s);
@@ -164,12 +97,12 @@ impl RowBuilder {
         }
     }
 
-    /// Velocities of all rows but those of dry friction; `vel` holds the damping of each until here.
+    /// Computes the velocities of all rows but those of dry friction; `vel` holds the damping of each until here.
     fn add_velocities(&self, efc: &mut Efc, s: &State) {
         efc.force.resize(efc.pos.len(), 0.0);
         for k in 0..efc.blocks.len() {
             let b = &efc.blocks[k];
-            if b.kind == RowKind::FrictionLoss {
+            if b.kind == ConstraintType::FrictionDof {
                 continue;
             }
             let (row, dim, dof) = (b.row, b.dim, b.dof);
@@ -198,238 +131,92 @@ impl RowBuilder {
     }
 }
 
-/// Parameters shared by the rows of a block.
-#[derive(Clone, Copy)]
-struct Spec {
-    solref: [f64; 2],
-    solimp: [f64; 5],
-    diag: f64,
-}
-
-/// Appends blocks and rows.
-struct Rows<'a> {
-    model: &'a Model,
-    topology: &'a Topology,
-    efc: &'a mut Efc,
-}
-
-impl Rows<'_> {
-    /// Starts a block without columns.
-    fn block(&mut self, kind: RowKind, id: usize, dim: usize) {
-        let e = &mut *self.efc;
-        e.blocks.push(Block {
-            kind,
-            id,
-            row: e.pos.len(),
-            dim,
-            col: e.cols.len(),
-            jac: e.jac.len(),
-            ..Block::default()
-        });
-    }
-
-    fn block_mut(&mut self) -> &mut Block {
-        let last = self.efc.blocks.len() - 1;
-        &mut self.efc.blocks[last]
-    }
-
-    /// Adds to the entry of a degree of freedom in the last block, whose dimension is 1. Degrees of freedom come
-    /// ascending.
-    fn entry(&mut self, dof: usize, value: f64) {
-        let slot = self.topology.slot[dof];
-        let e = &mut *self.efc;
-        let last = e.blocks.len() - 1;
-        let b = &mut e.blocks[last];
-        if b.ncol == 0 || e.cols.last() != Some(&(slot / 4)) {
-            e.cols.push(slot / 4);
-            e.jac.push([0.0; 4]);
-            b.ncol += 1;
-        }
-        if let Some(lanes) = e.jac.last_mut() {
-            lanes[slot as usize % 4] += value;
-        }
-    }
-
-    /// Starts a block with one row on one degree of freedom.
-    fn single(&mut self, kind: RowKind, id: usize, dof: usize, value: f64) {
-        self.block(kind, id, 1);
-        self.entry(dof, value);
-        self.block_mut().dof = Some(dof);
-    }
-
-    /// Starts a block for the motion of a point of body `b` relative to a point of body `a`, over the tiles that move either;
-    /// those that move both alike are left out. `rows` turns translation and rotation (three axes each) of a tile into rows.
-    fn relative(
-        &mut self,
-        (kind, id, dim): (RowKind, usize, usize),
-        s: &State,
-        (a, point_a): (usize, Vec3),
-        (b, point_b): (usize, Vec3),
-        mut rows: impl FnMut(&[Lanes; 3], &[Lanes; 3], &mut Vec<Lanes>),
-    ) {
-        self.block(kind, id, dim);
-        let (model, topology) = (self.model, self.topology);
-        let (mut tiles_a, mut tiles_b) = (topology.body_tiles(a), topology.body_tiles(b));
-        // of the same tree, or one of them is not used
-        let com_a = s.subtree_com[model.body_rootid[a]];
-        let com_b = s.subtree_com[model.body_rootid[b]];
-        let (offset_a, offset_b) = (sub(point_a, com_a), sub(point_b, com_b));
-        let mut ncol = 0;
-        loop {
-            let next = |tiles: &[(u32, u32)]| tiles.first().map_or((u32::MAX, 0), |t| *t);
-            let ((tile_a, lanes_a), (tile_b, lanes_b)) = (next(tiles_a), next(tiles_b));
-            let tile = tile_a.min(tile_b);
-            if tile == u32::MAX {
-                break;
-            }
-            let (mut translation, mut rotation) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
-            let cdof = &s.cdof_lanes[tile as usize];
-            if tile_b == tile {
-                tiles_b = &tiles_b[1..];
-            }
-            if tile_a == tile {
-                tiles_a = &tiles_a[1..];
-            }
-            if tile_a == tile_b && lanes_a == lanes_b && point_a == point_b {
-                continue;
-            }
-            if tile_b == tile {
-                add_motion(cdof, lanes_b, offset_b, |v, w| v + w, &mut translation, &mut rotation);
-            }
-            if tile_a == tile {
-                add_motion(cdof, lanes_a, offset_a, |v, w| v - w, &mut translation, &mut rotation);
-            }
-            self.efc.cols.push(tile);
-            rows(&translation, &rotation, &mut self.efc.jac);
-            ncol += 1;
-        }
-        self.block_mut().ncol = ncol;
-    }
-
-    /// Appends a row whose impedance follows from `violation` (the distance to the margin, or the norm of a weld's error).
-    /// Returns its damping.
-    fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
-        let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.timestep);
-        let r = ((1.0 - i.imp) / i.imp * spec.diag).max(MINVAL);
-        let k = if self.block_mut().kind == RowKind::FrictionLoss {
-            0.0
-        } else {
-            i.k
-        };
-        self.push(pos, margin, spec.diag, r, -k * i.imp * (pos - margin), i.b);
-        i.b
-    }
-
-    fn push(&mut self, pos: f64, margin: f64, diag: f64, r: f64, aref: f64, damping: f64) {
-        let e = &mut *self.efc;
-        e.pos.push(pos);
-        e.margin.push(margin);
-        e.diag_approx.push(diag);
-        e.r.push(r);
-        e.d.push(1.0 / r);
-        e.aref.push(aref);
-        e.vel.push(damping);
-    }
-}
-
-/// Adds (or subtracts) the motion of a point at `offset` from the centre of mass due to the first `lanes` of a tile.
-#[inline(always)]
-fn add_motion(
-    cdof: &[Lanes; 6],
-    lanes: u32,
-    offset: Vec3,
-    join: impl Fn(f64, f64) -> f64,
-    translation: &mut [Lanes; 3],
-    rotation: &mut [Lanes; 3],
-) {
-    let [wx, wy, wz, x, y, z] = cdof;
-    for k in 0..4 {
-        let moves = if (k as u32) < lanes { 1.0 } else { 0.0 };
-        let (wx, wy, wz) = (moves * wx[k], moves * wy[k], moves * wz[k]);
-        let v = [
-            moves * x[k] + (wy * offset[2] - wz * offset[1]),
-            moves * y[k] + (wz * offset[0] - wx * offset[2]),
-            moves * z[k] + (wx * offset[1] - wy * offset[0]),
-        ];
-        for (c, w) in [wx, wy, wz].into_iter().enumerate() {
-            translation[c][k] = join(translation[c][k], v[c]);
-            rotation[c][k] = join(rotation[c][k], w);
-        }
-    }
-}
-
+/// Appends the rows of the active equalities.
 fn equalities(rows: &mut Rows, s: &State) {
     let model = rows.model;
     for id in 0..model.neq() {
         if !s.params.eq_active[id] {
             continue;
         }
-        let mut spec = Spec {
-            solref: model.eq_solref[id],
-            solimp: model.eq_solimp[id],
-            diag: 0.0,
-        };
         match model.eq_kind[id] {
             EqualityKind::Joint {
                 joint1,
                 joint2,
                 polycoef,
-            } => {
-                let displacement = |j: usize| s.qpos[model.jnt_qposadr[j]] - model.qpos0[model.jnt_qposadr[j]];
-                let d1 = model.jnt_dofadr[joint1.0];
-                let mut pos = displacement(joint1.0) - s.params.eq_offset[id];
-                spec.diag = model.dof_invweight0[d1];
-                let Some(joint2) = joint2 else {
-                    rows.single(RowKind::Equality, id, d1, 1.0);
-                    rows.row(pos, 0.0, pos, spec);
-                    continue;
-                };
-                let d2 = model.jnt_dofadr[joint2.0];
-                let (x, c) = (displacement(joint2.0), polycoef);
-                pos -= x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
-                let slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * 4.0 * c[4]));
-                spec.diag += model.dof_invweight0[d2];
-                rows.block(RowKind::Equality, id, 1);
-                let mut entries = [(d1, 1.0), (d2, -slope)];
-                entries.sort_unstable_by_key(|e| e.0);
-                entries.into_iter().for_each(|(d, v)| rows.entry(d, v));
-                rows.row(pos, 0.0, pos, spec);
-            }
-            EqualityKind::Weld { body1, body2, .. } => {
-                let Some(weld) = weld_points(model, s, id) else {
-                    continue;
-                };
-                rows.relative(
-                    (RowKind::Equality, id, 6),
-                    s,
-                    (body2.0, weld.point2),
-                    (body1.0, weld.point1),
-                    |translation, rotation, out| {
-                        let mut turn = [[0.0; 4]; 3];
-                        for k in 0..4 {
-                            let rate = weld.rotation_rate([rotation[0][k], rotation[1][k], rotation[2][k]]);
-                            (turn[0][k], turn[1][k], turn[2][k]) = (rate[0], rate[1], rate[2]);
-                        }
-                        out.extend_from_slice(translation);
-                        out.extend_from_slice(&turn);
-                    },
-                );
-                if rows.block_mut().ncol == 0 {
-                    rows.efc.blocks.pop();
-                    continue;
-                }
-                let norm = weld.error.iter().map(|e| e * e).sum::<f64>().sqrt();
-                for (k, &pos) in weld.error.iter().enumerate() {
-                    let (w1, w2) = (model.body_invweight0[body1.0], model.body_invweight0[body2.0]);
-                    spec.diag = w1[k / 3] + w2[k / 3];
-                    rows.row(pos, 0.0, norm, spec);
-                }
-            }
+            } => joint_equality(rows, s, id, (joint1, joint2), polycoef),
+            EqualityKind::Weld { body1, body2, .. } => weld_equality(rows, s, id, [body1, body2]),
         }
     }
 }
 
-fn limits(rows: &mut Rows, s: &State) {
+/// Appends the row of a joint equality: joint 1 is a polynomial of joint 2, or constant without one.
+fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<usize>), c: [f64; 5]) {
+    let model = rows.model;
+    let (joint1, joint2) = joints;
+    let displacement = |j: usize| s.qpos[model.jnt_qposadr[j]] - model.qpos0[model.jnt_qposadr[j]];
+    let d1 = model.jnt_dofadr[joint1];
+    let mut pos = displacement(joint1) - s.params.eq_offset[id];
+    let mut spec = Spec {
+        solref: model.eq_solref[id],
+        solimp: model.eq_solimp[id],
+        diag: model.dof_invweight0[d1],
+    };
+    let Some(joint2) = joint2 else {
+        rows.single(ConstraintType::Equality, id, d1, 1.0);
+        rows.row(pos, 0.0, pos, spec);
+        return;
+    };
+    let d2 = model.jnt_dofadr[joint2];
+    let x = displacement(joint2);
+    pos -= x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
+    let slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * 4.0 * c[4]));
+    spec.diag += model.dof_invweight0[d2];
+    rows.block(ConstraintType::Equality, id, 1);
+    let mut entries = [(d1, 1.0), (d2, -slope)];
+    entries.sort_unstable_by_key(|e| e.0);
+    entries.into_iter().for_each(|(d, v)| rows.entry(d, v));
+    rows.row(pos, 0.0, pos, spec);
+}
+
+/// Appends the six rows of a weld: translation, rotation.
+fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2]) {
+    let model = rows.model;
+    let Some(weld) = weld_points(model, s, id) else {
+        return;
+    };
+    rows.relative(
+        (ConstraintType::Equality, id, 6),
+        s,
+        (body2, weld.point2),
+        (body1, weld.point1),
+        |translation, rotation, out| {
+            let mut rates = [[0.0; 4]; 3];
+            for k in 0..4 {
+                let rate = weld.rotation_rate([rotation[0][k], rotation[1][k], rotation[2][k]]);
+                (rates[0][k], rates[1][k], rates[2][k]) = (rate[0], rate[1], rate[2]);
+            }
+            out.extend_from_slice(translation);
+            out.extend_from_slice(&rates);
+        },
+    );
+    if rows.block_mut().ncol == 0 {
+        rows.efc.blocks.pop();
+        return;
+    }
+    let (w1, w2) = (model.body_invweight0[body1], model.body_invweight0[body2]);
+    let norm = weld.error.iter().map(|e| e * e).sum::<f64>().sqrt();
+    for (k, &pos) in weld.error.iter().enumerate() {
+        let spec = Spec {
+            solref: model.eq_solref[id],
+            solimp: model.eq_solimp[id],
+            diag: w1[k / 3] + w2[k / 3],
+        };
+        rows.row(pos, 0.0, norm, spec);
+    }
+}
+
+/// Appends a row for each limit of a joint that is within its margin.
+fn joint_limits(rows: &mut Rows, s: &State) {
     let model = rows.model;
     for j in 0..model.njnt() {
         if !model.jnt_limited[j] {
@@ -444,11 +231,16 @@ fn limits(rows: &mut Rows, s: &State) {
                     solimp: model.jnt_solimp[j],
                     diag: model.dof_invweight0[d],
                 };
-                rows.single(RowKind::Limit, j, d, -side);
+                rows.single(ConstraintType::LimitJoint, j, d, -side);
                 rows.row(dist, margin, dist - margin, spec);
             }
         }
     }
+}
+
+/// Appends a row for each limit of a tendon that is within its margin.
+fn tendon_limits(rows: &mut Rows, s: &State) {
+    let model = rows.model;
     for t in 0..model.ntendon() {
         if !model.tendon_limited[t] {
             continue;
@@ -464,7 +256,7 @@ fn limits(rows: &mut Rows, s: &State) {
         for (side, limit) in [(-1.0, model.tendon_range[t][0]), (1.0, model.tendon_range[t][1])] {
             let dist = side * (limit - length);
             if dist < margin {
-                rows.block(RowKind::Limit, t, 1);
+                rows.block(ConstraintType::LimitTendon, t, 1);
                 // ascending, whatever the order in the model
                 let mut from = 0;
                 while let Some(d) = wrap.iter().map(|w| model.jnt_dofadr[w.0]).filter(|d| *d >= from).min() {
@@ -478,20 +270,20 @@ fn limits(rows: &mut Rows, s: &State) {
     }
 }
 
-/// Rows of contact `i`: the normal, then friction. The friction rows have no stiffness; their regularisation follows from
-/// that of the normal so that the cone keeps its shape.
+/// Appends the rows of contact `i`: the normal, then friction. The friction rows have no stiffness; their
+/// regularisation follows from that of the normal so that the cone keeps its shape.
 fn contact(rows: &mut Rows, s: &mut State, i: usize) {
     let model = rows.model;
-    s.contacts[i].efc_address = None;
-    let c = &s.contacts[i];
+    s.contact[i].efc_address = None;
+    let c = &s.contact[i];
     if c.dist >= c.includemargin {
         return;
     }
     let (b1, b2) = (model.geom_bodyid[c.geom[0]], model.geom_bodyid[c.geom[1]]);
     let kind = if c.dim == 1 {
-        RowKind::Frictionless
+        ConstraintType::ContactFrictionless
     } else {
-        RowKind::Elliptic
+        ConstraintType::ContactElliptic
     };
     rows.relative(
         (kind, i, c.dim),
@@ -537,5 +329,5 @@ fn contact(rows: &mut Rows, s: &mut State, i: usize) {
         block.mu = c.friction[0] * (sliding / normal).sqrt();
         block.friction = c.friction;
     }
-    s.contacts[i].efc_address = Some(first);
+    s.contact[i].efc_address = Some(first);
 }

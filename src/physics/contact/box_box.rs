@@ -1,8 +1,8 @@
-//! Box with box: the axis of least overlap, the points where the boxes meet across it, and their clean-up.
+//! Boxes with boxes: the axis of least overlap, the points where the boxes meet across it, and their clean-up.
 
 use super::box_edge::edge_points;
 use super::box_face::face_points;
-use super::{ContactPoint, Placed, Quirks, dot, frame, sub};
+use super::{ContactPoint, PlacedGeom, Quirks, dot, frame, sub};
 use crate::math::{MINVAL, Mat3, Vec3, mat_mul, mat_t_vec, mat_vec, row, transpose, unit};
 
 /// Greatest number of points of one pair: 16 crossings of edges with sides and 8 corners.
@@ -15,7 +15,7 @@ pub(super) struct BoxPoint {
     pub(super) pos: Vec3,
 }
 
-/// Pose of two boxes relative to each other.
+/// The pose of two boxes relative to each other.
 pub(super) struct Relative {
     /// Columns: axes of the second box in the frame of the first.
     pub(super) rot: Mat3,
@@ -30,7 +30,7 @@ pub(super) struct Relative {
 }
 
 impl Relative {
-    fn new(a: &Placed, b: &Placed) -> Self {
+    fn new(a: &PlacedGeom, b: &PlacedGeom) -> Self {
         let rot = mat_mul(&transpose(a.mat), b.mat);
         Relative {
             rot,
@@ -49,7 +49,7 @@ pub(super) struct Face {
     pub(super) negative: bool,
 }
 
-/// Two edges that cross.
+/// A pair of edges that cross, one of each box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgePair {
     /// Axis of the first box along its edge.
@@ -60,9 +60,9 @@ pub(super) struct EdgePair {
     pub(super) normal: Vec3,
     /// Whether the normal points from the second box to the first.
     pub(super) reversed: bool,
-    /// Sides of the first box the edge is on; bit k is set on the positive side of axis k.
+    /// Sides of the first box on which the edge lies; bit k is set on the positive side of axis k.
     pub(super) first_sides: usize,
-    /// Sides of the second box the edge is on.
+    /// Sides of the second box on which the edge lies.
     pub(super) second_sides: usize,
 }
 
@@ -73,10 +73,10 @@ enum LeastAxis {
     Edges(EdgePair),
 }
 
-/// Two boxes: contacts after the clean-up.
+/// Finds the contacts of two boxes, after the clean-up.
 pub(super) fn box_box(
-    a: &Placed,
-    b: &Placed,
+    a: &PlacedGeom,
+    b: &PlacedGeom,
     margin: f64,
     quirks: &Quirks,
     points: &mut Vec<BoxPoint>,
@@ -92,7 +92,7 @@ pub(super) fn box_box(
         LeastAxis::SecondFace(face) => face_points(b, a, &relative, face, true, margin, quirks, points),
         LeastAxis::Edges(edges) => edge_points(a, b, &relative, &edges, margin, quirks, points),
     };
-    let (bounds_a, bounds_b) = (Bounds::new(a, margin), Bounds::new(b, margin));
+    let (bounds_a, bounds_b) = (BoxBounds::new(a, margin), BoxBounds::new(b, margin));
     points.retain(|point| !strays(point.pos, &bounds_a, &bounds_b));
     if points.is_empty() {
         return;
@@ -108,148 +108,189 @@ pub(super) fn box_box(
     }
 }
 
-/// Tests the 15 axes. `None` if one keeps the boxes apart.
+/// Finds the axis of least overlap among the 15 that can separate two boxes; `None` if one keeps them apart.
 fn least_axis(size1: Vec3, size2: Vec3, relative: &Relative, margin: f64) -> Option<LeastAxis> {
-    let (rot, abs) = (&relative.rot, &relative.abs);
-    let (p21, p12) = (relative.second_from_first, relative.first_from_second);
-    let extent2 = mat_vec(abs, size2);
-    let extent1 = mat_t_vec(abs, size1);
-
     let mut least = margin;
     for k in 0..3 {
         least += size1[k] * 3.0 + size2[k] * 3.0;
     }
-    let mut best = None;
+    let mut search = AxisSearch {
+        size1,
+        size2,
+        relative,
+        margin,
+        least,
+        best: None,
+    };
+    search.faces()?;
+    search.edges()?;
+    search.best
+}
 
-    // faces of either box
-    for axis in 0..3 {
-        let overlap1 = -p21[axis].abs() + size1[axis] + extent2[axis];
-        let overlap2 = -p12[axis].abs() + size2[axis] + extent1[axis];
-        if overlap1 < -margin || overlap2 < -margin {
-            return None;
-        }
-        if overlap1 < least {
-            least = overlap1;
-            let negative = p21[axis] < 0.0;
-            best = Some(LeastAxis::FirstFace(Face { axis, negative }));
-        }
-        if overlap2 < least {
-            least = overlap2;
-            let negative = p12[axis] < 0.0;
-            best = Some(LeastAxis::SecondFace(Face { axis, negative }));
-        }
-    }
+/// The search for the axis of least overlap.
+struct AxisSearch<'a> {
+    size1: Vec3,
+    size2: Vec3,
+    relative: &'a Relative,
+    margin: f64,
+    /// Least overlap so far, m.
+    least: f64,
+    best: Option<LeastAxis>,
+}
 
-    // an edge of one across an edge of the other; a little behind where it is no better than a face
-    for first in 0..3 {
-        for second in 0..3 {
-            let w = row(&relative.rot_t, second);
-            let across = match first {
-                0 => [0.0, -w[2], w[1]],
-                1 => [w[2], 0.0, -w[0]],
-                _ => [-w[1], w[0], 0.0],
-            };
-            let (normal, length) = unit(across);
-            if length < MINVAL {
-                continue;
-            }
-            let distance = dot(p21, normal);
-            let mut overlap = 0.0;
-            for k in (0..3).filter(|&k| k != first) {
-                overlap += size1[k] * normal[k].abs();
-            }
-            for k in (0..3).filter(|&k| k != second) {
-                overlap += size2[k] * abs[3 * first + 3 - k - second] / length;
-            }
-            overlap -= distance.abs();
-            if overlap < -margin {
+impl AxisSearch<'_> {
+    /// Tests the faces of either box; `None` if one keeps the boxes apart.
+    #[inline(always)]
+    fn faces(&mut self) -> Option<()> {
+        let (p21, p12) = (self.relative.second_from_first, self.relative.first_from_second);
+        let extent2 = mat_vec(&self.relative.abs, self.size2);
+        let extent1 = mat_t_vec(&self.relative.abs, self.size1);
+        for axis in 0..3 {
+            let overlap1 = -p21[axis].abs() + self.size1[axis] + extent2[axis];
+            let overlap2 = -p12[axis].abs() + self.size2[axis] + extent1[axis];
+            if overlap1 < -self.margin || overlap2 < -self.margin {
                 return None;
             }
-            if overlap < least * (1.0 - 1e-12) {
-                least = overlap;
-                let reversed = distance < 0.0;
-                let (mut first_sides, mut second_sides) = (0, 0);
-                for k in 0..3 {
-                    if k != first && ((normal[k] > 0.0) ^ reversed) {
-                        first_sides |= 1 << k;
-                    }
-                    if k != second {
-                        let rises = rot[3 * first + 3 - k - second] > 0.0;
-                        if rises ^ reversed ^ ((k + 3 - second) % 3 == 1) {
-                            second_sides |= 1 << k;
-                        }
-                    }
-                }
-                best = Some(LeastAxis::Edges(EdgePair {
-                    first,
-                    second,
-                    normal,
-                    reversed,
-                    first_sides,
-                    second_sides,
-                }));
+            if overlap1 < self.least {
+                self.least = overlap1;
+                let negative = p21[axis] < 0.0;
+                self.best = Some(LeastAxis::FirstFace(Face { axis, negative }));
+            }
+            if overlap2 < self.least {
+                self.least = overlap2;
+                let negative = p12[axis] < 0.0;
+                self.best = Some(LeastAxis::SecondFace(Face { axis, negative }));
             }
         }
+        Some(())
     }
-    best
+
+    /// Tests the edges of one box across those of the other, a little behind where they are no better than a face; `None`
+    /// if a pair keeps the boxes apart.
+    #[inline(always)]
+    fn edges(&mut self) -> Option<()> {
+        let p21 = self.relative.second_from_first;
+        for first in 0..3 {
+            for second in 0..3 {
+                let w = row(&self.relative.rot_t, second);
+                let across = match first {
+                    0 => [0.0, -w[2], w[1]],
+                    1 => [w[2], 0.0, -w[0]],
+                    _ => [-w[1], w[0], 0.0],
+                };
+                let (normal, length) = unit(across);
+                if length < MINVAL {
+                    continue;
+                }
+                let distance = dot(p21, normal);
+                let mut overlap = 0.0;
+                for k in (0..3).filter(|&k| k != first) {
+                    overlap += self.size1[k] * normal[k].abs();
+                }
+                for k in (0..3).filter(|&k| k != second) {
+                    overlap += self.size2[k] * self.relative.abs[3 * first + 3 - k - second] / length;
+                }
+                overlap -= distance.abs();
+                if overlap < -self.margin {
+                    return None;
+                }
+                if overlap < self.least * (1.0 - 1e-12) {
+                    self.least = overlap;
+                    let reversed = distance < 0.0;
+                    self.best = Some(LeastAxis::Edges(self.edge_pair(first, second, normal, reversed)));
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Returns the edges of the two boxes that are nearest to each other along a normal.
+    #[inline(always)]
+    fn edge_pair(&self, first: usize, second: usize, normal: Vec3, reversed: bool) -> EdgePair {
+        let (mut first_sides, mut second_sides) = (0, 0);
+        for k in 0..3 {
+            if k != first && ((normal[k] > 0.0) ^ reversed) {
+                first_sides |= 1 << k;
+            }
+            if k != second {
+                let rises = self.relative.rot[3 * first + 3 - k - second] > 0.0;
+                if rises ^ reversed ^ ((k + 3 - second) % 3 == 1) {
+                    second_sides |= 1 << k;
+                }
+            }
+        }
+        EdgePair {
+            first,
+            second,
+            normal,
+            reversed,
+            first_sides,
+            second_sides,
+        }
+    }
 }
 
-/// A box frame turned such that one face of the box is at +z: for each new axis the old one and its sign.
-pub(super) struct Turned([(usize, f64); 3]);
+/// The frame of a box with its axes permuted and reflected such that one face is at +z.
+pub(super) struct FaceFrame {
+    /// Axis of the box along each axis of the frame.
+    axis: [usize; 3],
+    /// Sign of that axis.
+    sign: Vec3,
+}
 
-impl Turned {
-    /// The frame that belongs to a face.
-    pub(super) fn to(face: Face) -> Turned {
-        Turned(match (face.axis, face.negative) {
-            (0, false) => [(2, -1.0), (1, 1.0), (0, 1.0)],
-            (1, false) => [(0, 1.0), (2, -1.0), (1, 1.0)],
-            (_, false) => [(0, 1.0), (1, 1.0), (2, 1.0)],
-            (0, true) => [(2, 1.0), (1, 1.0), (0, -1.0)],
-            (1, true) => [(0, 1.0), (2, 1.0), (1, -1.0)],
-            (_, true) => [(0, -1.0), (1, 1.0), (2, -1.0)],
-        })
+impl FaceFrame {
+    /// Returns the frame in which a face is at +z.
+    pub(super) fn new(face: Face) -> Self {
+        let (axis, sign) = match (face.axis, face.negative) {
+            (0, false) => ([2, 1, 0], [-1.0, 1.0, 1.0]),
+            (1, false) => ([0, 2, 1], [1.0, -1.0, 1.0]),
+            (_, false) => ([0, 1, 2], [1.0, 1.0, 1.0]),
+            (0, true) => ([2, 1, 0], [1.0, 1.0, -1.0]),
+            (1, true) => ([0, 2, 1], [1.0, 1.0, -1.0]),
+            (_, true) => ([0, 1, 2], [-1.0, 1.0, -1.0]),
+        };
+        Self { axis, sign }
     }
 
-    /// A vector of the box frame in the turned one.
+    /// Rotates a vector from the box frame to the face frame.
     #[inline(always)]
     pub(super) fn vector(&self, v: Vec3) -> Vec3 {
-        let [x, y, z] = self.0;
-        [v[x.0] * x.1, v[y.0] * y.1, v[z.0] * z.1]
+        [0, 1, 2].map(|k| v[self.axis[k]] * self.sign[k])
     }
 
-    /// Half sizes in the turned frame.
+    /// Returns the half sizes in the face frame.
     #[inline(always)]
     pub(super) fn sizes(&self, size: Vec3) -> Vec3 {
-        let [x, y, z] = self.vector(size);
-        [x.abs(), y.abs(), z.abs()]
+        self.vector(size).map(f64::abs)
     }
 
-    /// Orientation of the turned frame, given that of the box.
+    /// Returns the orientation of the face frame, given that of the box.
     #[inline(always)]
     pub(super) fn orientation(&self, mat: &Mat3) -> Mat3 {
-        let mut turned = [0.0; 9];
+        let mut rotated = [0.0; 9];
         for i in 0..3 {
-            for (k, (source, sign)) in self.0.into_iter().enumerate() {
-                turned[3 * i + k] = mat[3 * i + source] * sign;
+            for k in 0..3 {
+                rotated[3 * i + k] = mat[3 * i + self.axis[k]] * self.sign[k];
             }
         }
-        turned
+        rotated
     }
 }
 
-/// Crossing of an edge with a side of the face rectangle.
+/// The crossing of an edge with a side of the face rectangle.
 pub(super) struct Crossing {
     /// Coordinate that is constant on the side: 0 or 1.
     pub(super) axis: usize,
-    /// Its value there.
+    /// Value of that coordinate on the side.
     pub(super) side: f64,
-    /// Place on the edge, 0..1.
+    /// Position on the edge, 0..1.
     pub(super) t: f64,
     /// The other coordinate of the crossing.
     pub(super) other: f64,
 }
 
-/// Crossings of the edge from `start` along `dir` with the sides of the rectangle of half sizes `size`: -x, +x, -y, +y.
+/// Passes the crossings of the edge from `start` along `dir` with the sides of the rectangle of half sizes `size` to
+/// `found`: -x, +x, -y, +y.
 #[inline(always)]
 pub(super) fn crossings(start: Vec3, dir: Vec3, size: &Vec3, mut found: impl FnMut(Crossing)) {
     for axis in 0..2 {
@@ -271,25 +312,25 @@ pub(super) fn crossings(start: Vec3, dir: Vec3, size: &Vec3, mut found: impl FnM
     }
 }
 
-/// Corners of the face rectangle in MuJoCo's order.
+/// Returns the corners of the face rectangle in MuJoCo's order.
 #[inline(always)]
 pub(super) fn rectangle(size: &Vec3) -> [[f64; 2]; 4] {
     let [x, y, _] = *size;
     [[-x, -y], [-x, y], [x, -y], [x, y]]
 }
 
-/// What counts as clearly outside and clearly inside a box.
-struct Bounds<'a> {
+/// The margins of clearly outside and clearly inside a box.
+struct BoxBounds<'a> {
     pos: Vec3,
     mat: &'a Mat3,
     outer: Vec3,
     inner: Vec3,
 }
 
-impl<'a> Bounds<'a> {
-    fn new(geom: &Placed<'a>, margin: f64) -> Self {
+impl<'a> BoxBounds<'a> {
+    fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         let size = geom.size.map(|s| s + margin);
-        Bounds {
+        BoxBounds {
             pos: geom.pos,
             mat: geom.mat,
             outer: size.map(|s| s * 1.01),
@@ -313,9 +354,9 @@ impl<'a> Bounds<'a> {
     }
 }
 
-/// Whether a point is clearly outside one box without being clearly inside the other.
+/// Returns whether a point is clearly outside one box without being clearly inside the other.
 #[inline(always)]
-fn strays(point: Vec3, a: &Bounds, b: &Bounds) -> bool {
+fn strays(point: Vec3, a: &BoxBounds, b: &BoxBounds) -> bool {
     let (in_a, in_b) = (a.local(point), b.local(point));
     (a.is_outside(in_a) && !b.is_inside(in_b)) || (b.is_outside(in_b) && !a.is_inside(in_a))
 }

@@ -1,18 +1,18 @@
-//! Box with box across two edges.
+//! Boxes that touch across two edges.
 //!
 //! The reference is the face of the first box that is nearest to level on the normal and holds its edge; everything
-//! happens in the frame of the first box, turned such that this face is at +z, with the origin on the face. A face of
+//! happens in the frame of the first box, rotated such that this face is at +z, with the origin on the face. A face of
 //! the second box, spanned by its edge and the flatter one of the other axes, is projected along the normal onto the
 //! reference face.
 
-use super::box_box::{BoxPoint, EdgePair, Face, Relative, Turned, crossings, rectangle};
-use super::{Placed, Quirks, add_scaled, dot, sub};
+use super::box_box::{BoxPoint, EdgePair, Face, FaceFrame, Relative, crossings, rectangle};
+use super::{PlacedGeom, Quirks, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, add, mat_vec, row, scale};
 
 /// The two axes besides each axis, in the order in which they are compared.
 const OTHERS: [(usize, usize); 3] = [(1, 2), (0, 2), (1, 0)];
 
-/// Where points in the turned frame go.
+/// A collector of contact points in the face frame.
 struct Collector<'a> {
     /// Largest square of a positive distance.
     margin2: f64,
@@ -20,13 +20,13 @@ struct Collector<'a> {
 }
 
 impl Collector<'_> {
-    /// Notes a point of the turned frame; it is taken to the world at the end.
+    /// Notes a point of the face frame; it is taken to the world at the end.
     #[inline(always)]
     fn push(&mut self, pos: Vec3, dist: f64) {
         self.points.push(BoxPoint { dist, pos });
     }
 
-    /// Whether a distance above the face is beyond the margin.
+    /// Returns whether a distance above the face is beyond the margin.
     #[inline(always)]
     fn too_far(&self, height: f64, distance2: f64) -> bool {
         height > 0.0 && distance2 > self.margin2
@@ -38,17 +38,10 @@ fn signed_root(distance2: f64, height: f64) -> f64 {
     distance2.sqrt() * if height < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Collects the points and gives the normal.
-pub(super) fn edge_points(
-    a: &Placed,
-    b: &Placed,
-    relative: &Relative,
-    edges: &EdgePair,
-    margin: f64,
-    quirks: &Quirks,
-    points: &mut Vec<BoxPoint>,
-) -> Vec3 {
-    // axes of the faces that hold the edges
+/// Returns the axes of the faces that hold the edges: of the second box the flatter and the steeper one along the normal,
+/// of the first the one of the reference face.
+#[inline(always)]
+fn face_axes(relative: &Relative, edges: &EdgePair) -> (usize, usize, usize) {
     let (first, second) = (edges.first, edges.second);
     let (mut flat, mut steep) = OTHERS[second];
     if relative.abs[3 * first + flat] < relative.abs[3 * first + steep] {
@@ -60,25 +53,24 @@ pub(super) fn edge_points(
     } else {
         y2
     };
-    let turned = Turned::to(Face {
-        axis: upright,
-        negative: edges.first_sides >> upright & 1 == 0,
-    });
-    let normal = turned.vector(edges.normal);
-    let size = turned.sizes(a.size);
-    let orientation = turned.orientation(a.mat);
-    let world_normal = scale(mat_vec(&orientation, normal), if edges.reversed { -1.0 } else { 1.0 });
-    if normal[2].abs() < MINVAL {
-        return world_normal;
-    }
+    (flat, steep, upright)
+}
 
-    // corners of the second box's face: as they are, and projected along the normal
-    let mut centre = turned.vector(relative.second_from_first);
-    centre[2] -= size[2];
-    let axis_of_second = |k: usize| turned.vector(row(&relative.rot_t, k));
+/// Returns the corners of the second box's face, which its edge and its flatter axis span, in the face frame.
+#[inline(always)]
+fn face_corners(
+    b: &PlacedGeom,
+    relative: &Relative,
+    edges: &EdgePair,
+    frame: &FaceFrame,
+    centre: Vec3,
+    [flat, steep]: [usize; 2],
+) -> [Vec3; 4] {
+    let second = edges.second;
+    let axis_of_second = |k: usize| frame.vector(row(&relative.rot_t, k));
     let (flat_axis, steep_axis, edge_axis) = (axis_of_second(flat), axis_of_second(steep), axis_of_second(second));
     let sign = |k: usize| if edges.second_sides >> k & 1 == 1 { 1.0 } else { -1.0 };
-    let raw = [0, 1, 2, 3].map(|k| {
+    [0, 1, 2, 3].map(|k| {
         let far = if k < 2 { sign(flat) } else { -sign(flat) };
         let side = add_scaled(centre, flat_axis, b.size[flat] * far);
         let side = add_scaled(side, steep_axis, b.size[steep] * sign(steep));
@@ -87,7 +79,36 @@ pub(super) fn edge_points(
             edge_axis,
             if k % 2 == 0 { b.size[second] } else { -b.size[second] },
         )
+    })
+}
+
+/// Collects the points where two boxes meet across two edges, and returns the normal.
+pub(super) fn edge_points(
+    a: &PlacedGeom,
+    b: &PlacedGeom,
+    relative: &Relative,
+    edges: &EdgePair,
+    margin: f64,
+    quirks: &Quirks,
+    points: &mut Vec<BoxPoint>,
+) -> Vec3 {
+    let (flat, steep, upright) = face_axes(relative, edges);
+    let frame = FaceFrame::new(Face {
+        axis: upright,
+        negative: edges.first_sides >> upright & 1 == 0,
     });
+    let normal = frame.vector(edges.normal);
+    let size = frame.sizes(a.size);
+    let orientation = frame.orientation(a.mat);
+    let world_normal = scale(mat_vec(&orientation, normal), if edges.reversed { -1.0 } else { 1.0 });
+    if normal[2].abs() < MINVAL {
+        return world_normal;
+    }
+
+    // corners of the second box's face: as they are, and projected along the normal
+    let mut centre = frame.vector(relative.second_from_first);
+    centre[2] -= size[2];
+    let raw = face_corners(b, relative, edges, &frame, centre, [flat, steep]);
     let per_height = 1.0 / normal[2];
     let projected = raw.map(|corner| add_scaled(corner, normal, -corner[2] * per_height));
 
@@ -124,7 +145,7 @@ struct Patch {
 }
 
 impl Patch {
-    /// Edges of the patch across the sides of the rectangle: halfway between edge and side.
+    /// Collects the points where edges of the patch cross sides of the rectangle: halfway between edge and side.
     fn edges_across_sides(&self, margin: f64, collector: &mut Collector) {
         let [p, r] = [&self.projected, &self.raw];
         let (e, g) = (sub(p[1], p[0]), sub(p[2], p[0]));
@@ -148,7 +169,7 @@ impl Patch {
         }
     }
 
-    /// Corners of the rectangle under the patch: halfway to the patch.
+    /// Collects the corners of the rectangle under the patch: halfway to the patch.
     fn rectangle_corners(&self, crossed: bool, quirks: &Quirks, collector: &mut Collector) {
         let [p, r] = [&self.projected, &self.raw];
         let (e, g) = (sub(p[1], p[0]), sub(p[2], p[0]));
@@ -182,7 +203,7 @@ impl Patch {
         }
     }
 
-    /// Corners of the patch over the rectangle: halfway to the rectangle.
+    /// Collects the corners of the patch over the rectangle: halfway to the rectangle.
     fn patch_corners(&self, crossed: bool, collector: &mut Collector) {
         let any = !collector.points.is_empty();
         for (raw, projected) in self.raw.iter().zip(&self.projected) {
@@ -217,7 +238,7 @@ impl Patch {
     }
 }
 
-/// Whether a number is outside 0..1. The quotient of two zeros, as a reused determinant can give it, is not.
+/// Returns whether a number is outside 0..1. NaN, which a reused determinant can give, is not.
 #[inline(always)]
 #[allow(clippy::manual_range_contains)] // `contains` is false for such a quotient
 fn off_unit(x: f64) -> bool {

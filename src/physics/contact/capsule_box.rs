@@ -1,11 +1,11 @@
-//! Capsule with box: the place of the capsule's segment nearest to the box, then a second one if the segment runs along
-//! an edge or a face.
+//! Capsules with boxes: the point of the capsule's segment nearest to the box, then a second one if the segment runs
+//! along an edge or a face.
 
 use super::round::ball_box;
-use super::{ContactPoint, Placed, Quirks, add_scaled, dot, push, sub};
+use super::{ContactPoint, PlacedGeom, Quirks, add_scaled, dot, push, sub};
 use crate::math::{MINVAL, Vec3, add, mat_t_vec, mat_vec, scale};
 
-/// The capsule's segment in the frame of the box: points `centre + t half` with t in -1..1.
+/// A capsule's segment in the frame of the box: points `centre + t half` with t in -1..1.
 struct Segment {
     centre: Vec3,
     axis: Vec3,
@@ -16,11 +16,11 @@ struct Segment {
     size: Vec3,
 }
 
-/// What of the box the segment is nearest to. A corner or edge is named by a mask: bit k is set on the positive side of
-/// axis k.
+/// The feature of the box that the segment is nearest to. A corner or edge is named by a mask: bit k is set on the
+/// positive side of axis k.
 #[derive(Clone, Copy)]
 enum Feature {
-    /// An end of the segment (t = -1 or 1) is nearest to the face across this axis, or inside the box.
+    /// The face across this axis, nearest to an end of the segment (t = -1 or 1); `None` if the end is inside the box.
     Face { axis: Option<usize> },
     /// A corner.
     Corner { corner: usize },
@@ -28,15 +28,15 @@ enum Feature {
     Edge { axis: usize, corner: usize, position: f64 },
 }
 
-/// Best place on the segment found so far.
+/// The nearest point on the segment found so far.
 struct Nearest {
     distance2: f64,
     t: f64,
     feature: Option<Feature>,
 }
 
-/// Capsule and box: at most two contacts.
-pub(super) fn capsule_box(a: &Placed, b: &Placed, margin: f64, quirks: &Quirks, out: &mut Vec<ContactPoint>) {
+/// Finds the contacts of a capsule and a box, at most two.
+pub(super) fn capsule_box(a: &PlacedGeom, b: &PlacedGeom, margin: f64, quirks: &Quirks, out: &mut Vec<ContactPoint>) {
     let axis = mat_t_vec(b.mat, a.axis());
     let half = scale(axis, a.size[1]);
     let segment = Segment {
@@ -69,8 +69,70 @@ pub(super) fn capsule_box(a: &Placed, b: &Placed, margin: f64, quirks: &Quirks, 
     }
 }
 
+/// A point of an edge: one of its corners or between them.
+#[derive(Clone, Copy)]
+enum At {
+    Lower,
+    Middle,
+    Upper,
+}
+
+/// The normal equations of the nearest points of an edge and the segment: `m11 p + m12 t = u` and `m12 p + m22 t = v`.
+struct NormalEquations {
+    m11: f64,
+    m12: f64,
+    m22: f64,
+    u: f64,
+    v: f64,
+    /// 1 over the determinant.
+    inverse: f64,
+    /// 1 / `m11`.
+    inverse11: f64,
+    /// 1 / `m22`.
+    inverse22: f64,
+}
+
+impl NormalEquations {
+    /// Returns the position on the edge and that on the segment, each kept within -1..1, and the point of the edge.
+    #[inline(always)]
+    fn solve(&self, quirks: &Quirks) -> (f64, f64, At) {
+        let Self {
+            m11,
+            m12,
+            m22,
+            u,
+            v,
+            inverse,
+            inverse11,
+            inverse22,
+        } = *self;
+        let mut position = (m22 * u - m12 * v) * inverse;
+        let mut t = (m11 * v - m12 * u) * inverse;
+        let mut at = At::Middle;
+        if position > 1.0 {
+            (position, at) = (1.0, At::Upper);
+            t = (v - m12) * inverse22;
+        } else if position < -1.0 {
+            (position, at) = (-1.0, At::Lower);
+            t = (v + m12) * inverse22;
+        }
+        if t.abs() > 1.0 {
+            t = if t > 1.0 { 1.0 } else { -1.0 };
+            position = (u - t * m12) * inverse11;
+            if position > 1.0 {
+                (position, at) = (1.0, At::Upper);
+            } else if position < -1.0 {
+                (position, at) = (-1.0, At::Lower);
+            } else if !quirks.stale_box_corner {
+                at = At::Middle;
+            }
+        }
+        (position, t, at)
+    }
+}
+
 impl Segment {
-    /// Ends of the segment over a face or inside the box.
+    /// Tests the ends of the segment over a face or inside the box.
     fn search_ends(&self, nearest: &mut Nearest) {
         for t in [-1.0, 1.0] {
             let end = add_scaled(self.centre, self.half, t);
@@ -103,29 +165,23 @@ impl Segment {
         }
     }
 
-    /// From the capsule's centre to the sides of the box in the negative directions.
+    /// Returns the offsets from the capsule's centre to the sides of the box in the negative directions.
     #[inline(always)]
     fn to_lower_sides(&self) -> Vec3 {
         sub(scale(self.size, -1.0), self.centre)
     }
 
-    /// From the capsule's centre to the sides of the box in the positive directions.
+    /// Returns the offsets from the capsule's centre to the sides of the box in the positive directions.
     #[inline(always)]
     fn to_upper_sides(&self) -> Vec3 {
         sub(self.size, self.centre)
     }
 
-    /// The four edges along an axis: nearest points of two segments each.
+    /// Searches the four edges along an axis: nearest points of two segments each.
     ///
     /// The axis is a constant so that no vector is indexed by a variable, which would keep it out of registers.
     #[inline(always)]
     fn search_edges<const AXIS: usize>(&self, nearest: &mut Nearest, quirks: &Quirks) {
-        #[derive(Clone, Copy)]
-        enum At {
-            Lower,
-            Middle,
-            Upper,
-        }
         let (s, h) = (self.size, self.half);
 
         // parts of the normal equations that the four edges share
@@ -149,29 +205,17 @@ impl Segment {
             between[high] = if up_high { r[high] } else { l[high] };
             let (u, v) = (-s[AXIS] * between[AXIS], dot(h, between));
 
-            // position on the edge and place on the segment, each kept within its range
-            let mut position = (m22 * u - m12 * v) * inverse;
-            let mut t = (m11 * v - m12 * u) * inverse;
-            let mut at = At::Middle;
-            if position > 1.0 {
-                (position, at) = (1.0, At::Upper);
-                t = (v - m12) * inverse22;
-            } else if position < -1.0 {
-                (position, at) = (-1.0, At::Lower);
-                t = (v + m12) * inverse22;
-            }
-            if t.abs() > 1.0 {
-                t = if t > 1.0 { 1.0 } else { -1.0 };
-                position = (u - t * m12) * inverse11;
-                if position > 1.0 {
-                    (position, at) = (1.0, At::Upper);
-                } else if position < -1.0 {
-                    (position, at) = (-1.0, At::Lower);
-                } else if !quirks.stale_box_corner {
-                    at = At::Middle;
-                }
-            }
-
+            let equations = NormalEquations {
+                m12,
+                m22,
+                u,
+                v,
+                inverse,
+                inverse11,
+                inverse22,
+                m11,
+            };
+            let (position, t, at) = equations.solve(quirks);
             let mut away = add_scaled(between, h, -t);
             away[AXIS] += s[AXIS] * position;
             let distance2 = dot(away, away);
@@ -193,12 +237,12 @@ impl Segment {
         }
     }
 
-    /// Length of t after which the segment has crossed the box along axis `k`.
+    /// Returns the length of t after which the segment has crossed the box along axis `k`.
     fn crossing(&self, k: usize) -> f64 {
         2.0 * self.size[k] / self.half[k].abs()
     }
 
-    /// How far in t from the first contact, found at `t`, a second one lies.
+    /// Returns how far in t a second contact lies from the first, which was found at `t`.
     fn second_contact(&self, t: f64, feature: Feature) -> Option<f64> {
         match feature {
             Feature::Corner { corner } => self.second_from_corner(t, corner),
@@ -243,7 +287,7 @@ impl Segment {
         Some(sign * (1.0 - sign * t).min(self.crossing(main)).min(off_edge))
     }
 
-    /// From one end over a face to where the segment leaves it, or to the other end.
+    /// Returns the step in t from one end over a face to where the segment leaves it, or to the other end.
     fn second_from_face(&self, t: f64, axis: usize) -> f64 {
         let sign = -t;
         let end = add_scaled(self.centre, self.half, t);

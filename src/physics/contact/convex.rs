@@ -1,15 +1,21 @@
-//! Pairs without a formula of their own: capsule with cylinder, cylinder with cylinder and cylinder with box.
+//! Pairs without a formula of their own: capsules with cylinders, cylinders with cylinders and cylinders with boxes.
 
 use super::epa::epa;
 use super::gjk::{Limits, Simplex, gjk};
 use super::polytope::Polytope;
 use super::support::{Capsule, Cuboid, Cylinder, Difference, Segment, Support};
-use super::{BIG, Options, Placed, Touch, add_scaled, column, dot, sub};
+use super::{BIG, BareContact, ContactOptions, PlacedGeom, add_scaled, column, dot, sub};
 use crate::math::{Vec3, add, scale, unit};
 use crate::model::GeomType;
 
-/// At most one contact.
-pub(super) fn convex(a: &Placed, b: &Placed, margin: f64, options: &Options, polytope: &mut Polytope) -> Option<Touch> {
+/// Finds the contact of two convex geoms, at most one.
+pub(super) fn convex(
+    a: &PlacedGeom,
+    b: &PlacedGeom,
+    margin: f64,
+    options: &ContactOptions,
+    polytope: &mut Polytope,
+) -> Option<BareContact> {
     let cylinder = |geom| Cylinder::new(geom, margin);
     match (a.kind, b.kind) {
         (GeomType::Capsule, GeomType::Cylinder) => {
@@ -44,21 +50,22 @@ pub(super) fn convex(a: &Placed, b: &Placed, margin: f64, options: &Options, pol
     }
 }
 
-/// Result of the distance between a capsule's segment and the other shape.
+/// The distance between a capsule's segment and the other shape.
 enum Shallow {
     /// The segment is outside: the contact, if there is one.
-    Known(Option<Touch>),
+    Known(Option<BareContact>),
     /// The segment itself touches the other shape.
     Unknown,
 }
 
-/// A capsule whose segment is outside the other shape: the distance from the segment less the radius.
+/// Finds the contact of a capsule whose segment is outside the other shape: the distance from the segment less the
+/// radius.
 fn shallow<A: Support, B: Support>(
     core: &Difference<A, B>,
-    a: &Placed,
-    b: &Placed,
+    a: &PlacedGeom,
+    b: &PlacedGeom,
     margin: f64,
-    options: &Options,
+    options: &ContactOptions,
 ) -> Shallow {
     let radius = a.size[0] + 0.5 * margin;
     let limits = Limits {
@@ -80,15 +87,15 @@ fn shallow<A: Support, B: Support>(
     Shallow::Known(touch(closest.distance - radius, surface, closest.b, margin))
 }
 
-/// Overlap of two shapes, by GJK and EPA.
+/// Finds the overlap of two shapes, by GJK and EPA.
 fn deep<A: Support, B: Support>(
     shape: &Difference<A, B>,
-    a: &Placed,
-    b: &Placed,
+    a: &PlacedGeom,
+    b: &PlacedGeom,
     margin: f64,
-    options: &Options,
+    options: &ContactOptions,
     polytope: &mut Polytope,
-) -> Option<Touch> {
+) -> Option<BareContact> {
     let limits = Limits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,
@@ -108,9 +115,9 @@ fn deep<A: Support, B: Support>(
     }
 }
 
-/// Contact from the signed distance of the grown shapes and the nearest or deepest point of either.
-fn touch(dist: f64, point_a: Vec3, point_b: Vec3, margin: f64) -> Option<Touch> {
-    (dist < 0.0).then(|| Touch {
+/// Creates a contact from the signed distance of the grown shapes and the nearest or deepest point of either.
+fn touch(dist: f64, point_a: Vec3, point_b: Vec3, margin: f64) -> Option<BareContact> {
+    (dist < 0.0).then(|| BareContact {
         dist: margin + dist,
         pos: scale(add(point_a, point_b), 0.5),
         normal: unit(sub(point_a, point_b)).0,
@@ -121,14 +128,14 @@ fn touch(dist: f64, point_a: Vec3, point_b: Vec3, margin: f64) -> Option<Touch> 
 /// between the two support planes, next to the middle of the centres.
 fn least_overlap_of_axes<A: Support, B: Support>(
     shape: &Difference<A, B>,
-    a: &Placed,
-    b: &Placed,
+    a: &PlacedGeom,
+    b: &PlacedGeom,
     margin: f64,
-) -> Option<Touch> {
+) -> Option<BareContact> {
     let axes = [0, 1, 2].map(|k| column(a.mat, k));
     let others = [0, 1, 2].map(|k| column(b.mat, k));
     let line = unit(sub(b.pos, a.pos)).0;
-    let mut least: Option<(f64, Touch)> = None;
+    let mut least: Option<(f64, BareContact)> = None;
     for axis in axes.into_iter().chain(others).chain([line]) {
         for normal in [axis, scale(axis, -1.0)] {
             let vertex = shape.support(normal);
@@ -141,7 +148,7 @@ fn least_overlap_of_axes<A: Support, B: Support>(
             let height = 0.5 * (dot(vertex.a, normal) + dot(vertex.b, normal));
             let pos = add_scaled(middle, normal, height - dot(middle, normal));
             let dist = margin - depth;
-            least = Some((depth, Touch { dist, pos, normal }));
+            least = Some((depth, BareContact { dist, pos, normal }));
         }
     }
     least.map(|(_, touch)| touch)

@@ -1,4 +1,4 @@
-//! EPA: how deep two overlapping convex shapes are in each other, from the simplex that GJK ended with.
+//! EPA: the depth of two overlapping convex shapes, from the simplex that GJK ended with.
 
 use super::gjk::Simplex;
 use super::nearest::{Projection, agree, combine3};
@@ -7,17 +7,17 @@ use super::support::{Difference, Support};
 use super::{BIG, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, mat_vec, norm, scale};
 
-/// No bound known yet: the largest single precision number.
+/// Initial bound: the largest single-precision number.
 const UNBOUNDED: f64 = f32::MAX as f64;
 
-/// The overlap: `a - b` has the length `depth` and points from the first shape to the second.
+/// The overlap of two shapes: `a - b` has the length `depth` and points from the first shape to the second.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Overlap {
     /// Depth, m, positive.
     pub(super) depth: f64,
-    /// Deepest point of the first shape.
+    /// Deepest point of the first shape, m.
     pub(super) a: Vec3,
-    /// Deepest point of the second shape.
+    /// Deepest point of the second shape, m.
     pub(super) b: Vec3,
 }
 
@@ -41,7 +41,7 @@ pub(super) fn epa<A: Support, B: Support>(
     Some(expansion.witness(nearest))
 }
 
-/// A polytope and the shape inside which it grows.
+/// A polytope, and the shape inside which it grows.
 struct Expansion<'a, A, B> {
     shape: &'a Difference<A, B>,
     polytope: &'a mut Polytope,
@@ -89,9 +89,9 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         self.start_from_triangle(&simplex)
     }
 
-    /// Two vertices: three supports around the segment make a double pyramid.
+    /// Starts from two vertices: three supports around the segment make a double pyramid.
     fn start_from_segment(&mut self, simplex: &Simplex) -> Option<()> {
-        /// cos and sin of 120 degrees
+        /// Cosine and sine of 120 degrees.
         const COS: f64 = -0.5;
         const SIN: f64 = 0.86602540378;
         let [p, q, ..] = &simplex.vertices;
@@ -148,7 +148,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         Some(())
     }
 
-    /// Three vertices: the supports on either side make a double pyramid.
+    /// Starts from three vertices: the supports on either side make a double pyramid.
     fn start_from_triangle(&mut self, simplex: &Simplex) -> Option<()> {
         let [p, q, r, _] = &simplex.vertices;
         let (a, b, c) = (p.point, q.point, r.point);
@@ -185,7 +185,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         Some(())
     }
 
-    /// Four vertices around the origin.
+    /// Starts from four vertices around the origin.
     fn start_from_tetrahedron(&mut self, simplex: &Simplex) -> Option<()> {
         for vertex in &simplex.vertices {
             self.polytope.add_simplex_vertex(vertex);
@@ -263,7 +263,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         nearest
     }
 
-    /// Faces from the new vertex to each edge of the horizon. Those that cannot be the nearest any more are not listed.
+    /// Adds faces from the new vertex to each edge of the horizon; those that cannot be the nearest any more are not listed.
     /// `None` if a face holds the origin.
     #[inline(always)]
     fn add_fan(&mut self, apex: u16, lower: f64, upper: f64) -> Option<()> {
@@ -290,7 +290,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         Some(())
     }
 
-    /// Depth and deepest points from the nearest face.
+    /// Returns the depth and the deepest points from the nearest face.
     fn witness(&self, face: u16) -> Overlap {
         let face = &self.polytope.faces[face as usize];
         let [p, q, r] = face.vertices.map(|v| &self.polytope.vertices[v as usize]);

@@ -2,14 +2,15 @@
 
 use crate::math::{Mat3, Vec3, add_scaled, cross, dot, norm, unit};
 
-/// Frame with the given normal as first row; the tangents follow the world's y axis, or z if the normal is near y.
+/// Returns a frame with the given normal as first row; the tangents follow the world's y axis, or z if the normal is
+/// near y.
 #[inline]
 pub(crate) fn from_normal(normal: Vec3) -> Mat3 {
     let x = unit(normal).0;
     complete(x, default_hint(x))
 }
 
-/// Frame with the given normal as first row and, as far as it is not along the normal, the hint as second.
+/// Returns a frame with the given normal as first row and, as far as it is not along the normal, the hint as second.
 ///
 /// A hint shorter than 0.5 is not used. Where hint and normal are parallel the tangents come from rounding noise, as in
 /// MuJoCo (a capsule that stands upright on a plane).
@@ -28,7 +29,7 @@ fn default_hint(x: Vec3) -> Vec3 {
     }
 }
 
-/// Gram-Schmidt of the hint against the unit vector `x`.
+/// Orthogonalises the hint against the unit vector `x` (Gram-Schmidt) and completes the frame.
 #[inline(always)]
 fn complete(x: Vec3, hint: Vec3) -> Mat3 {
     let y = unit(add_scaled(hint, x, -dot(x, hint))).0;

@@ -1,18 +1,18 @@
-//! GJK: the distance of two convex shapes, or whether they overlap.
+//! GJK: the distance of two convex shapes, or the answer that they overlap.
 
 use super::nearest::{segment_weights, tetrahedron_weights, triangle_weights};
 use super::support::{Difference, Support, Vertex};
 use super::{BIG, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, norm, scale};
 
-/// Up to four vertices of the Minkowski difference. Only the first `len` count.
+/// A simplex of up to four vertices of the Minkowski difference, of which only the first `len` count.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Simplex {
     pub(super) vertices: [Vertex; 4],
     pub(super) len: usize,
 }
 
-/// What GJK found.
+/// The result of GJK.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closest {
     /// Distance, m: 0 when the shapes overlap, [`BIG`] when they are known to be apart or beyond the cutoff.
@@ -23,16 +23,16 @@ pub(super) struct Closest {
     pub(super) b: Vec3,
 }
 
-/// How GJK ends.
+/// The limits of a GJK search.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
-    /// The distance counts as found when it can improve by no more than this, m.
+    /// Least improvement of the distance that is worth another iteration, m.
     pub(super) tolerance: f64,
     /// Greatest number of iterations.
     pub(super) iterations: usize,
-    /// Distances from here on need not be known, m. At 0 the question is only whether the shapes overlap.
+    /// Distance from which on the exact value is not needed, m; at 0 the question is only whether the shapes overlap.
     pub(super) cutoff: f64,
-    /// Whether to stop at once when the centres coincide, with nothing known.
+    /// Whether to stop at once, with nothing known, when the centres coincide.
     pub(super) stop_at_same_centre: bool,
 }
 
@@ -44,99 +44,150 @@ pub(super) fn gjk<A: Support, B: Support>(
     limits: &Limits,
     simplex: &mut Simplex,
 ) -> Closest {
-    let wants_distance = limits.cutoff > 0.0;
-    let mut may_test_tetrahedron = !wants_distance;
-    let tolerance2 = limits.tolerance * limits.tolerance;
-
-    let mut nearest = sub(centre_a, centre_b); // best point of the difference so far
-    let mut weights = [1.0, 0.0, 0.0, 0.0];
-    let mut count = 0;
-    let mut iteration = 0;
+    let mut search = Search {
+        nearest: sub(centre_a, centre_b),
+        weights: [1.0, 0.0, 0.0, 0.0],
+        count: 0,
+    };
     let apart = Closest {
         distance: BIG,
         a: centre_a,
         b: centre_b,
     };
-
-    while iteration < limits.iterations {
-        // farthest vertex towards the origin
-        let length2 = dot(nearest, nearest);
-        let at_origin = length2 <= MINVAL * MINVAL || length2.is_nan();
-        let dir = if at_origin {
-            [-1.0, 0.0, 0.0]
-        } else {
-            scale(scale(nearest, 1.0 / length2.sqrt()), -1.0)
-        };
-        simplex.vertices[count] = shape.support(dir);
-        let newest = simplex.vertices[count].point;
-
-        // no vertex is much nearer
-        let may_stop = iteration > 0 || !at_origin || limits.stop_at_same_centre;
-        if may_stop && 2.0 * dot(nearest, sub(nearest, newest)) < tolerance2 {
-            if iteration == 0 {
-                count = 1;
-            }
-            break;
+    match search.run(shape, limits, simplex) {
+        Enclosure::Outside => {
+            simplex.len = 0;
+            apart
         }
+        Enclosure::Inside => {
+            simplex.len = 4;
+            Closest { distance: 0.0, ..apart }
+        }
+        Enclosure::Unknown => {
+            let Search {
+                nearest,
+                weights,
+                count,
+            } = search;
+            simplex.len = count;
+            Closest {
+                distance: norm(nearest),
+                a: combine(&weights, &simplex.vertices, count, |v| v.a).unwrap_or(centre_a),
+                b: combine(&weights, &simplex.vertices, count, |v| v.b).unwrap_or(centre_b),
+            }
+        }
+    }
+}
 
-        // a plane across the direction keeps the shapes apart
+/// A GJK search in progress.
+struct Search {
+    /// Point of the difference nearest to the origin so far.
+    nearest: Vec3,
+    /// Weights of the vertices of which that point consists.
+    weights: [f64; 4],
+    /// Number of those vertices.
+    count: usize,
+}
+
+impl Search {
+    /// Searches until the nearest point is found or a tetrahedron or plane tells enough; the latter two leave the nearest
+    /// point unknown.
+    #[inline(always)]
+    fn run<A: Support, B: Support>(
+        &mut self,
+        shape: &Difference<A, B>,
+        limits: &Limits,
+        simplex: &mut Simplex,
+    ) -> Enclosure {
+        let mut may_test_tetrahedron = !limits.wants_distance();
+        let tolerance2 = limits.tolerance * limits.tolerance;
+        let mut iteration = 0;
+        while iteration < limits.iterations {
+            let (at_origin, dir) = towards_origin(self.nearest);
+            simplex.vertices[self.count] = shape.support(dir);
+            let newest = simplex.vertices[self.count].point;
+
+            // no vertex is much nearer
+            let may_stop = iteration > 0 || !at_origin || limits.stop_at_same_centre;
+            if may_stop && 2.0 * dot(self.nearest, sub(self.nearest, newest)) < tolerance2 {
+                if iteration == 0 {
+                    self.count = 1;
+                }
+                break;
+            }
+            if limits.separates(self.nearest, newest) {
+                return Enclosure::Outside;
+            }
+
+            // a first tetrahedron is moved towards the origin as a whole
+            if self.count == 3 && may_test_tetrahedron {
+                match enclose_origin(shape, simplex, &mut iteration, limits.iterations) {
+                    Enclosure::Unknown => may_test_tetrahedron = false,
+                    known => return known,
+                }
+            }
+
+            self.weights = simplex_weights(&simplex.vertices, self.count + 1);
+            self.count = drop_weightless(&mut simplex.vertices, &mut self.weights);
+            let next = combine(&self.weights, &simplex.vertices, self.count, |v| v.point).unwrap_or([0.0; 3]);
+            if (0..3).all(|k| (next[k] - self.nearest[k]).abs() < MINVAL) {
+                break;
+            }
+            self.nearest = next;
+            if self.count == 4 {
+                break;
+            }
+            iteration += 1;
+        }
+        Enclosure::Unknown
+    }
+}
+
+/// Returns whether a point is at the origin, and the unit direction from it to the origin (-x if it is there).
+#[inline(always)]
+fn towards_origin(point: Vec3) -> (bool, Vec3) {
+    let length2 = dot(point, point);
+    let at_origin = length2 <= MINVAL * MINVAL || length2.is_nan();
+    let dir = if at_origin {
+        [-1.0, 0.0, 0.0]
+    } else {
+        scale(scale(point, 1.0 / length2.sqrt()), -1.0)
+    };
+    (at_origin, dir)
+}
+
+impl Limits {
+    /// Returns whether the distance is asked for, and not only whether the shapes overlap.
+    #[inline(always)]
+    fn wants_distance(&self) -> bool {
+        self.cutoff > 0.0
+    }
+
+    /// Returns whether the plane through the newest vertex across the direction from the nearest point keeps the shapes
+    /// apart, as far as the search needs to know.
+    #[inline(always)]
+    fn separates(&self, nearest: Vec3, newest: Vec3) -> bool {
         let overlap = dot(nearest, newest);
-        if overlap > 0.0 {
-            let decided = if wants_distance {
-                limits.cutoff < BIG && overlap * overlap / dot(nearest, nearest) >= limits.cutoff * limits.cutoff
-            } else {
-                true
-            };
-            if decided {
-                simplex.len = 0;
-                return apart;
-            }
-        }
-
-        // a first tetrahedron is moved towards the origin as a whole
-        if count == 3 && may_test_tetrahedron {
-            match enclose_origin(shape, simplex, &mut iteration, limits.iterations) {
-                Enclosure::Inside => {
-                    simplex.len = 4;
-                    return Closest { distance: 0.0, ..apart };
-                }
-                Enclosure::Outside => {
-                    simplex.len = 0;
-                    return apart;
-                }
-                Enclosure::Unknown => may_test_tetrahedron = false,
-            }
-        }
-
-        // nearest point of the simplex; vertices without weight go
-        weights = simplex_weights(&simplex.vertices, count + 1);
-        count = 0;
-        for k in 0..4 {
-            if weights[k] != 0.0 {
-                if count != k {
-                    simplex.vertices[count] = simplex.vertices[k];
-                    weights[count] = weights[k];
-                }
-                count += 1;
-            }
-        }
-        let next = combine(&weights, &simplex.vertices, count, |v| v.point).unwrap_or([0.0; 3]);
-        if (0..3).all(|k| (next[k] - nearest[k]).abs() < MINVAL) {
-            break;
-        }
-        nearest = next;
-        if count == 4 {
-            break;
-        }
-        iteration += 1;
+        let known = !self.wants_distance()
+            || self.cutoff < BIG && overlap * overlap / dot(nearest, nearest) >= self.cutoff * self.cutoff;
+        overlap > 0.0 && known
     }
+}
 
-    simplex.len = count;
-    Closest {
-        distance: norm(nearest),
-        a: combine(&weights, &simplex.vertices, count, |v| v.a).unwrap_or(centre_a),
-        b: combine(&weights, &simplex.vertices, count, |v| v.b).unwrap_or(centre_b),
+/// Removes the vertices without weight, and returns the number of the others.
+#[inline(always)]
+fn drop_weightless(vertices: &mut [Vertex; 4], weights: &mut [f64; 4]) -> usize {
+    let mut count = 0;
+    for k in 0..4 {
+        if weights[k] != 0.0 {
+            if count != k {
+                vertices[count] = vertices[k];
+                weights[count] = weights[k];
+            }
+            count += 1;
+        }
     }
+    count
 }
 
 #[inline(always)]
@@ -161,7 +212,7 @@ fn simplex_weights(vertices: &[Vertex; 4], count: usize) -> [f64; 4] {
     }
 }
 
-/// Weighted sum of one point of each of the first `count` vertices; `None` without vertices.
+/// Returns the weighted sum of one point of each of the first `count` vertices; `None` without vertices.
 #[inline(always)]
 fn combine(weights: &[f64; 4], vertices: &[Vertex; 4], count: usize, point: impl Fn(&Vertex) -> Vec3) -> Option<Vec3> {
     if count == 0 {
@@ -174,6 +225,7 @@ fn combine(weights: &[f64; 4], vertices: &[Vertex; 4], count: usize, point: impl
     Some(sum)
 }
 
+/// The position of the origin relative to the Minkowski difference.
 enum Enclosure {
     Inside,
     Outside,

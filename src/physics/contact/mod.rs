@@ -9,7 +9,7 @@
 //! - In a pair the geom of the lower [`GeomType`] comes first. The normal points from the first geom to the second.
 //! - `dist` is negative in penetration; `pos` lies midway between the two surfaces.
 //! - A contact is reported when `dist <= margin`.
-//! - Lengths are metres; everything is in the frame the [`Placed`] geoms are given in, normally the world.
+//! - Lengths are metres; everything is in the frame the [`PlacedGeom`] geoms are given in, normally the world.
 //!
 //! | pair | method | contacts |
 //! |---|---|---|
@@ -24,12 +24,12 @@
 //! ```
 //! use babybench::math::MAT3_ID;
 //! use babybench::model::GeomType;
-//! use babybench::physics::contact::{Options, Placed, Scratch, collide};
+//! use babybench::physics::contact::{ContactOptions, PlacedGeom, Scratch, collide};
 //!
-//! let floor = Placed { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID };
-//! let ball = Placed { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID };
+//! let floor = PlacedGeom { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID };
+//! let ball = PlacedGeom { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID };
 //! let mut contacts = Vec::new();
-//! collide(&floor, &ball, 0.0, &Options::default(), &mut Scratch::new(), &mut contacts);
+//! collide(&floor, &ball, 0.0, &ContactOptions::default(), &mut Scratch::new(), &mut contacts);
 //! assert_eq!(contacts[0].dist, -0.25);
 //! assert_eq!(contacts[0].pos, [0.0, 0.0, -0.125]);
 //! assert_eq!(contacts[0].normal(), [0.0, 0.0, 1.0]);
@@ -54,13 +54,13 @@ mod tests;
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use crate::model::GeomType;
 
-/// Distances from here on count as infinite (MuJoCo's `mjMAXVAL`).
+/// Distance that counts as infinite (MuJoCo's `mjMAXVAL`).
 const BIG: f64 = 1e10;
 
-/// A geom at a place.
+/// A geom with its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed<'a> {
-    /// Shape.
+pub struct PlacedGeom<'a> {
+    /// Geom type.
     pub kind: GeomType,
     /// Size, m; see [`GeomType`].
     pub size: Vec3,
@@ -70,15 +70,15 @@ pub struct Placed<'a> {
     pub mat: &'a Mat3,
 }
 
-impl Placed<'_> {
-    /// Local z axis: the axis of a capsule or cylinder, the normal of a plane.
+impl PlacedGeom<'_> {
+    /// Returns the local z axis: the axis of a capsule or cylinder, the normal of a plane.
     #[inline(always)]
     fn axis(&self) -> Vec3 {
         column(self.mat, 2)
     }
 }
 
-/// One point where two geoms touch.
+/// A point where two geoms touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// Distance between the surfaces, m; negative in penetration.
@@ -90,7 +90,7 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// The normal: first row of the frame.
+    /// Returns the normal: the first row of the frame.
     pub fn normal(&self) -> Vec3 {
         [self.frame[0], self.frame[1], self.frame[2]]
     }
@@ -98,7 +98,7 @@ impl ContactPoint {
 
 /// A contact before its tangents are known.
 #[derive(Clone, Copy, Debug)]
-struct Touch {
+struct BareContact {
     dist: f64,
     pos: Vec3,
     normal: Vec3,
@@ -106,16 +106,16 @@ struct Touch {
 
 /// Appends a contact, if there is one, with the tangents of its normal.
 #[inline(always)]
-fn push(touch: Option<Touch>, out: &mut Vec<ContactPoint>) {
-    if let Some(Touch { dist, pos, normal }) = touch {
+fn push(touch: Option<BareContact>, out: &mut Vec<ContactPoint>) {
+    if let Some(BareContact { dist, pos, normal }) = touch {
         let frame = frame::from_normal(normal);
         out.push(ContactPoint { dist, pos, frame });
     }
 }
 
-/// What the routines need to know besides the geoms.
+/// The options of the contact routines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct ContactOptions {
     /// Tolerance of the convex routines, m (MuJoCo's `ccd_tolerance`).
     pub ccd_tolerance: f64,
     /// Greatest number of iterations of GJK and of EPA (MuJoCo's `ccd_iterations`).
@@ -124,10 +124,10 @@ pub struct Options {
     pub quirks: Quirks,
 }
 
-impl Default for Options {
-    /// MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, all quirks kept.
+impl Default for ContactOptions {
+    /// Returns MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, all quirks kept.
     fn default() -> Self {
-        Options {
+        ContactOptions {
             ccd_tolerance: 1e-6,
             ccd_iterations: 50,
             quirks: Quirks::default(),
@@ -135,7 +135,7 @@ impl Default for Options {
     }
 }
 
-/// Peculiarities of MuJoCo 3.3.0. The default keeps them all; a `false` switches one off.
+/// The peculiarities of MuJoCo 3.3.0. The default keeps them all; a `false` switches one off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quirks {
     /// Box on box face: `dist` is half of the depth. Off: the whole depth.
@@ -154,7 +154,7 @@ pub struct Quirks {
 }
 
 impl Default for Quirks {
-    /// MuJoCo 3.3.0's behaviour.
+    /// Returns MuJoCo 3.3.0's behaviour.
     fn default() -> Self {
         Quirks {
             half_box_face_depth: true,
@@ -167,7 +167,7 @@ impl Default for Quirks {
 }
 
 impl Quirks {
-    /// None of the quirks: the sensible behaviour throughout.
+    /// Returns the sensible behaviour throughout, without any of the quirks.
     pub fn none() -> Self {
         Quirks {
             half_box_face_depth: false,
@@ -187,7 +187,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Work space large enough for any pair at the default number of iterations.
+    /// Allocates work space large enough for any pair at the default number of iterations.
     pub fn new() -> Self {
         Scratch {
             polytope: polytope::Polytope::new(),
@@ -202,12 +202,12 @@ impl Default for Scratch {
     }
 }
 
-/// Whether the bounding spheres of two geoms come within the margin, or a bounding sphere that of a plane.
+/// Returns whether the bounding spheres of two geoms come within the margin, or a bounding sphere and a plane.
 ///
 /// MuJoCo makes this test before [`collide`], and it does decide whether some contacts exist. `radius_a` and `radius_b`
 /// are the bounding radii about the centres, 0 for a plane. Needs `a.kind <= b.kind`.
 #[inline]
-pub fn bounding_test(a: &Placed, radius_a: f64, b: &Placed, radius_b: f64, margin: f64) -> bool {
+pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f64, margin: f64) -> bool {
     if a.kind == GeomType::Plane {
         let height = dot(sub(b.pos, a.pos), a.axis());
         let apart = height > margin + radius_b;
@@ -224,10 +224,10 @@ pub fn bounding_test(a: &Placed, radius_a: f64, b: &Placed, radius_b: f64, margi
 /// Needs `a.kind <= b.kind`; appends nothing otherwise, nor for pairs that do not collide. Contacts are those with
 /// `dist <= margin` (m). Any input is safe; poses that are not finite give an unspecified but finite number of contacts.
 pub fn collide(
-    a: &Placed,
-    b: &Placed,
+    a: &PlacedGeom,
+    b: &PlacedGeom,
     margin: f64,
-    options: &Options,
+    options: &ContactOptions,
     scratch: &mut Scratch,
     out: &mut Vec<ContactPoint>,
 ) {

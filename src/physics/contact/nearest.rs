@@ -5,13 +5,13 @@
 use super::{BIG, add_scaled, dot, sub};
 use crate::math::{MINVAL, Vec3, cross, scale};
 
-/// Whether both are positive or both negative.
+/// Returns whether both numbers are positive or both negative.
 #[inline(always)]
 pub(super) fn agree(a: f64, b: f64) -> bool {
     (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
 }
 
-/// `wa a + wb b + wc c`
+/// Computes `wa a + wb b + wc c`.
 #[inline(always)]
 pub(super) fn combine3(w: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     add_scaled(add_scaled(scale(a, w[0]), b, w[1]), c, w[2])
@@ -27,7 +27,8 @@ fn determinant(a: Vec3, b: Vec3, c: Vec3) -> f64 {
     a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
-/// Foot of the perpendicular from the origin to the plane through three points; `None` if they are on a line.
+/// Returns the foot of the perpendicular from the origin to the plane through three points; `None` if they are on a
+/// line.
 #[inline(always)]
 pub(super) fn foot_on_plane(a: Vec3, b: Vec3, c: Vec3) -> Option<Vec3> {
     let (ab, ac, bc) = (sub(b, a), sub(c, a), sub(c, b));
@@ -45,7 +46,7 @@ pub(super) fn foot_on_plane(a: Vec3, b: Vec3, c: Vec3) -> Option<Vec3> {
     Some(scale(normal, dot(normal, c) / dot(normal, normal)))
 }
 
-/// Weights of the point of a segment nearest to the origin. Off either end it is `b`, the newer one.
+/// Returns the weights of the point of a segment nearest to the origin. Off either end it is `b`, the newer one.
 #[inline(always)]
 pub(super) fn segment_weights(a: Vec3, b: Vec3) -> [f64; 2] {
     let edge = sub(b, a);
@@ -78,7 +79,7 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    /// The best projection of a triangle.
+    /// Returns the best projection of a triangle.
     #[inline(always)]
     pub(super) fn of(a: Vec3, b: Vec3, c: Vec3) -> Projection {
         let area =
@@ -93,7 +94,7 @@ impl Projection {
         }
     }
 
-    /// Signed double areas of the triangle with a point in place of each corner in turn.
+    /// Returns the signed double areas of the triangle with a point in place of each corner in turn.
     #[inline(always)]
     fn areas(&self, a: Vec3, b: Vec3, c: Vec3, p: Vec3) -> Vec3 {
         let (x, y) = self.kept;
@@ -101,7 +102,7 @@ impl Projection {
         [area(b, c), area(c, a), area(a, b)]
     }
 
-    /// Weights of the corners that make up a point of the triangle's plane; negative outside.
+    /// Returns the weights of the corners that make up a point of the triangle's plane; negative outside.
     #[inline(always)]
     pub(super) fn weights(&self, a: Vec3, b: Vec3, c: Vec3, p: Vec3) -> Vec3 {
         let k = self.areas(a, b, c, p);
@@ -109,7 +110,7 @@ impl Projection {
     }
 }
 
-/// Weights of the point of a triangle nearest to the origin.
+/// Returns the weights of the point of a triangle nearest to the origin.
 #[inline(always)]
 pub(super) fn triangle_weights(a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
     let Some(foot) = foot_on_plane(a, b, c) else {
@@ -146,7 +147,7 @@ pub(super) fn triangle_weights(a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
     weights
 }
 
-/// Weights of the point of a tetrahedron nearest to the origin.
+/// Returns the weights of the point of a tetrahedron nearest to the origin.
 pub(super) fn tetrahedron_weights(v: [Vec3; 4]) -> [f64; 4] {
     let k = [
         -determinant(v[1], v[2], v[3]),

@@ -1,9 +1,9 @@
-//! A plane with a sphere, capsule, cylinder or box.
+//! Planes with spheres, capsules, cylinders and boxes.
 
-use super::{ContactPoint, Placed, add_scaled, column, dot, frame, sub};
+use super::{ContactPoint, PlacedGeom, add_scaled, column, dot, frame, sub};
 use crate::math::{MINVAL, Vec3, add, cross, scale, unit};
 
-/// Plane (point and unit normal) and ball: distance and position.
+/// Returns the distance and position of the contact of a plane (point and unit normal) and a ball.
 #[inline(always)]
 pub(super) fn plane_ball(plane: Vec3, normal: Vec3, centre: Vec3, radius: f64, margin: f64) -> Option<(f64, Vec3)> {
     let height = dot(sub(centre, plane), normal);
@@ -14,8 +14,8 @@ pub(super) fn plane_ball(plane: Vec3, normal: Vec3, centre: Vec3, radius: f64, m
     Some((dist, add_scaled(centre, normal, -dist / 2.0 - radius)))
 }
 
-/// Plane and sphere: one contact.
-pub(super) fn plane_sphere(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+/// Finds the contact of a plane and a sphere.
+pub(super) fn plane_sphere(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
     let normal = a.axis();
     if let Some((dist, pos)) = plane_ball(a.pos, normal, b.pos, b.size[0], margin) {
         let frame = frame::from_normal(normal);
@@ -23,8 +23,9 @@ pub(super) fn plane_sphere(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<Co
     }
 }
 
-/// Plane and capsule: the ball at either end, first the one at the positive end. The first tangent follows the capsule.
-pub(super) fn plane_capsule(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+/// Finds the contacts of a plane and a capsule: the ball at either end, first the one at the positive end. The first
+/// tangent follows the capsule.
+pub(super) fn plane_capsule(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
     let (normal, axis) = (a.axis(), b.axis());
     let mut frame = None;
     for end in [b.size[1], -b.size[1]] {
@@ -35,9 +36,9 @@ pub(super) fn plane_capsule(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<C
     }
 }
 
-/// Plane and cylinder: the lowest point of the lower rim, the lowest of the upper rim, then two more points of the lower
-/// rim which complete an equilateral triangle.
-pub(super) fn plane_cylinder(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+/// Finds the contacts of a plane and a cylinder: the lowest point of the lower rim, the lowest of the upper rim, then
+/// two more points of the lower rim which complete an equilateral triangle.
+pub(super) fn plane_cylinder(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
     let normal = a.axis();
     let (radius, half) = (b.size[0], b.size[1]);
 
@@ -80,7 +81,7 @@ pub(super) fn plane_cylinder(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<
         push(dist, sub(add(b.pos, rim), axis));
     }
 
-    // the triangle's other corners
+    // the other corners of the triangle
     let dist = height + drop - rim_drop * 0.5;
     if dist <= margin {
         let side = scale(unit(cross(rim, axis)).0, radius * 3f64.sqrt() / 2.0);
@@ -91,8 +92,8 @@ pub(super) fn plane_cylinder(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<
     }
 }
 
-/// Plane and box: the first four corners below the box centre that reach the plane.
-pub(super) fn plane_box(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+/// Finds the contacts of a plane and a box: the first four corners below the box centre that reach the plane.
+pub(super) fn plane_box(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
     const MOST: usize = 4;
     let normal = a.axis();
     let height = dot(sub(b.pos, a.pos), normal);

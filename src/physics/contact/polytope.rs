@@ -1,11 +1,11 @@
-//! The polytope that EPA expands: vertices, triangular faces with their neighbours, and the faces still to be looked at.
+//! The polytope that EPA expands: vertices, triangular faces with their neighbours, and the open faces.
 
 use super::nearest::foot_on_plane;
 use super::support::Vertex;
 use super::{dot, sub};
 use crate::math::{Vec3, norm};
 
-/// Greatest number of faces ever made, deleted ones included.
+/// Greatest number of faces, deleted ones included.
 pub(super) const MAX_FACES: usize = 1000;
 
 /// A triangle of the polytope. Edge k runs from vertex k to vertex k + 1.
@@ -15,7 +15,7 @@ pub(super) struct Face {
     pub(super) vertices: [u16; 3],
     /// Face across each edge.
     pub(super) neighbours: [u16; 3],
-    state: State,
+    state: Listing,
     /// Foot of the perpendicular from the origin to the plane of the face.
     pub(super) foot: Vec3,
     /// Distance of the plane from the origin.
@@ -23,21 +23,21 @@ pub(super) struct Face {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum State {
-    /// Only there as a neighbour.
+enum Listing {
+    /// The face is not in the open list, and serves as a neighbour only.
     Unlisted,
-    /// At this place of the open list.
+    /// The face is at this index of the open list.
     Listed(u16),
     Deleted,
 }
 
-/// The next edge or vertex of a face.
+/// Returns the next edge or vertex of a face.
 #[inline(always)]
 pub(super) fn after(edge: u8) -> u8 {
     if edge == 2 { 0 } else { edge + 1 }
 }
 
-/// The previous edge or vertex of a face.
+/// Returns the previous edge or vertex of a face.
 #[inline(always)]
 fn before(edge: u8) -> u8 {
     if edge == 0 { 2 } else { edge - 1 }
@@ -57,21 +57,21 @@ pub(super) struct Edge {
     pub(super) edge: u8,
 }
 
-/// The polytope. Its buffers keep their memory from one use to the next.
+/// A polytope. Its buffers keep their memory from one use to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Polytope {
     pub(super) vertices: Vec<Vertex>,
     pub(super) faces: Vec<Face>,
-    /// Faces that may be the nearest one.
+    /// Faces that may be nearest to the origin.
     pub(super) open: Vec<Open>,
-    /// Edges between what the newest vertex sees and what it does not, in order.
+    /// Edges between the faces that the newest vertex sees and those it does not, in order.
     pub(super) horizon: Vec<Edge>,
-    /// Edges still to be crossed while looking for the horizon.
+    /// Edges still to be crossed in the search for the horizon.
     pending: Vec<Edge>,
 }
 
 impl Polytope {
-    /// Empty, with room for the most faces.
+    /// Creates an empty polytope with room for the greatest number of faces.
     pub(super) fn new() -> Self {
         Polytope {
             vertices: Vec::with_capacity(128),
@@ -102,7 +102,7 @@ impl Polytope {
         self.add_vertex(Vertex { point, ..*vertex })
     }
 
-    /// Point of the Minkowski difference at a vertex.
+    /// Returns the point of the Minkowski difference at a vertex.
     #[inline(always)]
     pub(super) fn point(&self, vertex: u16) -> Vec3 {
         self.vertices[vertex as usize].point
@@ -123,23 +123,23 @@ impl Polytope {
         self.faces.push(Face {
             vertices,
             neighbours,
-            state: State::Unlisted,
+            state: Listing::Unlisted,
             foot,
             distance,
         });
         distance
     }
 
-    /// Puts a face at the end of the open list, if `wanted`.
+    /// Appends a face to the open list, if `wanted`.
     #[inline(always)]
     pub(super) fn list(&mut self, face: u16, wanted: bool) {
         // without a branch, since for most faces of EPA it is hard to predict
         let entry = &mut self.faces[face as usize];
         let place = self.open.len();
         entry.state = if wanted {
-            State::Listed(place as u16)
+            Listing::Listed(place as u16)
         } else {
-            State::Unlisted
+            Listing::Unlisted
         };
         let distance = entry.distance;
         self.open.push(Open { distance, face });
@@ -149,16 +149,16 @@ impl Polytope {
     /// Deletes a face. The last entry of the open list takes its place there.
     #[inline]
     fn delete(&mut self, face: u16) {
-        if let State::Listed(place) = self.faces[face as usize].state {
+        if let Listing::Listed(place) = self.faces[face as usize].state {
             self.open.swap_remove(place as usize);
             if let Some(moved) = self.open.get(place as usize) {
-                self.faces[moved.face as usize].state = State::Listed(place);
+                self.faces[moved.face as usize].state = Listing::Listed(place);
             }
         }
-        self.faces[face as usize].state = State::Deleted;
+        self.faces[face as usize].state = Listing::Deleted;
     }
 
-    /// Which edge of `face` starts at the vertex.
+    /// Returns which edge of `face` starts at the vertex.
     #[inline(always)]
     fn edge_from(&self, face: u16, vertex: u16) -> u8 {
         let [first, second, _] = self.faces[face as usize].vertices;
@@ -176,13 +176,13 @@ impl Polytope {
         self.cross_edge(Edge { face: seed, edge: 0 }, w);
         while let Some(next) = self.pending.pop() {
             let neighbour = self.faces[next.face as usize].neighbours[next.edge as usize];
-            if self.faces[neighbour as usize].state != State::Deleted {
+            if self.faces[neighbour as usize].state != Listing::Deleted {
                 self.cross_edge(next, w);
             }
         }
     }
 
-    /// Looks at the face across an edge: it is deleted and its other two edges are noted, or the edge is of the horizon.
+    /// Examines the face across an edge: deletes it and notes its other two edges, or adds the edge to the horizon.
     #[inline(always)]
     fn cross_edge(&mut self, from: Edge, w: Vec3) {
         let here = &self.faces[from.face as usize];

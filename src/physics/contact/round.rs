@@ -2,7 +2,7 @@
 //! two balls, a ball and a plane, or a ball and a box.
 
 use super::plane::plane_ball;
-use super::{ContactPoint, Placed, Touch, add_scaled, dot, push, sub};
+use super::{BareContact, ContactPoint, PlacedGeom, add_scaled, dot, push, sub};
 use crate::math::{MINVAL, Vec3, add, cross, mat_t_vec, mat_vec, scale, unit};
 
 /// A ball, with the axis of the geom it belongs to; the axes give a normal where two centres coincide.
@@ -14,7 +14,7 @@ struct Ball {
 }
 
 #[inline(always)]
-fn ball_ball(a: Ball, b: Ball, margin: f64) -> Option<Touch> {
+fn ball_ball(a: Ball, b: Ball, margin: f64) -> Option<BareContact> {
     let between = sub(a.centre, b.centre);
     let distance2 = dot(between, between);
     let reach = margin + a.radius + b.radius;
@@ -27,11 +27,11 @@ fn ball_ball(a: Ball, b: Ball, margin: f64) -> Option<Touch> {
         normal = unit(cross(a.axis, b.axis)).0;
     }
     let pos = add_scaled(a.centre, normal, a.radius + dist / 2.0);
-    Some(Touch { dist, pos, normal })
+    Some(BareContact { dist, pos, normal })
 }
 
 #[inline(always)]
-fn ball_of(geom: &Placed) -> Ball {
+fn ball_of(geom: &PlacedGeom) -> Ball {
     Ball {
         centre: geom.pos,
         radius: geom.size[0],
@@ -39,15 +39,15 @@ fn ball_of(geom: &Placed) -> Ball {
     }
 }
 
-/// Two spheres: at most one contact.
+/// Finds the contact of two spheres, at most one.
 #[inline]
-pub(super) fn sphere_sphere(a: &Placed, b: &Placed, margin: f64) -> Option<Touch> {
+pub(super) fn sphere_sphere(a: &PlacedGeom, b: &PlacedGeom, margin: f64) -> Option<BareContact> {
     ball_ball(ball_of(a), ball_of(b), margin)
 }
 
-/// Sphere and the nearest ball of a capsule.
+/// Finds the contact of a sphere and the nearest ball of a capsule.
 #[inline]
-pub(super) fn sphere_capsule(a: &Placed, b: &Placed, margin: f64) -> Option<Touch> {
+pub(super) fn sphere_capsule(a: &PlacedGeom, b: &PlacedGeom, margin: f64) -> Option<BareContact> {
     let axis = b.axis();
     let along = dot(axis, sub(a.pos, b.pos)).max(-b.size[1]).min(b.size[1]);
     let nearest = Ball {
@@ -58,9 +58,9 @@ pub(super) fn sphere_capsule(a: &Placed, b: &Placed, margin: f64) -> Option<Touc
     ball_ball(ball_of(a), nearest, margin)
 }
 
-/// Sphere and cylinder: against the side, an end disc, or a rim.
+/// Finds the contact of a sphere and a cylinder: with its side, an end disc, or a rim.
 #[inline]
-pub(super) fn sphere_cylinder(a: &Placed, b: &Placed, margin: f64) -> Option<Touch> {
+pub(super) fn sphere_cylinder(a: &PlacedGeom, b: &PlacedGeom, margin: f64) -> Option<BareContact> {
     let (radius, half) = (b.size[0], b.size[1]);
     let axis = b.axis();
     let from_centre = sub(a.pos, b.pos);
@@ -88,17 +88,17 @@ pub(super) fn sphere_cylinder(a: &Placed, b: &Placed, margin: f64) -> Option<Tou
         };
         let (dist, pos) = plane_ball(disc, outward, a.pos, a.size[0], margin)?;
         let normal = scale(outward, -1.0);
-        return Some(Touch { dist, pos, normal });
+        return Some(BareContact { dist, pos, normal });
     }
     let end = scale(axis, if height > 0.0 { half } else { -half });
     let rim = add(add(end, scale(radial, radius / radial2.sqrt())), b.pos);
     ball_ball(ball_of(a), ball(rim, 0.0), margin)
 }
 
-/// Ball and box. A centre inside the box is pushed out through the nearest face: the normal points into the box there
-/// as well.
+/// Finds the contact of a ball and a box. A centre inside the box is pushed out through the nearest face: the normal
+/// points into the box there as well.
 #[inline]
-pub(super) fn ball_box(centre: Vec3, radius: f64, b: &Placed, margin: f64) -> Option<Touch> {
+pub(super) fn ball_box(centre: Vec3, radius: f64, b: &PlacedGeom, margin: f64) -> Option<BareContact> {
     let size = b.size;
     let local = mat_t_vec(b.mat, sub(centre, b.pos));
     let mut nearest = local;
@@ -136,7 +136,7 @@ pub(super) fn ball_box(centre: Vec3, radius: f64, b: &Placed, margin: f64) -> Op
         let point = add(scale(nearest, 0.5), scale(deepest, 0.5));
         (distance - radius, point, towards)
     };
-    Some(Touch {
+    Some(BareContact {
         dist,
         pos: add(mat_vec(b.mat, point), b.pos),
         normal: mat_vec(b.mat, normal),
@@ -152,8 +152,8 @@ fn clamp_to_segment(x: f64) -> f64 {
 
 /// The segments of two capsules, as `centre + x half` with x in -1..1, and the normal equations of their nearest points.
 struct Segments<'a> {
-    a: &'a Placed<'a>,
-    b: &'a Placed<'a>,
+    a: &'a PlacedGeom<'a>,
+    b: &'a PlacedGeom<'a>,
     axis1: Vec3,
     axis2: Vec3,
     half1: Vec3,
@@ -168,7 +168,7 @@ struct Segments<'a> {
 
 impl<'a> Segments<'a> {
     #[inline(always)]
-    fn new(a: &'a Placed<'a>, b: &'a Placed<'a>) -> Self {
+    fn new(a: &'a PlacedGeom<'a>, b: &'a PlacedGeom<'a>) -> Self {
         let (axis1, axis2) = (a.axis(), b.axis());
         let (half1, half2) = (scale(axis1, a.size[1]), scale(axis2, b.size[1]));
         let between = sub(a.pos, b.pos);
@@ -187,9 +187,9 @@ impl<'a> Segments<'a> {
         }
     }
 
-    /// Contact of the balls at two places of the segments.
+    /// Creates the contact of the balls at two points of the segments.
     #[inline(always)]
-    fn touch(&self, x1: f64, x2: f64, margin: f64) -> Option<Touch> {
+    fn touch(&self, x1: f64, x2: f64, margin: f64) -> Option<BareContact> {
         let first = Ball {
             centre: add_scaled(self.a.pos, self.half1, x1),
             radius: self.a.size[0],
@@ -203,7 +203,7 @@ impl<'a> Segments<'a> {
         ball_ball(first, second, margin)
     }
 
-    /// Nearest places of two segments that are not parallel.
+    /// Returns the nearest points of two segments that are not parallel.
     #[inline(always)]
     fn nearest(&self, det: f64) -> (f64, f64) {
         let Segments {
@@ -229,9 +229,9 @@ impl<'a> Segments<'a> {
     }
 }
 
-/// Contacts of parallel capsules: the ends of the first, then those of the second, until there are two.
+/// Finds the contacts of parallel capsules: the ends of the first, then those of the second, until there are two.
 #[cold]
-fn parallel_capsules(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+fn parallel_capsules(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
     let segments = Segments::new(a, b);
     let Segments {
         m11, m12, m22, u, v, ..
@@ -250,8 +250,9 @@ fn parallel_capsules(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactP
     }
 }
 
-/// Two capsules: the nearest points of the segments, or up to two contacts at segment ends when they are parallel.
-pub(super) fn capsule_capsule(a: &Placed, b: &Placed, margin: f64, out: &mut Vec<ContactPoint>) {
+/// Finds the contacts of two capsules: at the nearest points of the segments, or up to two at segment ends when they
+/// are parallel.
+pub(super) fn capsule_capsule(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
     let segments = Segments::new(a, b);
     let det = segments.m11 * segments.m22 - segments.m12 * segments.m12;
     if det.abs() >= MINVAL {

@@ -1,15 +1,15 @@
 //! Support points of convex geoms, and of the Minkowski difference of two.
 
-use super::{Placed, add_scaled, sub};
+use super::{PlacedGeom, add_scaled, sub};
 use crate::math::{Mat3, Vec3, add, mat_t_vec, mat_vec, scale};
 
 /// A convex shape, known by its farthest points.
 pub(super) trait Support {
-    /// Farthest point in the unit direction `dir`.
+    /// Returns the farthest point in the unit direction `dir`.
     fn support(&self, dir: Vec3) -> Vec3;
 }
 
-/// Pose of a shape and how far it is grown on all sides.
+/// The pose of a shape, and how far it is grown on all sides.
 #[derive(Clone, Copy)]
 struct Pose<'a> {
     pos: Vec3,
@@ -18,8 +18,8 @@ struct Pose<'a> {
 }
 
 impl<'a> Pose<'a> {
-    /// Half the margin goes to either geom of a pair.
-    fn new(geom: &Placed<'a>, margin: f64) -> Self {
+    /// Prepares a shape of a pair; half the margin goes to either geom.
+    fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         Pose {
             pos: geom.pos,
             mat: geom.mat,
@@ -38,8 +38,8 @@ impl<'a> Pose<'a> {
     }
 }
 
-/// `half` with the sign of the component; a component of either zero counts as positive. Without a branch, since the
-/// sign is hard to predict.
+/// Returns `half` with the sign of the component; a component of either zero counts as positive. Without a branch,
+/// since the sign is hard to predict.
 #[inline(always)]
 fn along(component: f64, half: f64) -> f64 {
     half.copysign(component + 0.0)
@@ -52,8 +52,8 @@ pub(super) struct Segment<'a> {
 }
 
 impl<'a> Segment<'a> {
-    /// The segment of a capsule; never grown.
-    pub(super) fn new(geom: &Placed<'a>) -> Self {
+    /// Returns the segment of a capsule, which the margin does not grow.
+    pub(super) fn new(geom: &PlacedGeom<'a>) -> Self {
         Segment {
             pose: Pose::new(geom, 0.0),
             half: geom.size[1],
@@ -69,7 +69,7 @@ impl Support for Segment<'_> {
     }
 }
 
-/// A capsule.
+/// A capsule, grown by half the margin.
 pub(super) struct Capsule<'a> {
     pose: Pose<'a>,
     radius: f64,
@@ -77,8 +77,8 @@ pub(super) struct Capsule<'a> {
 }
 
 impl<'a> Capsule<'a> {
-    /// A capsule grown by half the margin.
-    pub(super) fn new(geom: &Placed<'a>, margin: f64) -> Self {
+    /// Creates a capsule grown by half the margin.
+    pub(super) fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         Capsule {
             pose: Pose::new(geom, margin),
             radius: geom.size[0],
@@ -97,7 +97,7 @@ impl Support for Capsule<'_> {
     }
 }
 
-/// A cylinder.
+/// A cylinder, grown by half the margin.
 pub(super) struct Cylinder<'a> {
     pose: Pose<'a>,
     radius: f64,
@@ -105,8 +105,8 @@ pub(super) struct Cylinder<'a> {
 }
 
 impl<'a> Cylinder<'a> {
-    /// A cylinder grown by half the margin.
-    pub(super) fn new(geom: &Placed<'a>, margin: f64) -> Self {
+    /// Creates a cylinder grown by half the margin.
+    pub(super) fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         Cylinder {
             pose: Pose::new(geom, margin),
             radius: geom.size[0],
@@ -116,7 +116,7 @@ impl<'a> Cylinder<'a> {
 }
 
 impl Support for Cylinder<'_> {
-    /// A direction along the axis gives the middle of the end disc, one exactly across it the middle of the side.
+    /// Returns the farthest point: along the axis the middle of the end disc, exactly across it the middle of the side.
     #[inline(always)]
     fn support(&self, dir: Vec3) -> Vec3 {
         const RADIAL_MIN: f64 = crate::math::MINVAL * crate::math::MINVAL;
@@ -137,15 +137,15 @@ impl Support for Cylinder<'_> {
     }
 }
 
-/// A box.
+/// A box, grown by half the margin.
 pub(super) struct Cuboid<'a> {
     pose: Pose<'a>,
     size: Vec3,
 }
 
 impl<'a> Cuboid<'a> {
-    /// A box grown by half the margin.
-    pub(super) fn new(geom: &Placed<'a>, margin: f64) -> Self {
+    /// Creates a box grown by half the margin.
+    pub(super) fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         Cuboid {
             pose: Pose::new(geom, margin),
             size: geom.size,
@@ -169,7 +169,7 @@ impl Support for Cuboid<'_> {
 /// A point of the Minkowski difference and where it comes from.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Vertex {
-    /// `a - b`
+    /// Point `a - b`.
     pub(super) point: Vec3,
     /// Point of the first shape.
     pub(super) a: Vec3,
@@ -186,7 +186,7 @@ pub(super) struct Difference<A, B> {
 }
 
 impl<A: Support, B: Support> Difference<A, B> {
-    /// Farthest vertex in the unit direction `dir`.
+    /// Returns the farthest vertex in the unit direction `dir`.
     #[inline(always)]
     pub(super) fn support(&self, dir: Vec3) -> Vertex {
         let a = self.a.support(dir);
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn a_cylinder_has_no_corner_across_or_along_its_axis() {
-        let geom = Placed {
+        let geom = PlacedGeom {
             kind: GeomType::Cylinder,
             size: [0.5, 2.0, 0.0],
             pos: [1.0, 0.0, 0.0],

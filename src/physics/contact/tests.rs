@@ -1,4 +1,6 @@
-//! Conventions of all pairs, and input that is not sane.
+//! Tests of conventions that hold for all pairs, and of input that is not sane.
+
+use testkit::Rng;
 
 use super::*;
 use crate::math::{MAT3_ID, Quat, add, mat_mul, norm, quat_normalize, quat_to_mat, transpose};
@@ -12,26 +14,49 @@ const KINDS: [GeomType; 6] = [
     GeomType::Box,
 ];
 
-/// The 14 pairs that collide.
+/// Returns the 14 pairs that collide.
 fn pairs() -> impl Iterator<Item = (GeomType, GeomType)> {
     let colliding = |kind: &GeomType| *kind != GeomType::Ellipsoid;
     let all = KINDS.into_iter().flat_map(|a| KINDS.into_iter().map(move |b| (a, b)));
     all.filter(move |(a, b)| colliding(a) && colliding(b) && a <= b && *b != GeomType::Plane)
 }
 
-/// Small deterministic generator (xorshift).
-struct Random(u64);
+/// Numbers on which formulas break down.
+const ODD: [f64; 18] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    0.1,
+    1e-300,
+    1e-160,
+    1e-16,
+    1e-8,
+    1e8,
+    1e10,
+    1e160,
+    -1e300,
+    1e308,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+];
+
+/// Random shapes and poses.
+struct Random(Rng);
 
 impl Random {
-    /// Uniform in 0..1.
-    fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    fn new(seed: u64) -> Self {
+        Self(Rng::with_seed(seed))
     }
 
-    /// Uniform in -x..x.
+    /// Draws from 0..1.
+    fn unit(&mut self) -> f64 {
+        self.0.f64()
+    }
+
+    /// Draws from -x..x.
     fn within(&mut self, x: f64) -> f64 {
         x * (2.0 * self.unit() - 1.0)
     }
@@ -49,12 +74,29 @@ impl Random {
         quat_to_mat(quat_normalize(q))
     }
 
+    /// Draws size, position and orientation of two geoms, the second near the first unless they are of one type, and
+    /// replaces a share of the numbers by odd ones.
+    fn odd_poses(&mut self, same: bool, share: f64) -> [f64; 30] {
+        let mut numbers = [0.0; 30];
+        for (at, near) in [(0, 0.0), (15, if same { 0.0 } else { 0.1 })] {
+            numbers[at..at + 3].copy_from_slice(&self.size());
+            numbers[at + 3..at + 6].copy_from_slice(&self.vec(near));
+            numbers[at + 6..at + 15].copy_from_slice(&self.rotation());
+        }
+        for number in &mut numbers {
+            if self.unit() < share {
+                *number = self.pick(&ODD);
+            }
+        }
+        numbers
+    }
+
     fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[(self.unit() * from.len() as f64) as usize]
     }
 }
 
-/// Half extent along the local z axis.
+/// Returns the half extent along the local z axis.
 fn height(kind: GeomType, size: Vec3) -> f64 {
     match kind {
         GeomType::Plane => 0.0,
@@ -65,7 +107,7 @@ fn height(kind: GeomType, size: Vec3) -> f64 {
     }
 }
 
-fn contacts(a: &Placed, b: &Placed, margin: f64, options: &Options) -> Vec<ContactPoint> {
+fn contacts(a: &PlacedGeom, b: &PlacedGeom, margin: f64, options: &ContactOptions) -> Vec<ContactPoint> {
     let mut out = Vec::new();
     collide(a, b, margin, options, &mut Scratch::new(), &mut out);
     out
@@ -77,13 +119,13 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
     for (first, second) in pairs() {
         let size = [0.1, 0.2, 0.15];
         let (below, above) = (height(first, size), height(second, size));
-        let a = Placed {
+        let a = PlacedGeom {
             kind: first,
             size,
             pos: [0.0; 3],
             mat: &MAT3_ID,
         };
-        let b = Placed {
+        let b = PlacedGeom {
             kind: second,
             size,
             pos: [0.003, -0.002, below + above - depth],
@@ -93,9 +135,9 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
             &a,
             &b,
             0.0,
-            &Options {
+            &ContactOptions {
                 quirks: Quirks::none(),
-                ..Options::default()
+                ..ContactOptions::default()
             },
         );
         assert!(!found.is_empty(), "{first:?} {second:?}");
@@ -114,21 +156,21 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
 
 #[test]
 fn frames_are_rotations_and_a_used_scratch_changes_nothing() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let mut scratch = Scratch::new();
-    let options = Options::default();
+    let options = ContactOptions::default();
     for (first, second) in pairs() {
         let mut count = 0;
         for _ in 0..500 {
             let (mat_a, mat_b) = (random.rotation(), random.rotation());
             let (pos, size_a, size_b) = (random.vec(1.0), random.size(), random.size());
-            let a = Placed {
+            let a = PlacedGeom {
                 kind: first,
                 size: size_a,
                 pos,
                 mat: &mat_a,
             };
-            let b = Placed {
+            let b = PlacedGeom {
                 kind: second,
                 size: size_b,
                 pos: add(pos, random.vec(0.15)),
@@ -159,13 +201,13 @@ fn pairs_that_do_not_collide_or_come_in_the_wrong_order_give_nothing() {
             if pairs().any(|pair| pair == (first, second)) {
                 continue;
             }
-            let geom = |kind, x| Placed {
+            let geom = |kind, x| PlacedGeom {
                 kind,
                 size,
                 pos: [x, 0.0, 0.1],
                 mat: &MAT3_ID,
             };
-            assert!(contacts(&geom(first, 0.0), &geom(second, 0.1), 0.0, &Options::default()).is_empty());
+            assert!(contacts(&geom(first, 0.0), &geom(second, 0.1), 0.0, &ContactOptions::default()).is_empty());
             checked += 1;
         }
     }
@@ -174,56 +216,24 @@ fn pairs_that_do_not_collide_or_come_in_the_wrong_order_give_nothing() {
 
 #[test]
 fn input_that_is_not_sane_is_survived() {
-    const ODD: [f64; 18] = [
-        0.0,
-        -0.0,
-        1.0,
-        -1.0,
-        0.5,
-        0.1,
-        1e-300,
-        1e-160,
-        1e-16,
-        1e-8,
-        1e8,
-        1e10,
-        1e160,
-        -1e300,
-        1e308,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        f64::NAN,
-    ];
-    let mut random = Random(99);
+    let mut random = Random::new(99);
     let mut scratch = Scratch::new();
     let mut out = Vec::new();
     for first in KINDS {
         for second in KINDS {
             for round in 0..3000 {
-                // from a few odd numbers in a sane pose to nothing else
-                let share = [0.02, 0.2, 1.0][round % 3];
-                let mut numbers = [0.0; 30];
-                for (half, kind) in [first, second].iter().enumerate() {
-                    let at = 15 * half;
-                    numbers[at..at + 3].copy_from_slice(&random.size());
-                    numbers[at + 3..at + 6].copy_from_slice(&random.vec(if *kind == first { 0.0 } else { 0.1 }));
-                    numbers[at + 6..at + 15].copy_from_slice(&random.rotation());
-                }
-                for number in &mut numbers {
-                    if random.unit() < share {
-                        *number = random.pick(&ODD);
-                    }
-                }
+                // from a few odd numbers in a sane pose to nothing but odd numbers
+                let numbers = random.odd_poses(first == second, [0.02, 0.2, 1.0][round % 3]);
                 let part = |from: usize| -> Vec3 { [numbers[from], numbers[from + 1], numbers[from + 2]] };
                 let mat = |from: usize| -> Mat3 { std::array::from_fn(|k| numbers[from + k]) };
                 let (mat_a, mat_b) = (mat(6), mat(21));
-                let a = Placed {
+                let a = PlacedGeom {
                     kind: first,
                     size: part(0),
                     pos: part(3),
                     mat: &mat_a,
                 };
-                let b = Placed {
+                let b = PlacedGeom {
                     kind: second,
                     size: part(15),
                     pos: part(18),
@@ -235,7 +245,7 @@ fn input_that_is_not_sane_is_survived() {
                 } else {
                     Quirks::none()
                 };
-                let options = Options {
+                let options = ContactOptions {
                     ccd_tolerance: if round % 5 == 0 { random.pick(&ODD) } else { 1e-6 },
                     ccd_iterations: random.pick(&[0, 1, 2, 50, 400]),
                     quirks,
@@ -252,13 +262,13 @@ fn input_that_is_not_sane_is_survived() {
 #[test]
 fn a_stack_of_boxes_has_half_the_depth_by_default() {
     let size = [0.5; 3];
-    let a = Placed {
+    let a = PlacedGeom {
         kind: GeomType::Box,
         size,
         pos: [0.0; 3],
         mat: &MAT3_ID,
     };
-    let b = Placed {
+    let b = PlacedGeom {
         pos: [0.25, 0.125, 0.75],
         ..a
     };
@@ -267,9 +277,9 @@ fn a_stack_of_boxes_has_half_the_depth_by_default() {
             &a,
             &b,
             0.0,
-            &Options {
+            &ContactOptions {
                 quirks,
-                ..Options::default()
+                ..ContactOptions::default()
             },
         );
         assert_eq!(found.len(), 4);
@@ -282,22 +292,22 @@ fn a_stack_of_boxes_has_half_the_depth_by_default() {
 #[test]
 fn geoms_with_one_centre_touch_only_without_the_quirks() {
     let mat = quat_to_mat(quat_normalize([0.9, 0.3, -0.1, 0.2]));
-    let a = Placed {
+    let a = PlacedGeom {
         kind: GeomType::Cylinder,
         size: [0.25, 0.5, 0.0],
         pos: [0.0; 3],
         mat: &MAT3_ID,
     };
     for other in [&MAT3_ID, &mat] {
-        let b = Placed { mat: other, ..a };
-        assert!(contacts(&a, &b, 0.0, &Options::default()).is_empty());
+        let b = PlacedGeom { mat: other, ..a };
+        assert!(contacts(&a, &b, 0.0, &ContactOptions::default()).is_empty());
         let found = contacts(
             &a,
             &b,
             0.0,
-            &Options {
+            &ContactOptions {
                 quirks: Quirks::none(),
-                ..Options::default()
+                ..ContactOptions::default()
             },
         );
         assert!(
@@ -307,7 +317,7 @@ fn geoms_with_one_centre_touch_only_without_the_quirks() {
     }
 }
 
-/// Each quirk switched off alone shows in some pose, in its own pair only.
+/// Checks that each quirk switched off alone shows in some pose, in its own pair only.
 #[test]
 fn every_quirk_can_be_switched_off() {
     type Switch = fn(&mut Quirks);
@@ -327,10 +337,10 @@ fn every_quirk_can_be_switched_off() {
     for (name, kind, switch) in switches {
         let mut quirks = Quirks::default();
         switch(&mut quirks);
-        let mut random = Random(5);
+        let mut random = Random::new(5);
         let mut changed = 0;
         for round in 0..20_000 {
-            // sizes and positions on a grid give the exact coincidences
+            // sizes and positions on a grid give exact coincidences
             let grid = |v: Vec3| {
                 if round % 2 == 0 {
                     v.map(|x| (x * 16.0).round() / 16.0)
@@ -347,23 +357,23 @@ fn every_quirk_can_be_switched_off() {
                 grid(random.size().map(|s| s + 0.05)),
                 grid(random.size().map(|s| s + 0.05)),
             );
-            let a = Placed {
+            let a = PlacedGeom {
                 kind,
                 size: size_a,
                 pos: [0.0; 3],
                 mat: &mat_a,
             };
-            let b = Placed {
+            let b = PlacedGeom {
                 kind: GeomType::Box,
                 size: size_b,
                 pos: grid(random.vec(0.2)),
                 mat: &mat_b,
             };
-            let other = Options {
+            let other = ContactOptions {
                 quirks,
-                ..Options::default()
+                ..ContactOptions::default()
             };
-            changed += (contacts(&a, &b, 0.0, &Options::default()) != contacts(&a, &b, 0.0, &other)) as usize;
+            changed += (contacts(&a, &b, 0.0, &ContactOptions::default()) != contacts(&a, &b, 0.0, &other)) as usize;
         }
         println!("{name}: {changed} of 20000 poses");
         assert!(changed > 0, "{name}");

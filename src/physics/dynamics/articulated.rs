@@ -1,13 +1,13 @@
 //! Solving `M x = b` by articulated bodies: linear in the number of degrees of freedom (Featherstone 2008, chapter 7).
 
-use crate::model::Model;
+use crate::model::Arrays;
 use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::physics::state::State;
 
 /// One value for the inertia, one for the inertia with implicit damping.
 type Pair = [f64; 2];
 
-/// Which matrix to solve with.
+/// The matrix to solve with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damping {
     /// `M`
@@ -16,12 +16,13 @@ pub enum Damping {
     Implicit,
 }
 
-/// Articulated inertias of all bodies, without damping and with that of the integrator; both are computed at once.
+/// The articulated inertias of all bodies, without damping and with that of the integrator; both are computed at
+/// once.
 #[derive(Clone, Debug, Default)]
 pub struct Articulated {
-    /// Of each body: lower triangle of the symmetric 6 by 6 matrix, row by row.
+    /// The inertia of each body: lower triangle of the symmetric 6 by 6 matrix, row by row.
     inertia: Vec<[Pair; 21]>,
-    /// Of each degree of freedom.
+    /// One for each degree of freedom.
     released: Vec<Released>,
     /// Working memory of a solution: bodies, bodies, degrees of freedom.
     force: Vec<Spatial>,
@@ -38,12 +39,12 @@ struct Released {
     inverse: Pair,
 }
 
-/// Place of row `i`, column `j <= i`.
+/// Returns the index of row `i`, column `j <= i` in a packed lower triangle.
 const fn at(i: usize, j: usize) -> usize {
     i * (i + 1) / 2 + j
 }
 
-/// The inertia of a rigid body as a matrix.
+/// Converts the inertia of a rigid body to a matrix, as a packed lower triangle.
 fn matrix(i: &Inertia) -> [f64; 21] {
     let [xx, yy, zz, xy, xz, yz, x, y, z, m] = *i;
     [
@@ -56,7 +57,7 @@ fn matrix(i: &Inertia) -> [f64; 21] {
 
 impl Articulated {
     /// Computes the inertias from `cinert`, `cdof`, armature and damping.
-    pub fn update(&mut self, model: &Model, s: &State) {
+    pub fn update(&mut self, model: &Arrays, s: &State) {
         self.inertia.clear();
         self.inertia.extend(s.cinert.iter().map(|i| matrix(i).map(|v| [v; 2])));
         self.released.resize(model.nv, Released::default());
@@ -83,14 +84,14 @@ impl Articulated {
     }
 
     /// Solves `M x = b` (nv), or with damping `(M + h D) x = b`.
-    pub fn solve(&mut self, model: &Model, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
+    pub fn solve(&mut self, model: &Arrays, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
         match damping {
             Damping::Without => self.solve_lane::<0>(model, s, b, x),
             Damping::Implicit => self.solve_lane::<1>(model, s, b, x),
         }
     }
 
-    fn solve_lane<const LANE: usize>(&mut self, model: &Model, s: &State, b: &[f64], x: &mut [f64]) {
+    fn solve_lane<const LANE: usize>(&mut self, model: &Arrays, s: &State, b: &[f64], x: &mut [f64]) {
         let nb = model.nbody();
         self.force.clear();
         self.force.resize(nb, [0.0; 6]);
@@ -125,8 +126,8 @@ impl Articulated {
     }
 }
 
-/// Lets an articulated body move along `axis`: takes out of its inertia what that motion feels. `extra` adds to the inertia
-/// along the axis.
+/// Lets an articulated body move along `axis`: takes out of its inertia what that motion feels. `extra` adds to the
+/// inertia along the axis.
 #[inline(always)]
 fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
     let mut force = [[0.0; 2]; 6];
@@ -162,23 +163,38 @@ fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Behavior, Scene};
-    use crate::physics::Topology;
+    use crate::assets::MemoryAssets;
+    use crate::mjcf_loader::load_str;
     use crate::physics::dynamics::mul_m;
-    use crate::{Blueprint, Config};
+    use crate::physics::{Engine, SoftEngine, SoftOptions, Topology, compile};
+
+    /// A free trunk with limbs that branch, of joints with and without damping, and two bodies beside it.
+    const BRANCHES: &str = r#"<mujoco><option gravity="0 0 -9.81"/><default><joint armature=".01"/></default><worldbody>
+        <body name="trunk" pos="0 0 1"><freejoint/><geom type="capsule" size=".1 .2"/>
+          <body pos=".2 0 .1"><joint axis="0 1 0" damping=".3"/><joint axis="1 0 0"/><geom type="capsule" size=".04 .1"/>
+            <body pos=".2 0 0"><joint axis="0 0 1" damping="2"/><geom size=".05" pos=".1 0 0"/>
+              <body pos=".2 0 0"><joint axis="0 1 0"/><geom type="box" size=".05 .02 .01" pos=".05 0 0"/></body>
+              <body pos=".2 .1 0"><joint axis="1 1 0" damping=".1"/><geom type="box" size=".05 .02 .01"/></body>
+            </body>
+          </body>
+          <body pos="-.2 0 .1"><joint type="slide" axis="1 0 0" damping="5"/><geom type="cylinder" size=".03 .1"/>
+            <body pos="-.1 0 0"><joint axis="0 0 1"/><joint axis="0 1 0"/><joint axis="1 0 0"/><geom size=".02" pos="-.1 0 0"/></body>
+          </body>
+        </body>
+        <body pos="2 0 1"><freejoint/><geom type="box" size=".1 .2 .3"/></body>
+        <body pos="4 0 1"><joint axis="0 1 0" pos="0 0 1" damping=".01"/><geom size=".1"/></body>
+        </worldbody></mujoco>"#;
 
     #[test]
     fn solutions_agree_with_the_inertia_matrix() {
-        let config = Config {
-            behavior: Behavior::HandRegard,
-            scene: Scene::Cubes,
-            touch_active: false,
-            vision_active: false,
-            ..Config::default()
-        };
-        let blueprint = Blueprint::new(config).expect("available");
-        let (model, mut engine) = (blueprint.model(), blueprint.engine());
+        let spec = load_str(BRANCHES, "branches.xml", &MemoryAssets::new()).expect("valid");
+        let model = std::sync::Arc::new(compile(spec).expect("valid"));
+        let mut engine = SoftEngine::new(model.clone(), SoftOptions::default());
+        let model = &*model;
         let mut s = engine.new_state();
+        for (k, q) in s.qpos.iter_mut().enumerate().skip(7).take(9) {
+            *q += 0.3 * (k % 5) as f64 - 0.6;
+        }
         engine.forward(&mut s).expect("finite");
         let mut bodies = Articulated::default();
         bodies.update(model, &s);

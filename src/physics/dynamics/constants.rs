@@ -1,89 +1,165 @@
-//! Constants of a model that need its dynamics at `qpos0`: inverse weights and statistics.
+//! Constants of a model that need its dynamics at `qpos0`.
 
 use crate::math::*;
-use crate::model::{GeomType, JointType, Model, SameFrame};
+use crate::model::{
+    Arrays, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
+};
 use crate::physics::dynamics::{Articulated, Damping, com_pos, crb, kinematics};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
-/// Fills `body_invweight0, dof_invweight0, tendon_invweight0` and the statistics that are not given (zero).
-///
-/// An inverse weight is the mean acceleration per unit force at `qpos0`: the diagonal of `J M^-1 J'`, averaged over the
-/// three directions of translation and of rotation. The solver scales constraints by it.
-pub fn set_const(model: &mut Model) {
+/// Computes inverse weights, the diagonal of the inertia, the statistics that are not given (zero), and the poses of welds
+/// that have none of their own (MuJoCo's `mj_setConst`).
+pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
     let topology = Topology::new(model);
     let mut s = State::new(model, &topology);
     kinematics(model, &mut s);
     com_pos(model, &mut s);
     crb(model, &topology, &mut s);
-    let mut bodies = Articulated::default();
-    bodies.update(model, &s);
-    statistics(model, &s, &topology);
+    let diagonal = (0..model.nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
+    let dof_m0: Vec<f64> = diagonal.collect();
+    let mut weights = Weights::new(model, &topology, &s);
+    Constants {
+        body_invweight0: (0..model.nbody()).map(|b| weights.body(b)).collect(),
+        dof_invweight0: weights.dofs(),
+        tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
+        stat: statistics(model, &s, &dof_m0),
+        weld_poses: weld_poses(model, &s),
+        light_poses: light_poses(model, &s),
+        dof_m0,
+    }
+}
 
-    let nv = model.nv;
-    let (mut b, mut x) = (vec![0.0; nv], vec![0.0; nv]);
-    let mut weight = |model: &Model, jac: &[(usize, f64)]| -> f64 {
-        b.fill(0.0);
-        for &(d, v) in jac {
-            b[d] += v;
-        }
-        bodies.solve(model, &s, Damping::Without, &b, &mut x);
-        jac.iter().map(|&(d, v)| v * x[d]).sum()
-    };
-    for j in 0..model.njnt() {
-        let d = model.jnt_dofadr[j];
-        match model.jnt_type[j] {
-            JointType::Free => {
-                let w: [f64; 6] = std::array::from_fn(|k| weight(model, &[(d + k, 1.0)]));
-                let (t, r) = ((w[0] + w[1] + w[2]) / 3.0, (w[3] + w[4] + w[5]) / 3.0);
-                model.dof_invweight0[d..d + 3].fill(t);
-                model.dof_invweight0[d + 3..d + 6].fill(r);
-            }
-            _ => model.dof_invweight0[d] = weight(model, &[(d, 1.0)]),
+/// Computes the relative poses at `qpos0` of the welds that are to hold them.
+///
+/// The position is that of body 2's anchor, in the frame of body 1.
+fn weld_poses(model: &Arrays, s: &State) -> Vec<WeldPose> {
+    let mut poses = Vec::new();
+    for (equality, kind) in model.eq_kind.iter().enumerate() {
+        if let &EqualityKind::Weld {
+            body1,
+            body2,
+            anchor,
+            relquat: [0.0, 0.0, 0.0, 0.0],
+            ..
+        } = kind
+        {
+            let point = add(mat_vec(&s.xmat[body2], anchor), s.xpos[body2]);
+            poses.push(WeldPose {
+                equality,
+                relpos: mat_t_vec(&s.xmat[body1], sub(point, s.xpos[body1])),
+                relquat: quat_mul(quat_conj(s.xquat[body1]), s.xquat[body2]),
+            });
         }
     }
-    for b in 1..model.nbody() {
+    poses
+}
+
+/// Computes inverse weights: the mean acceleration per unit force at `qpos0`, that is, the diagonal of `J M^-1 J'`, averaged
+/// over the three directions of translation and of rotation. The solver scales constraints by it.
+struct Weights<'a> {
+    model: &'a Arrays,
+    topology: &'a Topology,
+    s: &'a State,
+    bodies: Articulated,
+    b: Vec<f64>,
+    x: Vec<f64>,
+}
+
+impl<'a> Weights<'a> {
+    fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State) -> Self {
+        let mut bodies = Articulated::default();
+        bodies.update(model, s);
+        Self {
+            model,
+            topology,
+            s,
+            bodies,
+            b: vec![0.0; model.nv],
+            x: vec![0.0; model.nv],
+        }
+    }
+
+    /// Computes the acceleration along a row of a Jacobian, given by its nonzero entries, per unit force along it.
+    fn of(&mut self, jac: &[(usize, f64)]) -> f64 {
+        self.b.fill(0.0);
+        for &(d, v) in jac {
+            self.b[d] += v;
+        }
+        self.bodies
+            .solve(self.model, self.s, Damping::Without, &self.b, &mut self.x);
+        jac.iter().map(|&(d, v)| v * self.x[d]).sum()
+    }
+
+    fn dofs(&mut self) -> Vec<f64> {
+        let mut weights = vec![0.0; self.model.nv];
+        for j in 0..self.model.njnt() {
+            let d = self.model.jnt_dofadr[j];
+            match self.model.jnt_type[j] {
+                JointType::Free => {
+                    let w: [f64; 6] = std::array::from_fn(|k| self.of(&[(d + k, 1.0)]));
+                    weights[d..d + 3].fill((w[0] + w[1] + w[2]) / 3.0);
+                    weights[d + 3..d + 6].fill((w[3] + w[4] + w[5]) / 3.0);
+                }
+                _ => weights[d] = self.of(&[(d, 1.0)]),
+            }
+        }
+        weights
+    }
+
+    /// Computes the inverse weights of a body at its centre of mass, in translation and rotation.
+    fn body(&mut self, b: usize) -> [f64; 2] {
+        let (model, s) = (self.model, self.s);
         if model.body_weldid[b] == 0 {
-            model.body_invweight0[b] = [0.0; 2];
-            continue;
+            return [0.0; 2];
+        }
+        if slides_alone(model, b) {
+            return [1.0 / model.body_mass[b], 0.0];
         }
         let offset = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
         let mut sums = [0.0; 2];
         for k in 0..6 {
-            let jac: Vec<(usize, f64)> = topology
-                .body_chain(b)
-                .iter()
-                .map(|&d| {
-                    let cdof = &s.cdof[d as usize];
-                    let v = if k < 3 {
-                        velocity_at(cdof, offset)[k]
-                    } else {
-                        angular(cdof)[k - 3]
-                    };
-                    (d as usize, v)
-                })
-                .collect();
-            sums[k / 3] += weight(model, &jac);
+            let entry = |&d: &u32| {
+                let cdof = &s.cdof[d as usize];
+                let v = if k < 3 {
+                    velocity_at(cdof, offset)[k]
+                } else {
+                    angular(cdof)[k - 3]
+                };
+                (d as usize, v)
+            };
+            let jac: Vec<(usize, f64)> = self.topology.body_chain(b).iter().map(entry).collect();
+            sums[k / 3] += self.of(&jac);
         }
-        if slides_alone(model, b) {
-            model.body_invweight0[b] = [1.0 / model.body_mass[b], 0.0];
-            continue;
-        }
-        model.body_invweight0[b] = [sums[0] / 3.0, sums[1] / 3.0];
+        sums.map(|sum| sum / 3.0)
     }
-    for t in 0..model.ntendon() {
-        let jac: Vec<(usize, f64)> = model.tendon_wrap[t]
-            .iter()
-            .map(|&(j, c)| (model.jnt_dofadr[j], c))
-            .collect();
-        model.tendon_invweight0[t] = weight(model, &jac);
+
+    fn tendon(&mut self, t: usize) -> f64 {
+        let wrap = self.model.tendon_wrap[t].iter();
+        let jac: Vec<(usize, f64)> = wrap.map(|&(j, c)| (self.model.jnt_dofadr[j], c)).collect();
+        self.of(&jac)
     }
 }
 
-/// Whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a child of the world without children
+/// Returns the poses at `qpos0` that lights keep which do not turn with their body.
+fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
+    let pose = |light: &Light| {
+        let b = light.bodyid;
+        let pos = add(mat_vec(&s.xmat[b], light.pos), s.xpos[b]);
+        LightPose {
+            pos0: sub(pos, s.xpos[b]),
+            // MuJoCo measures from the target if there is one.
+            poscom0: sub(pos, s.subtree_com[light.targetbodyid.unwrap_or(b)]),
+            dir0: unit(quat_rotate(s.xquat[b], light.dir)).0,
+        }
+    };
+    model.lights.iter().map(pose).collect()
+}
+
+/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a child of the world without children
 /// whose joints all slide along axes of its frame, which is that of its inertia.
-fn slides_alone(model: &Model, b: usize) -> bool {
+fn slides_alone(model: &Arrays, b: usize) -> bool {
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
     let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > MINVAL).count() == 1;
     model.body_parentid[b] == 0
@@ -95,18 +171,38 @@ fn slides_alone(model: &Model, b: usize) -> bool {
             .all(|j| model.jnt_type[j] == JointType::Slide && along_axis(j))
 }
 
-/// Mean inertia, mass and size, extent and centre, where they are not given.
-fn statistics(model: &mut Model, s: &State, topology: &Topology) {
-    let (nb, nv) = (model.nbody(), model.nv);
-    let diagonal = (0..nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
-    let meaninertia = if nv == 0 {
-        1.0
-    } else {
-        diagonal.sum::<f64>() / nv as f64
+/// Returns mean inertia, mass and size, extent and centre: as given, else computed.
+///
+/// `dof_m0` is the diagonal of the inertia.
+fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
+    let meaninertia = match model.nv {
+        0 => 1.0,
+        nv => dof_m0.iter().sum::<f64>() / nv as f64,
     };
-    let others = nb.saturating_sub(1).max(1) as f64;
+    let others = model.nbody().saturating_sub(1).max(1) as f64;
     let meanmass = model.body_mass[1..].iter().sum::<f64>() / others;
+    let meansize = sizes(model, s)[1..].iter().map(|v| v.max(1e-5)).sum::<f64>() / others;
+    let (low, high) = bounds(model, s);
+    let extent = (0..3).map(|k| high[k] - low[k]).fold(1e-5, f64::max);
 
+    let mut stat = model.stat.clone();
+    let set = |field: &mut f64, value: f64| {
+        if *field == 0.0 {
+            *field = value;
+        }
+    };
+    set(&mut stat.meaninertia, meaninertia);
+    set(&mut stat.meanmass, meanmass);
+    set(&mut stat.meansize, meansize);
+    if stat.extent == 0.0 {
+        stat.center = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
+        stat.extent = extent.max(2.0 * meansize);
+    }
+    stat
+}
+
+/// Returns the lowest and highest coordinates of all elements with their bounding spheres.
+fn bounds(model: &Arrays, s: &State) -> (Vec3, Vec3) {
     let (mut low, mut high) = ([1e10_f64; 3], [-1e10_f64; 3]);
     let mut include = |p: Vec3, r: f64| {
         for k in 0..3 {
@@ -114,7 +210,7 @@ fn statistics(model: &mut Model, s: &State, topology: &Topology) {
             high[k] = high[k].max(p[k] + r);
         }
     };
-    for b in 1..nb {
+    for b in 1..model.nbody() {
         include(s.xpos[b], 0.0);
         include(s.xipos[b], 0.0);
     }
@@ -129,9 +225,14 @@ fn statistics(model: &mut Model, s: &State, topology: &Topology) {
         };
         include(s.geom_xpos[g], radius);
     }
-    let mut extent = (0..3).map(|k| high[k] - low[k]).fold(1e-5, f64::max);
+    (low, high)
+}
 
-    let mut size = vec![0.0_f64; nb];
+/// Computes the size of each body: how far its joints, its children's joints and its geoms reach.
+///
+/// Distances are from the body's centre of mass.
+fn sizes(model: &Arrays, s: &State) -> Vec<f64> {
+    let mut size = vec![0.0_f64; model.nbody()];
     for j in 0..model.njnt() {
         let body = model.jnt_bodyid[j];
         for b in [body, model.body_parentid[body]] {
@@ -144,20 +245,5 @@ fn statistics(model: &mut Model, s: &State, topology: &Topology) {
             size[b] = size[b].max(model.geom_rbound[g] + norm(sub(s.xipos[b], s.geom_xpos[g])));
         }
     }
-    let meansize = size[1..].iter().map(|v| v.max(1e-5)).sum::<f64>() / others;
-    extent = extent.max(2.0 * meansize);
-
-    let stat = &mut model.stat;
-    let set = |field: &mut f64, value: f64| {
-        if *field == 0.0 {
-            *field = value;
-        }
-    };
-    set(&mut stat.meaninertia, meaninertia);
-    set(&mut stat.meanmass, meanmass);
-    set(&mut stat.meansize, meansize);
-    if stat.extent == 0.0 {
-        stat.center = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
-        stat.extent = extent;
-    }
+    size
 }

@@ -1,13 +1,13 @@
 //! The joint-space inertia matrix.
 
-use crate::model::Model;
+use crate::model::Arrays;
 use crate::physics::spatial::inertia_mul;
 use crate::physics::state::State;
 use crate::physics::tiles::{Tile, ZERO, add_outer_products, mul};
 use crate::physics::topology::Topology;
 
-/// Composite-rigid-body algorithm: `crb` and `qm` from `cinert` and `cdof`, armature included.
-pub fn crb(model: &Model, topology: &Topology, s: &mut State) {
+/// Computes `crb` and `qm` from `cinert` and `cdof`, armature included (composite-rigid-body algorithm).
+pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
     s.crb.copy_from_slice(&s.cinert);
     for b in (1..model.nbody()).rev() {
         let p = model.body_parentid[b];
@@ -56,11 +56,11 @@ pub fn crb(model: &Model, topology: &Topology, s: &mut State) {
     }
 }
 
-/// `out = M x` (nv), for a matrix in tiles. Allocates: the solvers work in lanes throughout.
+/// Computes `out = M x` (nv), for a matrix in tiles. Allocates: the solvers work in lanes throughout.
 pub fn mul_m(topology: &Topology, m: &[Tile], x: &[f64], out: &mut [f64]) {
     let mut lanes = vec![[0.0; 4]; topology.tiles.rows()];
     let mut product = lanes.clone();
     topology.to_lanes(x, &mut lanes);
     mul(&topology.tiles, m, &lanes, &mut product);
-    topology.from_lanes(&product, out);
+    topology.read_lanes(&product, out);
 }

@@ -4,12 +4,12 @@
 //! geometry is discontinuous in them.
 
 use crate::math::*;
-use crate::model::{CameraMode, JointType, Model, SameFrame};
+use crate::model::{Arrays, CameraMode, JointType, Model, SameFrame};
 use crate::physics::spatial::spatial;
 use crate::physics::state::State;
 
 /// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`.
-pub fn kinematics(model: &Model, s: &mut State) {
+pub fn kinematics(model: &Arrays, s: &mut State) {
     for b in 1..model.nbody() {
         let (mut pos, mut quat);
         let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
@@ -63,7 +63,7 @@ pub fn kinematics(model: &Model, s: &mut State) {
     }
 }
 
-/// Pose of something fixed in a body. A frame that is known already is copied.
+/// Returns the world pose of something fixed in a body. A frame that is known already is copied.
 #[inline(always)]
 fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
     let world_pos = match same {
@@ -86,7 +86,7 @@ pub fn cameras(model: &Model, s: &mut State) {
         let (b, p, q) = (model.cam_bodyid[c], model.cam_pos[c], model.cam_quat[c]);
         let (pos, mut mat) = local_to_global(s, b, p, q, SameFrame::None);
         if let CameraMode::TargetBody(target) = model.cam_mode[c] {
-            let z = unit(sub(pos, s.xpos[target.0])).0;
+            let z = unit(sub(pos, s.xpos[target])).0;
             let x = unit(cross([0.0, 0.0, 1.0], z)).0;
             let y = unit(cross(z, x)).0;
             mat = [x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]];
@@ -96,7 +96,7 @@ pub fn cameras(model: &Model, s: &mut State) {
 }
 
 /// Computes `subtree_com, cinert, cdof` from poses.
-pub fn com_pos(model: &Model, s: &mut State) {
+pub fn com_pos(model: &Arrays, s: &mut State) {
     let nb = model.nbody();
     s.subtree_com.fill([0.0; 3]);
     for b in (0..nb).rev() {

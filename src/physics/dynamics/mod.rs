@@ -10,13 +10,15 @@ mod inertia;
 mod integrate;
 mod kinematics;
 mod post_constraint;
+mod sensor;
 mod velocity;
 
 pub use actuation::fwd_actuation;
 pub use articulated::{Articulated, Damping};
-pub use constants::set_const;
+pub(in crate::physics) use constants::constants;
 pub use inertia::{crb, mul_m};
-pub use integrate::{Integrator, integrate_pos};
+pub use integrate::Integrator;
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;
-pub use velocity::{BiasScratch, com_vel, fwd_velocity};
+pub use sensor::sensors;
+pub use velocity::{BiasScratch, fwd_velocity};

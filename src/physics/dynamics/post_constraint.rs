@@ -2,7 +2,7 @@
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::{RowKind, weld_points};
+use crate::physics::constraint::{ConstraintType, weld_points};
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
@@ -15,8 +15,8 @@ use crate::physics::state::State;
 pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: bool) {
     let nb = model.nbody();
     s.cfrc_ext.fill([0.0; 6]);
-    for i in 0..s.contacts.len() {
-        let c = &s.contacts[i];
+    for i in 0..s.contact.len() {
+        let c = &s.contact[i];
         if c.efc_address.is_none() {
             continue;
         }
@@ -27,28 +27,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
             apply(model, s, model.geom_bodyid[g], torque, force, pos, sign);
         }
     }
-    for k in 0..s.efc.blocks.len() {
-        let block = s.efc.blocks[k];
-        if block.kind != RowKind::Equality || block.dim != 6 {
-            continue;
-        }
-        let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[block.id] else {
-            continue;
-        };
-        let Some(weld) = weld_points(model, s, block.id) else {
-            continue;
-        };
-        let f: [f64; 6] = std::array::from_fn(|r| s.efc.force[block.row + r]);
-        let force = [f[0], f[1], f[2]];
-        let rows = [f[3], f[4], f[5]];
-        let torque = if double_weld_torque {
-            rows
-        } else {
-            weld.torque_of_rows(rows)
-        };
-        apply(model, s, body1.0, torque, force, weld.point1, 1.0);
-        apply(model, s, body2.0, torque, force, weld.point2, -1.0);
-    }
+    apply_welds(model, s, double_weld_torque);
     let g = model.opt.gravity;
     s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     s.cfrc_int[0] = [0.0; 6];
@@ -74,6 +53,33 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
     }
 }
 
+/// Adds the wrenches of welds to `cfrc_ext`.
+fn apply_welds(model: &Model, s: &mut State, double_weld_torque: bool) {
+    for k in 0..s.efc.blocks.len() {
+        let block = s.efc.blocks[k];
+        if block.kind != ConstraintType::Equality || block.dim != 6 {
+            continue;
+        }
+        let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[block.id] else {
+            continue;
+        };
+        let Some(weld) = weld_points(model, s, block.id) else {
+            continue;
+        };
+        let f: [f64; 6] = std::array::from_fn(|r| s.efc.force[block.row + r]);
+        let force = [f[0], f[1], f[2]];
+        let rows = [f[3], f[4], f[5]];
+        let torque = if double_weld_torque {
+            rows
+        } else {
+            weld.torque_of_rows(rows)
+        };
+        apply(model, s, body1, torque, force, weld.point1, 1.0);
+        apply(model, s, body2, torque, force, weld.point2, -1.0);
+    }
+}
+
+/// Adds `sign` times a wrench at a point to `cfrc_ext`.
 fn apply(model: &Model, s: &mut State, body: usize, torque: Vec3, force: Vec3, point: Vec3, sign: f64) {
     if body > 0 {
         let offset = sub(point, s.subtree_com[model.body_rootid[body]]);

@@ -31,7 +31,7 @@ pub fn com_vel(model: &Model, s: &mut State) {
     }
 }
 
-/// Working memory of the recursive Newton-Euler pass.
+/// The working memory of the recursive Newton-Euler pass.
 #[derive(Clone, Debug, Default)]
 pub struct BiasScratch {
     acc: Vec<Spatial>,

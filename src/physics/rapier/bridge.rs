@@ -1,4 +1,4 @@
-//! Between a state and a Rapier world.
+//! The bridge between a state and a Rapier world.
 
 use std::sync::Arc;
 
@@ -8,24 +8,24 @@ use rapier3d_f64::pipeline::{EventHandler, PhysicsWorld};
 
 use crate::model::Model;
 use crate::physics::constraint::RowBuilder;
-use crate::physics::contact::{Options, Quirks};
+use crate::physics::contact::{ContactOptions, Quirks};
 use crate::physics::dynamics::*;
 use crate::physics::engine::{EngineError, Stage, check_input, check_motion, check_output};
 use crate::physics::rapier::contacts::{ContactAims, ContactHooks, read_contacts};
 use crate::physics::rapier::rig::Rig;
-use crate::physics::rapier::rows::{Rows, read_welds, softness};
+use crate::physics::rapier::rows::{RapierRows, read_welds, softness};
 use crate::physics::rapier::{RapierError, RapierOptions, Sets};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
 use crate::physics::world::{ContactDispatcher, PairTable, Sweep};
 
-/// A model in a Rapier world that may hold anything else: hands a [`State`] to Rapier before a step of the world, and takes
-/// the result out of it.
+/// A model in a Rapier world that may hold anything else: it hands a [`State`] to Rapier before a step of the world,
+/// and takes the result out of it.
 ///
 /// [`Bridge::step`] advances a `PhysicsWorld`. Where the sets are your own, a step is [`Bridge::before`],
-/// `PhysicsPipeline::step` with [`Bridge::hooks`] and [`Bridge::parameters`], [`Bridge::after`], [`Bridge::advance`], with
-/// [`Bridge::narrow_phase`] for MuJoCo's contact geometry. The state leads: poses in the world are overwritten by the
-/// next step.
+/// `PhysicsPipeline::step` with [`Bridge::hooks`] and [`Bridge::parameters`], [`Bridge::after`], [`Bridge::advance`],
+/// with [`Bridge::narrow_phase`] for MuJoCo's contact geometry. The state leads: poses in the world are overwritten by
+/// the next step.
 ///
 /// See `examples/own_world.rs`.
 pub struct Bridge {
@@ -34,9 +34,9 @@ pub struct Bridge {
     pairs: Arc<PairTable>,
     rig: Arc<Rig>,
     options: RapierOptions,
-    contact: Options,
+    contact: ContactOptions,
     sweep: Sweep,
-    rows: Rows,
+    rows: RapierRows,
     aims: ContactAims,
     integrator: Integrator,
     bias: BiasScratch,
@@ -56,12 +56,12 @@ impl std::fmt::Debug for Bridge {
 }
 
 impl Bridge {
-    /// Inserts `model`, whose constants [`set_const`] has filled, into a world.
+    /// Inserts `model` into a world.
     ///
     /// Gravity acts on the model as the model says, whatever that of the world is.
     ///
     /// # Errors
-    /// Elements that Rapier's multibodies cannot represent.
+    /// Fails if the model has elements that Rapier's multibodies cannot represent.
     pub fn insert(model: Arc<Model>, options: RapierOptions, sets: &mut Sets) -> Result<Self, RapierError> {
         let topology = Topology::new(&model);
         let rig = Rig::insert(&model, &topology, sets)?;
@@ -76,14 +76,14 @@ impl Bridge {
         rig: Arc<Rig>,
         options: RapierOptions,
     ) -> Self {
-        let contact = Options {
+        let contact = ContactOptions {
             ccd_tolerance: model.opt.ccd_tolerance,
             ccd_iterations: model.opt.ccd_iterations,
             quirks: Quirks::default(),
         };
         Self {
             sweep: Sweep::new(&model, &pairs, contact),
-            rows: Rows::default(),
+            rows: RapierRows::default(),
             aims: ContactAims::default(),
             integrator: Integrator::default(),
             bias: BiasScratch::default(),
@@ -101,44 +101,44 @@ impl Bridge {
         }
     }
 
-    /// The compiled scene.
+    /// Returns the compiled model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 
-    /// Derived structure of the model.
+    /// Returns the topology of the model's kinematic tree.
     pub fn topology(&self) -> &Topology {
         &self.topology
     }
 
-    /// Geom pairs that may touch, in contact order.
+    /// Returns the geom pairs that may touch, in contact order.
     pub fn pairs(&self) -> &PairTable {
         &self.pairs
     }
 
-    /// The model's bodies and colliders in the world.
+    /// Returns the model's bodies and colliders in the world.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }
 
-    pub(super) fn contact_options(&self) -> Options {
+    pub(super) fn contact_options(&self) -> ContactOptions {
         self.contact
     }
 
-    /// A state at `qpos0`, at rest, of which nothing has been computed.
+    /// Creates a state at `qpos0`, at rest, with nothing computed yet.
     pub fn new_state(&self) -> State {
         let mut state = State::new(&self.model, &self.topology);
-        state.contacts.reserve(RESERVED_CONTACTS);
+        state.contact.reserve(RESERVED_CONTACTS);
         state
     }
 
-    /// The geom that stands for colliders that are not the model's in `State::contacts`: by default the first of the world's.
-    /// Without one such contacts act but are not felt.
+    /// Chooses the geom that stands in `State::contacts` for colliders that are not the model's: by default the first
+    /// of the world's. Without one, such contacts act but are not sensed.
     pub fn set_stranger(&mut self, geom: Option<usize>) {
         self.stranger = geom.filter(|&g| g < self.model.ngeom());
     }
 
-    /// Rapier's parameters: one step without substeps, all of Rapier's own approximations switched off.
+    /// Returns Rapier's parameters: one step without substeps, all of Rapier's own approximations switched off.
     pub fn parameters(&self) -> IntegrationParameters {
         let (soft, _) = softness(self.options.contact_compliance, self.model.opt.timestep);
         IntegrationParameters {
@@ -161,7 +161,7 @@ impl Bridge {
         }
     }
 
-    /// A narrow phase with MuJoCo's contact geometry between the shapes of a model, and Parry's for others.
+    /// Creates a narrow phase with MuJoCo's contact geometry between the shapes of a model, and Parry's for others.
     pub fn narrow_phase(&self) -> NarrowPhase {
         NarrowPhase::with_query_dispatcher(ContactDispatcher::new(self.contact).one_point_manifolds())
     }
@@ -175,7 +175,7 @@ impl Bridge {
     /// Advances a world, and with it the state, by one time step.
     ///
     /// # Errors
-    /// As [`Bridge::before`] and [`Bridge::after`].
+    /// Fails like [`Bridge::before`] and [`Bridge::after`].
     pub fn step(
         &mut self,
         s: &mut State,
@@ -197,18 +197,19 @@ impl Bridge {
     /// Computes all that precedes the solver from `qpos`, `qvel` and `ctrl`, and loads it into the world.
     ///
     /// # Errors
-    /// A state that does not fit the model or is not finite.
+    /// Fails if the state does not fit the model or is not finite.
     pub fn before(&mut self, s: &mut State, sets: &mut Sets) -> Result<(), EngineError> {
         self.compute(s, &mut |_, _| {})?;
         self.load(s, sets);
         Ok(())
     }
 
-    /// Poses, contacts, constraint rows and forces; `stage` is told which part begins, with what there is so far.
+    /// Computes poses, contacts, constraint rows and forces; `stage` is told which part begins, with what there is so
+    /// far.
     pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage, &State)) -> Result<(), EngineError> {
         let (model, topology) = (&*self.model, &*self.topology);
         check_input(model, s)?;
-        // what Rapier cannot make sense of never reaches it
+        // values that Rapier cannot handle never reach it
         check_motion(model, s)?;
         stage(Stage::Kinematics, s);
         kinematics(model, s);
@@ -219,7 +220,7 @@ impl Bridge {
         stage(Stage::Scene, s);
         stage(Stage::Collision, s);
         if self.options.disable_contacts {
-            s.contacts.clear();
+            s.contact.clear();
         } else {
             self.sweep.contacts(model, &self.pairs, s);
         }
@@ -240,7 +241,7 @@ impl Bridge {
         self.aims.load(&self.pairs, s, h, rate);
     }
 
-    /// The hooks for the step that [`Bridge::before`] prepared.
+    /// Returns the hooks for the step that [`Bridge::before`] prepared.
     pub fn hooks(&self) -> ContactHooks<'_> {
         ContactHooks {
             rig: &self.rig,
@@ -252,7 +253,7 @@ impl Bridge {
     /// Takes accelerations and the forces of contacts and welds out of the world, and computes what follows from them.
     ///
     /// # Errors
-    /// The simulation diverged.
+    /// Fails if the simulation diverged.
     pub fn after(&mut self, s: &mut State, sets: &Sets, narrow: &NarrowPhase) -> Result<(), EngineError> {
         let (model, h) = (&*self.model, self.model.opt.timestep);
         self.rig.velocities(model, s, sets, &mut self.velocity);
@@ -268,13 +269,14 @@ impl Bridge {
         read_contacts(&self.hooks(), model, narrow, s, self.stranger);
         read_welds(&self.rig, model, s, sets);
         rne_post_constraint(model, s, self.options.double_weld_torque);
+        sensors(model, s);
         check_output(model, s)
     }
 
     /// Advances the state by a time step with these accelerations, as MuJoCo does, with implicit joint damping.
     ///
     /// # Errors
-    /// The simulation diverged.
+    /// Fails if the simulation diverged.
     pub fn advance(&mut self, s: &mut State) -> Result<(), EngineError> {
         self.integrator.advance(&self.model, &mut self.inertia, s);
         check_output(&self.model, s)

@@ -9,27 +9,37 @@ use rapier3d_f64::pipeline::{ContactModificationContext, PairFilterContext, Phys
 
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::constraint::RowKind;
+use crate::physics::constraint::ConstraintType;
 use crate::physics::contact::frame::from_normal;
 use crate::physics::rapier::rig::Rig;
 use crate::physics::state::{Contact, State};
 use crate::physics::world::{PairTable, geom_pose, pose};
 
-/// What Rapier's solver is told about a contact.
+/// The aim of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]
 struct ContactAim {
     geom: [usize; 2],
-    /// Velocity of the second geom relative to the first to aim at, in the frame of the contact, m/s.
+    /// Velocity of the second geom relative to the first, in the frame of the contact, m/s.
     velocity: Vec3,
     friction: f64,
+}
+
+/// The contacts of a pair of the table.
+#[derive(Clone, Copy, Debug)]
+struct TouchingPair {
+    pair: usize,
+    /// First contact of the state.
+    first: usize,
+    /// Number of contacts.
+    number: usize,
 }
 
 /// The contacts of a step as Rapier's solver shall see them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactAims {
-    /// Pair of the table, first contact, number of contacts; ascending.
-    pairs: Vec<(usize, usize, usize)>,
-    /// For each contact of the state; `None` where it is no constraint.
+    /// Pairs that touch, ascending.
+    pairs: Vec<TouchingPair>,
+    /// The aim of each contact of the state; `None` where it is no constraint.
     aims: Vec<Option<ContactAim>>,
     /// Frames of the contacts.
     frames: Vec<Mat3>,
@@ -38,28 +48,35 @@ pub(super) struct ContactAims {
 }
 
 impl ContactAims {
-    /// From the contacts and rows of a state. `rate` is the rate at which Rapier reduces penetration, 1/s.
+    /// Loads the contacts and rows of a state. `rate` is the rate at which Rapier reduces penetration, 1/s.
     pub fn load(&mut self, table: &PairTable, s: &State, h: f64, rate: f64) {
         (self.h, self.rate) = (h, rate);
         self.pairs.clear();
         self.aims.clear();
         self.frames.clear();
-        for (k, c) in s.contacts.iter().enumerate() {
+        for (k, c) in s.contact.iter().enumerate() {
             self.frames.push(c.frame);
             self.aims.push(None);
             let Some(pair) = table.find(c.geom[0], c.geom[1]) else {
                 continue;
             };
             match self.pairs.last_mut() {
-                Some(last) if last.0 == pair => last.2 += 1,
-                _ => self.pairs.push((pair, k, 1)),
+                Some(last) if last.pair == pair => last.number += 1,
+                _ => self.pairs.push(TouchingPair {
+                    pair,
+                    first: k,
+                    number: 1,
+                }),
             }
         }
         for block in &s.efc.blocks {
-            if !matches!(block.kind, RowKind::Elliptic | RowKind::Frictionless) {
+            if !matches!(
+                block.kind,
+                ConstraintType::ContactElliptic | ConstraintType::ContactFrictionless
+            ) {
                 continue;
             }
-            let c = &s.contacts[block.id];
+            let c = &s.contact[block.id];
             let aim = |r: usize| s.efc.vel[block.row + r] + h * s.efc.aref[block.row + r];
             self.aims[block.id] = Some(ContactAim {
                 geom: c.geom,
@@ -69,15 +86,15 @@ impl ContactAims {
         }
     }
 
-    /// The contact at place `ordinal` in the list of a pair.
+    /// Returns the contact at place `ordinal` in the list of a pair.
     fn find(&self, pair: usize, ordinal: usize) -> Option<usize> {
-        let at = self.pairs.binary_search_by_key(&pair, |p| p.0).ok()?;
-        let (_, first, number) = self.pairs[at];
+        let at = self.pairs.binary_search_by_key(&pair, |p| p.pair).ok()?;
+        let TouchingPair { first, number, .. } = self.pairs[at];
         (ordinal < number).then_some(first + ordinal)
     }
 
-    /// Distance that makes Rapier aim at a normal velocity: it lets a gap close within the step, and reduces penetration
-    /// at its rate.
+    /// Returns the distance that makes Rapier aim at a normal velocity: it lets a gap close within the step, and
+    /// reduces penetration at its rate.
     fn distance(&self, normal: f64) -> f64 {
         if normal < 0.0 {
             -normal * self.h
@@ -87,8 +104,8 @@ impl ContactAims {
     }
 }
 
-/// Hooks for `PhysicsPipeline::step`: which geoms may touch, and how their contacts are solved. Contacts with colliders
-/// that are not the model's are left to Rapier.
+/// The hooks for `PhysicsPipeline::step`: which geoms may touch, and how their contacts are solved. Contacts with
+/// colliders that are not the model's are left to Rapier.
 #[derive(Clone, Copy)]
 pub struct ContactHooks<'a> {
     pub(super) rig: &'a Rig,
@@ -103,7 +120,7 @@ impl std::fmt::Debug for ContactHooks<'_> {
 }
 
 impl ContactHooks<'_> {
-    /// The contact of a manifold, by its geoms and its place in the list of the pair.
+    /// Returns the contact of a manifold, by its geoms and its place in the list of the pair.
     fn contact(&self, a: usize, b: usize, manifold: &ContactManifold) -> Option<usize> {
         self.aims.find(self.table.find(a, b)?, manifold.subshape1 as usize)
     }
@@ -154,15 +171,15 @@ pub(super) fn read_contacts(
     stranger: Option<usize>,
 ) {
     let h = model.opt.timestep;
-    s.contacts.truncate(hooks.aims.aims.len());
-    s.contacts.iter_mut().for_each(|c| c.force = [0.0; 6]);
+    s.contact.truncate(hooks.aims.aims.len());
+    s.contact.iter_mut().for_each(|c| c.force = [0.0; 6]);
     for pair in narrow.contact_pairs() {
         let geoms = [pair.collider1, pair.collider2].map(|c| hooks.rig.geom_of(c));
         for manifold in pair.manifolds() {
             match geoms {
                 [Some(a), Some(b)] => {
                     if let Some(k) = hooks.contact(a, b, manifold) {
-                        read_own(manifold, a, &mut s.contacts[k], &mut s.efc.force, h);
+                        read_own(manifold, a, &mut s.contact[k], &mut s.efc.force, h);
                     }
                 }
                 [Some(own), None] => read_foreign(model, manifold, (own, 0), stranger, s),
@@ -173,7 +190,7 @@ pub(super) fn read_contacts(
     }
 }
 
-/// Force on the second body of a manifold at one of its points, world, N.
+/// Returns the force on the second body of a manifold at one of its points, world, N.
 fn force(manifold: &ContactManifold, point: &ContactData, h: f64) -> Vec3 {
     let f = manifold.data.normal * point.impulse - point.warmstart_tangent_world;
     scale([f.x, f.y, f.z], 1.0 / h)
@@ -190,7 +207,8 @@ fn read_own(manifold: &ContactManifold, first: usize, c: &mut Contact, rows: &mu
     }
 }
 
-/// `own` is the geom of the model and its side of the manifold.
+/// Reads a contact with a collider that is not the model's; `own` is the geom of the model and its side of the
+/// manifold.
 fn read_foreign(
     model: &Model,
     manifold: &ContactManifold,
@@ -210,7 +228,7 @@ fn read_foreign(
         let frame = from_normal([n.x, n.y, n.z]);
         let f = mat_vec(&frame, scale(force(manifold, &point.data, model.opt.timestep), sign));
         let slip = manifold.data.friction;
-        s.contacts.push(Contact {
+        s.contact.push(Contact {
             geom: [stranger, own],
             dist: point.dist,
             pos: add_scaled([on.x, on.y, on.z], row(&frame, 0), -0.5 * point.dist),

@@ -1,4 +1,4 @@
-//! The engine: a bridge into a world of its own.
+//! Rapier's pipeline as an engine: a bridge into a world of its own.
 
 use std::sync::Arc;
 
@@ -16,9 +16,9 @@ use crate::physics::rapier::rig::Rig;
 use crate::physics::rapier::{RapierError, RapierOptions, Sets};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
-use crate::physics::world::{PairTable, Scene};
+use crate::physics::world::{PairTable, RapierScene};
 
-/// Sets of a world of our own.
+/// The sets of a world of our own.
 #[derive(Clone, Debug, Default)]
 struct OwnedSets {
     bodies: RigidBodySet,
@@ -38,7 +38,7 @@ impl OwnedSets {
     }
 }
 
-/// A model prepared for Rapier. Made once; engines from it are cheap.
+/// A model prepared for Rapier: made once, so that making engines from it is cheap.
 #[derive(Clone, Debug)]
 pub struct RapierModel {
     model: Arc<Model>,
@@ -51,10 +51,10 @@ pub struct RapierModel {
 }
 
 impl RapierModel {
-    /// Of `model`, whose constants [`crate::physics::set_const`] has filled.
+    /// Prepares `model` for engines that share it.
     ///
     /// # Errors
-    /// Elements that Rapier's multibodies cannot represent.
+    /// Fails if the model has elements that Rapier's multibodies cannot represent.
     pub fn new(model: Arc<Model>, options: RapierOptions) -> Result<Self, RapierError> {
         let topology = Topology::new(&model);
         let mut pristine = OwnedSets::default();
@@ -69,12 +69,12 @@ impl RapierModel {
         })
     }
 
-    /// A new engine.
+    /// Creates a new engine.
     pub fn engine(&self) -> RapierEngine {
         let (model, pairs) = (self.model.clone(), self.pairs.clone());
         let bridge = Bridge::new(model, self.topology.clone(), pairs, self.rig.clone(), self.options);
         RapierEngine {
-            scene: Scene::new(&self.model, &self.pairs, bridge.contact_options()),
+            scene: RapierScene::new(&self.model, &self.pairs, bridge.contact_options()),
             parameters: bridge.parameters(),
             pristine: self.pristine.clone(),
             bridge,
@@ -83,14 +83,15 @@ impl RapierModel {
     }
 }
 
-/// Rapier's pipeline as the engine: multibody dynamics, contacts and joints are solved by `PhysicsPipeline::step`.
+/// Rapier's pipeline as an engine: multibody dynamics, contacts and joints are solved by `PhysicsPipeline::step`.
 ///
-/// Every step starts from a copy of the world before its first step, loaded with the state. So a step depends on the state
-/// alone: nothing that Rapier remembers (islands, the order of pairs, warm starts) outlives it, a restored state continues
-/// with the same bits, and a state that diverged leaves no trace. The copy costs a few percent of a step. A step allocates.
+/// Every step starts from a copy of the world before its first step, loaded with the state. So a step depends on the
+/// state alone: nothing that Rapier remembers (islands, the order of pairs, warm starts) outlives it, a restored state
+/// continues with the same bits, and a state that diverged leaves no trace. The copy costs a few percent of a step. A
+/// step allocates.
 pub struct RapierEngine {
     bridge: Bridge,
-    scene: Scene,
+    scene: RapierScene,
     pristine: Arc<OwnedSets>,
     parameters: IntegrationParameters,
     probe: Option<Probe>,
@@ -105,42 +106,28 @@ impl std::fmt::Debug for RapierEngine {
 }
 
 impl RapierEngine {
-    /// Of `model`, whose constants [`crate::physics::set_const`] has filled.
+    /// Creates an engine for `model`.
     ///
     /// # Errors
-    /// As [`RapierModel::new`].
+    /// Fails like [`RapierModel::new`].
     pub fn new(model: Arc<Model>, options: RapierOptions) -> Result<Self, RapierError> {
         Ok(RapierModel::new(model, options)?.engine())
     }
 
-    /// The bridge to the world of the step.
+    /// Returns the bridge to the world of the step.
     pub fn bridge(&self) -> &Bridge {
         &self.bridge
     }
-}
 
-impl Engine for RapierEngine {
-    fn model(&self) -> &Arc<Model> {
-        self.bridge.model()
+    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    fn mark(&mut self, stage: Option<Stage>) {
+        if let Some(p) = &mut self.probe {
+            p(stage);
+        }
     }
 
-    fn topology(&self) -> &Topology {
-        self.bridge.topology()
-    }
-
-    fn pairs(&self) -> &PairTable {
-        self.bridge.pairs()
-    }
-
-    fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    fn scene_mut(&mut self) -> &mut Scene {
-        &mut self.scene
-    }
-
-    fn forward(&mut self, s: &mut State) -> Result<(), EngineError> {
+    /// Computes everything that follows from the state, in a fresh copy of the world.
+    fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
         let (scene, probe) = (&mut self.scene, &mut self.probe);
         self.bridge.compute(s, &mut |stage, s| {
             if let Some(p) = probe {
@@ -171,20 +158,44 @@ impl Engine for RapierEngine {
         self.mark(Some(Stage::Wrenches));
         self.bridge.after(s, &world.sets(), &narrow)
     }
+}
+
+impl Engine for RapierEngine {
+    fn model(&self) -> &Arc<Model> {
+        self.bridge.model()
+    }
+
+    fn topology(&self) -> &Topology {
+        self.bridge.topology()
+    }
+
+    fn pairs(&self) -> &PairTable {
+        self.bridge.pairs()
+    }
+
+    fn scene(&self) -> &RapierScene {
+        &self.scene
+    }
+
+    fn scene_mut(&mut self) -> &mut RapierScene {
+        &mut self.scene
+    }
+
+    fn forward(&mut self, s: &mut State) -> Result<(), EngineError> {
+        let done = self.compute(s);
+        self.mark(None);
+        done
+    }
 
     fn step(&mut self, s: &mut State) -> Result<(), EngineError> {
-        self.forward(s)?;
+        self.compute(s)?;
         self.mark(Some(Stage::Integration));
-        self.bridge.advance(s)
+        let done = self.bridge.advance(s);
+        self.mark(None);
+        done
     }
 
     fn set_probe(&mut self, probe: Option<Probe>) {
         self.probe = probe;
-    }
-
-    fn mark(&mut self, stage: Option<Stage>) {
-        if let Some(p) = &mut self.probe {
-            p(stage);
-        }
     }
 }

@@ -1,7 +1,7 @@
-//! Rapier's own pipeline as the engine.
+//! Rapier's own pipeline as a physics engine.
 //!
-//! [`RapierEngine`] simulates a model behind the [`Engine`](crate::physics::Engine) trait; [`Bridge`] puts a model into a
-//! Rapier world of your own, beside anything else.
+//! [`RapierEngine`] simulates a model behind the [`Engine`](crate::physics::Engine) trait; [`Bridge`] puts a model into
+//! a Rapier world of your own, beside anything else.
 //!
 //! | of the model | in Rapier |
 //! |---|---|
@@ -17,8 +17,8 @@
 //!
 //! With the force `M qvel / h` in place of a velocity, Rapier's implicit Coriolis terms vanish: without constraints
 //! accelerations agree with the soft engine's to rounding. Rapier's contacts have no compliance in friction, one
-//! compliance in the normal direction, no torsional and rolling friction, and no convex coupling of sliding and lifting:
-//! there the engines differ.
+//! compliance in the normal direction, no torsional and rolling friction, and no convex coupling of sliding and
+//! lifting: there the engines differ.
 //!
 //! Positions are integrated from Rapier's accelerations as MuJoCo does. `State::efc` holds the rows with the forces of
 //! contacts and welds; Rapier does not tell those of single joints, whose sum is in `State::qfrc_constraint`.
@@ -26,8 +26,10 @@
 mod bridge;
 mod contacts;
 mod engine;
+mod inertial;
 mod rig;
 mod rows;
+mod support;
 
 use rapier3d_f64::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet};
 use rapier3d_f64::geometry::ColliderSet;
@@ -39,7 +41,7 @@ pub use contacts::ContactHooks;
 pub use engine::{RapierEngine, RapierModel};
 pub use rig::Rig;
 
-/// The sets of a Rapier world.
+/// Borrows the sets of a Rapier world.
 #[derive(Debug)]
 pub struct Sets<'a> {
     /// Bodies.
@@ -63,7 +65,7 @@ impl<'a> From<&'a mut PhysicsWorld> for Sets<'a> {
     }
 }
 
-/// Choices of [`RapierEngine`] and [`Bridge`].
+/// The options of [`RapierEngine`] and [`Bridge`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RapierOptions {
     /// Iterations of Rapier's solver in a step.
@@ -71,9 +73,10 @@ pub struct RapierOptions {
     /// Compliance of contacts relative to their inverse effective mass. The default is that of MuJoCo's default `dmax`,
     /// `(1 - 0.95) / 0.95`.
     pub contact_compliance: f64,
-    /// As in [`SoftOptions`](crate::physics::SoftOptions::double_weld_torque).
+    /// Whether torque sensors count a weld's torque twice, see
+    /// [`SoftOptions`](crate::physics::SoftOptions::double_weld_torque).
     pub double_weld_torque: bool,
-    /// Detect no contacts between geoms of the model.
+    /// Whether to detect no contacts between geoms of the model.
     pub disable_contacts: bool,
 }
 
@@ -88,7 +91,7 @@ impl Default for RapierOptions {
     }
 }
 
-/// Why a model cannot be simulated by Rapier.
+/// A reason why a model cannot be simulated by Rapier.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RapierError {
@@ -97,9 +100,9 @@ pub enum RapierError {
     Unsupported {
         /// Kind of element.
         element: &'static str,
-        /// Its name.
+        /// Name of the element.
         name: String,
-        /// The reason.
+        /// Reason.
         what: &'static str,
     },
 }

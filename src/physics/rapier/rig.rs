@@ -11,18 +11,29 @@ use rapier3d_f64::pipeline::ActiveHooks;
 use crate::math::*;
 use crate::model::{EqualityKind, JointType, Model};
 use crate::physics::dynamics::mul_m;
+use crate::physics::rapier::inertial::inertial;
+use crate::physics::rapier::support::check;
 use crate::physics::rapier::{RapierError, Sets};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 use crate::physics::world::{collider_order, geom_pose, pose, shape};
 
+/// A free joint of the model.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FreeJoint {
+    /// Its body.
+    pub body: usize,
+    /// Its first degree of freedom.
+    pub dof: usize,
+}
+
 /// A tree of the model.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    /// The body whose link is the root: one with a free joint, or a fixed one at the origin of the world.
+    /// Rigid body of the root link: one with a free joint, or a fixed one at the origin of the world.
     pub root: RigidBodyHandle,
-    /// First degree of freedom and body of the free joint, if there is one.
-    pub free: Option<(usize, usize)>,
+    /// The free joint, if there is one.
+    pub free: Option<FreeJoint>,
     /// Whether it is a multibody.
     pub articulated: bool,
 }
@@ -45,12 +56,12 @@ pub(super) struct WeldJoint {
     pub handle: ImpulseJointHandle,
 }
 
-/// The bodies, joints and colliders of a model in a Rapier world, and the way between them and a [`State`].
+/// The bodies, joints and colliders of a model in a Rapier world, and the mapping between them and a [`State`].
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// Body of each body of the model; what does not move shares one.
+    /// Rigid body of each body of the model; bodies that do not move share one.
     body: Vec<RigidBodyHandle>,
-    /// Frame of that body in the model's: its principal axes, see [`inertial`].
+    /// Frame of the rigid body in the model's body: its principal axes, see [`inertial`].
     frame: Vec<Pose>,
     /// Bodies of the model that move.
     moving: Vec<usize>,
@@ -62,7 +73,7 @@ pub struct Rig {
     pub(super) welds: Vec<WeldJoint>,
 }
 
-/// The rotation that takes x to a unit vector.
+/// Returns the rotation that takes the x axis to a unit vector.
 fn x_to(axis: Vec3) -> Quat {
     let w = 1.0 + axis[0];
     if w < 1e-6 {
@@ -86,7 +97,7 @@ fn dynamic(body: usize) -> RigidBodyBuilder {
     builder
 }
 
-/// The joint of a hinge: everything is locked but the rotation about x.
+/// Creates the joint of a hinge: everything is locked but the rotation about x.
 fn hinge(frame1: Pose, frame2: Pose) -> GenericJoint {
     GenericJoint {
         local_frame1: frame1,
@@ -100,7 +111,7 @@ impl Rig {
     /// Inserts bodies, joints and colliders of `model`, whose gravity and forces the rig applies itself.
     ///
     /// # Errors
-    /// Elements that Rapier's multibodies cannot represent.
+    /// Fails if the model has elements that Rapier's multibodies cannot represent.
     pub fn insert(model: &Model, topology: &Topology, sets: &mut Sets) -> Result<Self, RapierError> {
         check(model, topology)?;
         let nb = model.nbody();
@@ -133,7 +144,7 @@ impl Rig {
         rig.insert_colliders(model, sets);
         for e in 0..model.neq() {
             if let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[e] {
-                let (b1, b2) = (rig.body[body1.0], rig.body[body2.0]);
+                let (b1, b2) = (rig.body[body1], rig.body[body2]);
                 if b1 != b2 {
                     let handle = sets.impulse_joints.insert(b2, b1, GenericJoint::default(), true);
                     rig.welds.push(WeldJoint { equality: e, handle });
@@ -143,14 +154,17 @@ impl Rig {
         Ok(rig)
     }
 
-    /// The joints of a body: a root for a free joint, a chain of links for hinges, all but the last without mass, and a
-    /// rigid link for none.
+    /// Creates the joints of a body: a root for a free joint, a chain of links for hinges, all but the last without mass,
+    /// and a rigid link for none.
     fn connect(&mut self, model: &Model, b: usize, sets: &mut Sets) -> Result<(), RapierError> {
         let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
         if joints.clone().any(|j| model.jnt_type[j] == JointType::Free) {
             self.trees.push(Tree {
                 root: self.body[b],
-                free: Some((model.body_dofadr[b], b)),
+                free: Some(FreeJoint {
+                    body: b,
+                    dof: model.body_dofadr[b],
+                }),
                 articulated: false,
             });
             return Ok(());
@@ -174,7 +188,7 @@ impl Rig {
                 ..hinge(reach, own)
             };
             return link(sets, parent, self.body[b], joint)
-                .ok_or_else(|| RapierError::unsupported("body", &model.body_name[b], "Rapier refuses its link"));
+                .ok_or_else(|| RapierError::unsupported("body", &model.body_name[b], "Rapier rejects its link"));
         }
         let last = joints.end - 1;
         for j in joints {
@@ -185,7 +199,7 @@ impl Rig {
                 false => (sets.bodies.insert(dynamic(b)), local),
             };
             link(sets, parent, handle, hinge(frame, end))
-                .ok_or_else(|| RapierError::unsupported("joint", &model.jnt_name[j], "Rapier refuses its link"))?;
+                .ok_or_else(|| RapierError::unsupported("joint", &model.jnt_name[j], "Rapier rejects its link"))?;
             self.links.push(Link {
                 joint: j,
                 dof: model.jnt_dofadr[j],
@@ -236,22 +250,23 @@ impl Rig {
         }
     }
 
-    /// Pose of a body's Rapier body.
+    /// Returns the pose of a body's Rapier body.
     pub(super) fn pose(&self, s: &State, body: usize) -> Pose {
         pose(s.xpos[body], s.xquat[body]) * self.frame[body]
     }
 
-    /// Rapier's body of a body of the model; what does not move shares one. Its axes are the principal axes of inertia.
+    /// Returns Rapier's body of a body of the model; bodies that do not move share one. Its axes are the principal axes
+    /// of inertia.
     pub fn body_handle(&self, body: usize) -> Option<RigidBodyHandle> {
         self.body.get(body).copied()
     }
 
-    /// Rapier's collider of a geom.
+    /// Returns Rapier's collider of a geom.
     pub fn collider_handle(&self, geom: usize) -> Option<ColliderHandle> {
         self.collider.get(geom).copied()
     }
 
-    /// The geom of a collider, if it is one of the model's.
+    /// Returns the geom of a collider, if it is one of the model's.
     pub fn geom_of(&self, collider: ColliderHandle) -> Option<usize> {
         let (handle, geom) = (*self.geom.get(collider.into_raw_parts().0 as usize)?)?;
         (handle == collider).then_some(geom)
@@ -294,8 +309,8 @@ impl Rig {
                 body.add_torque(-torque, false);
             }
             let q = model.jnt_qposadr[link.joint];
-            let turn = axis_angle_to_quat([1.0, 0.0, 0.0], s.qpos[q] - model.qpos0[q]);
-            let turn = Rotation::from_xyzw(turn[1], turn[2], turn[3], turn[0]);
+            let [w, x, y, z] = axis_angle_to_quat([1.0, 0.0, 0.0], s.qpos[q] - model.qpos0[q]);
+            let rotation = Rotation::from_xyzw(x, y, z, w);
             if let Some(id) = sets.multibody_joints.rigid_body_link(link.handle).copied()
                 && let Some(multibody) = sets.multibody_joints.get_multibody_mut(id.multibody)
                 && let Some(l) = multibody.link_mut(id.id)
@@ -305,7 +320,7 @@ impl Rig {
                 if coordinate != 0.0 {
                     l.joint.apply_displacement(&[-coordinate]);
                 }
-                l.joint.data.local_frame1 = link.frame * Pose::from_rotation(turn);
+                l.joint.data.local_frame1 = link.frame * Pose::from_rotation(rotation);
             }
         }
     }
@@ -317,7 +332,9 @@ impl Rig {
         {
             multibody.generalized_velocity_mut().fill(0.0);
         }
-        let Some((d, b)) = tree.free else { return };
+        let Some(FreeJoint { body: b, dof: d }) = tree.free else {
+            return;
+        };
         let f = [force[d], force[d + 1], force[d + 2]];
         let torque = mat_vec(&s.xmat[b], [force[d + 3], force[d + 4], force[d + 5]]);
         // about the centre of mass instead of the origin of the body
@@ -333,7 +350,9 @@ impl Rig {
     /// Reads the velocities (nv) after Rapier's step, in the frames of its start.
     pub(super) fn velocities(&self, model: &Model, s: &State, sets: &Sets, out: &mut [f64]) {
         for tree in &self.trees {
-            let Some((d, b)) = tree.free else { continue };
+            let Some(FreeJoint { body: b, dof: d }) = tree.free else {
+                continue;
+            };
             let (mut linear, mut angular) = ([0.0; 3], [0.0; 3]);
             if tree.articulated {
                 // Rapier updates the velocities of the links' bodies only at the start of a step
@@ -362,7 +381,7 @@ impl Rig {
     }
 }
 
-/// The multibody of a link and the place of its degree of freedom.
+/// Returns the multibody of a link and the index of its degree of freedom.
 pub(super) fn multibody_of<'a>(sets: &'a mut Sets, handle: RigidBodyHandle) -> Option<(&'a mut Multibody, usize)> {
     let id = *sets.multibody_joints.rigid_body_link(handle)?;
     let multibody = sets.multibody_joints.get_multibody_mut(id.multibody)?;
@@ -372,58 +391,4 @@ pub(super) fn multibody_of<'a>(sets: &'a mut Sets, handle: RigidBodyHandle) -> O
 
 fn link(sets: &mut Sets, parent: RigidBodyHandle, child: RigidBodyHandle, joint: GenericJoint) -> Option<()> {
     sets.multibody_joints.insert(parent, child, joint, true).map(|_| ())
-}
-
-/// Principal axes of a body, with the moments ascending, and the moments.
-///
-/// Rapier adds up the mass properties of a body and its colliders and diagonalises the sum, which fails for moments below
-/// about 1e-5 kg m^2 unless it is diagonal and ascending already.
-fn inertial(model: &Model, b: usize) -> (Pose, Vector) {
-    let (mut quat, mut moments) = (model.body_iquat[b], model.body_inertia[b]);
-    let half = 0.5_f64.sqrt();
-    for first in [0, 1, 0] {
-        if moments[first] > moments[first + 1] {
-            moments.swap(first, first + 1);
-            let mut turn = [half, 0.0, 0.0, 0.0];
-            turn[1 + (first + 2) % 3] = half;
-            quat = quat_mul(quat, turn);
-        }
-    }
-    (pose(model.body_ipos[b], quat_normalize(quat)), vector(moments))
-}
-
-/// Refuses what Rapier's multibodies cannot represent.
-fn check(model: &Model, topology: &Topology) -> Result<(), RapierError> {
-    let tree = |j: usize| topology.dof_tree[model.jnt_dofadr[j]];
-    for j in 0..model.njnt() {
-        let b = model.jnt_bodyid[j];
-        let what = match model.jnt_type[j] {
-            JointType::Slide => "slide joints are not supported",
-            JointType::Free if model.body_jntnum[b] > 1 => "a free joint must be the only one of its body",
-            JointType::Free if model.body_parentid[b] != 0 => "a free joint must be on a child of the world",
-            _ => continue,
-        };
-        return Err(RapierError::unsupported("joint", &model.jnt_name[j], what));
-    }
-    for t in 0..model.ntendon() {
-        let pair = matches!(model.tendon_wrap[t][..], [(a, x), (b, y)]
-            if a != b && x != 0.0 && y != 0.0 && tree(a) == tree(b));
-        if model.tendon_limited[t] && !pair {
-            let what = "a limited tendon must run over two joints of one tree";
-            return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
-        }
-    }
-    for e in 0..model.neq() {
-        if let EqualityKind::Joint {
-            joint1,
-            joint2: Some(joint2),
-            ..
-        } = model.eq_kind[e]
-            && (joint1 == joint2 || tree(joint1.0) != tree(joint2.0))
-        {
-            let what = "a joint equality must be between two joints of one tree";
-            return Err(RapierError::unsupported("equality", &model.eq_name[e], what));
-        }
-    }
-    Ok(())
 }

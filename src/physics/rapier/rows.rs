@@ -1,8 +1,8 @@
 //! The constraint rows of a step in Rapier's terms.
 //!
-//! A row of MuJoCo's formulation asks for the acceleration `aref - R f`, so for the velocity `t - R p` at the end of the
-//! step, with `t = vel + h aref` and the impulse `p = h f`. A velocity motor of Rapier with the damping `1 / (h R)` asks
-//! for exactly that: joints are held by motors, not by Rapier's own locks and limits, where bounds allow.
+//! A row of MuJoCo's formulation asks for the acceleration `aref - R f`, so for the velocity `t - R p` at the end of
+//! the step, with `t = vel + h aref` and the impulse `p = h f`. A velocity motor of Rapier with the damping `1 / (h R)`
+//! asks for exactly that: joints are held by motors, not by Rapier's own locks and limits, where bounds allow.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use rapier3d_f64::dynamics::{
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::{Block, RowKind, Weld, weld_points};
+use crate::physics::constraint::{Block, ConstraintType, Weld, weld_points};
 use crate::physics::dynamics::{Articulated, Damping};
 use crate::physics::rapier::Sets;
 use crate::physics::rapier::rig::Rig;
@@ -23,7 +23,8 @@ use crate::physics::topology::Topology;
 /// Index of the rotation about x among the axes of a joint.
 const ANG_X: usize = 3;
 
-/// Velocity that a row asks for at the end of the step, and velocity per impulse that it gives way by.
+/// The aim of a row: the velocity at the end of the step, and the compliance, velocity per impulse, with which it gives
+/// way.
 #[derive(Clone, Copy, Debug, Default)]
 struct Aim {
     velocity: f64,
@@ -38,7 +39,7 @@ impl Aim {
         }
     }
 
-    /// What both rows together ask for.
+    /// Combines what two rows ask for.
     fn and(self, other: Self) -> Self {
         let (x, y) = (1.0 / self.compliance, 1.0 / other.compliance);
         Self {
@@ -58,16 +59,17 @@ impl Aim {
     }
 }
 
-/// Rows on a single degree of freedom.
+/// The constraint rows on a single degree of freedom.
 #[derive(Clone, Copy, Debug, Default)]
 struct DofRows {
     lock: Option<Aim>,
-    /// Sign of the force, and what it asks for along it.
+    /// Sign of the limit's force, and its aim along it.
     limit: Option<(f64, Aim)>,
     friction: Option<(f64, Aim)>,
 }
 
-/// Softness whose constraint force mixing is `ratio` times the inverse effective mass, and its rate of error reduction, 1/s.
+/// Returns the softness whose constraint force mixing is `ratio` times the inverse effective mass, and its rate of
+/// error reduction, 1/s.
 pub(super) fn softness(ratio: f64, h: f64) -> (SpringCoefficients<f64>, f64) {
     let x = (1.0 + 1.0 / ratio.max(MINVAL)).sqrt() - 1.0;
     (SpringCoefficients::new(x / (2.0 * PI * h), 1.0), x / (h * (x + 2.0)))
@@ -75,14 +77,14 @@ pub(super) fn softness(ratio: f64, h: f64) -> (SpringCoefficients<f64>, f64) {
 
 /// Working memory for the rows of a step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rows {
+pub(super) struct RapierRows {
     dofs: Vec<DofRows>,
     column: Vec<f64>,
     response: Vec<f64>,
 }
 
-impl Rows {
-    /// Gives the joints of the rig what the rows of `s.efc` ask of them; contacts are left to the hooks.
+impl RapierRows {
+    /// Sets the joints of the rig to what the rows of `s.efc` ask of them; contacts are left to the hooks.
     pub fn load(
         &mut self,
         rig: &Rig,
@@ -97,38 +99,33 @@ impl Rows {
         self.dofs.resize(model.nv, DofRows::default());
         self.column.resize(model.nv, 0.0);
         self.response.resize(model.nv, 0.0);
-        for tree in rig.trees.iter().filter(|t| t.articulated) {
-            if let Some(id) = sets.multibody_joints.rigid_body_link(tree.root).copied()
-                && let Some(multibody) = sets.multibody_joints.get_multibody_mut(id.multibody)
-            {
-                multibody.clear_dof_couplings();
-            }
-        }
-        for weld in &rig.welds {
-            if let Some(joint) = sets.impulse_joints.get_mut(weld.handle, false) {
-                joint.data.motor_axes = JointAxesMask::empty();
-            }
-        }
+        clear_joints(rig, sets);
         for block in &s.efc.blocks {
             let aim = Aim::of(s, block.row, h);
             match (block.kind, block.dof) {
-                (RowKind::FrictionLoss, _) => self.dofs[block.id].friction = Some((block.frictionloss, aim)),
-                (RowKind::Equality, _) if block.dim == 6 => load_weld(rig, model, s, block, sets),
-                (RowKind::Equality, Some(dof)) => self.add_lock(dof, aim),
-                (RowKind::Limit, Some(dof)) => {
+                (ConstraintType::FrictionDof, _) => self.dofs[block.id].friction = Some((block.frictionloss, aim)),
+                (ConstraintType::Equality, _) if block.dim == 6 => load_weld(rig, model, s, block, sets),
+                (ConstraintType::Equality, Some(dof)) => self.add_lock(dof, aim),
+                (ConstraintType::LimitJoint | ConstraintType::LimitTendon, Some(dof)) => {
                     let side = nonzero(topology, s, block).next().map_or(0.0, |(_, v)| v);
                     self.dofs[dof].limit = Some((side, aim));
                 }
-                (RowKind::Equality | RowKind::Limit, None) => {
+                (ConstraintType::Equality | ConstraintType::LimitJoint | ConstraintType::LimitTendon, None) => {
                     if let Some(row) = pair(topology, s, block)
                         && let Some(target) = self.target(model, inertia, s, block, row)
                     {
                         couple(rig, row, target, h, sets);
                     }
                 }
-                (RowKind::Frictionless | RowKind::Elliptic, _) => {}
+                (ConstraintType::ContactFrictionless | ConstraintType::ContactElliptic, _) => {}
             }
         }
+        self.load_links(rig, model, inertia, s, sets);
+    }
+
+    /// Sets the motor, the limit and the dry friction of every hinge.
+    fn load_links(&mut self, rig: &Rig, model: &Model, inertia: &mut Articulated, s: &State, sets: &mut Sets) {
+        let h = model.opt.timestep;
         for link in &rig.links {
             let rows = self.dofs[link.dof];
             let free = s.qvel[link.dof] + h * s.qacc_smooth[link.dof];
@@ -154,7 +151,7 @@ impl Rows {
         rows.lock = Some(rows.lock.map_or(aim, |other| other.and(aim)));
     }
 
-    /// `J M^-1 J'` of a row with the given entries.
+    /// Computes `J M^-1 J'` of a row with the given entries.
     fn quadratic(&mut self, model: &Model, inertia: &mut Articulated, s: &State, row: &[(usize, f64)]) -> f64 {
         self.column.fill(0.0);
         for &(d, v) in row {
@@ -164,7 +161,8 @@ impl Rows {
         row.iter().map(|&(d, v)| v * self.response[d]).sum()
     }
 
-    /// The velocity that a row on two joints reaches when it is solved alone. None for a limit that would not act.
+    /// Returns the velocity that a row on two joints reaches when it is solved alone; `None` for a limit that would not
+    /// act.
     fn target(
         &mut self,
         model: &Model,
@@ -178,13 +176,29 @@ impl Rows {
         let free: f64 = row.iter().map(|&(d, v)| v * (s.qvel[d] + h * s.qacc_smooth[d])).sum();
         let effective = self.quadratic(model, inertia, s, &row);
         let impulse = (aim.velocity - free) / (effective + aim.compliance);
-        let acts = block.kind != RowKind::Limit || impulse > 0.0;
+        let acts = block.kind == ConstraintType::Equality || impulse > 0.0;
         acts.then_some(aim.velocity - aim.compliance * impulse)
     }
 }
 
-/// A row on two joints as a coupling of Rapier, which is stiff and acts both ways: aimed at [`Rows::target`], it gives way
-/// as the row should.
+/// Takes the couplings and motors of the last step off the joints.
+fn clear_joints(rig: &Rig, sets: &mut Sets) {
+    for tree in rig.trees.iter().filter(|t| t.articulated) {
+        if let Some(id) = sets.multibody_joints.rigid_body_link(tree.root).copied()
+            && let Some(multibody) = sets.multibody_joints.get_multibody_mut(id.multibody)
+        {
+            multibody.clear_dof_couplings();
+        }
+    }
+    for weld in &rig.welds {
+        if let Some(joint) = sets.impulse_joints.get_mut(weld.handle, false) {
+            joint.data.motor_axes = JointAxesMask::empty();
+        }
+    }
+}
+
+/// Sets a row on two joints as a coupling of Rapier, which is stiff and acts both ways: aimed at [`RapierRows::target`], it
+/// gives way as the row should.
 fn couple(rig: &Rig, [(d1, j1), (d2, j2)]: [(usize, f64); 2], target: f64, h: f64, sets: &mut Sets) {
     let link = |dof: usize| rig.links.iter().find(|l| l.dof == dof);
     let (Some(first), Some(second)) = (link(d1), link(d2)) else {
@@ -211,13 +225,13 @@ fn couple(rig: &Rig, [(d1, j1), (d2, j2)]: [(usize, f64); 2], target: f64, h: f6
     }
 }
 
-/// The two entries of a row on two joints: degree of freedom and value.
+/// Returns the two entries of a row on two joints: degree of freedom and value.
 fn pair(topology: &Topology, s: &State, block: &Block) -> Option<[(usize, f64); 2]> {
     let mut found = nonzero(topology, s, block);
     Some([found.next()?, found.next()?])
 }
 
-/// The entries of the first row of a block that are not zero.
+/// Returns the entries of the first row of a block that are not zero.
 fn nonzero(topology: &Topology, s: &State, block: &Block) -> impl Iterator<Item = (usize, f64)> {
     s.efc
         .entries(topology, block)
@@ -225,7 +239,7 @@ fn nonzero(topology: &Topology, s: &State, block: &Block) -> impl Iterator<Item 
         .map(|(_, d, v)| (d, v))
 }
 
-/// How a joint of Rapier is set for a step.
+/// The setting of a Rapier joint for a step.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
     motor: Option<JointMotor>,
@@ -253,10 +267,11 @@ impl Setting {
 }
 
 impl DofRows {
-    /// `free` is the velocity without constraints, `inverse_inertia` the diagonal of the inverse inertia.
+    /// Returns the motor for a row: `free` is the velocity without constraints, `inverse_inertia` the diagonal of the
+    /// inverse inertia.
     ///
-    /// A joint of Rapier has one motor, which gives way exactly as a row does, and a limit and dry friction, which share a
-    /// softness. The motor stands for a lock, or for a limit that is being run into, or else for the friction.
+    /// A joint of Rapier has one motor, which gives way exactly as a row does, and a limit and dry friction, which
+    /// share a softness. The motor stands for a lock, or for a limit that is being run into, or else for the friction.
     fn setting(&self, free: f64, inverse_inertia: f64, h: f64) -> Setting {
         let (loss, friction) = self.friction.unwrap_or_default();
         let two_sided = |(side, limit): (f64, Aim)| Aim {
@@ -298,7 +313,7 @@ impl DofRows {
     }
 }
 
-/// Motors along the axes of the world at the constrained point of body 2.
+/// Sets the motors of a weld, along the axes of the world at the constrained point of body 2.
 fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets) {
     let h = model.opt.timestep;
     let Some(weld) = weld_points(model, s, block.id) else {
@@ -312,7 +327,7 @@ fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets
     };
     let aims: [Aim; 6] = std::array::from_fn(|k| Aim::of(s, block.row + k, h));
     let inverse = inverse_rate(&weld);
-    let turn = mat_vec(&inverse, [aims[3].velocity, aims[4].velocity, aims[5].velocity]);
+    let angular = mat_vec(&inverse, [aims[3].velocity, aims[4].velocity, aims[5].velocity]);
     let frame = |b: usize, point: Vec3| {
         let place = Pose::from_translation(Vector::new(point[0], point[1], point[2]));
         match model.body_weldid[b] {
@@ -321,15 +336,15 @@ fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets
         }
     };
     if let Some(joint) = sets.impulse_joints.get_mut(joint.handle, false) {
-        joint.data.local_frame1 = frame(body2.0, weld.point2);
-        joint.data.local_frame2 = frame(body1.0, weld.point1);
+        joint.data.local_frame1 = frame(body2, weld.point2);
+        joint.data.local_frame2 = frame(body1, weld.point1);
         for k in 0..6 {
             let aim = if k < 3 {
                 aims[k]
             } else {
                 let along = row(&inverse, k - 3);
                 Aim {
-                    velocity: turn[k - 3],
+                    velocity: angular[k - 3],
                     compliance: dot(along, along) * aims[k].compliance,
                 }
             };
@@ -339,7 +354,7 @@ fn load_weld(rig: &Rig, model: &Model, s: &State, block: &Block, sets: &mut Sets
     }
 }
 
-/// From the rate of a weld's rotational error to the relative angular velocity.
+/// Returns the map from the rate of a weld's rotational error to the relative angular velocity.
 fn inverse_rate(weld: &Weld) -> Mat3 {
     let column = |k: usize| {
         let mut axis = [0.0; 3];
@@ -362,7 +377,7 @@ pub(super) fn read_welds(rig: &Rig, model: &Model, s: &mut State, sets: &Sets) {
     let h = model.opt.timestep;
     for k in 0..s.efc.blocks.len() {
         let block = s.efc.blocks[k];
-        if block.kind != RowKind::Equality || block.dim != 6 {
+        if block.kind != ConstraintType::Equality || block.dim != 6 {
             continue;
         }
         let Some(weld) = weld_points(model, s, block.id) else {
@@ -374,7 +389,7 @@ pub(super) fn read_welds(rig: &Rig, model: &Model, s: &mut State, sets: &Sets) {
         let Some(joint) = sets.impulse_joints.get(joint.handle) else {
             continue;
         };
-        // Rapier counts what the first body gives
+        // Rapier reports what the first body exerts
         let f: [f64; 6] = std::array::from_fn(|k| -joint.data.motors[k].impulse / h);
         let inverse = inverse_rate(&weld);
         let rows = mat_t_vec(&inverse, [f[3], f[4], f[5]]);

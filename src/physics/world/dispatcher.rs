@@ -11,33 +11,34 @@ use parry3d_f64::shape::{PackedFeatureId, Shape, TypedShape};
 
 use crate::math::{MAT3_ID, Mat3, Vec3, add_scaled};
 use crate::model::GeomType;
-use crate::physics::contact::{ContactPoint, Options, Placed, Scratch, bounding_test, collide};
+use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 
-/// Gives Rapier the contact manifolds of [`crate::physics::contact`]; everything else is Parry's.
+/// A query dispatcher with the contact manifolds of [`crate::physics::contact`], and Parry's for everything else.
 ///
 /// It keeps no memory of earlier steps, unlike Parry's own manifolds, and ignores the prediction distance: a contact is
-/// a contact when the shapes touch. Points come in the same order as from [`collide`]; those of one normal share a manifold.
+/// a contact when the shapes touch. Points come in the same order as from [`collide`]; those of one normal share a
+/// manifold.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactDispatcher {
-    options: Options,
+    options: ContactOptions,
     split: bool,
 }
 
 impl ContactDispatcher {
-    /// With the given options.
-    pub fn new(options: Options) -> Self {
+    /// Creates a dispatcher with the given options.
+    pub fn new(options: ContactOptions) -> Self {
         Self { options, split: false }
     }
 
-    /// The same with a manifold for each point, whose `subshape1` is the place of the point in the list of the pair.
+    /// Creates a manifold of its own for each point, with the point's place in the list of the pair as `subshape1`.
     /// Rapier's solver takes at most four points of a manifold; the contact routines find up to eight.
     pub fn one_point_manifolds(self) -> Self {
         Self { split: true, ..self }
     }
 }
 
-/// A shape as the contact routines see it: type, size, bounding radius, and its frame in the collider's (Parry's cylinders
-/// stand along y).
+/// Describes a shape as the contact routines see it: type, size, bounding radius, and whether its frame differs from
+/// the collider's (Parry's cylinders stand along y).
 fn describe(shape: &dyn Shape) -> Option<(GeomType, Vec3, f64, bool)> {
     Some(match shape.as_typed_shape() {
         TypedShape::HalfSpace(_) => (GeomType::Plane, [0.0; 3], 0.0, false),
@@ -58,7 +59,8 @@ fn describe(shape: &dyn Shape) -> Option<(GeomType, Vec3, f64, bool)> {
     })
 }
 
-/// Rotation of a collider as the geom's: columns are the local axes. A cylinder's z axis is the collider's y axis.
+/// Converts a collider's rotation to the geom's: columns are the local axes. A cylinder's z axis is the collider's y
+/// axis.
 fn geom_mat(m: ParryMat3, upright: bool) -> Mat3 {
     let (x, y, z) = if upright {
         (m.x_axis, -m.z_axis, m.y_axis)
@@ -73,7 +75,7 @@ fn vector(v: Vec3) -> Vector {
 }
 
 impl ContactDispatcher {
-    /// Contacts in the frame of the first shape; `None` when a shape is not one of the model's.
+    /// Finds contacts in the frame of the first shape; `None` when a shape is not one of the model's.
     fn points(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Option<(Vec<ContactPoint>, bool)> {
         let (kind1, size1, radius1, upright1) = describe(g1)?;
         let (kind2, size2, radius2, upright2) = describe(g2)?;
@@ -84,13 +86,13 @@ impl ContactDispatcher {
         };
         let mat2 = geom_mat(ParryMat3::from_quat(pos12.rotation), upright2);
         let t = pos12.translation;
-        let first = Placed {
+        let first = PlacedGeom {
             kind: kind1,
             size: size1,
             pos: [0.0; 3],
             mat: &mat1,
         };
-        let second = Placed {
+        let second = PlacedGeom {
             kind: kind2,
             size: size2,
             pos: [t.x, t.y, t.z],

@@ -1,4 +1,4 @@
-//! The scene in Rapier, and the contacts that come out of it.
+//! The model as a Rapier scene, and the contacts in it.
 //!
 //! Rapier holds every body and geom, with its pose written back each step, so ray casts, shape queries and debug
 //! rendering work on the live scene. Contacts for the solver come from a sweep over the same geoms with the contact
@@ -12,6 +12,6 @@ mod sweep;
 
 pub use dispatcher::ContactDispatcher;
 pub use pairs::{Pair, PairTable};
-pub use scene::{Scene, SceneContact};
+pub use scene::{RapierScene, SceneContact};
 pub(crate) use scene::{collider_order, geom_pose, pose, shape};
-pub use sweep::Sweep;
+pub(crate) use sweep::Sweep;

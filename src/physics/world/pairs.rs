@@ -1,28 +1,30 @@
-//! Which geoms may touch, in which order contacts are listed, and with which parameters.
+//! Geom pairs that may touch: the order of their contacts, and their parameters.
 
 use crate::math::MINVAL;
 use crate::model::{GeomType, Model};
 use crate::physics::state::Contact;
 
-/// Friction coefficients are at least this (MuJoCo's `mjMINMU`).
+/// Least friction coefficient (MuJoCo's `mjMINMU`).
 const MIN_FRICTION: f64 = 1e-5;
 
-/// Two geoms that may touch, and the parameters of their contacts.
+/// Two geoms that may touch, with the parameters of their contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// The geoms, the lower [`GeomType`] first; of equal types the one of the lower body, or the first of an explicit pair.
+    /// The geoms, the lower [`GeomType`] first; of equal types the one of the lower body, or the first of an explicit
+    /// pair.
     pub geom: [usize; 2],
-    /// Contacts are detected up to this distance, m.
+    /// Distance up to which contacts are detected, m.
     pub margin: f64,
     /// A contact with everything but its geometry filled in.
     pub template: Contact,
 }
 
-/// All pairs that may touch, in the order in which MuJoCo lists contacts.
+/// Lists all pairs that may touch, in the order in which MuJoCo lists contacts.
 ///
-/// Two geoms may touch when their bits match (`contype` of one and `conaffinity` of the other), their bodies are neither
-/// rigidly joined nor parent and child (unless the parent is part of the world) nor excluded; explicit pairs always may,
-/// with their own parameters. Contacts are ordered by body pair; within it explicit pairs come first, then geom pairs.
+/// Two geoms may touch when their bits match (`contype` of one and `conaffinity` of the other), their bodies are
+/// neither rigidly joined nor parent and child (unless the parent is part of the world) nor excluded; explicit pairs
+/// always may, with their own parameters. Contacts are ordered by body pair; within it explicit pairs come first, then
+/// geom pairs.
 #[derive(Clone, Debug)]
 pub struct PairTable {
     ngeom: usize,
@@ -70,12 +72,12 @@ impl PairTable {
         Self { ngeom, index, pairs }
     }
 
-    /// All pairs, in contact order.
+    /// Returns all pairs, in contact order.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// Position in [`Self::pairs`] of the pair of two geoms, if they may touch.
+    /// Returns the index in [`Self::pairs`] of the pair of two geoms, if they may touch.
     #[inline]
     pub fn find(&self, a: usize, b: usize) -> Option<usize> {
         match self.index[a * self.ngeom + b] {
@@ -85,7 +87,7 @@ impl PairTable {
     }
 }
 
-/// Geoms by type, then by body.
+/// Orders two geoms by type, then by body.
 fn ordered(model: &Model, a: usize, b: usize) -> [usize; 2] {
     let key = |g: usize| (model.geom_type[g], model.geom_bodyid[g], g);
     if key(a) <= key(b) { [a, b] } else { [b, a] }
@@ -153,8 +155,8 @@ fn explicit(model: &Model, p: usize) -> Pair {
     }
 }
 
-/// Mixed parameters: those of the geom of higher priority; at equal priority the greater dimension, the greater friction
-/// and averages weighted by `solmix`.
+/// Mixes the parameters of two geoms: those of the geom of higher priority; at equal priority the greater dimension,
+/// the greater friction and averages weighted by `solmix`.
 fn dynamic(model: &Model, geom: [usize; 2]) -> Pair {
     let [a, b] = geom;
     let (pa, pb) = (model.geom_priority[a], model.geom_priority[b]);

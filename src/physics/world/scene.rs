@@ -1,4 +1,4 @@
-//! The scene in Rapier's sets: one body per body, one collider per geom.
+//! The model in Rapier's sets: one rigid body per body, one collider per geom.
 
 use parry3d_f64::math::{Pose, Rotation, Vector};
 use rapier3d_f64::dynamics::{IslandManager, RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
@@ -12,11 +12,11 @@ use rapier3d_f64::pipeline::{
 
 use crate::math::{Quat, Vec3};
 use crate::model::{GeomType, Model};
-use crate::physics::contact::Options;
+use crate::physics::contact::ContactOptions;
 use crate::physics::state::State;
 use crate::physics::world::{ContactDispatcher, PairTable};
 
-/// Lets Rapier test exactly the pairs of the table.
+/// A filter that lets Rapier test exactly the pairs of the table.
 struct PairFilter {
     ncollider: usize,
     allowed: Vec<bool>,
@@ -44,11 +44,12 @@ pub struct SceneContact {
     pub normal: Vec3,
 }
 
-/// The live scene. Poses are those of the last [`Scene::sync`], which the engine does each step.
+/// The model as a live Rapier scene. Poses are those of the last [`RapierScene::sync`], which the engine does each
+/// step.
 ///
 /// Bodies are kinematic (fixed where nothing moves them); `user_data` of a body and a collider is the id of the body and
 /// geom. Do not run a `PhysicsPipeline` on these sets: the engine owns the poses.
-pub struct Scene {
+pub struct RapierScene {
     bodies: RigidBodySet,
     colliders: ColliderSet,
     islands: IslandManager,
@@ -82,7 +83,7 @@ pub(crate) fn shape(kind: GeomType, s: Vec3) -> SharedShape {
     }
 }
 
-/// Pose of a geom's collider in its body.
+/// Returns the pose of a geom's collider in its body.
 pub(crate) fn geom_pose(model: &Model, geom: usize) -> Pose {
     let mut local = pose(model.geom_pos[geom], model.geom_quat[geom]);
     if model.geom_type[geom] == GeomType::Cylinder {
@@ -93,25 +94,26 @@ pub(crate) fn geom_pose(model: &Model, geom: usize) -> Pose {
     local
 }
 
-/// Geoms in the order in which their colliders are made: by type, so that Rapier hands pairs over with the lower first.
+/// Returns the geoms in the order in which their colliders are made: by type, so that Rapier hands pairs over with the
+/// lower type first.
 pub(crate) fn collider_order(model: &Model) -> Vec<usize> {
     let mut order: Vec<usize> = (0..model.ngeom()).collect();
     order.sort_by_key(|&g| (model.geom_type[g], g));
     order
 }
 
-impl std::fmt::Debug for Scene {
+impl std::fmt::Debug for RapierScene {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Scene")
+        f.debug_struct("RapierScene")
             .field("bodies", &self.bodies.len())
             .field("colliders", &self.colliders.len())
             .finish_non_exhaustive()
     }
 }
 
-impl Scene {
-    /// Builds the scene at the origin; [`Scene::sync`] gives it its poses.
-    pub fn new(model: &Model, pairs: &PairTable, options: Options) -> Self {
+impl RapierScene {
+    /// Builds the scene at the origin; [`RapierScene::sync`] gives it its poses.
+    pub fn new(model: &Model, pairs: &PairTable, options: ContactOptions) -> Self {
         let mut bodies = RigidBodySet::new();
         let mut colliders = ColliderSet::new();
         let body_handle: Vec<RigidBodyHandle> = (0..model.nbody())
@@ -161,7 +163,7 @@ impl Scene {
         .with_fixed_poses(model)
     }
 
-    /// Fixed bodies get their poses once: chains of constant transforms from the world.
+    /// Gives fixed bodies their poses, once: chains of constant transforms from the world.
     fn with_fixed_poses(mut self, model: &Model) -> Self {
         let mut world = vec![Pose::IDENTITY; model.nbody()];
         for b in 1..model.nbody() {
@@ -204,7 +206,7 @@ impl Scene {
         }
     }
 
-    /// Ray casts, shape casts and overlap tests on the scene.
+    /// Returns a pipeline for ray casts, shape casts and overlap tests on the scene.
     pub fn queries<'a>(&'a mut self, filter: QueryFilter<'a>) -> QueryPipeline<'a> {
         self.update_queries();
         self.broad_phase.as_query_pipeline(
@@ -215,7 +217,7 @@ impl Scene {
         )
     }
 
-    /// Contacts as Rapier's collision pipeline finds them, by geom pair.
+    /// Lists the contacts that Rapier's collision pipeline finds, by geom pair.
     pub fn pipeline_contacts(&mut self) -> Vec<SceneContact> {
         self.update_queries();
         let mut out = Vec::new();
@@ -240,22 +242,22 @@ impl Scene {
         out
     }
 
-    /// Rapier's bodies.
+    /// Returns Rapier's bodies.
     pub fn bodies(&self) -> &RigidBodySet {
         &self.bodies
     }
 
-    /// Rapier's colliders.
+    /// Returns Rapier's colliders.
     pub fn colliders(&self) -> &ColliderSet {
         &self.colliders
     }
 
-    /// Handle of a body, by its id.
+    /// Returns the handle of a body, by its id.
     pub fn body_handle(&self, body: usize) -> Option<RigidBodyHandle> {
         self.body_handle.get(body).copied()
     }
 
-    /// Handle of a geom's collider, by the geom's id.
+    /// Returns the handle of a geom's collider, by the geom's id.
     pub fn collider_handle(&self, geom: usize) -> Option<ColliderHandle> {
         self.collider_handle.get(geom).copied()
     }

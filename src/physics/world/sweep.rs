@@ -2,14 +2,14 @@
 
 use crate::math::{Mat3, Vec3};
 use crate::model::{GeomType, Model};
-use crate::physics::contact::{ContactPoint, Options, Placed, Scratch, bounding_test, collide};
+use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 use crate::physics::state::{Contact, RESERVED_CONTACTS, State};
 use crate::physics::world::PairTable;
 
-/// Boxes are enlarged by this, m: more than rounding, so that the exact routines decide.
+/// Enlargement of boxes, m: more than rounding, so that the exact routines decide.
 const SLACK: f64 = 1e-7;
 
-/// World box of a geom.
+/// The world box of a geom.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     geom: usize,
@@ -17,10 +17,10 @@ struct Bounds {
     high: Vec3,
 }
 
-/// Finds contacts. Holds the sorted order of the last step, which is nearly that of the next, and all working memory.
+/// Contact detection, with the sorted order of the last step, which is nearly that of the next, and all working memory.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    options: Options,
+    options: ContactOptions,
     scratch: Scratch,
     /// Geoms that are part of a pair, with their boxes, by lower x of the last step.
     boxes: Vec<Bounds>,
@@ -29,8 +29,8 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// For the geoms of `model` and the pairs of `table`.
-    pub fn new(model: &Model, table: &PairTable, options: Options) -> Self {
+    /// Prepares the sweep over the geoms of `model` and the pairs of `table`.
+    pub fn new(model: &Model, table: &PairTable, options: ContactOptions) -> Self {
         let in_pair = |g: usize| table.pairs().iter().any(|p| p.geom.contains(&g));
         Self {
             options,
@@ -48,13 +48,13 @@ impl Sweep {
         }
     }
 
-    /// Fills `s.contacts` from geom poses, in MuJoCo's order. The result depends on nothing but the poses.
+    /// Fills `s.contact` from geom poses, in MuJoCo's order. The result depends on nothing but the poses.
     pub fn contacts(&mut self, model: &Model, table: &PairTable, s: &mut State) {
         self.broad_phase(model, table, s);
-        s.contacts.clear();
+        s.contact.clear();
         for &k in &self.candidates {
             let pair = &table.pairs()[k as usize];
-            let placed = |g: usize| Placed {
+            let placed = |g: usize| PlacedGeom {
                 kind: model.geom_type[g],
                 size: model.geom_size[g],
                 pos: s.geom_xpos[g],
@@ -74,7 +74,7 @@ impl Sweep {
                 &mut self.scratch,
                 &mut self.points,
             );
-            s.contacts.extend(self.points.iter().map(|p| Contact {
+            s.contact.extend(self.points.iter().map(|p| Contact {
                 dist: p.dist,
                 pos: p.pos,
                 frame: p.frame,
@@ -129,7 +129,7 @@ impl Sweep {
     }
 }
 
-/// World box of a geom, enlarged by `slack`. A plane fills the half space behind it.
+/// Returns the world box of a geom, enlarged by `slack` (m). A plane fills the half space behind it.
 fn aabb(kind: GeomType, size: Vec3, pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3; 2] {
     let half: Vec3 = match kind {
         GeomType::Plane => {

@@ -1,15 +1,16 @@
-//! A camera as the reference sets it up: single precision, in the order of operations of MuJoCo and of Mesa's matrices, so
-//! that vertices fall on the same 1/256 of a pixel.
+//! The camera of the reference: single precision, in the order of operations of MuJoCo and of Mesa's matrices, so that
+//! vertices fall on the same 1/256 of a pixel.
 
 use crate::math::{Mat3, Vec3, column};
-use crate::render::mesh::Part;
-use crate::render::visual::{Poses, View, Visual};
+use crate::render::mesh::MeshPart;
+use crate::render::view::{Poses, View};
+use crate::render::visual::Visual;
 
 pub type V3 = [f32; 3];
 /// Coefficients of x, y, z and the constant.
 pub type Row = [f32; 4];
 
-/// The reference draws in the middle between two cameras this far apart, m.
+/// Distance between the two cameras of the reference, m; it draws from the middle between them.
 const EYE_DISTANCE: f64 = 0.068;
 
 pub fn dot(a: V3, b: V3) -> f32 {
@@ -33,26 +34,26 @@ pub fn single(v: Vec3) -> V3 {
     v.map(|x| x as f32)
 }
 
-/// `a b + c` rounded once, like the fused instruction that llvmpipe uses: the product is exact. (But for one case in 2^29,
-/// in which the sum is rounded twice.)
+/// Computes `a b + c` rounded once, like the fused instruction that llvmpipe uses: the product is exact. (But for one
+/// case in 2^29, in which the sum is rounded twice.)
 #[inline(always)]
 pub fn fused(a: f32, b: f32, c: f32) -> f32 {
     (f64::from(a) * f64::from(b) + f64::from(c)) as f32
 }
 
-/// A camera at its place.
+/// A camera with its pose in the world and its projection.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Eye {
     pub pos: V3,
     pub right: V3,
     pub up: V3,
     pub forward: V3,
-    /// Tangents of half of the field of view.
+    /// Tangents of half the field of view, horizontal and vertical.
     pub tan: [f32; 2],
     pub near: f32,
-    /// From the world to the camera, which looks along -z.
+    /// Transform from the world to the camera frame; the camera looks along -z.
     view: [Row; 3],
-    /// Focal lengths in half pictures.
+    /// Focal lengths in half images.
     pub focal: [f32; 2],
     /// Factor and offset of the depth before the division: 1 at the near plane, 0 at the far plane.
     pub depth: [f32; 2],
@@ -60,7 +61,7 @@ pub struct Eye {
 
 impl Eye {
     pub fn new(visual: &Visual, poses: &Poses, view: &View) -> Self {
-        let (place, mat) = (poses.cam_xpos[view.camera.0], &poses.cam_xmat[view.camera.0]);
+        let (place, mat) = (poses.cam_xpos[view.camera], &poses.cam_xmat[view.camera]);
         let aside = column(mat, 0);
         let side = |sign: f64| [0, 1, 2].map(|i| (place[i] + sign * EYE_DISTANCE * 0.5 * aside[i]) as f32);
         let (left, right) = (side(-1.0), side(1.0));
@@ -75,7 +76,7 @@ impl Eye {
         let right = unit(cross(forward, single(upward)));
         let up = unit(cross(right, forward));
         let (near, far) = (visual.near as f32, visual.far as f32);
-        let tangent = pxfm::f_tan(visual.cameras[view.camera.0].fovy * std::f64::consts::PI / 360.0);
+        let tangent = pxfm::f_tan(visual.cameras[view.camera].fovy * std::f64::consts::PI / 360.0);
         let top = (f64::from(near) * tangent) as f32;
         let half_width = 0.5 * view.width as f32 / view.height as f32 * (top + top);
         let back = forward.map(|v| -v);
@@ -99,18 +100,18 @@ impl Eye {
         }
     }
 
-    /// Position in the frame of the camera: to the right, up, ahead.
+    /// Returns a position in the frame of the camera: right, up, forward.
     pub fn locate(&self, pos: V3) -> V3 {
         let d = [pos[0] - self.pos[0], pos[1] - self.pos[1], pos[2] - self.pos[2]];
         [dot(d, self.right), dot(d, self.up), dot(d, self.forward)]
     }
 
-    /// The depth at a distance ahead.
+    /// Returns the depth value at a distance in front of the camera.
     pub fn depth_at(&self, ahead: f32) -> f32 {
         self.depth[1] / ahead - self.depth[0]
     }
 
-    /// From something scaled by `size` and placed in the world to the camera.
+    /// Returns the transform from a shape scaled by `size` and placed in the world to the camera frame.
     pub fn model(&self, pos: Vec3, mat: &Mat3, size: V3) -> [Row; 3] {
         let (pos, mat) = (single(pos), mat.map(|v| v as f32));
         self.view.map(|[x, y, z, c]| {
@@ -120,7 +121,8 @@ impl Eye {
         })
     }
 
-    /// Rows that give x, y (in half pictures), the depth, all times w, and w, from those that lead to the camera.
+    /// Turns a transform into the camera frame into a projection: rows that give x and y (in half images) and the
+    /// depth, all times w, and w.
     pub fn project(&self, [x, y, z]: [Row; 3]) -> [Row; 4] {
         let mut depth = z.map(|v| self.depth[0] * v);
         depth[3] += self.depth[1];
@@ -133,8 +135,8 @@ impl Eye {
     }
 }
 
-/// The rows for a part of a shape: the caps of a capsule are not stretched with its length.
-pub fn part_rows(part: Part, rows: [Row; 3], size: V3) -> [Row; 3] {
+/// Returns the transform for one part of a shape: the caps of a capsule are not stretched with its length.
+pub fn part_rows(part: MeshPart, rows: [Row; 3], size: V3) -> [Row; 3] {
     let cap = 0.5 * (size[0] + size[1]);
     let length = size[2];
     let upper = |[x, y, z, c]: Row| {
@@ -142,9 +144,9 @@ pub fn part_rows(part: Part, rows: [Row; 3], size: V3) -> [Row; 3] {
         [x, y, z, z * ((length - cap) / cap) + c]
     };
     match part {
-        Part::Body => rows,
-        Part::Top => rows.map(upper),
-        Part::Bottom => rows.map(|r| {
+        MeshPart::Body => rows,
+        MeshPart::Top => rows.map(upper),
+        MeshPart::Bottom => rows.map(|r| {
             let [x, y, z, c] = upper(r);
             [x, y, z, z * (2.0 * (cap - length) / cap) + c]
         }),

@@ -1,4 +1,4 @@
-//! Clipping at the sides of what the camera sees, as Mesa's draw module does it.
+//! Clipping of triangles at the view volume, as Mesa's draw module does it.
 
 use super::camera::{Row, cross, dot};
 use super::plane::Vertex;
@@ -6,44 +6,44 @@ use super::plane::Vertex;
 /// A vertex in clip coordinates: x, y, depth, w.
 pub type Clip = [f32; 4];
 
-/// A corner of what is left of a triangle: one of its own, or a point on an edge between two.
+/// A corner of a clipped triangle: one of its own, or a point on an edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Cut {
+pub struct Corner {
     pub clip: Clip,
-    pub from: Source,
+    pub from: Origin,
 }
 
-/// Where a corner comes from.
+/// The origin of a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum Origin {
     /// A corner of the triangle.
     Own(usize),
-    /// A point on an edge: index among the new points.
+    /// A point on an edge: its index among the new points.
     New(usize),
 }
 
-/// A new point: `from + share (to - from)`.
+/// A point that clipping made on an edge: `from + share (to - from)`.
 #[derive(Clone, Copy, Debug)]
-pub struct Between {
+pub struct EdgePoint {
     pub clip: Clip,
-    pub from: Source,
-    pub to: Source,
+    pub from: Origin,
+    pub to: Origin,
     pub share: f32,
 }
 
-/// Each of six planes adds at most one corner, and at most two points.
+/// Upper bounds: each of six planes adds at most one corner, and at most two points.
 const MAX_CORNERS: usize = 10;
 const MAX_POINTS: usize = 12;
 
-/// What is left of a triangle.
+/// A clipped triangle.
 pub struct Polygon {
-    pub corners: [Cut; MAX_CORNERS],
+    pub corners: [Corner; MAX_CORNERS],
     pub count: usize,
-    pub points: [Between; MAX_POINTS],
-    pub made: usize,
+    pub points: [EdgePoint; MAX_POINTS],
+    pub point_count: usize,
 }
 
-/// On which outer sides a vertex is, one bit for each plane.
+/// Returns one bit for each clipping plane that a vertex lies beyond.
 #[inline(always)]
 pub fn outside([x, y, z, w]: Clip) -> u32 {
     u32::from(x > w)
@@ -54,7 +54,7 @@ pub fn outside([x, y, z, w]: Clip) -> u32 {
         | u32::from(z > w) << 5
 }
 
-/// Signed distance from a plane, in the order of the bits of [`outside`].
+/// Returns the signed distance from a clipping plane; planes are numbered as the bits of [`outside`].
 fn distance(plane: usize, [x, y, z, w]: Clip) -> f32 {
     match plane {
         0 => w - x,
@@ -68,14 +68,14 @@ fn distance(plane: usize, [x, y, z, w]: Clip) -> f32 {
 
 impl Polygon {
     pub fn new(triangle: [Clip; 3]) -> Self {
-        let own = |k: usize| Cut {
+        let own = |k: usize| Corner {
             clip: triangle[k],
-            from: Source::Own(k),
+            from: Origin::Own(k),
         };
-        let none = Between {
+        let none = EdgePoint {
             clip: [0.0; 4],
-            from: Source::Own(0),
-            to: Source::Own(0),
+            from: Origin::Own(0),
+            to: Origin::Own(0),
             share: 0.0,
         };
         let mut corners = [own(0); MAX_CORNERS];
@@ -84,7 +84,7 @@ impl Polygon {
             corners,
             count: 3,
             points: [none; MAX_POINTS],
-            made: 0,
+            point_count: 0,
         }
     }
 
@@ -97,9 +97,9 @@ impl Polygon {
         }
     }
 
-    /// The corners and the new points.
-    pub fn parts(&self) -> (&[Cut], &[Between]) {
-        (&self.corners[..self.count], &self.points[..self.made])
+    /// Returns the corners and the new points.
+    pub fn parts(&self) -> (&[Corner], &[EdgePoint]) {
+        (&self.corners[..self.count], &self.points[..self.point_count])
     }
 
     fn cut_at(&mut self, plane: usize) {
@@ -117,19 +117,19 @@ impl Polygon {
             if a >= 0.0 {
                 self.push(p);
             }
-            if (a >= 0.0) != (b >= 0.0) && self.made < MAX_POINTS {
-                let point = between((p, a), (q, b));
-                self.points[self.made] = point;
-                self.made += 1;
-                self.push(Cut {
+            if (a >= 0.0) != (b >= 0.0) && self.point_count < MAX_POINTS {
+                let point = crossing((p, a), (q, b));
+                self.points[self.point_count] = point;
+                self.point_count += 1;
+                self.push(Corner {
                     clip: point.clip,
-                    from: Source::New(self.made - 1),
+                    from: Origin::New(self.point_count - 1),
                 });
             }
         }
     }
 
-    fn push(&mut self, corner: Cut) {
+    fn push(&mut self, corner: Corner) {
         if self.count < MAX_CORNERS {
             self.corners[self.count] = corner;
             self.count += 1;
@@ -137,7 +137,7 @@ impl Polygon {
     }
 }
 
-/// Whether a triangle clearly shows its back, so that nothing of it can be seen.
+/// Returns whether a triangle certainly faces away from the camera, so that nothing of it can be seen.
 pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
     const CLEAR: f32 = 1e-3;
     let flat = |v: Clip| [v[0], v[1], v[3]];
@@ -148,8 +148,8 @@ pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
     away < 0.0 && away * away > CLEAR * CLEAR * dot(normal, normal) * dot(a, a)
 }
 
-/// The point of an edge on a plane, counted from the end that is nearer to the plane.
-fn between((p, a): (Cut, f32), (q, b): (Cut, f32)) -> Between {
+/// Returns the point where an edge crosses a plane, interpolated from the end that is nearer to the plane.
+fn crossing((p, a): (Corner, f32), (q, b): (Corner, f32)) -> EdgePoint {
     let difference = b - a;
     // distances have different signs
     let ((from, to), share) = if b.abs() < a.abs() {
@@ -157,7 +157,7 @@ fn between((p, a): (Cut, f32), (q, b): (Cut, f32)) -> Between {
     } else {
         ((p, q), -a / difference)
     };
-    Between {
+    EdgePoint {
         clip: mix(from.clip, to.clip, share),
         from: from.from,
         to: to.from,
@@ -165,7 +165,7 @@ fn between((p, a): (Cut, f32), (q, b): (Cut, f32)) -> Between {
     }
 }
 
-/// `from + share (to - from)`
+/// Computes `from + share (to - from)`.
 pub fn mix<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N] {
     let mut out = from;
     for (o, t) in out.iter_mut().zip(to) {

@@ -1,63 +1,66 @@
-//! The geometry of a picture: what is in view, projected, clipped and drawn.
+//! The geometry of an image: what is in view, projected, clipped and rasterised.
 
 use super::camera::{Eye, Row, V3, dot, fused, part_rows, single};
-use super::clip::{self, Between, Clip, Polygon, Source};
+use super::clip::{self, Clip, EdgePoint, Origin, Polygon};
 use super::plane::{Basis, Vertex};
-use super::raster::{Extent, Fixed, LIMIT, NONE, Record, Sampling, Target, faces};
+use super::raster::{Extent, Fixed, LIMIT, is_counterclockwise};
+use super::sampling::Sampling;
+use super::target::{NONE, Opaque, Target, Transparent, Triangle};
 use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
-use crate::render::mesh::{LANES, Mesh, Part};
-use crate::render::visual::{Drawable, Element, Poses, Shape, View, Visual};
+use crate::render::mesh::{LANES, Mesh};
+use crate::render::view::{Poses, View};
+use crate::render::visual::{Drawable, Element, Shape, Visual};
 
-/// The geometry of a picture.
+/// The geometry of an image.
 #[derive(Debug, Default)]
 pub struct Frame {
     pub target: Target,
-    /// Projected vertices of everything drawn.
+    /// Projected vertices of everything that is drawn.
     pub vertices: Vec<Vertex>,
     fixed: Vec<Fixed>,
-    /// On which outer sides of the picture each is.
+    /// For each vertex, one bit for every clipping plane that it lies beyond.
     sides: Vec<u8>,
-    /// Points that clipping has made.
-    pub points: Vec<Point>,
-    /// What is drawn, indexed as the drawables of the visual.
-    pub draws: Vec<Draw>,
-    /// Distance and index of drawables in view.
-    order: Vec<(f32, u32)>,
-    /// The same of those that are transparent.
-    clear: Vec<(f32, u32)>,
-    /// Ranges of the fragments of each of those, the nearest first.
-    pub panes: Vec<std::ops::Range<usize>>,
+    /// Points made by clipping.
+    pub points: Vec<ClipPoint>,
+    /// Everything that is drawn, indexed like the drawables of the visual.
+    pub draws: Vec<PlacedDrawable>,
+    /// Distance and index of the opaque drawables in view.
+    opaque: Vec<(f32, u32)>,
+    /// Distance and index of the transparent drawables in view.
+    transparent: Vec<(f32, u32)>,
+    /// Range of fragments of each transparent drawable, the nearest drawable first.
+    pub layers: Vec<std::ops::Range<usize>>,
 }
 
-/// A drawable at its place.
+/// A drawable with its pose in the world.
 #[derive(Clone, Copy, Debug)]
-pub struct Draw {
+pub struct PlacedDrawable {
     pub pos: V3,
     pub mat: [f32; 9],
-    /// From the unit shape to the camera.
+    /// Transform from the unit shape to the camera frame.
     rows: [Row; 3],
-    /// Its first vertex in the frame.
+    /// Index of its first vertex in the frame.
     pub base: usize,
-    /// Its first point among those that clipping has made; they follow its vertices in the frame.
+    /// Index of its first point among those made by clipping; they follow its vertices in the frame.
     pub points: usize,
     /// Opacity.
     pub alpha: f32,
-    /// Whether its triangles are seen from behind.
+    /// Whether it shows its back, so that triangles are wound the other way.
     flip: bool,
-    /// Whether it hides nothing.
-    glass: bool,
+    /// Whether it is transparent: it hides nothing.
+    transparent: bool,
 }
 
-/// A vertex between two others of the frame: `from + share (to - from)`.
+/// A vertex between two other vertices of the frame: `from + share (to - from)`.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct ClipPoint {
     pub from: u32,
     pub to: u32,
     pub share: f32,
 }
 
-impl Draw {
+impl PlacedDrawable {
     const HIDDEN: Self = Self {
         pos: [0.0; 3],
         mat: [0.0; 9],
@@ -66,27 +69,27 @@ impl Draw {
         points: 0,
         alpha: 1.0,
         flip: false,
-        glass: false,
+        transparent: false,
     };
 }
 
-/// What becomes of transparent things.
+/// The treatment of transparent drawables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Glass {
-    /// They are opaque.
-    Solid,
-    /// They are not drawn.
-    Absent,
-    /// Their fragments are collected.
-    Clear,
+pub enum Transparency {
+    /// PlacedDrawable them as if they were opaque.
+    Opaque,
+    /// Leave them out.
+    Hidden,
+    /// Collect their fragments for blending.
+    Blended,
 }
 
-/// Opacity from which on something is opaque.
+/// Least opacity of an opaque drawable.
 const OPAQUE: f32 = 0.995;
-/// Factor of the opacity of a plane that is seen from behind.
+/// Factor on the opacity of a plane seen from behind.
 const BEHIND: f64 = 0.3;
 
-/// The pose of a drawable.
+/// Returns the pose of a drawable in the world.
 pub fn pose(drawable: &Drawable, poses: &Poses) -> (Vec3, Mat3) {
     match drawable.element {
         Element::Geom(g) => (poses.geom_xpos[g], poses.geom_xmat[g]),
@@ -101,7 +104,7 @@ impl Frame {
         visual: &Visual,
         poses: &Poses,
         view: &View,
-        glass: Glass,
+        transparency: Transparency,
     ) -> Result<Eye, RenderError> {
         visual.check(poses, view)?;
         let eye = Eye::new(visual, poses, view);
@@ -111,25 +114,25 @@ impl Frame {
             let [x, y, z] = eye.locate(single(pos));
             let r = drawable.radius;
             let beside = |v: f32, tan: f32| v.abs() - z * tan <= r * (1.0 + tan * tan).sqrt();
-            // written so that a pose that is not a number is out of view
+            // written so that a NaN pose is out of view
             if z > eye.near - r && beside(x, eye.tan[0]) && beside(y, eye.tan[1]) {
                 self.arrange(drawable, &eye, i, (single(pos), mat.map(|v| v as f32), z));
             }
         }
         let nearer = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        if glass == Glass::Solid {
-            self.order.append(&mut self.clear);
+        if transparency == Transparency::Opaque {
+            self.opaque.append(&mut self.transparent);
         }
-        self.order.sort_unstable_by(nearer);
-        self.clear.sort_unstable_by(nearer);
-        for k in 0..self.order.len() {
-            self.place::<S>(visual, poses, &eye, self.order[k].1 as usize, false);
+        self.opaque.sort_unstable_by(nearer);
+        self.transparent.sort_unstable_by(nearer);
+        for k in 0..self.opaque.len() {
+            self.place::<S>(visual, poses, &eye, self.opaque[k].1 as usize, false);
         }
-        if glass == Glass::Clear {
-            for k in 0..self.clear.len() {
+        if transparency == Transparency::Blended {
+            for k in 0..self.transparent.len() {
                 let start = self.target.fragments.len();
-                self.place::<S>(visual, poses, &eye, self.clear[k].1 as usize, true);
-                self.panes.push(start..self.target.fragments.len());
+                self.place::<S>(visual, poses, &eye, self.transparent[k].1 as usize, true);
+                self.layers.push(start..self.target.fragments.len());
             }
         }
         Ok(eye)
@@ -142,13 +145,13 @@ impl Frame {
         self.sides.clear();
         self.points.clear();
         self.draws.clear();
-        self.draws.resize(visual.drawables.len(), Draw::HIDDEN);
-        self.order.clear();
-        self.clear.clear();
-        self.panes.clear();
+        self.draws.resize(visual.drawables.len(), PlacedDrawable::HIDDEN);
+        self.opaque.clear();
+        self.transparent.clear();
+        self.layers.clear();
     }
 
-    /// Puts a drawable, which is `ahead` of the camera, in its place in the order.
+    /// Adds a drawable, which is `ahead` of the camera, to the list of opaque or transparent ones.
     fn arrange(&mut self, drawable: &Drawable, eye: &Eye, index: usize, (pos, mat, ahead): (V3, [f32; 9], f32)) {
         let plane = drawable.shape == Shape::Plane;
         let d = [eye.pos[0] - pos[0], eye.pos[1] - pos[1], eye.pos[2] - pos[2]];
@@ -161,32 +164,34 @@ impl Frame {
                 draw.alpha = (f64::from(draw.alpha) * BEHIND) as f32;
             }
             let distance = dot(d, d).sqrt() - drawable.radius;
-            self.clear.push((if plane { far } else { distance }, index as u32));
+            self.transparent
+                .push((if plane { far } else { distance }, index as u32));
         } else {
-            self.order.push((far, index as u32));
+            self.opaque.push((far, index as u32));
         }
     }
 
     /// Draws a drawable unless it is hidden.
-    fn place<S: Sampling>(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, index: usize, glass: bool) {
+    fn place<S: Sampling>(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
         let drawable = &visual.drawables[index];
         let (pos, mat) = pose(drawable, poses);
         if self.hidden(drawable, eye, single(pos)) {
             return;
         }
-        self.draws[index] = Draw {
+        self.draws[index] = PlacedDrawable {
             pos: single(pos),
             mat: mat.map(|v| v as f32),
             rows: eye.model(pos, &mat, drawable.size),
             base: self.vertices.len(),
             points: self.points.len(),
-            glass,
+            transparent,
             ..self.draws[index]
         };
         self.add::<S>(visual, eye, index);
     }
 
-    /// Distance from the camera's plane of what is seen in the middle of a pixel; infinite where nothing is.
+    /// Returns the distance (m) from the camera's plane to what the middle of a pixel shows; infinity where it shows
+    /// nothing.
     pub fn distance(&self, x: usize, y: usize) -> f32 {
         let id = self.target.ids[y * self.target.width + x][0];
         self.target.records.get(id as usize).map_or(f32::INFINITY, |record| {
@@ -196,7 +201,7 @@ impl Frame {
         })
     }
 
-    /// Whether nearer things cover the bounding sphere of a drawable.
+    /// Returns whether nearer things cover the bounding sphere of a drawable.
     fn hidden(&self, drawable: &Drawable, eye: &Eye, pos: V3) -> bool {
         let [x, y, z] = eye.locate(pos);
         let r = drawable.radius;
@@ -262,7 +267,7 @@ impl Frame {
             let fixed = &self.fixed[base..base + mesh.x.len()];
             let seen = |t: &[u16; 3]| {
                 let fixed = t.map(|i| fixed[usize::from(i)]);
-                faces(&fixed) && !Extent::new(&fixed).misses::<S>()
+                is_counterclockwise(&fixed) && !Extent::new(&fixed).misses::<S>()
             };
             let Some(next) = all[k..].iter().position(seen) else {
                 return;
@@ -276,19 +281,19 @@ impl Frame {
     /// Draws a triangle, whose vertices are given, unless it shows its back.
     fn triangle<S: Sampling>(&mut self, index: usize, [a, b, c]: [usize; 3]) {
         let fixed = [self.fixed[a], self.fixed[b], self.fixed[c]];
-        if !faces(&fixed) {
+        if !is_counterclockwise(&fixed) {
             return;
         }
         // the order in which Mesa sets triangles up
-        let record = Record {
+        let record = Triangle {
             draw: index as u32,
             vertices: [b as u32, a as u32, c as u32],
             setup: NONE,
         };
-        if self.draws[index].glass {
-            self.target.glass::<S>(&fixed, &self.vertices, record);
+        if self.draws[index].transparent {
+            self.target.triangle::<S, Transparent>(&fixed, &self.vertices, record);
         } else {
-            self.target.triangle::<S>(&fixed, &self.vertices, record);
+            self.target.triangle::<S, Opaque>(&fixed, &self.vertices, record);
         }
     }
 
@@ -342,11 +347,7 @@ impl Frame {
         let mesh = &visual.meshes[drawable.shape as usize];
         let draw = self.draws[index];
         let half = [self.target.width, self.target.height].map(|n| n as f32 * 0.5);
-        let rows = eye.project(part_rows(
-            part_of(&mesh.parts, usize::from(t[0])),
-            draw.rows,
-            drawable.size,
-        ));
+        let rows = eye.project(part_rows(mesh.part_of(usize::from(t[0])), draw.rows, drawable.size));
         let triangle: [Clip; 3] = t.map(|i| {
             let i = usize::from(i);
             clip::apply(&rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
@@ -361,16 +362,16 @@ impl Frame {
             return;
         }
         let first = self.vertices.len();
-        let place = |source: Source| match source {
-            Source::Own(k) => draw.base + usize::from(t[k]),
-            Source::New(k) => first + k,
+        let place = |source: Origin| match source {
+            Origin::Own(k) => draw.base + usize::from(t[k]),
+            Origin::New(k) => first + k,
         };
-        for &Between { clip, from, to, share } in points {
+        for &EdgePoint { clip, from, to, share } in points {
             let vertex = clip::project(clip, half);
             self.fixed.push([fixed(vertex.x), fixed(vertex.y)]);
             self.vertices.push(vertex);
             self.sides.push(0);
-            self.points.push(Point {
+            self.points.push(ClipPoint {
                 from: place(from) as u32,
                 to: place(to) as u32,
                 share,
@@ -383,12 +384,7 @@ impl Frame {
     }
 }
 
-/// The part of a mesh to which a vertex belongs.
-pub fn part_of(parts: &[(Part, usize)], vertex: usize) -> Part {
-    parts.iter().find(|p| vertex < p.1).map_or(Part::Body, |p| p.0)
-}
-
-/// To 1/256 pixels, to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
+/// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
 #[inline(always)]
 fn fixed(pixels: f32) -> i32 {
     // adding 1.5 * 2^23 leaves the integer in the low bits

@@ -1,19 +1,20 @@
-//! Light at the vertices: ambient, diffuse and Blinn's highlights, as fixed-function OpenGL computes them.
+//! Lighting per vertex: ambient, diffuse and Blinn highlights, as fixed-function OpenGL computes them.
 
 use super::camera::{Eye, V3, dot, single, unit};
-use super::frame::Draw;
-use crate::math::{add, mat_vec};
-use crate::render::mesh::Part;
-use crate::render::visual::{Drawable, Lamp, Poses, Visual};
+use super::frame::PlacedDrawable;
+use crate::math::{Vec3, add, mat_vec, sub};
+use crate::render::mesh::MeshPart;
+use crate::render::view::Poses;
+use crate::render::visual::{Aim, Drawable, Light, Visual};
 
-/// Highlights weaker than this are not computed.
+/// Weakest highlight that is computed.
 const FAINT: f32 = 1e-4;
 const LN_FAINT: f32 = -9.210_340_5;
 
-/// A light at its place.
+/// A light with its pose in the world.
 #[derive(Clone, Copy, Debug)]
-pub struct PlacedLamp {
-    /// Position; none for parallel light.
+pub struct PlacedLight {
+    /// Position in the world, m; `None` for directional light.
     pub pos: Option<V3>,
     /// Unit direction in which it shines.
     pub dir: V3,
@@ -23,15 +24,15 @@ pub struct PlacedLamp {
     attenuation: V3,
     cos_cutoff: f32,
     exponent: f32,
-    /// Whether it makes highlights.
+    /// Whether it produces highlights.
     shines: bool,
 }
 
 /// Places the lights of a scene, the headlight first.
-pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLamp>) {
+pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLight>) {
     out.clear();
     if let Some([ambient, diffuse, specular]) = visual.headlight {
-        out.push(PlacedLamp {
+        out.push(PlacedLight {
             pos: None,
             dir: eye.forward,
             ambient,
@@ -43,12 +44,11 @@ pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLamp
             shines: specular != [0.0; 3],
         });
     }
-    out.extend(visual.lamps.iter().map(|l: &Lamp| {
-        PlacedLamp {
-            pos: l
-                .pos
-                .map(|p| single(add(poses.xpos[l.body], mat_vec(&poses.xmat[l.body], p)))),
-            dir: unit(single(mat_vec(&poses.xmat[l.body], l.dir))),
+    out.extend(visual.lights.iter().map(|l: &Light| {
+        let (pos, dir) = pose(l, poses);
+        PlacedLight {
+            pos: pos.map(single),
+            dir: unit(single(dir)),
             ambient: l.ambient,
             diffuse: l.diffuse,
             specular: l.specular,
@@ -60,33 +60,47 @@ pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLamp
     }));
 }
 
-/// The colour of a vertex of a unit shape under the lights, 0..1.
+/// Returns the position of a light (`None` if it is directional) and its direction, in the world.
+fn pose(light: &Light, poses: &Poses) -> (Option<Vec3>, Vec3) {
+    let (xpos, xmat) = (poses.xpos[light.body], &poses.xmat[light.body]);
+    let in_world = |pos| add(xpos, mat_vec(xmat, pos));
+    let (pos, dir) = match light.aim {
+        Aim::Body => return (light.pos.map(in_world), mat_vec(xmat, light.dir)),
+        Aim::Track { offset, dir } => (add(xpos, offset), dir),
+        Aim::TrackCom { offset, dir } => (add(poses.subtree_com[light.body], offset), dir),
+        Aim::Target { body, pos } => (in_world(pos), sub(poses.xpos[body], in_world(pos))),
+        Aim::TargetCom { body, pos } => (in_world(pos), sub(poses.subtree_com[body], in_world(pos))),
+    };
+    (light.pos.map(|_| pos), crate::math::unit(dir).0)
+}
+
+/// Computes the colour (0..1) of a vertex of a unit shape under the lights.
 pub fn vertex(
-    lamps: &[PlacedLamp],
+    lights: &[PlacedLight],
     drawable: &Drawable,
-    draw: &Draw,
+    draw: &PlacedDrawable,
     eye: V3,
-    (part, at, normal): (Part, V3, V3),
+    (part, at, normal): (MeshPart, V3, V3),
 ) -> V3 {
     let size = drawable.size;
     let cap = 0.5 * (size[0] + size[1]);
     let (stretch, shift) = match part {
-        Part::Body => (size[2], 0.0),
-        Part::Top => (cap, size[2] - cap),
-        Part::Bottom => (cap, cap - size[2]),
+        MeshPart::Body => (size[2], 0.0),
+        MeshPart::Top => (cap, size[2] - cap),
+        MeshPart::Bottom => (cap, cap - size[2]),
     };
     let m = &draw.mat;
-    let turn = |v: V3| {
+    let rotate = |v: V3| {
         [
             m[0] * v[0] + m[1] * v[1] + m[2] * v[2],
             m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
             m[6] * v[0] + m[7] * v[1] + m[8] * v[2],
         ]
     };
-    let p = turn([at[0] * size[0], at[1] * size[1], at[2] * stretch + shift]);
+    let p = rotate([at[0] * size[0], at[1] * size[1], at[2] * stretch + shift]);
     let p = [p[0] + draw.pos[0], p[1] + draw.pos[1], p[2] + draw.pos[2]];
     // the inverse of the scale, times all of it: the length does not matter
-    let n = unit(turn([
+    let n = unit(rotate([
         normal[0] * (size[1] * stretch),
         normal[1] * (size[0] * stretch),
         normal[2] * (size[0] * size[1]),
@@ -96,40 +110,50 @@ pub fn vertex(
     } else {
         [0.0; 3]
     };
-    // without any light there is a little
-    let glow = if lamps.is_empty() { 0.3 } else { 0.0 } + drawable.emission;
-    let (mut dull, mut shine) = ([glow; 3], [0.0; 3]);
-    for lamp in lamps {
-        let (to_lamp, strength) = lamp.reach(p);
-        let facing = dot(n, to_lamp);
+    shade(lights, drawable, p, n, to_eye)
+}
+
+/// Computes the colour (0..1) of a point with the unit normal `n`; `to_eye` is the unit direction to the camera.
+#[inline(always)]
+fn shade(lights: &[PlacedLight], drawable: &Drawable, p: V3, n: V3, to_eye: V3) -> V3 {
+    // a scene without lights is not quite dark
+    let glow = if lights.is_empty() { 0.3 } else { 0.0 } + drawable.emission;
+    let (mut diffuse, mut highlights) = ([glow; 3], [0.0; 3]);
+    for light in lights {
+        let (to_light, strength) = light.reach(p);
+        let facing = dot(n, to_light);
         let facing = if facing > 0.0 { facing } else { 0.0 };
         for k in 0..3 {
-            dull[k] += strength * (lamp.ambient[k] + facing * lamp.diffuse[k]);
+            diffuse[k] += strength * (light.ambient[k] + facing * light.diffuse[k]);
         }
-        if facing > 0.0 && drawable.specular > 0.0 && lamp.shines {
-            let middle = [to_lamp[0] + to_eye[0], to_lamp[1] + to_eye[1], to_lamp[2] + to_eye[2]];
+        if facing > 0.0 && drawable.specular > 0.0 && light.shines {
+            let middle = [
+                to_light[0] + to_eye[0],
+                to_light[1] + to_eye[1],
+                to_light[2] + to_eye[2],
+            ];
             if !faint(dot(n, middle), dot(middle, middle), drawable.exponent) {
                 let highlight = strength * drawable.specular * power(dot(n, unit(middle)), drawable.exponent);
                 for k in 0..3 {
-                    shine[k] += highlight * lamp.specular[k];
+                    highlights[k] += highlight * light.specular[k];
                 }
             }
         }
     }
-    let mut colour = shine;
+    let mut colour = highlights;
     for k in 0..3 {
-        colour[k] = (shine[k] + dull[k] * drawable.rgba[k]).clamp(0.0, 1.0);
+        colour[k] = (highlights[k] + diffuse[k] * drawable.rgba[k]).clamp(0.0, 1.0);
     }
     colour
 }
 
-/// Whether `(along / sqrt(squared))^y` is certainly not visible.
+/// Returns whether `(along / sqrt(squared))^y` is certainly too weak to be seen.
 fn faint(along: f32, squared: f32, y: f32) -> bool {
     let least = 1.0 + 1.001 * LN_FAINT / y;
     least > 0.0 && (along <= 0.0 || along * along < least * least * squared)
 }
 
-/// `x^y` for x up to 1; 0 where it is not visible.
+/// Computes `x^y` for x up to 1; returns 0 where the result is too weak to be seen.
 fn power(x: f32, y: f32) -> f32 {
     // x^y <= exp(y (x - 1))
     debug_assert!((LN_FAINT - FAINT.ln()).abs() < 1e-4);
@@ -145,7 +169,7 @@ fn power(x: f32, y: f32) -> f32 {
     }
 }
 
-/// `x^y` for x in 0.7..1, to 1e-8: the whole part of y by squaring, the rest by series.
+/// Computes `x^y` for x in 0.7..1, to 1e-8: the integer part of y by squaring, the rest by a series.
 fn near_one(x: f64, y: f32) -> f64 {
     let mut rest = y as u32;
     let part = f64::from(y - rest as f32);
@@ -166,26 +190,27 @@ fn near_one(x: f64, y: f32) -> f64 {
     product
 }
 
-impl PlacedLamp {
-    /// Unit direction from a point to the light, and what is left of its strength there.
+impl PlacedLight {
+    /// Returns the unit direction from a point to the light, and how much of the light's intensity arrives there
+    /// (0..1).
     fn reach(&self, p: V3) -> (V3, f32) {
         let Some(pos) = self.pos else {
             return (self.dir.map(|v| -v), 1.0);
         };
         let d = [pos[0] - p[0], pos[1] - p[1], pos[2] - p[2]];
         let distance = dot(d, d).sqrt();
-        let to_lamp = d.map(|v| v / distance);
+        let to_light = d.map(|v| v / distance);
         let [constant, linear, quadratic] = self.attenuation;
         let mut strength = 1.0 / (constant + linear * distance + quadratic * distance * distance);
         if self.cos_cutoff > -1.0 {
-            let along = -dot(to_lamp, self.dir);
+            let along = -dot(to_light, self.dir);
             strength *= if along < self.cos_cutoff {
                 0.0
             } else {
                 power(along, self.exponent)
             };
         }
-        (to_lamp, strength)
+        (to_light, strength)
     }
 }
 
@@ -204,6 +229,108 @@ mod tests {
                     assert!((near_one(f64::from(x), y) - exact).abs() < 1e-7, "{x} ^ {y}");
                 }
             }
+        }
+    }
+
+    const POS0: Vec3 = [0.236_602_540_378_443_75, 0.2, 0.209_807_621_135_331_7];
+    const COM0: Vec3 = [1.236_602_540_378_443_7, -2.1, 1.209_807_621_135_331_7];
+    const DIR0: Vec3 = [
+        -0.353_553_390_593_273_8,
+        std::f64::consts::FRAC_1_SQRT_2,
+        -0.612_372_435_695_794_6,
+    ];
+    const PLACE: Vec3 = [1.316_125_384_952_760_5, 0.2, 1.008_046_178_500_938_7];
+
+    /// Returns the position and the direction of a light of body 1 whose target is body 2.
+    fn placed(aim: Aim) -> (Option<Vec3>, Vec3) {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let (cos, sin) = (0.340_263_920_455_576_85, 0.940_329_976_357_342_7);
+        let identity = crate::math::MAT3_ID;
+        let poses = Poses {
+            geom_xpos: &[],
+            geom_xmat: &[],
+            site_xpos: &[],
+            site_xmat: &[],
+            cam_xpos: &[],
+            cam_xmat: &[],
+            xpos: &[[0.0; 3], [1.0, 0.0, 1.0], [0.0, 2.0, 0.4]],
+            xmat: &[identity, [cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos], identity],
+            subtree_com: &[
+                [0.0; 3],
+                [1.425_485_854_391_165, 0.088_888_888_888_888_89, 1.130_332_187_394_537_6],
+                [0.0, 2.3, 0.4],
+            ],
+        };
+        let light = Light {
+            body: 1,
+            pos: Some([0.1, 0.2, 0.3]),
+            dir: [0.0, half, -half],
+            aim,
+            ambient: [0.0; 3],
+            diffuse: [0.0; 3],
+            specular: [0.0; 3],
+            attenuation: [1.0, 0.0, 0.0],
+            cos_cutoff: -1.0,
+            exponent: 0.0,
+        };
+        pose(&light, &poses)
+    }
+
+    /// The expected values are `light_xpos` and `light_xdir` of MuJoCo 3.3.0 for a body that a hinge has turned.
+    #[test]
+    fn lights_follow_as_in_mujoco() {
+        let pos = [0.1, 0.2, 0.3];
+        for (aim, at, dir) in [
+            (
+                Aim::Body,
+                PLACE,
+                [
+                    -0.664_913_702_835_263_1,
+                    std::f64::consts::FRAC_1_SQRT_2,
+                    -0.240_602_925_547_258_48,
+                ],
+            ),
+            (
+                Aim::Track {
+                    offset: POS0,
+                    dir: DIR0,
+                },
+                [COM0[0], 0.2, COM0[2]],
+                DIR0,
+            ),
+            (
+                Aim::TrackCom {
+                    offset: COM0,
+                    dir: DIR0,
+                },
+                [2.662_088_394_769_609, -2.011_111_111_111_110_6, 2.340_139_808_529_869_5],
+                DIR0,
+            ),
+            (
+                Aim::Target { body: 2, pos },
+                PLACE,
+                [
+                    -0.569_441_529_864_488_7,
+                    0.778_797_191_722_633_4,
+                    -0.263_080_364_585_672_3,
+                ],
+            ),
+            (
+                Aim::TargetCom { body: 2, pos },
+                PLACE,
+                [
+                    -0.515_754_704_551_417_5,
+                    0.822_934_419_426_042_4,
+                    -0.238_277_204_232_806_57,
+                ],
+            ),
+        ] {
+            let (found, shines) = placed(aim);
+            let close = |a: Vec3, b: Vec3| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
+            assert!(
+                close(found.unwrap(), at) && close(shines, dir),
+                "{aim:?}: {found:?} {shines:?}"
+            );
         }
     }
 }

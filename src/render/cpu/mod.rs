@@ -1,4 +1,4 @@
-//! The renderer in pure Rust: first which triangle is seen at each sample, then the colour of what is seen.
+//! The renderer in pure Rust: it finds the triangle that each sample shows, then the colours of what is seen.
 
 mod camera;
 mod clip;
@@ -7,53 +7,59 @@ mod light;
 mod plane;
 mod raster;
 mod sample;
+mod sampling;
 mod shade;
+mod target;
 
 #[cfg(feature = "wgpu")]
 pub(super) use camera::{Eye, V3, dot, single};
 #[cfg(feature = "wgpu")]
 pub(super) use frame::pose;
-use frame::{Frame, Glass};
+use frame::{Frame, Transparency};
 #[cfg(feature = "wgpu")]
-pub(super) use light::{PlacedLamp, place as place_lamps};
-use raster::{Four, Middle};
+pub(super) use light::{PlacedLight, place as place_lights};
+use sampling::{FourSamples, PixelCentre};
 use shade::{Pixels, Shader};
 
 use crate::render::RenderError;
-use crate::render::visual::{Element, Poses, View, Visual};
+use crate::render::view::{Poses, View};
+use crate::render::visual::{Element, Visual};
 
-/// Draws pictures. It keeps its buffers, so that drawing allocates nothing once the largest picture has been drawn.
+/// A renderer on the CPU. It keeps its buffers, so that drawing allocates nothing once the largest image has been
+/// drawn.
 ///
 /// Everything is single-precision and integer arithmetic in a fixed order: the same poses give the same bytes everywhere.
 #[derive(Debug, Default)]
-pub struct Renderer {
+pub struct CpuRenderer {
     frame: Frame,
     shader: Shader,
 }
 
-impl Renderer {
-    /// Without buffers yet.
+impl CpuRenderer {
+    /// Creates a renderer; its buffers grow with the images it draws.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Draws a picture: red, green, blue of each pixel, rows from the top.
+    /// Draws an image: red, green, blue of each pixel, rows from the top.
     ///
     /// # Errors
-    /// A camera that does not exist, a size that is not allowed, poses or a buffer of the wrong length.
+    /// Fails if the camera does not exist, the size is not allowed, or poses or the buffer have the wrong length.
     pub fn rgb(&mut self, visual: &Visual, poses: &Poses, view: &View, out: &mut [u8]) -> Result<(), RenderError> {
         fits(out.len(), view.rgb_len())?;
-        let eye = self.frame.draw::<Four>(visual, poses, view, Glass::Clear)?;
+        let eye = self
+            .frame
+            .draw::<FourSamples>(visual, poses, view, Transparency::Blended)?;
         self.shader
             .resolve(&mut self.frame, visual, poses, &eye, (Pixels::All, out));
         Ok(())
     }
 
-    /// Draws every second pixel of every second row of a picture, the first ones included: the same as those of
-    /// [`Renderer::rgb`], for less.
+    /// Draws every second pixel of every second row of an image, the first ones included: the same as those of
+    /// [`CpuRenderer::rgb`], for less.
     ///
     /// # Errors
-    /// As [`Renderer::rgb`].
+    /// Fails like [`CpuRenderer::rgb`].
     pub fn rgb_halved(
         &mut self,
         visual: &Visual,
@@ -67,17 +73,19 @@ impl Renderer {
             ..*view
         };
         fits(out.len(), half.rgb_len())?;
-        let eye = self.frame.draw::<Four>(visual, poses, view, Glass::Clear)?;
+        let eye = self
+            .frame
+            .draw::<FourSamples>(visual, poses, view, Transparency::Blended)?;
         self.shader
             .resolve(&mut self.frame, visual, poses, &eye, (Pixels::Second, out));
         Ok(())
     }
 
-    /// Draws a grey picture: one byte for each pixel, rows from the top, by the weights 0.2989, 0.5870, 0.1140. `rgb` is
+    /// Draws a grey image: one byte for each pixel, rows from the top, by the weights 0.2989, 0.5870, 0.1140. `rgb` is
     /// working space of [`View::rgb_len`] bytes and holds the colours afterwards.
     ///
     /// # Errors
-    /// As [`Renderer::rgb`].
+    /// Fails like [`CpuRenderer::rgb`].
     pub fn gray(
         &mut self,
         visual: &Visual,
@@ -94,14 +102,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// Distance from the camera's plane of what is seen in the middle of each pixel, m, rows from the top; infinite where
-    /// nothing is. Transparent things are not seen.
+    /// Draws depth: the distance (m) from the camera's plane to what the middle of each pixel shows, rows from the top;
+    /// infinity where a pixel shows nothing. Transparent things are not drawn.
     ///
     /// # Errors
-    /// As [`Renderer::rgb`].
+    /// Fails like [`CpuRenderer::rgb`].
     pub fn depth(&mut self, visual: &Visual, poses: &Poses, view: &View, out: &mut [f32]) -> Result<(), RenderError> {
         fits(out.len(), view.pixels())?;
-        self.frame.draw::<Middle>(visual, poses, view, Glass::Absent)?;
+        self.frame
+            .draw::<PixelCentre>(visual, poses, view, Transparency::Hidden)?;
         for (row, line) in out.chunks_exact_mut(view.width).rev().enumerate() {
             for (column, v) in line.iter_mut().enumerate() {
                 *v = self.frame.distance(column, row);
@@ -110,11 +119,11 @@ impl Renderer {
         Ok(())
     }
 
-    /// Which geom is seen in the middle of each pixel, rows from the top; -1 where none is. Sites hide what is behind them,
-    /// and so do transparent geoms.
+    /// Draws geom ids: the geom that the middle of each pixel shows, rows from the top; -1 where it shows none. Sites
+    /// hide what is behind them, and so do transparent geoms.
     ///
     /// # Errors
-    /// As [`Renderer::rgb`].
+    /// Fails like [`CpuRenderer::rgb`].
     pub fn segmentation(
         &mut self,
         visual: &Visual,
@@ -123,7 +132,8 @@ impl Renderer {
         out: &mut [i32],
     ) -> Result<(), RenderError> {
         fits(out.len(), view.pixels())?;
-        self.frame.draw::<Middle>(visual, poses, view, Glass::Solid)?;
+        self.frame
+            .draw::<PixelCentre>(visual, poses, view, Transparency::Opaque)?;
         let target = &self.frame.target;
         for (row, line) in out.chunks_exact_mut(view.width).rev().enumerate() {
             for (v, id) in line.iter_mut().zip(&target.ids[row * view.width..]) {
@@ -141,7 +151,7 @@ impl Renderer {
     }
 }
 
-/// The brightness of a colour, as `rgb2gray` computes it.
+/// Returns the brightness of a colour, as `rgb2gray` computes it.
 pub(crate) fn luma([r, g, b]: [u8; 3]) -> u8 {
     (0.2989 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) as u8
 }

@@ -1,11 +1,12 @@
-//! Linear functions over a triangle, as llvmpipe sets them up and evaluates them: from the lower left corner of the picture.
-//! Where a triangle is seen edge-on they are steep and the rounding is large; it is the reference's.
+//! Linear functions over a triangle, set up and evaluated as in llvmpipe: from the lower left corner of the image.
+//! For triangles seen edge-on they are steep and the rounding errors large; they are the reference's.
 
 use wide::f32x4;
 
 use super::camera::fused;
 
-/// Planes whose magnitude over a picture is within this multiple of a value are rounded little against it.
+/// A plane is gentle if its magnitude over an image is within this multiple of a value: rounding errors are then
+/// small.
 const GENTLE: f32 = 8.0;
 
 /// A projected vertex: pixels from the lower left, depth, 1/w.
@@ -17,7 +18,7 @@ pub struct Vertex {
     pub iw: f32,
 }
 
-/// Value at the corner of the picture, change per pixel to the right and upward.
+/// A linear function: value at the corner of the image, change per pixel to the right and upward.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plane {
     at: f32,
@@ -25,17 +26,17 @@ pub struct Plane {
     dy: f32,
 }
 
-/// Four planes: values at the corner of the picture, changes per pixel to the right and upward.
+/// Four linear functions: values at the corner of the image, changes per pixel to the right and upward.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Planes {
     at: f32x4,
     dx: f32x4,
     dy: f32x4,
-    /// Whether rounding is small all over the picture.
+    /// Whether rounding errors are small all over the image.
     gentle: bool,
 }
 
-/// What the planes of a triangle have in common.
+/// The part of the set-up that all planes of a triangle share.
 #[derive(Clone, Copy, Debug)]
 pub struct Basis {
     x: f32,
@@ -61,7 +62,7 @@ impl Basis {
         }
     }
 
-    /// The plane through values at the corners.
+    /// Returns the plane through values at the corners.
     #[inline(always)]
     pub fn plane(&self, [a, b, c]: [f32; 3]) -> Plane {
         let (d01, d20) = (a - b, c - a);
@@ -76,8 +77,8 @@ impl Basis {
 }
 
 impl Planes {
-    /// Planes through values at the corners. Where they change little over a picture of some size, against the magnitude of
-    /// values, they need not be rounded as llvmpipe does.
+    /// Makes planes through values at the corners. Where they vary little over an image of this size, compared with
+    /// `magnitude`, they need not be rounded as llvmpipe does.
     #[inline(always)]
     pub fn new(basis: &Basis, [a, b, c]: [f32x4; 3], magnitude: f32, size: [usize; 2]) -> Self {
         let (d01, d20) = (a - b, c - a);
@@ -94,9 +95,9 @@ impl Planes {
         }
     }
 
-    /// Values in the middles of a group of 2 x 2 pixels, of which this is the first: the lower two first.
+    /// Evaluates at the centres of a block of 2 x 2 pixels, whose first pixel is given: the lower two first.
     #[inline(always)]
-    pub fn group(&self, x: f32, y: f32) -> [f32x4; 4] {
+    pub fn block(&self, x: f32, y: f32) -> [f32x4; 4] {
         if self.gentle {
             let first = self.at + (self.dx * f32x4::splat(x) + self.dy * f32x4::splat(y));
             [first, first + self.dx, first + self.dy, first + (self.dx + self.dy)]
@@ -116,25 +117,25 @@ impl Planes {
 }
 
 impl Plane {
-    /// Whether rounding is small against `value` all over a picture.
+    /// Returns whether rounding errors are small compared with `value` all over an image.
     pub fn is_gentle(&self, value: f32, size: [usize; 2]) -> bool {
         let change = self.dx.abs() * size[0] as f32 + self.dy.abs() * size[1] as f32;
         self.at.abs() + change <= GENTLE * value.abs()
     }
 
-    /// The value at a place, not as llvmpipe rounds it.
+    /// Evaluates at one point, without llvmpipe's rounding.
     #[inline(always)]
     pub fn quick(&self, x: f32, y: f32) -> f32 {
         self.at + (self.dx * x + self.dy * y)
     }
 
-    /// Changes over some distances.
+    /// Returns the differences of the value over four displacements.
     #[inline(always)]
     pub fn spread(&self, dx: [f32; 4], dy: [f32; 4]) -> f32x4 {
         f32x4::splat(self.dx) * f32x4::new(dx) + f32x4::splat(self.dy) * f32x4::new(dy)
     }
 
-    /// Values at four places.
+    /// Evaluates at four points, rounded as in llvmpipe.
     #[inline(always)]
     pub fn at(&self, x: [f32; 4], y: [f32; 4]) -> [f32; 4] {
         let mut out = [0.0; 4];

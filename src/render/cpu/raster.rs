@@ -1,20 +1,13 @@
-//! Which triangle is seen at each sample: edges in 1/256 pixels, depth as llvmpipe interpolates it.
-
-use std::marker::PhantomData;
+//! Rasterisation: which triangle each sample shows. Edges are in 1/256 pixels; depth is interpolated as in llvmpipe.
 
 use wide::{f32x4, i32x4};
 
 use super::plane::{Basis, Plane, Vertex};
+use super::sampling::{GRAIN, GRAIN_BITS, Rows, Sampling};
 
-/// Nothing is seen.
-pub const NONE: u32 = u32::MAX;
-/// Coordinates lie within this, 1/256 pixels.
+/// Bound on coordinates, 1/256 pixels.
 pub const LIMIT: f32 = (1 << 21) as f32;
 
-/// Places of the samples in a pixel are multiples of this, 1/256 pixels. Edge functions need no finer steps.
-const GRAIN: i32 = 32;
-/// See [`GRAIN`].
-const GRAIN_BITS: u32 = GRAIN.trailing_zeros();
 /// Side of the blocks in which large triangles are tested, pixels.
 const BLOCK: i32 = 8;
 /// Triangles up to this extent are tested sample by sample, 1/256 pixels.
@@ -22,124 +15,27 @@ const TINY: i32 = 1 << 8;
 /// Triangles up to this extent are drawn without blocks, 1/256 pixels.
 const SMALL: i32 = 12 << 8;
 
-/// Where a pixel is sampled.
-pub trait Sampling {
-    /// From the lower left corner to the right and upward, in grains.
-    const PLACES: [[i32; 4]; 2];
-    /// The same in pixels, to the right.
-    const X: [f32; 4];
-    /// Upward.
-    const Y: [f32; 4];
-    /// Number of rows of samples in a pixel, which are equally far apart; each has one place, in the order of `PLACES`.
-    const ROWS: usize;
-
-    /// `dx y - dy x` at the places.
-    fn steps(dx: i32, dy: i32) -> i32x4;
-}
-
-/// The four samples of a pixel of a picture in colours.
-pub struct Four;
-/// All samples in the middle, for pictures that are not colours.
-pub struct Middle;
-
-impl Sampling for Four {
-    const PLACES: [[i32; 4]; 2] = [[3, 7, 1, 5], [1, 3, 5, 7]];
-    const X: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
-    const Y: [f32; 4] = [0.125, 0.375, 0.625, 0.875];
-    const ROWS: usize = 4;
-
-    #[inline(always)]
-    fn steps(dx: i32, dy: i32) -> i32x4 {
-        // sums are cheaper than products of vectors
-        let (dx2, dy2) = (dx + dx, dy + dy);
-        let (dx3, dy3) = (dx + dx2, dy + dy2);
-        let (dx5, dy5) = (dx3 + dx2, dy3 + dy2);
-        i32x4::new([dx - dy3, dx3 - (dy5 + dy2), dx5 - dy, dx5 + dx2 - dy5])
-    }
-}
-
-impl Sampling for Middle {
-    const PLACES: [[i32; 4]; 2] = [[4; 4]; 2];
-    const X: [f32; 4] = [0.5; 4];
-    const Y: [f32; 4] = [0.5; 4];
-    const ROWS: usize = 1;
-
-    #[inline(always)]
-    fn steps(dx: i32, dy: i32) -> i32x4 {
-        i32x4::splat(4 * (dx - dy))
-    }
-}
-
 /// A projected vertex, 1/256 pixels from the lower left.
 pub type Fixed = [i32; 2];
 
-/// A triangle that is seen somewhere.
-#[derive(Clone, Copy, Debug)]
-pub struct Record {
-    /// Index of what is drawn.
-    pub draw: u32,
-    /// Its vertices in the frame.
-    pub vertices: [u32; 3],
-    /// Index of how it is shaded, or [`NONE`].
-    pub setup: u32,
-}
-
-/// Receives the samples that a triangle covers.
+/// A receiver of the samples that a triangle covers.
 pub trait Sink {
-    /// The samples of the pixel `at`, counted from the lower left, whose bits are in `inside`; the depths of all.
+    /// Takes the samples of one pixel: `at` counts pixels from the lower left, `inside` has a bit for each covered
+    /// sample, `z` holds the depths of all four.
     fn pixel(&mut self, at: usize, inside: u32, z: f32x4);
 }
 
-/// The picture in work; row 0 is the lowest.
-#[derive(Debug, Default)]
-pub struct Target {
-    pub width: usize,
-    pub height: usize,
-    /// Depth of each sample; 0 is farthest.
-    pub depth: Vec<[f32; 4]>,
-    /// Index of the record that is seen at each sample.
-    pub ids: Vec<[u32; 4]>,
-    pub records: Vec<Record>,
-    /// What transparent triangles cover.
-    pub fragments: Vec<Fragment>,
-}
-
-/// Samples of a pixel that a transparent triangle covers.
-#[derive(Clone, Copy, Debug)]
-pub struct Fragment {
-    /// The pixel, counted from the lower left.
-    pub at: u32,
-    /// Index of the record.
-    pub id: u32,
-    /// A bit for each sample.
-    pub samples: u32,
-}
-
-/// Collects what is not behind something.
-struct Through<'a> {
-    target: &'a mut Target,
-    record: Record,
-    id: u32,
-}
-
-/// Writes what is nearest.
-struct Nearest<'a> {
-    target: &'a mut Target,
-    record: Record,
-    id: u32,
-}
-
-/// An edge: positive to the left of it; zero belongs to one of the two triangles that share it.
+/// An edge function: positive to the left of the edge; zero belongs to one of the two triangles that share it.
 #[derive(Clone, Copy, Default)]
 struct Edge {
     dx: i32,
     dy: i32,
-    /// Added to the function, so that zero counts or does not.
+    /// Added to the function, so that zero counts as inside or outside.
     bias: i64,
     from: Fixed,
 }
 
-/// An edge function around some pixel, in grains.
+/// An edge function around a pixel, in units of [`GRAIN`].
 #[derive(Clone, Copy, Default)]
 struct Local {
     samples: i32x4,
@@ -159,32 +55,34 @@ impl Edge {
         }
     }
 
-    /// Those of a triangle.
+    /// Returns the three edges of a triangle.
     #[inline(always)]
     fn around(&[a, b, c]: &[Fixed; 3]) -> [Self; 3] {
         [Self::new(b, c), Self::new(c, a), Self::new(a, b)]
     }
 
-    /// The value at the lower left corner of a pixel.
+    /// Evaluates the edge function at the lower left corner of a pixel.
     fn at(&self, x: i32, y: i32) -> i64 {
         let up = i64::from(self.dx) * i64::from(y * 256 - self.from[1]);
         up - i64::from(self.dy) * i64::from(x * 256 - self.from[0]) + self.bias
     }
 
-    /// The same for a pixel near the edge of a small triangle.
+    /// Evaluates the edge function at the lower left corner of a pixel near a small triangle, in 32 bits.
     #[inline(always)]
     fn near(&self, x: i32, y: i32) -> i64 {
         let up = self.dx.wrapping_mul(y * 256 - self.from[1]);
         i64::from(up.wrapping_sub(self.dy.wrapping_mul(x * 256 - self.from[0]))) + self.bias
     }
 
-    /// Negative outside of the edge of a tiny triangle, at a place within its extent, 1/256 pixels.
+    /// Returns a negative number at points outside the edge of a tiny triangle; the point, in 1/256 pixels, lies within
+    /// the triangle's extent.
     #[inline(always)]
     fn sign(&self, [x, y]: [i32; 2]) -> i32 {
         self.dx * (y - self.from[1]) - self.dy * (x - self.from[0]) + self.bias as i32
     }
 
-    /// The function around a pixel where it is `at`. Dropping the low bits changes no sign, as all steps are whole grains.
+    /// Returns the edge function around a pixel at whose corner its value is `at`. Dropping the low bits changes no
+    /// sign, as all steps are whole grains.
     #[inline(always)]
     fn local<S: Sampling>(&self, at: i64) -> Local {
         let at = (at >> GRAIN_BITS) as i32;
@@ -196,129 +94,18 @@ impl Edge {
     }
 }
 
-impl Target {
-    pub fn clear(&mut self, width: usize, height: usize) {
-        (self.width, self.height) = (width, height);
-        self.depth.clear();
-        self.depth.resize(width * height, [0.0; 4]);
-        self.ids.clear();
-        self.ids.resize(width * height, [NONE; 4]);
-        self.records.clear();
-        self.fragments.clear();
-    }
-
-    /// Whether every sample in a range of pixels shows something nearer than the depth `z`.
-    pub fn hides(&self, x: std::ops::Range<usize>, y: std::ops::Range<usize>, z: f32) -> bool {
-        y.into_iter().all(|row| {
-            let row = &self.depth[row * self.width..][x.clone()];
-            row.iter()
-                .all(|&d| f32x4::new(d).simd_gt(f32x4::splat(z)).to_bitmask() == 15)
-        })
-    }
-
-    /// Draws a counterclockwise triangle, of which `record` tells which of the vertices are its own.
-    #[inline(never)]
-    pub fn triangle<S: Sampling>(&mut self, fixed: &[Fixed; 3], vertices: &[Vertex], record: Record) {
-        let size = [self.width, self.height];
-        let mut sink = Nearest {
-            target: self,
-            record,
-            id: NONE,
-        };
-        let own = record.vertices;
-        let depth = || Depth::new::<S>(own.map(|v| &vertices[v as usize]), size);
-        scan::<S>(&mut sink, size, fixed, depth);
-    }
-
-    /// Collects the fragments of a transparent counterclockwise triangle.
-    #[inline(never)]
-    pub fn glass<S: Sampling>(&mut self, fixed: &[Fixed; 3], vertices: &[Vertex], record: Record) {
-        let size = [self.width, self.height];
-        let mut sink = Through {
-            target: self,
-            record,
-            id: NONE,
-        };
-        let own = record.vertices;
-        let depth = || Depth::new::<S>(own.map(|v| &vertices[v as usize]), size);
-        scan::<S>(&mut sink, size, fixed, depth);
-    }
-}
-
-impl Sink for Through<'_> {
-    fn pixel(&mut self, at: usize, inside: u32, z: f32x4) {
-        let samples = inside & z.simd_ge(f32x4::new(self.target.depth[at])).to_bitmask();
-        if samples == 0 {
-            return;
-        }
-        let records = &mut self.target.records;
-        if self.id == NONE {
-            self.id = records.len() as u32;
-            records.push(self.record);
-        }
-        self.target.fragments.push(Fragment {
-            at: at as u32,
-            id: self.id,
-            samples,
-        });
-    }
-}
-
-impl Sink for Nearest<'_> {
-    #[inline(always)]
-    fn pixel(&mut self, at: usize, inside: u32, z: f32x4) {
-        let depth = &mut self.target.depth[at];
-        let before = f32x4::new(*depth);
-        let mut seen = inside & z.simd_ge(before).to_bitmask();
-        if seen == 0 {
-            return;
-        }
-        let ids = &mut self.target.ids[at];
-        let records = &mut self.target.records;
-        // of equally near things the one that comes later in the model is seen
-        let tie = seen & z.simd_eq(before).to_bitmask();
-        if tie != 0 {
-            for k in 0..4 {
-                let later = |id: u32| records.get(id as usize).is_some_and(|r| r.draw > self.record.draw);
-                if tie & 1 << k != 0 && ids[k] != self.id && later(ids[k]) {
-                    seen &= !(1 << k);
-                }
-            }
-            if seen == 0 {
-                return;
-            }
-        }
-        if self.id == NONE {
-            self.id = records.len() as u32;
-            records.push(self.record);
-        }
-        let z = z.to_array();
-        if seen == 15 {
-            *depth = z;
-            *ids = [self.id; 4];
-            return;
-        }
-        for k in 0..4 {
-            if seen & 1 << k != 0 {
-                depth[k] = z[k];
-                ids[k] = self.id;
-            }
-        }
-    }
-}
-
-/// The depth over a triangle.
+/// The depth function of a triangle.
 #[derive(Clone, Copy)]
-struct Depth {
+pub struct Depth {
     plane: Plane,
     gentle: bool,
-    /// Differences of the samples from the corner of a pixel.
+    /// Differences between the samples and the corner of a pixel.
     spread: f32x4,
 }
 
 impl Depth {
     #[inline(always)]
-    fn new<S: Sampling>(vertices: [&Vertex; 3], size: [usize; 2]) -> Self {
+    pub fn new<S: Sampling>(vertices: [&Vertex; 3], size: [usize; 2]) -> Self {
         let [a, b, c] = vertices;
         let plane = Basis::new(vertices).plane([a.z, b.z, c.z]);
         Self {
@@ -341,14 +128,14 @@ impl Depth {
             }
             f32x4::new(self.plane.at(sx, sy))
         };
-        // what is not a number is farthest
+        // NaN counts as farthest
         z.max(f32x4::ZERO).fast_min(f32x4::ONE)
     }
 }
 
-/// Whether a triangle is counterclockwise.
+/// Returns whether a triangle is counterclockwise.
 #[inline(always)]
-pub fn faces([a, b, c]: &[Fixed; 3]) -> bool {
+pub fn is_counterclockwise([a, b, c]: &[Fixed; 3]) -> bool {
     let wide = i64::from;
     wide(b[0] - a[0]) * wide(c[1] - a[1]) > wide(b[1] - a[1]) * wide(c[0] - a[0])
 }
@@ -374,7 +161,7 @@ impl Extent {
         self.x[1] - self.x[0] < limit && self.y[1] - self.y[0] < limit
     }
 
-    /// Whether it is tiny and lies between the samples.
+    /// Returns whether the triangle is tiny and lies between the samples.
     #[inline(always)]
     pub fn misses<S: Sampling>(&self) -> bool {
         let rows = Rows::<S>::within(self.y);
@@ -385,7 +172,7 @@ impl Extent {
             })
     }
 
-    /// The pixels that the triangle may cover, the first and the last in each direction; none if there are none.
+    /// Returns the first and the last pixel in each direction that the triangle may cover; `None` if it covers none.
     #[inline(always)]
     fn pixels(&self, size: [usize; 2]) -> Option<[[i32; 2]; 2]> {
         // no sample is nearer to the edges of a pixel than a grain
@@ -402,7 +189,7 @@ impl Extent {
 /// Passes the samples that a counterclockwise triangle covers to `sink`. Most small triangles lie between the samples and need
 /// neither edges nor depth.
 #[inline(always)]
-fn scan<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
+pub fn scan<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
     let extent = Extent::new(fixed);
     if extent.below(TINY) {
         tiny::<S>(sink, size, fixed, &extent, depth);
@@ -450,52 +237,6 @@ fn tiny<S: Sampling>(
                 depth.at::<S>(px, py),
             );
         }
-    }
-}
-
-/// Rows of samples, counted from the lower edge of the picture.
-struct Rows<S> {
-    first: i32,
-    last: i32,
-    sampling: PhantomData<S>,
-}
-
-impl<S: Sampling> Rows<S> {
-    const SPACING: i32 = 256 / S::ROWS as i32;
-
-    /// Those in a range, 1/256 pixels.
-    #[inline(always)]
-    fn within([low, high]: [i32; 2]) -> Self {
-        let below = |y: i32| y.div_euclid(Self::SPACING);
-        Self {
-            first: below(low + (Self::SPACING / 2 - 1)),
-            last: below(high - Self::SPACING / 2),
-            sampling: PhantomData,
-        }
-    }
-
-    /// Where a row lies.
-    #[inline(always)]
-    fn height(row: i32) -> i32 {
-        row * Self::SPACING + Self::SPACING / 2
-    }
-
-    /// Its index in a pixel.
-    #[inline(always)]
-    fn index(row: i32) -> usize {
-        row as usize % S::ROWS
-    }
-
-    /// Where its samples lie in pixels, to the right.
-    #[inline(always)]
-    fn place(row: i32) -> i32 {
-        S::PLACES[0][Self::index(row)] * GRAIN
-    }
-
-    /// A bit for each of its samples in a pixel.
-    #[inline(always)]
-    fn samples(row: i32) -> u32 {
-        15 >> (4 - 4 / S::ROWS) << Self::index(row)
     }
 }
 

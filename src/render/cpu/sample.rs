@@ -1,4 +1,4 @@
-//! Texture lookups as Mesa's llvmpipe makes them: bilinear in two levels, with one level of detail per 2 x 2 pixels.
+//! Texture lookups as in Mesa's llvmpipe: bilinear in two mip levels, with one level of detail per 2 x 2 pixels.
 
 use std::ops::Neg;
 
@@ -6,22 +6,22 @@ use wide::f32x4;
 
 use crate::render::texture::{Face, Level, Texture};
 
-/// Between which mip levels to blend at the pixels of a group, and how far.
+/// The mip levels to blend at each pixel of a block, and their blend weights.
 #[derive(Clone, Copy, Debug)]
-struct Detail {
+struct MipLevels {
     level: [usize; 4],
     blend: [f32; 4],
 }
 
-impl Detail {
-    /// From the squares of the numbers of texels per pixel. The logarithm is linear between powers of two, as llvmpipe's is;
-    /// what is magnified has the first level.
+impl MipLevels {
+    /// Finds the mip levels from the squared number of texels per pixel. The logarithm is linear between powers of two,
+    /// as in llvmpipe; magnified textures use the first level.
     fn new(squared: f32x4, levels: usize) -> Self {
         let bits = squared.to_array().map(f32::to_bits);
         let exponent = f32x4::new(bits.map(|b| ((b >> 23 & 255) as i32 - 127) as f32));
         let mantissa = f32x4::new(bits.map(|b| f32::from_bits(b & 0x007f_ffff | 0x3f80_0000)));
         let level = 0.5 * (exponent + mantissa - f32x4::ONE);
-        // these are always numbers
+        // never NaN
         let level = level.fast_max(f32x4::ZERO).fast_min(f32x4::splat(levels as f32 - 1.0));
         let whole = level.fast_trunc_int();
         Self {
@@ -35,22 +35,22 @@ impl Detail {
     }
 }
 
-/// Coordinates of the pixels of a group of 2 x 2, the lower two first.
+/// Texture coordinates of a block of 2 x 2 pixels, the lower two first.
 pub type Coordinates = [f32x4; 3];
 
 impl Texture {
-    /// The colours at the pixels of a group, 0..1, where `wanted`: red, green, blue and opacity. Flat textures have one level of
-    /// detail for the whole group, cubes one for each pixel.
+    /// Returns the colours (red, green, blue, opacity; 0..1) at those pixels of a block that are `wanted`. Flat
+    /// textures have one level of detail for the whole block, cube maps one for each pixel.
     pub fn sample(&self, at: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
         let colours = match self {
             Texture::Flat(face) => flat(face, at, wanted),
-            Texture::Cube(faces) => Place::new(faces, at).colours(faces, wanted),
+            Texture::Cube(faces) => CubePoints::new(faces, at).colours(faces, wanted),
         };
         colours.map(|c| c * f32x4::splat(1.0 / 255.0))
     }
 }
 
-/// Differences between the columns of a group, at each pixel.
+/// Returns the differences between the columns of a block, at each pixel.
 #[inline(always)]
 fn across(v: f32x4) -> f32x4 {
     let v = v.to_array();
@@ -58,7 +58,7 @@ fn across(v: f32x4) -> f32x4 {
     f32x4::new([low, low, high, high])
 }
 
-/// Differences between the rows of a group, at each pixel.
+/// Returns the differences between the rows of a block, at each pixel.
 #[inline(always)]
 fn upward(v: f32x4) -> f32x4 {
     let v = v.to_array();
@@ -66,15 +66,15 @@ fn upward(v: f32x4) -> f32x4 {
     f32x4::new([left, right, left, right])
 }
 
-/// Where the pixels of a group lie on a cube.
-struct Place {
+/// The points of a cube map at which the pixels of a block look.
+struct CubePoints {
     side: [u8; 4],
     u: f32x4,
     v: f32x4,
-    detail: Detail,
+    detail: MipLevels,
 }
 
-impl Place {
+impl CubePoints {
     #[inline(always)]
     fn new(faces: &[Face; 6], at: &Coordinates) -> Self {
         let side = sides_of(at);
@@ -85,7 +85,7 @@ impl Place {
         }
     }
 
-    /// On several sides: each pixel as if all were on its side.
+    /// Locates pixels that lie on several sides: each as if the whole block were on its side.
     #[cold]
     fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
         let own = side.map(|side| Self::on(faces, side, at));
@@ -104,14 +104,14 @@ impl Place {
             side,
             u: f32x4::new(each(&|p| p.u.to_array())),
             v: f32x4::new(each(&|p| p.v.to_array())),
-            detail: Detail {
+            detail: MipLevels {
                 level,
                 blend: each(&|p| p.detail.blend),
             },
         }
     }
 
-    /// As if all pixels were on one side.
+    /// Locates pixels as if all of them were on one side.
     #[inline(always)]
     fn on(faces: &[Face; 6], side: u8, at: &Coordinates) -> Self {
         let (sc, tc, ma) = components(side, *at);
@@ -131,7 +131,7 @@ impl Place {
             side: [side; 4],
             u: sc * half + 0.5,
             v: tc * half + 0.5,
-            detail: Detail::new(right.simd_gt(up).select(right, up), faces[0].len()),
+            detail: MipLevels::new(right.simd_gt(up).select(right, up), faces[0].len()),
         }
     }
 
@@ -148,7 +148,7 @@ impl Place {
         colours
     }
 
-    /// Bilinear lookups in a level for each pixel, across the edges of the cube where needed; 0..255.
+    /// Looks up bilinearly in one mip level for each pixel, across the edges of the cube where needed; 0..255.
     #[inline(always)]
     fn at_level(&self, faces: &[Face; 6], level: [usize; 4], wanted: [bool; 4]) -> [f32x4; 4] {
         let mut size = [0.0; 4];
@@ -185,7 +185,7 @@ impl Place {
     }
 }
 
-/// Bytes as numbers.
+/// Converts bytes to numbers.
 #[inline(always)]
 fn numbers(v: [u8; 4]) -> f32x4 {
     let mut out = [0.0; 4];
@@ -195,7 +195,7 @@ fn numbers(v: [u8; 4]) -> f32x4 {
     f32x4::new(out)
 }
 
-/// The largest integers that are not greater, for numbers within +-2^22.
+/// Rounds down to integers, for numbers within +-2^22.
 #[inline(always)]
 fn whole(x: f32x4) -> f32x4 {
     // adding 1.5 * 2^23 rounds to the nearest integer
@@ -203,14 +203,14 @@ fn whole(x: f32x4) -> f32x4 {
     nearest - (nearest.simd_gt(x) & f32x4::ONE)
 }
 
-/// Blend of bytes with a weight of 0..256, in whole numbers.
+/// Blends bytes with a weight of 0..256, in integers.
 #[inline(always)]
 fn blend(a: f32x4, b: f32x4, weight: f32) -> f32x4 {
     let sum = a * (256.0 - weight) + b * weight + 128.0;
     f32x4::from_i32x4((sum * (1.0 / 256.0)).fast_trunc_int())
 }
 
-/// Two-dimensional lookups go through 8-bit arithmetic.
+/// Looks up in a two-dimensional texture, in 8-bit arithmetic.
 fn flat(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
     let length = |change: fn(f32x4) -> f32x4| {
         let s = change(*s) * f32x4::splat(face[0].width as f32);
@@ -218,7 +218,7 @@ fn flat(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
         (s * s + t * t).to_array()[0]
     };
     let squared = length(across).max(length(upward));
-    let detail = Detail::new(f32x4::splat(squared), face.len());
+    let detail = MipLevels::new(f32x4::splat(squared), face.len());
     let (level, share) = (detail.level[0], detail.blend[0]);
     let mut out = flat_level(&face[level], *s, *t, wanted);
     if share > 0.0 {
@@ -231,21 +231,21 @@ fn flat(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
     out
 }
 
-/// Places along an image that repeats.
-struct Along {
-    /// The texels before and after.
+/// Coordinates along one axis of an image that repeats.
+struct RepeatedAxis {
+    /// Indices of the texels before and after.
     texels: [[usize; 4]; 2],
-    /// The weights of the second ones, 0..256.
+    /// Weights of the texels after, 0..256.
     weight: [f32; 4],
 }
 
-impl Along {
+impl RepeatedAxis {
     #[inline(always)]
     fn new(at: f32x4, size: usize) -> Self {
         let n = f32x4::splat(size as f32);
         let at = (at - whole(at)) * n - 0.5;
         let low = whole(at);
-        // coordinates that are not numbers give any place
+        // NaN coordinates give an arbitrary texel
         let index = |v: f32x4| {
             let v = v.max(f32x4::ZERO).fast_min(n - 1.0);
             v.fast_trunc_int().to_array().map(|i| i as usize)
@@ -263,7 +263,7 @@ impl Along {
 
 #[inline(always)]
 fn flat_level(level: &Level, s: f32x4, t: f32x4, wanted: [bool; 4]) -> [f32x4; 4] {
-    let (x, y) = (Along::new(s, level.width), Along::new(t, level.height));
+    let (x, y) = (RepeatedAxis::new(s, level.width), RepeatedAxis::new(t, level.height));
     let mut out = [f32x4::ZERO; 4];
     for k in (0..4).filter(|&k| wanted[k]) {
         let row = |y: &[usize; 4]| {
@@ -276,7 +276,7 @@ fn flat_level(level: &Level, s: f32x4, t: f32x4, wanted: [bool; 4]) -> [f32x4; 4
     out
 }
 
-/// Components of directions on a side of the cube: to the right, downward, outward.
+/// Returns the components of directions on a side of the cube: right, down, outward.
 #[inline(always)]
 fn components<T: Neg<Output = T>>(side: u8, [x, y, z]: [T; 3]) -> (T, T, T) {
     match side {
@@ -289,7 +289,7 @@ fn components<T: Neg<Output = T>>(side: u8, [x, y, z]: [T; 3]) -> (T, T, T) {
     }
 }
 
-/// The direction of components on a side of the cube.
+/// Returns the direction with the given components on a side of the cube.
 fn direction(side: u8, right: f32, down: f32) -> [f32; 3] {
     match side {
         0 => [1.0, -down, -right],
@@ -301,7 +301,7 @@ fn direction(side: u8, right: f32, down: f32) -> [f32; 3] {
     }
 }
 
-/// The sides of the cube that directions go through.
+/// Returns the sides of the cube that directions point through.
 #[inline(always)]
 fn sides_of([x, y, z]: &Coordinates) -> [u8; 4] {
     let (along_x, along_y) = (x.abs(), y.abs());
@@ -319,7 +319,7 @@ fn sides_of([x, y, z]: &Coordinates) -> [u8; 4] {
     })
 }
 
-/// Four texels of which some lie beyond an edge.
+/// Returns a block of four texels, some of which lie beyond an edge of the side.
 #[cold]
 fn across_edges(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> [[u8; 4]; 4] {
     let at = |dx: i32, dy: i32| texel(faces, side, level, x + dx, y + dy);
@@ -334,7 +334,7 @@ fn across_edges(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> [[
     found.map(|t| t.unwrap_or_default())
 }
 
-/// A texel of a side or, beyond one of its edges, of the side that adjoins there; none beyond two.
+/// Returns a texel of a side or, beyond one of its edges, of the adjoining side; `None` beyond two edges.
 fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u8; 4]> {
     let image = |side: u8| &faces[usize::from(side)][level];
     let n = image(side).width;
@@ -369,7 +369,7 @@ mod tests {
     #[test]
     fn levels_follow_the_logarithm() {
         let of = |texels: f32| {
-            let detail = Detail::new(f32x4::splat(texels * texels), 8);
+            let detail = MipLevels::new(f32x4::splat(texels * texels), 8);
             (detail.level[0], detail.blend[0])
         };
         assert_eq!(of(0.1), (0, 0.0));

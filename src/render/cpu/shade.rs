@@ -1,37 +1,38 @@
-//! The colour of what is seen: each triangle once per pixel, in the pixel's middle, averaged over the four samples.
+//! Shading: the colour of each visible triangle once per pixel, at the pixel's centre, averaged over the four samples.
 
 use wide::{f32x4, u32x4};
 
 use super::camera::Eye;
-use super::frame::{Frame, part_of};
-use super::light::{self, PlacedLamp};
+use super::frame::Frame;
+use super::light::{self, PlacedLight};
 use super::plane::{Basis, Planes};
-use super::raster::{NONE, Record};
-use crate::render::visual::{Poses, Visual};
+use super::target::{NONE, Triangle};
+use crate::render::view::Poses;
+use crate::render::visual::Visual;
 
-/// Shades what a frame shows.
+/// Computes the colours of a frame.
 #[derive(Debug, Default)]
 pub struct Shader {
-    lamps: Vec<PlacedLamp>,
-    /// Index in `lit` of each vertex of the frame, or [`NONE`].
+    lights: Vec<PlacedLight>,
+    /// Index into `lit` for each vertex of the frame, or [`NONE`].
     lit_of: Vec<u32>,
-    lit: Vec<Lit>,
+    lit: Vec<LitVertex>,
     setups: Vec<Setup>,
-    /// Colours of the samples of each pixel, in bytes, where there are transparent things.
+    /// Colours of the samples of each pixel, in bytes; used where there are transparent drawables.
     samples: Vec<[f32x4; 4]>,
 }
 
-/// Which pixels of a picture are wanted.
+/// The pixels of an image that are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pixels {
-    /// Every one.
+    /// Every pixel.
     All,
-    /// Every second one of every second row, from the upper left.
+    /// Every second pixel of every second row, from the upper left.
     Second,
 }
 
 impl Pixels {
-    /// Where a pixel goes, counted in pixels; none if it is not wanted. `y` is counted from the top.
+    /// Returns where a pixel goes, counted in pixels; `None` if it is not wanted. `y` is counted from the top.
     #[inline(always)]
     fn place(self, x: usize, y: usize, width: usize) -> Option<usize> {
         match self {
@@ -40,8 +41,9 @@ impl Pixels {
         }
     }
 
-    /// The samples of a group of 2 x 2 pixels, the lower two first, that are wanted: four bits for each pixel.
-    fn of_group(self, height: usize) -> u32 {
+    /// Returns which samples of a block of 2 x 2 pixels are wanted: four bits for each pixel, the lower two pixels
+    /// first.
+    fn of_block(self, height: usize) -> u32 {
         match self {
             Self::All => 0xffff,
             Self::Second if height.is_multiple_of(2) => 0x0f00,
@@ -50,36 +52,36 @@ impl Pixels {
     }
 }
 
-/// A vertex of a triangle that is seen.
+/// A lit vertex of a visible triangle.
 #[derive(Clone, Copy, Debug)]
-struct Lit {
+struct LitVertex {
     /// Red, green, blue, 1.
     colour: f32x4,
-    /// Coordinates of the texture, 0.
+    /// Texture coordinates, 0.
     texture: f32x4,
 }
 
-/// How a triangle is shaded.
+/// The shading of a triangle: its colour and texture coordinates as linear functions.
 #[derive(Clone, Copy, Debug)]
 struct Setup {
-    /// Those of the vertices, divided by w.
+    /// Colour, divided by w.
     colour: Planes,
     texture: Planes,
     /// Index of the texture, or [`NONE`].
     image: u32,
 }
 
-/// Everything that is read while shading.
+/// The inputs of shading.
 #[derive(Clone, Copy)]
-struct Scene<'a> {
+struct Inputs<'a> {
     visual: &'a Visual,
     eye: &'a Eye,
-    /// From pixels to half pictures.
+    /// Factor from pixels to half images.
     step: [f32; 2],
 }
 
 impl Shader {
-    /// Writes pixels of the picture, rows from the top.
+    /// Writes pixels of the image, rows from the top.
     pub fn resolve(
         &mut self,
         frame: &mut Frame,
@@ -88,26 +90,26 @@ impl Shader {
         eye: &Eye,
         (pixels, out): (Pixels, &mut [u8]),
     ) {
-        light::place(visual, poses, eye, &mut self.lamps);
+        light::place(visual, poses, eye, &mut self.lights);
         self.lit_of.clear();
         self.lit_of.resize(frame.vertices.len(), NONE);
         self.lit.clear();
         self.setups.clear();
         let (w, h) = (frame.target.width, frame.target.height);
-        let scene = Scene {
+        let inputs = Inputs {
             visual,
             eye,
             step: [2.0 / w as f32, 2.0 / h as f32],
         };
-        if !frame.panes.is_empty() {
-            self.blended(frame, &scene, pixels, out);
+        if !frame.layers.is_empty() {
+            self.blended(frame, &inputs, pixels, out);
             return;
         }
-        let part = pixels.of_group(h);
+        let part = pixels.of_block(h);
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
                 let mut sums = [f32x4::ZERO; 4];
-                self.quad(frame, &scene, [x, y], part, |k, samples, colour| {
+                self.block(frame, &inputs, [x, y], part, |k, samples, colour| {
                     sums[k] += f32x4::splat(samples.count_ones() as f32) * colour;
                 });
                 for (k, &sum) in sums.iter().enumerate() {
@@ -123,13 +125,13 @@ impl Shader {
         }
     }
 
-    /// Passes on the colours that are seen in a group of pixels, at the samples with a bit in `part`: the pixel in the group,
+    /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: the pixel in the block,
     /// a bit for each sample, the colour in bytes.
     #[inline(always)]
-    fn quad(
+    fn block(
         &mut self,
         frame: &mut Frame,
-        scene: &Scene,
+        inputs: &Inputs,
         at: [usize; 2],
         part: u32,
         mut emit: impl FnMut(usize, u32, f32x4),
@@ -149,23 +151,23 @@ impl Shader {
             let mine = (same(0) | same(1) | same(2) | same(3)) & rest;
             rest &= !mine;
             let samples = [mine & 15, mine >> 4 & 15, mine >> 8 & 15, mine >> 12 & 15];
-            let colours = self.colours(frame, scene, at, id, samples.map(|s| s != 0));
+            let colours = self.colours(frame, inputs, at, id, samples.map(|s| s != 0));
             for k in 0..4 {
                 emit(k, samples[k], bytes(colours[k]));
             }
         }
     }
 
-    /// Writes a picture with transparent things, each drawn twice: from the front to the back and then back.
+    /// Writes an image with transparent things, each drawn twice: from the front to the back and then back.
     #[cold]
-    fn blended(&mut self, frame: &mut Frame, scene: &Scene, pixels: Pixels, out: &mut [u8]) {
+    fn blended(&mut self, frame: &mut Frame, inputs: &Inputs, pixels: Pixels, out: &mut [u8]) {
         let (w, h) = (frame.target.width, frame.target.height);
         let mut samples = std::mem::take(&mut self.samples);
         samples.clear();
         samples.resize(w * h, [f32x4::ZERO; 4]);
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
-                self.quad(frame, scene, [x, y], 0xffff, |k, covered, colour| {
+                self.block(frame, inputs, [x, y], 0xffff, |k, covered, colour| {
                     let (x, y) = (x + k % 2, y + k / 2);
                     if x < w && y < h {
                         for s in (0..4).filter(|s| covered >> s & 1 == 1) {
@@ -175,16 +177,16 @@ impl Shader {
                 });
             }
         }
-        let panes = frame.panes.len();
-        for k in (0..panes).chain((0..panes).rev()) {
-            for i in frame.panes[k].clone() {
+        let layers = frame.layers.len();
+        for k in (0..layers).chain((0..layers).rev()) {
+            for i in frame.layers[k].clone() {
                 let fragment = frame.target.fragments[i];
                 let (x, y) = (fragment.at as usize % w, fragment.at as usize / w);
                 let mut wanted = [false; 4];
                 let own = x % 2 + 2 * (y % 2);
                 wanted[own] = true;
-                let group = [x - x % 2, y - y % 2];
-                let colour = self.colours(frame, scene, group, fragment.id, wanted)[own];
+                let block = [x - x % 2, y - y % 2];
+                let colour = self.colours(frame, inputs, block, fragment.id, wanted)[own];
                 let draw = frame.target.records[fragment.id as usize].draw;
                 let alpha = frame.draws[draw as usize].alpha;
                 for s in (0..4).filter(|s| fragment.samples >> s & 1 == 1) {
@@ -201,40 +203,40 @@ impl Shader {
         self.samples = samples;
     }
 
-    /// The colours of a record in the middles of the pixels of a group, where `wanted`.
+    /// Returns the colours of a record at the centres of those pixels of a block that are `wanted`.
     #[inline(always)]
     fn colours(
         &mut self,
         frame: &mut Frame,
-        scene: &Scene,
+        inputs: &Inputs,
         [x, y]: [usize; 2],
         id: u32,
         wanted: [bool; 4],
     ) -> [f32x4; 4] {
         let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
         if id == NONE {
-            return scene.sky(x, y, wanted);
+            return inputs.sky(x, y, wanted);
         }
         let mut index = frame.target.records[id as usize].setup;
         if index == NONE {
             index = self.setups.len() as u32;
             let record = frame.target.records[id as usize];
-            let setup = self.setup(frame, scene, &record);
+            let setup = self.setup(frame, inputs, &record);
             self.setups.push(setup);
             frame.target.records[id as usize].setup = index;
         }
-        self.setups[index as usize].colours(scene.visual, x, y, wanted)
+        self.setups[index as usize].colours(inputs.visual, x, y, wanted)
     }
 
-    fn setup(&mut self, frame: &Frame, scene: &Scene, record: &Record) -> Setup {
+    fn setup(&mut self, frame: &Frame, inputs: &Inputs, record: &Triangle) -> Setup {
         let index = record.draw as usize;
-        let lit = record.vertices.map(|v| self.lit(frame, scene, index, v));
+        let lit = record.vertices.map(|v| self.lit(frame, inputs, index, v));
         let vertices = record.vertices.map(|v| &frame.vertices[v as usize]);
         let basis = Basis::new(vertices);
         let iw = vertices.map(|v| f32x4::splat(v.iw));
         let size = [frame.target.width, frame.target.height];
         let over = |[a, b, c]: [f32x4; 3]| Planes::new(&basis, [a * iw[0], b * iw[1], c * iw[2]], vertices[0].iw, size);
-        let image = scene.visual.drawables[index].texture;
+        let image = inputs.visual.drawables[index].texture;
         Setup {
             colour: over(lit.map(|l| l.colour)),
             texture: match image {
@@ -245,34 +247,34 @@ impl Shader {
         }
     }
 
-    /// A vertex of the frame that belongs to a drawable, lit when it is first asked for.
-    fn lit(&mut self, frame: &Frame, scene: &Scene, index: usize, v: u32) -> Lit {
+    /// Returns the lighting of a vertex of the frame, computed when it is first asked for.
+    fn lit(&mut self, frame: &Frame, inputs: &Inputs, index: usize, v: u32) -> LitVertex {
         let slot = self.lit_of[v as usize];
         if slot != NONE {
             return self.lit[slot as usize];
         }
-        let drawable = &scene.visual.drawables[index];
+        let drawable = &inputs.visual.drawables[index];
         let draw = &frame.draws[index];
-        let mesh = &scene.visual.meshes[drawable.shape as usize];
+        let mesh = &inputs.visual.meshes[drawable.shape as usize];
         let i = v as usize - draw.base;
         let lit = match i.checked_sub(mesh.x.len()) {
             Some(point) => {
                 let point = frame.points[draw.points + point];
-                let from = self.lit(frame, scene, index, point.from);
-                let to = self.lit(frame, scene, index, point.to);
+                let from = self.lit(frame, inputs, index, point.from);
+                let to = self.lit(frame, inputs, index, point.to);
                 let share = f32x4::splat(point.share);
-                Lit {
+                LitVertex {
                     colour: from.colour + share * (to.colour - from.colour),
                     texture: from.texture + share * (to.texture - from.texture),
                 }
             }
             None => {
                 let unit = [mesh.x[i], mesh.y[i], mesh.z[i]];
-                let part = part_of(&mesh.parts, i);
+                let part = mesh.part_of(i);
                 let vertex = (part, unit, mesh.normal[i]);
-                let [r, g, b] = light::vertex(&self.lamps, drawable, draw, scene.eye.pos, vertex);
+                let [r, g, b] = light::vertex(&self.lights, drawable, draw, inputs.eye.pos, vertex);
                 let [s, t, u] = [0, 1, 2].map(|k| unit[k] * drawable.texture_scale[k] + drawable.texture_offset);
-                Lit {
+                LitVertex {
                     colour: f32x4::new([r, g, b, 1.0]),
                     texture: f32x4::new([s, t, u, 0.0]),
                 }
@@ -284,7 +286,7 @@ impl Shader {
     }
 }
 
-/// A colour of 0..1 in bytes: to the nearest, halves to even. What is not a number becomes 0.
+/// Converts a colour of 0..1 to bytes: rounded to the nearest, halves to even; NaN becomes 0.
 #[inline(always)]
 fn bytes(colour: f32x4) -> f32x4 {
     // adding 2^23 rounds to the nearest integer
@@ -298,7 +300,7 @@ fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
     bytes(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
 }
 
-/// The average of four colours in bytes from their sum.
+/// Returns the average of four colours in bytes, from their sum.
 #[inline(always)]
 fn average(sum: f32x4) -> [u8; 3] {
     let [r, g, b, _] = ((sum + 2.0) * 0.25).fast_trunc_int().to_array();
@@ -308,14 +310,14 @@ fn average(sum: f32x4) -> [u8; 3] {
 impl Setup {
     #[inline(always)]
     fn colours(&self, visual: &Visual, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
-        let mut colours = self.colour.group(x, y);
+        let mut colours = self.colour.block(x, y);
         let w = f32x4::ONE / f32x4::new(colours.map(|c| c.to_array()[3]));
         let each = w.to_array();
         for k in 0..4 {
             colours[k] *= f32x4::splat(each[k]);
         }
         if self.image != NONE {
-            let [s, t, u, _] = f32x4::transpose(self.texture.group(x, y));
+            let [s, t, u, _] = f32x4::transpose(self.texture.block(x, y));
             let texels = visual.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
             for k in 0..4 {
                 colours[k] *= texels[k];
@@ -325,8 +327,9 @@ impl Setup {
     }
 }
 
-impl Scene<'_> {
-    /// The background: a cube map turned by 90 degrees about x, seen in the direction of the pixels of a group.
+impl Inputs<'_> {
+    /// Returns the background: a cube map turned by 90 degrees about x, seen in the directions of the pixels of a
+    /// block.
     fn sky(&self, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
         let Some(sky) = self.visual.sky else {
             return [f32x4::ZERO; 4];

@@ -1,15 +1,16 @@
-//! Where pictures lie: side by side in few large textures, so that many cost one pass.
+//! The layout of images: side by side in a few large textures, so that many cost one pass.
 
 use super::GpuError;
 use crate::render::View;
 
-/// Largest side of a texture of several pictures: what every device has, and 128 MiB with four samples and depth.
+/// Largest side of a texture that holds several images: every device allows it, and with four samples and depth it
+/// takes 128 MiB.
 pub const SIDE: u32 = 2048;
 
-/// A picture's place, pixels.
+/// The rectangle of an image, pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tile {
-    /// Which texture.
+    /// Index of the texture.
     pub chunk: usize,
     pub x: u32,
     pub y: u32,
@@ -17,18 +18,18 @@ pub struct Tile {
     pub height: u32,
 }
 
-/// The places of all pictures of a submission.
+/// The rectangles of all images of a submission.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Atlas {
-    /// In the order of the pictures; those of a chunk are consecutive.
+    /// Rectangles in the order of the images; those of a chunk are consecutive.
     pub tiles: Vec<Tile>,
-    /// Width and height in use of each texture.
+    /// Width and height in use, for each texture.
     pub chunks: Vec<[u32; 2]>,
 }
 
 impl Atlas {
-    /// Places pictures of allowed sizes in rows, or each in the corner of a texture of its own. `most` is the largest side
-    /// of a texture of the device.
+    /// Places images in rows or, if `apart`, each in the corner of a texture of its own. `most` is the largest side
+    /// of a texture that the device allows.
     pub fn new(views: impl Iterator<Item = View>, most: u32, apart: bool) -> Result<Self, GpuError> {
         let side = if apart { 0 } else { SIDE.min(most) };
         let mut atlas = Self::default();
@@ -72,11 +73,10 @@ impl Atlas {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::CameraId;
 
     fn place(sizes: &[(usize, usize)], most: u32) -> Result<Atlas, GpuError> {
         let view = |&(width, height): &(usize, usize)| View {
-            camera: CameraId(0),
+            camera: 0,
             width,
             height,
         };
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn pictures_apart_have_a_texture_each() {
         let view = View {
-            camera: CameraId(0),
+            camera: 0,
             width: 5,
             height: 3,
         };

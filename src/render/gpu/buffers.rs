@@ -1,25 +1,25 @@
-//! What every submission uploads: instances and views.
+//! The data that each submission uploads: instances and views.
 
 use super::GpuError;
 use super::device::Gpu;
 use super::frame::{Frame, INSTANCE, VIEW_ROWS, views_size};
 use super::pipelines::Layouts;
 
-/// Buffers that grow with the largest submission.
+/// The buffers for instances and views; they grow with the largest submission.
 #[derive(Debug)]
 pub struct Buffers {
     pub instances: wgpu::Buffer,
     /// 0, 1, 2...: indices of views, for the background.
     pub counting: wgpu::Buffer,
     views: wgpu::Texture,
-    /// Lights and views.
+    /// Bind group of lights and views.
     pub group: wgpu::BindGroup,
-    /// Views there is room for.
+    /// Number of views that fit.
     room: usize,
 }
 
 impl Buffers {
-    pub fn new(gpu: &Gpu, layouts: &Layouts, lamps: &wgpu::Buffer, instances: usize, views: usize) -> Self {
+    pub fn new(gpu: &Gpu, layouts: &Layouts, lights: &wgpu::Buffer, instances: usize, views: usize) -> Self {
         let buffer = |label, numbers: usize| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -53,7 +53,7 @@ impl Buffers {
             entries: &[
                 wgpu::BindGroupEntry {
                     binding: 0,
-                    resource: lamps.as_entire_binding(),
+                    resource: lights.as_entire_binding(),
                 },
                 wgpu::BindGroupEntry {
                     binding: 1,
@@ -75,7 +75,7 @@ impl Buffers {
         &mut self,
         gpu: &Gpu,
         layouts: &Layouts,
-        lamps: &wgpu::Buffer,
+        lights: &wgpu::Buffer,
         frame: &Frame,
         views: usize,
     ) -> Result<(), GpuError> {
@@ -91,7 +91,7 @@ impl Buffers {
             let instances = frame.instances.len().next_power_of_two();
             let most = gpu.device.limits().max_buffer_size as usize / (4 * INSTANCE);
             let instances = instances.min(most).max(self.instances.size() as usize / (4 * INSTANCE));
-            *self = Self::new(gpu, layouts, lamps, instances, room_for(views.max(self.room)));
+            *self = Self::new(gpu, layouts, lights, instances, room_for(views.max(self.room)));
         }
         gpu.queue.write_buffer(&self.instances, 0, bytes);
         let [width, height] = views_size(views).map(|n| n as u32);
@@ -111,7 +111,7 @@ impl Buffers {
     }
 }
 
-/// So many views or a few more, so that memory is not asked for every time.
+/// Rounds a number of views up, so that buffers are not reallocated for every submission.
 fn room_for(views: usize) -> usize {
     if views <= VIEW_ROWS {
         views.next_power_of_two()
@@ -120,7 +120,7 @@ fn room_for(views: usize) -> usize {
     }
 }
 
-/// Whether something is within a limit of the device.
+/// Checks that something is within a limit of the device.
 pub fn fits(what: &'static str, needed: u64, limit: u64) -> Result<(), GpuError> {
     if needed <= limit {
         Ok(())

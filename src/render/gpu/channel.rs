@@ -1,19 +1,19 @@
-//! What a picture can show.
+//! The kinds of images: colour, brightness, depth, geom ids.
 
 use super::pipelines::Output;
 use crate::render::luma;
 
-/// What a picture shows: [`Rgb`], [`Gray`], [`Depth`] or [`Segmentation`].
+/// A kind of image: [`Rgb`], [`Gray`], [`Depth`] or [`Segmentation`].
 pub trait Channel: sealed::Channel {}
 
 pub(super) mod sealed {
     use super::Output;
 
-    /// How values come out of what the device writes.
+    /// The conversion from what the device writes to values.
     pub trait Channel: std::fmt::Debug + Send + Sync + 'static {
-        /// Type of a value.
+        /// Type of one value.
         type Value: Copy + Default + std::fmt::Debug + PartialEq + Send + Sync + 'static;
-        /// Values of a pixel.
+        /// Number of values per pixel.
         const PER_PIXEL: usize;
         #[doc(hidden)]
         const OUTPUT: Output;
@@ -22,19 +22,20 @@ pub(super) mod sealed {
     }
 }
 
-/// Red, green, blue of each pixel.
+/// Images in colour: red, green, blue of each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rgb;
 
-/// Brightness by the weights 0.2989, 0.5870, 0.1140.
+/// Images in grey: brightness with the weights 0.2989, 0.5870, 0.1140.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gray;
 
-/// Distance from the camera's plane of what is seen in the middle of each pixel, m; infinite where nothing is.
+/// Depth: the distance (m) from the camera's plane to what the middle of each pixel shows; infinity where it shows
+/// nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Depth;
 
-/// Which geom is seen in the middle of each pixel; -1 where none is. Sites hide what is behind them.
+/// Geom ids: the geom that the middle of each pixel shows; -1 where it shows none. Sites hide what is behind them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segmentation;
 

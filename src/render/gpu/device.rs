@@ -1,4 +1,4 @@
-//! The graphics device: which one, and what it complains about.
+//! The graphics device: how it is chosen, and the errors it reports.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -9,7 +9,7 @@ use super::GpuError;
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// Name, kind and backend.
+    /// Name, backend and kind.
     pub name: String,
     /// Whether the adapter computes on the CPU.
     pub software: bool,
@@ -18,7 +18,7 @@ pub struct Gpu {
 
 #[derive(Debug, Default)]
 struct Faults {
-    /// The first error since it was last asked for.
+    /// The first error since the last check.
     first: Option<GpuError>,
     lost: Option<String>,
 }
@@ -60,7 +60,7 @@ impl Gpu {
         Ok(Self::new(device, queue))
     }
 
-    /// Around a device that is open. Errors outside error scopes are reported here from now on.
+    /// Wraps a device that is already open. Errors outside error scopes are reported here from now on.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let faults = Arc::new(Mutex::new(Faults::default()));
         let seen = faults.clone();
@@ -89,7 +89,7 @@ impl Gpu {
         }
     }
 
-    /// The first error since the last call; a lost device stays lost.
+    /// Returns the first error reported since the last call; a lost device stays lost.
     pub fn check(&self) -> Result<(), GpuError> {
         let mut faults = lock(&self.faults);
         let first = faults.first.take();
@@ -105,7 +105,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// All adapters, the best first.
+/// Lists all adapters, the best first.
 async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let mut found = instance.enumerate_adapters(backends).await;
     if found.is_empty() {
@@ -128,7 +128,7 @@ async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wg
     found
 }
 
-/// The lower the better.
+/// Ranks an adapter: the lower the better.
 fn rank(kind: wgpu::DeviceType, backend: wgpu::Backend) -> (u8, u8) {
     use wgpu::{Backend, DeviceType};
     let kind = match kind {

@@ -1,6 +1,6 @@
-//! What can go wrong on a GPU.
+//! The errors of rendering on a GPU.
 
-/// Why pictures cannot be drawn on a GPU. None of it concerns the CPU renderer (`renderer: cpu`).
+/// A reason why images cannot be drawn on a GPU. None of it concerns the CPU renderer (`renderer: cpu`).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
@@ -11,26 +11,28 @@ pub enum GpuError {
          (renderer: cpu), which needs nothing"
     )]
     NoAdapter {
-        /// Backends, and why each adapter found was refused.
+        /// The backends that were searched, and why each adapter was refused.
         tried: String,
     },
-    /// More than the device takes at once.
-    #[error("{what} would need {needed}, but this device takes {limit}; draw fewer or smaller pictures at once")]
+    /// A request exceeds a limit of the device.
+    #[error(
+        "{what} would need {needed}, but the limit of this device is {limit}; draw fewer or smaller pictures at once"
+    )]
     TooLarge {
-        /// What is too large.
+        /// Name of what is too large.
         what: &'static str,
         /// Its size.
         needed: u64,
         /// The largest allowed.
         limit: u64,
     },
-    /// The device has no memory left.
+    /// The device is out of memory.
     #[error("the graphics device is out of memory; draw fewer or smaller pictures at once, or use renderer: cpu")]
     OutOfMemory,
-    /// The device is gone: its driver was reset, or it was taken away.
+    /// The device was lost: its driver was reset, or it was removed.
     #[error("the graphics device was lost ({0}); open a new renderer")]
     Lost(String),
-    /// The driver refused something.
+    /// The driver reported an error.
     #[error("the graphics device failed: {0}")]
     Device(String),
 }

@@ -1,24 +1,24 @@
-//! What moves: which drawables are in which view, where, and in which order they are drawn.
+//! The moving part of a submission: which drawables each view shows, where, and in which order they are drawn.
 
 use super::atlas::{Atlas, Tile};
 use super::pipelines::Output;
-use super::scene::{LAMPS, Scene};
-use crate::render::Shot;
-use crate::render::cpu::{Eye, PlacedLamp, V3, dot, place_lamps, pose, single};
+use super::scene::{GpuScene, LIGHTS};
+use crate::render::RenderRequest;
+use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, pose, single};
 use crate::render::visual::{Drawable, Element, Shape, Visual};
 
-/// Numbers of an instance: the attributes of the shader's `Vertex` from `row_x` on.
+/// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
 pub const INSTANCE: usize = 44;
-/// Views in a column of the texture of views, as in the shader.
+/// Number of views in a column of the texture of views, as in the shader.
 pub const VIEW_ROWS: usize = 1024;
-/// Texels of a view, as in the shader.
-pub const VIEW_TEXELS: usize = 7 + 2 * LAMPS;
-/// More opaque than this is not blended.
+/// Number of texels per view, as in the shader.
+pub const VIEW_TEXELS: usize = 7 + 2 * LIGHTS;
+/// Least opacity of a drawable that is not blended.
 const OPAQUE: f32 = 0.995;
-/// What is left of a plane's opacity seen from behind.
+/// Factor on the opacity of a plane seen from behind.
 const BEHIND: f32 = 0.3;
 
-/// Instances of a class drawn by one call.
+/// Instances of one class, drawn by one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Call {
     pub class: usize,
@@ -26,27 +26,27 @@ pub struct Call {
     pub count: u32,
 }
 
-/// Calls for one view, inside its picture.
+/// The calls for one view, clipped to its image.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Own {
+pub struct ViewCalls {
     pub view: usize,
     pub calls: std::ops::Range<usize>,
 }
 
-/// What is drawn into one texture.
+/// The views and calls of one texture.
 #[derive(Debug, Default)]
 pub struct Chunk {
-    /// Its views.
+    /// Range of its views.
     pub views: std::ops::Range<usize>,
-    /// Opaque things that lie inside their pictures, all views together.
+    /// Calls for opaque drawables that lie inside their images, all views together.
     pub shared: std::ops::Range<usize>,
-    /// Opaque things that reach out of their picture.
-    pub own: Vec<Own>,
-    /// Transparent things, in order.
-    pub clear: Vec<Own>,
+    /// Calls for opaque drawables that reach out of their images.
+    pub own: Vec<ViewCalls>,
+    /// Calls for transparent drawables, in drawing order.
+    pub clear: Vec<ViewCalls>,
 }
 
-/// Everything that a submission uploads. Kept, so that its memory is used again.
+/// The data of a submission, kept between submissions to reuse its memory.
 #[derive(Debug, Default)]
 pub struct Frame {
     pub instances: Vec<[f32; INSTANCE]>,
@@ -55,28 +55,28 @@ pub struct Frame {
     pub calls: Vec<Call>,
     pub chunks: Vec<Chunk>,
     eyes: Vec<Eye>,
-    lamps: Vec<PlacedLamp>,
-    /// View and drawable of what lies inside its picture, by class.
+    lights: Vec<PlacedLight>,
+    /// View and drawable of what lies inside its image, for each class.
     inside: Vec<Vec<(usize, usize)>>,
-    /// View, class and drawable of what reaches out of its picture.
+    /// View, class and drawable of what reaches out of its image.
     outside: Vec<(usize, usize, usize)>,
     /// View, distance and drawable of what is transparent.
     clear: Vec<(usize, f32, usize)>,
 }
 
-/// The scene and the pictures asked for.
+/// A scene with the images to draw of it.
 #[derive(Clone, Copy)]
-pub struct Request<'a> {
+pub struct Submission<'a> {
     pub visual: &'a Visual,
-    pub scene: &'a Scene,
-    pub shots: &'a [Shot<'a>],
+    pub scene: &'a GpuScene,
+    pub requests: &'a [RenderRequest<'a>],
     pub atlas: &'a Atlas,
     /// Width and height of the textures.
     pub size: [u32; 2],
     pub output: Output,
 }
 
-/// Width and height of the texture of so many views.
+/// Returns the width and height of the texture that holds this many views.
 pub fn views_size(count: usize) -> [usize; 2] {
     [
         VIEW_TEXELS * count.div_ceil(VIEW_ROWS).max(1),
@@ -85,27 +85,27 @@ pub fn views_size(count: usize) -> [usize; 2] {
 }
 
 impl Frame {
-    pub fn build(&mut self, r: &Request) {
+    pub fn build(&mut self, r: &Submission) {
         self.instances.clear();
         self.calls.clear();
         self.chunks.clear();
         self.eyes.clear();
         self.inside.resize_with(r.scene.classes.len(), Vec::new);
-        let [width, height] = views_size(r.shots.len());
+        let [width, height] = views_size(r.requests.len());
         self.views.clear();
         self.views.resize(width * height, [0.0; 4]);
         let mut first = 0;
         for chunk in 0..r.atlas.chunks.len() {
             let end = r.atlas.tiles.partition_point(|t| t.chunk <= chunk);
             for view in first..end {
-                let shot = &r.shots[view];
-                let eye = Eye::new(r.visual, &shot.poses, &shot.view);
+                let request = &r.requests[view];
+                let eye = Eye::new(r.visual, &request.poses, &request.view);
                 self.eyes.push(eye);
                 self.place(r, view, &eye);
                 self.sort(r, view, &eye);
             }
             if end - first == 1 {
-                // alone, a picture is drawn as if there was no texture around it
+                // alone, an image is drawn as if there were no texture around it
                 let all = self.inside.iter_mut().enumerate();
                 let own = all.flat_map(|(class, found)| found.drain(..).map(move |(view, i)| (view, class, i)));
                 self.outside.extend(own);
@@ -124,10 +124,10 @@ impl Frame {
     }
 
     /// Writes the texels of a view.
-    fn place(&mut self, r: &Request, view: usize, eye: &Eye) {
-        let shot = &r.shots[view];
-        place_lamps(r.visual, &shot.poses, eye, &mut self.lamps);
-        let [width, _] = views_size(r.shots.len());
+    fn place(&mut self, r: &Submission, view: usize, eye: &Eye) {
+        let request = &r.requests[view];
+        place_lights(r.visual, &request.poses, eye, &mut self.lights);
+        let [width, _] = views_size(r.requests.len());
         let start = view % VIEW_ROWS * width + view / VIEW_ROWS * VIEW_TEXELS;
         let texels = &mut self.views[start..start + VIEW_TEXELS];
         let with = |[a, b, c]: V3, w: f32| [a, b, c, w];
@@ -139,7 +139,7 @@ impl Frame {
         texels[1] = with(eye.forward, 0.0);
         texels[2] = with(eye.right.map(|v| v * eye.tan[0]), 0.0);
         texels[3] = with(eye.up.map(|v| v * eye.tan[1]), 0.0);
-        // from pixels of the picture, upward, to the texture, whose rows run downward from 1 to -1
+        // from pixels of the image, upward, to the texture, whose rows run downward from 1 to -1
         texels[4] = [2.0 / w, -2.0 / h, 2.0 * x as f32 / w - 1.0, 1.0 - 2.0 * y as f32 / h];
         texels[5] = [
             0.5 * width as f32,
@@ -148,16 +148,16 @@ impl Frame {
             f32::from(u8::from(x + y > 0)),
         ];
         texels[6] = [eye.focal[0], eye.focal[1], eye.depth[0], eye.depth[1]];
-        for (k, lamp) in self.lamps.iter().take(LAMPS).enumerate() {
-            texels[7 + 2 * k] = lamp.pos.map_or([0.0; 4], |p| with(p, 1.0));
-            texels[8 + 2 * k] = with(lamp.dir, 0.0);
+        for (k, light) in self.lights.iter().take(LIGHTS).enumerate() {
+            texels[7 + 2 * k] = light.pos.map_or([0.0; 4], |p| with(p, 1.0));
+            texels[8 + 2 * k] = with(light.dir, 0.0);
         }
     }
 
     /// Finds what a view shows.
-    fn sort(&mut self, r: &Request, view: usize, eye: &Eye) {
+    fn sort(&mut self, r: &Submission, view: usize, eye: &Eye) {
         for (i, drawable) in r.visual.drawables.iter().enumerate() {
-            let (pos, mat) = pose(drawable, &r.shots[view].poses);
+            let (pos, mat) = pose(drawable, &r.requests[view].poses);
             let at = eye.locate(single(pos));
             let Some(whole) = seen(eye, at, drawable.radius, r.visual.far as f32) else {
                 continue;
@@ -178,7 +178,7 @@ impl Frame {
         }
     }
 
-    fn emit_inside(&mut self, r: &Request) -> std::ops::Range<usize> {
+    fn emit_inside(&mut self, r: &Submission) -> std::ops::Range<usize> {
         let start = self.calls.len();
         let mut inside = std::mem::take(&mut self.inside);
         for (class, found) in inside.iter_mut().enumerate() {
@@ -190,7 +190,7 @@ impl Frame {
         start..self.calls.len()
     }
 
-    fn emit_outside(&mut self, r: &Request) -> Vec<Own> {
+    fn emit_outside(&mut self, r: &Submission) -> Vec<ViewCalls> {
         let mut outside = std::mem::take(&mut self.outside);
         outside.sort_unstable();
         let mut own = Vec::new();
@@ -200,22 +200,22 @@ impl Frame {
                 self.emit(r, start, class, view, drawable, true);
             }
             let calls = start..self.calls.len();
-            own.push(Own { view, calls });
+            own.push(ViewCalls { view, calls });
         }
         outside.clear();
         self.outside = outside;
         own
     }
 
-    /// Transparent things of a view are drawn twice: from near to far, then from far to near.
-    fn emit_clear(&mut self, r: &Request) -> Vec<Own> {
+    /// Emits the transparent drawables of each view twice: from near to far, then from far to near.
+    fn emit_clear(&mut self, r: &Submission) -> Vec<ViewCalls> {
         let mut clear = std::mem::take(&mut self.clear);
         clear.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         let mut own = Vec::new();
         for of_view in clear.chunk_by(|a, b| a.0 == b.0) {
             let (start, view) = (self.calls.len(), of_view[0].0);
             for &(_, _, drawable) in of_view.iter().chain(of_view.iter().rev()) {
-                let poses = &r.shots[view].poses;
+                let poses = &r.requests[view].poses;
                 let (pos, mat) = pose(&r.visual.drawables[drawable], poses);
                 let class = if behind(&self.eyes[view], &r.visual.drawables[drawable], single(pos), &mat) {
                     r.scene.class_behind[drawable]
@@ -225,7 +225,7 @@ impl Frame {
                 self.emit(r, start, class, view, drawable, true);
             }
             let calls = start..self.calls.len();
-            own.push(Own { view, calls });
+            own.push(ViewCalls { view, calls });
         }
         clear.clear();
         self.clear = clear;
@@ -233,8 +233,8 @@ impl Frame {
     }
 
     /// Adds an instance, to the last call since `start` if that is of the same class. `own` instances are drawn with the
-    /// picture as viewport.
-    fn emit(&mut self, r: &Request, start: usize, class: usize, view: usize, drawable: usize, own: bool) {
+    /// image as viewport.
+    fn emit(&mut self, r: &Submission, start: usize, class: usize, view: usize, drawable: usize, own: bool) {
         let first = self.instances.len() as u32;
         match self.calls[start..].last_mut() {
             Some(call) if call.class == class => call.count += 1,
@@ -245,12 +245,12 @@ impl Frame {
     }
 }
 
-/// Whether a sphere is in view: none, partly or (`true`) wholly.
+/// Returns whether a sphere is in view: `None` if it is not, `Some(true)` if all of it is.
 fn seen(eye: &Eye, [x, y, z]: V3, radius: f32, far: f32) -> Option<bool> {
     // distance from the sides of the view, positive inside
     let side = |v: f32, tan: f32| (z * tan - v.abs()) / (1.0 + tan * tan).sqrt();
     let margin = (z - eye.near).min(side(x, eye.tan[0])).min(side(y, eye.tan[1]));
-    // written so that a pose that is not a number is out of view
+    // written so that a NaN pose is out of view
     if margin > -radius && z.is_finite() {
         Some(margin > radius * 1.001 + 1e-6 && z + radius < far)
     } else {
@@ -258,14 +258,14 @@ fn seen(eye: &Eye, [x, y, z]: V3, radius: f32, far: f32) -> Option<bool> {
     }
 }
 
-/// Whether a plane shows its back.
+/// Returns whether a drawable is a plane seen from behind.
 fn behind(eye: &Eye, drawable: &Drawable, pos: V3, mat: &crate::math::Mat3) -> bool {
     let d = [eye.pos[0] - pos[0], eye.pos[1] - pos[1], eye.pos[2] - pos[2]];
     drawable.shape == Shape::Plane && dot(d, [mat[2] as f32, mat[5] as f32, mat[8] as f32]) < 0.0
 }
 
-fn instance(r: &Request, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> [f32; INSTANCE] {
-    let (pos, mat) = pose(drawable, &r.shots[view].poses);
+fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> [f32; INSTANCE] {
+    let (pos, mat) = pose(drawable, &r.requests[view].poses);
     let [x, y, z] = eye.model(pos, &mat, drawable.size);
     let [sx, sy, length] = drawable.size;
     let cap = 0.5 * (sx + sy);

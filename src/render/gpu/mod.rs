@@ -1,5 +1,5 @@
-//! The renderer on a GPU, for many pictures at once: any number of views of any number of environments in one submission
-//! and one transfer (cargo feature `wgpu`).
+//! Rendering on a GPU, many images at once: any number of views of any number of environments in one submission and
+//! one transfer (cargo feature `wgpu`).
 //!
 //! ```no_run
 //! use babybench::config::Config;
@@ -12,15 +12,15 @@
 //!     env.reset(None)?;
 //! }
 //! let mut gpu = GpuRenderer::new(blueprint.visual()?)?;
-//! let shots: Vec<_> = environments.iter().flat_map(|e| e.eyes().into_iter().flatten()).collect();
-//! let pending = gpu.begin::<Rgb>(&shots)?; // the device works; so may we
-//! let pictures = pending.wait()?; // 128 x 64 x 64 x 3
+//! let requests: Vec<_> = environments.iter().flat_map(|e| e.eyes().into_iter().flatten()).collect();
+//! let pending = gpu.begin::<Rgb>(&requests)?; // the device works; so may we
+//! let images = pending.wait()?; // 128 x 64 x 64 x 3
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The look is that of the CPU renderer, from the same scene. The bytes are not: they depend on the device and its driver,
 //! and the invariant of equal bits does not cover them. On one device and driver they are the same every time, and a
-//! picture does not depend on what else is drawn with it.
+//! image does not depend on what else is drawn with it.
 //!
 //! In browsers nothing can wait for a device: open with [`GpuRenderer::open`] and read with [`Pending::read`]. WebGL needs a
 //! canvas, so there the application opens the device: [`GpuRenderer::with_device`].
@@ -38,7 +38,7 @@ mod target;
 
 pub use channel::{Channel, Depth, Gray, Rgb, Segmentation};
 pub use error::GpuError;
-pub use pending::{Pending, Pictures};
+pub use pending::{Images, Pending};
 /// The version of wgpu whose devices [`GpuRenderer::with_device`] takes.
 pub use wgpu;
 
@@ -47,68 +47,70 @@ use std::sync::{Arc, PoisonError};
 use atlas::Atlas;
 use buffers::{Buffers, fits};
 use device::Gpu;
-use frame::{Frame, Request};
+use frame::{Frame, Submission};
 use pending::{Pool, Slot};
 use pipelines::{Layouts, Output, Pipelines, Style};
-use scene::Scene;
+use scene::GpuScene;
 use target::Target;
 
-use crate::render::{RenderError, Shot, Visual};
+use crate::render::{RenderError, RenderRequest, Visual};
 
-/// Colours are what they are: no gamma.
+/// Format of colours: linear, without gamma.
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Draws pictures of one scene on a GPU.
+/// A renderer of one scene on a GPU.
 #[derive(Debug)]
 pub struct GpuRenderer {
     gpu: Gpu,
     visual: Arc<Visual>,
     layouts: Layouts,
     pipelines: Pipelines,
-    scene: Scene,
+    scene: GpuScene,
     frame: Frame,
     buffers: Buffers,
-    /// For [`Output::Colour`] and [`Output::Measure`].
+    /// Targets for [`Output::Colour`] and [`Output::Measure`].
     targets: [Option<Target>; 2],
     pool: Pool,
     apart: bool,
 }
 
 impl GpuRenderer {
-    /// On the best adapter of this machine: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` (vulkan, gl, metal, dx12) and `WGPU_ADAPTER_NAME` (a part of it) narrow the choice.
+    /// Opens the best adapter of this machine: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` (vulkan,
+    /// gl, metal, dx12) and `WGPU_ADAPTER_NAME` (a part of it) narrow the choice.
     ///
     /// # Errors
-    /// No adapter, or the scene does not fit on the device.
+    /// Fails if there is no adapter, or the scene does not fit on the device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new(visual: Arc<Visual>) -> Result<Self, GpuError> {
         pollster::block_on(Self::open(visual))
     }
 
-    /// As [`GpuRenderer::new`], without blocking: the way to open one in a browser.
+    /// Opens the best adapter without blocking, as browsers need; see [`GpuRenderer::new`].
     ///
     /// # Errors
-    /// As [`GpuRenderer::new`].
+    /// Fails like [`GpuRenderer::new`].
     pub async fn open(visual: Arc<Visual>) -> Result<Self, GpuError> {
         Self::on(Gpu::open().await?, visual)
     }
 
-    /// On a device that the application has opened, with at least the limits `wgpu::Limits::downlevel_webgl2_defaults()`. The
-    /// renderer takes over its handlers of lost devices and of errors outside error scopes.
+    /// Uses a device that the application has opened, with at least the limits
+    /// `wgpu::Limits::downlevel_webgl2_defaults()`. The renderer takes over its handlers of lost devices and of errors
+    /// outside error scopes.
     ///
     /// # Errors
-    /// The scene does not fit on the device.
+    /// Fails if the scene does not fit on the device.
     pub fn with_device(device: wgpu::Device, queue: wgpu::Queue, visual: Arc<Visual>) -> Result<Self, GpuError> {
         Self::on(Gpu::new(device, queue), visual)
     }
 
     fn on(gpu: Gpu, visual: Arc<Visual>) -> Result<Self, GpuError> {
         let layouts = Layouts::new(&gpu);
-        let scene = Scene::new(&gpu, &layouts, &visual);
+        let scene = GpuScene::new(&gpu, &layouts, &visual);
         let renderer = Self {
             pipelines: Pipelines::new(&gpu),
             frame: Frame::default(),
-            buffers: Buffers::new(&gpu, &layouts, &scene.lamps, 256, 2),
+            buffers: Buffers::new(&gpu, &layouts, &scene.lights, 256, 2),
             targets: [None, None],
             pool: Pool::default(),
             apart: gpu.software,
@@ -121,59 +123,66 @@ impl GpuRenderer {
         Ok(renderer)
     }
 
-    /// The adapter: name, backend, kind, driver.
+    /// Describes the adapter: name, backend, kind, driver.
     pub fn adapter(&self) -> &str {
         &self.gpu.name
     }
 
-    /// Whether the adapter is a program on the CPU, such as Mesa's llvmpipe. The CPU renderer is faster then.
+    /// Returns whether the adapter is a program on the CPU, such as Mesa's llvmpipe. The CPU renderer is faster then.
     pub fn is_software(&self) -> bool {
         self.gpu.software
     }
 
-    /// Whether each picture of a submission is drawn in a pass of its own, instead of many in one. That is the default on
-    /// software adapters: they gain nothing from large passes, and round at places far from the corner of a texture.
+    /// Chooses whether each image of a submission is drawn in a pass of its own, instead of many in one. That is the
+    /// default on software adapters: they gain nothing from large passes, and round at places far from the corner of a
+    /// texture.
     pub fn draw_apart(&mut self, apart: bool) {
         self.apart = apart;
     }
 
-    /// The scene that is drawn.
+    /// Returns the scene that is drawn.
     pub fn visual(&self) -> &Arc<Visual> {
         &self.visual
     }
 
-    /// Starts drawing. Submissions are worked off in order; more can be started before earlier ones are read.
+    /// Starts drawing. Submissions are processed in order; more can be started before earlier ones are read.
+    /// Submissions are worked off in order; more can be started before earlier ones are read.
     ///
     /// # Errors
-    /// As the CPU renderer for each shot; more pictures than the device takes; a device that is lost, out of memory or
-    /// failing.
-    pub fn begin<C: Channel>(&mut self, shots: &[Shot]) -> Result<Pending<C>, RenderError> {
+    /// Fails like the CPU renderer for each request, if there are more images than the device takes, or if the device is
+    /// lost, out of memory or failing.
+    pub fn begin<C: Channel>(&mut self, requests: &[RenderRequest]) -> Result<Pending<C>, RenderError> {
         self.gpu.check()?;
-        for shot in shots {
-            self.visual.check(&shot.poses, &shot.view)?;
+        for request in requests {
+            self.visual.check(&request.poses, &request.view)?;
         }
-        if shots.is_empty() {
+        if requests.is_empty() {
             return Ok(Pending::none(&self.gpu));
         }
         let limits = self.gpu.device.limits();
         let atlas = Atlas::new(
-            shots.iter().map(|s| s.view),
+            requests.iter().map(|s| s.view),
             limits.max_texture_dimension_2d,
             self.apart,
         )?;
         let (slots, bytes) = layout(&atlas, C::OUTPUT);
         fits("the pictures, in bytes,", bytes, limits.max_buffer_size)?;
         let size = self.target(C::OUTPUT, &atlas);
-        self.frame.build(&Request {
+        self.frame.build(&Submission {
             visual: &self.visual,
             scene: &self.scene,
-            shots,
+            requests,
             atlas: &atlas,
             size,
             output: C::OUTPUT,
         });
-        self.buffers
-            .write(&self.gpu, &self.layouts, &self.scene.lamps, &self.frame, shots.len())?;
+        self.buffers.write(
+            &self.gpu,
+            &self.layouts,
+            &self.scene.lights,
+            &self.frame,
+            requests.len(),
+        )?;
         let buffer = self.readback(bytes);
         let commands = self.encode(C::OUTPUT, &atlas, &slots, &buffer);
         let submission = self.gpu.queue.submit([commands]);
@@ -184,10 +193,10 @@ impl GpuRenderer {
     /// Draws and waits.
     ///
     /// # Errors
-    /// As [`GpuRenderer::begin`] and [`Pending::read`].
+    /// Fails like [`GpuRenderer::begin`] and [`Pending::read`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn draw<C: Channel>(&mut self, shots: &[Shot]) -> Result<Pictures<C>, RenderError> {
-        self.begin::<C>(shots)?.wait()
+    pub fn draw<C: Channel>(&mut self, requests: &[RenderRequest]) -> Result<Images<C>, RenderError> {
+        self.begin::<C>(requests)?.wait()
     }
 
     /// Makes sure of attachments for all chunks and returns their size.
@@ -199,7 +208,7 @@ impl GpuRenderer {
         if old[0] >= needed[0] && old[1] >= needed[1] {
             return old;
         }
-        // room for both, so that alternating sizes do not ask for memory every time, unless that is much
+        // room for both, so that alternating sizes do not allocate every time, unless that takes much memory
         let both = [needed[0].max(old[0]), needed[1].max(old[1])];
         let size = if both[0].max(both[1]) <= atlas::SIDE {
             both
@@ -211,7 +220,7 @@ impl GpuRenderer {
         size
     }
 
-    /// A buffer for what comes back, used before if there is one.
+    /// Returns a buffer to read images back through, from the pool if one fits.
     fn readback(&self, bytes: u64) -> wgpu::Buffer {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let fitting = pool.iter().position(|b| (bytes..=4 * bytes).contains(&b.size()));
@@ -247,7 +256,7 @@ impl GpuRenderer {
             };
             pass.chunk(output, chunk, &atlas.tiles, target.size);
             drop(pass);
-            // the first picture lies in the corner
+            // the first image lies in the corner
             let Slot { offset, pitch, .. } = slots[chunk.views.start];
             encoder.copy_texture_to_buffer(
                 target.resolved.as_image_copy(),
@@ -270,7 +279,7 @@ impl GpuRenderer {
     }
 }
 
-/// Where the pictures lie in the buffer that comes back, and its size.
+/// Returns where the images lie in the buffer that is read back, and the size of the buffer in bytes.
 fn layout(atlas: &Atlas, output: Output) -> (Vec<Slot>, u64) {
     let pixel = output.bytes();
     let mut starts = Vec::with_capacity(atlas.chunks.len());
@@ -292,7 +301,7 @@ fn layout(atlas: &Atlas, output: Output) -> (Vec<Slot>, u64) {
     (atlas.tiles.iter().map(slot).collect(), end as u64)
 }
 
-/// A pass, and what is set in it.
+/// A render pass with its current state.
 struct Pass<'r, 'e> {
     renderer: &'r GpuRenderer,
     pass: wgpu::RenderPass<'e>,
@@ -339,9 +348,9 @@ impl Pass<'_, '_> {
         self.pass.set_scissor_rect(0, 0, w, h);
     }
 
-    /// Draws into one picture after the other.
-    fn own(&mut self, own: &[frame::Own], tiles: &[atlas::Tile], style: fn(scene::Paint) -> Style) {
-        for frame::Own { view, calls } in own {
+    /// Draws into one image after the other.
+    fn own(&mut self, own: &[frame::ViewCalls], tiles: &[atlas::Tile], style: fn(scene::ColourSource) -> Style) {
+        for frame::ViewCalls { view, calls } in own {
             let t = &tiles[*view];
             let (x, y, w, h) = (t.x as f32, t.y as f32, t.width as f32, t.height as f32);
             self.pass.set_viewport(x, y, w, h, 0.0, 1.0);
@@ -350,7 +359,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn calls(&mut self, calls: &std::ops::Range<usize>, style: fn(scene::Paint) -> Style) {
+    fn calls(&mut self, calls: &std::ops::Range<usize>, style: fn(scene::ColourSource) -> Style) {
         let r = self.renderer;
         for call in &r.frame.calls[calls.clone()] {
             let class = &r.scene.classes[call.class];

@@ -1,4 +1,4 @@
-//! Pictures on their way back.
+//! Image submissions, and how their images are read back.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -9,7 +9,7 @@ use super::device::Gpu;
 use super::{Channel, GpuError};
 use crate::render::RenderError;
 
-/// Where the rows of a picture lie in the buffer, bytes.
+/// The rows of an image in the buffer, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
     pub offset: usize,
@@ -18,19 +18,19 @@ pub struct Slot {
     pub height: usize,
 }
 
-/// Buffers that can be used again.
+/// Buffers that are free to be used again.
 pub type Pool = Arc<Mutex<Vec<wgpu::Buffer>>>;
 
-/// What the device said about the buffer, and who waits for it.
+/// The device's answer about the buffer, and the task that waits for it.
 #[derive(Debug, Default)]
 struct Arrival {
     mapped: Option<Result<(), wgpu::BufferAsyncError>>,
     waker: Option<Waker>,
 }
 
-/// Pictures that the device is drawing. Several may be pending at once.
+/// Images that the device is drawing. Several submissions may be pending at once.
 #[derive(Debug)]
-#[must_use = "pictures are lost unless they are read"]
+#[must_use = "images are lost unless they are read"]
 pub struct Pending<C: Channel> {
     gpu: Gpu,
     slots: Vec<Slot>,
@@ -47,48 +47,49 @@ struct Transfer {
     pool: Pool,
 }
 
-/// Pictures, one after the other: of each, rows from the top, three values for each pixel of [`Rgb`](super::Rgb), one of others.
+/// Images, one after the other: rows from the top, three values for each pixel of [`Rgb`](super::Rgb), one of the
+/// other kinds.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pictures<C: Channel> {
+pub struct Images<C: Channel> {
     values: Vec<C::Value>,
-    /// Where each picture begins, and the end.
+    /// Index of the first value of each image, and the end.
     starts: Vec<usize>,
 }
 
-impl<C: Channel> Pictures<C> {
-    /// Number of pictures.
+impl<C: Channel> Images<C> {
+    /// Returns the number of images.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no images.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One picture, in the order of the shots.
+    /// Returns one image, by its index among the requests.
     pub fn get(&self, index: usize) -> Option<&[C::Value]> {
         self.values.get(*self.starts.get(index)?..*self.starts.get(index + 1)?)
     }
 
-    /// The pictures in turn.
+    /// Iterates over the images, in the order of the requests.
     pub fn iter(&self) -> impl Iterator<Item = &[C::Value]> {
         self.starts.windows(2).map(|w| &self.values[w[0]..w[1]])
     }
 
-    /// All pictures; of equal sizes, an array of shape (pictures, height, width, values).
+    /// Returns all images; when their sizes are equal, an array of shape (images, height, width, values).
     pub fn as_slice(&self) -> &[C::Value] {
         &self.values
     }
 
-    /// As [`Pictures::as_slice`], owned.
+    /// Returns all images as an owned vector; see [`Images::as_slice`].
     pub fn into_vec(self) -> Vec<C::Value> {
         self.values
     }
 }
 
 impl<C: Channel> Pending<C> {
-    /// Nothing to wait for.
+    /// Creates a submission of no images.
     pub(super) fn none(gpu: &Gpu) -> Self {
         Self {
             gpu: gpu.clone(),
@@ -129,12 +130,12 @@ impl<C: Channel> Pending<C> {
         }
     }
 
-    /// Waits for the pictures without blocking the thread: in browsers until the event loop brings them, elsewhere by
+    /// Waits for the images without blocking the thread: in browsers until the event loop brings them, elsewhere by
     /// asking the device whenever the future is polled.
     ///
     /// # Errors
-    /// The device was lost, ran out of memory or failed.
-    pub async fn read(self) -> Result<Pictures<C>, RenderError> {
+    /// Fails if the device was lost, ran out of memory or reported an error.
+    pub async fn read(self) -> Result<Images<C>, RenderError> {
         if let Some(transfer) = &self.transfer {
             Mapped {
                 gpu: &self.gpu,
@@ -145,20 +146,21 @@ impl<C: Channel> Pending<C> {
         self.collect()
     }
 
-    /// Waits for the pictures, blocking the thread.
+    /// Waits for the images, blocking the thread.
     ///
     /// # Errors
-    /// As [`Pending::read`].
+    /// Fails like [`Pending::read`].
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn wait(self) -> Result<Pictures<C>, RenderError> {
+    pub fn wait(self) -> Result<Images<C>, RenderError> {
         self.block()?;
         self.collect()
     }
 
-    /// As [`Pending::wait`], each picture into memory of its own: pieces of an array, for example, by `chunks_exact_mut`.
+    /// Waits like [`Pending::wait`] and writes each image into a buffer of its own: slices of one array, for example,
+    /// by `chunks_exact_mut`.
     ///
     /// # Errors
-    /// As [`Pending::read`]; memory of another length than its picture.
+    /// Fails like [`Pending::read`], or if a buffer has another length than its image.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn wait_into<'o>(self, outs: impl IntoIterator<Item = &'o mut [C::Value]>) -> Result<(), RenderError> {
         self.block()?;
@@ -183,7 +185,7 @@ impl<C: Channel> Pending<C> {
         }
     }
 
-    fn collect(self) -> Result<Pictures<C>, RenderError> {
+    fn collect(self) -> Result<Images<C>, RenderError> {
         let mut starts = vec![0];
         for slot in &self.slots {
             starts.push(starts[starts.len() - 1] + slot.width * slot.height * C::PER_PIXEL);
@@ -192,10 +194,10 @@ impl<C: Channel> Pending<C> {
         let mut rest = &mut all[..];
         let lengths = starts.windows(2).map(|w| w[1] - w[0]);
         self.unpack(lengths.filter_map(|n| rest.split_off_mut(..n)))?;
-        Ok(Pictures { values: all, starts })
+        Ok(Images { values: all, starts })
     }
 
-    /// Copies the pictures, which are upside down, out of the mapped buffer.
+    /// Copies the images, which are upside down, out of the mapped buffer.
     fn unpack<'o>(self, outs: impl IntoIterator<Item = &'o mut [C::Value]>) -> Result<(), RenderError> {
         self.gpu.check()?;
         let Some(Transfer { buffer, pool, .. }) = self.transfer else {
@@ -231,7 +233,7 @@ impl Transfer {
     }
 }
 
-/// Ready when the buffer is mapped.
+/// A future that is ready when the buffer is mapped.
 struct Mapped<'a> {
     gpu: &'a Gpu,
     transfer: &'a Transfer,
@@ -254,7 +256,7 @@ impl Future for Mapped<'_> {
             Some(Err(e)) => failed(e),
             None => {
                 arrival.waker = Some(context.waker().clone());
-                // outside browsers nobody tells us: ask again
+                // outside browsers there is no notification: poll again
                 #[cfg(not(target_arch = "wasm32"))]
                 context.waker().wake_by_ref();
                 Poll::Pending

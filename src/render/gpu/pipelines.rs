@@ -1,20 +1,20 @@
-//! Pipelines, each made when it is first needed.
+//! Render pipelines, each made when it is first needed.
 
 use std::sync::OnceLock;
 
 use super::device::Gpu;
 use super::frame::INSTANCE;
-use super::scene::Paint;
+use super::scene::ColourSource;
 
-/// Four samples per pixel for colours.
+/// Number of samples per pixel for colours.
 pub const SAMPLES: u32 = 4;
 
-/// What a pass writes.
+/// The values that a pass writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// Red, green, blue, opacity, a byte each.
+    /// Red, green, blue and opacity, a byte each.
     Colour,
-    /// 1/distance (the bits of a single-precision number) and what is seen, four bytes each.
+    /// 1/distance (the bits of a single-precision number) and the geom id, four bytes each.
     Measure,
 }
 
@@ -26,7 +26,7 @@ impl Output {
         }
     }
 
-    /// Bytes of a pixel.
+    /// Returns the number of bytes of a pixel.
     pub const fn bytes(self) -> u32 {
         match self {
             Self::Colour => 4,
@@ -42,23 +42,71 @@ impl Output {
     }
 }
 
-/// How a shape is drawn.
+/// A way to draw shapes, which decides the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    Opaque(Paint),
-    Transparent(Paint),
+    Opaque(ColourSource),
+    Transparent(ColourSource),
     Sky,
     Measure,
 }
 
+impl Style {
+    /// Returns the entry points of the shader, for vertices and fragments.
+    fn entry_points(self) -> (&'static str, &'static str) {
+        match self {
+            Style::Opaque(ColourSource::Plain) | Style::Transparent(ColourSource::Plain) => ("shape", "plain"),
+            Style::Opaque(ColourSource::Image) | Style::Transparent(ColourSource::Image) => ("shape", "with_image"),
+            Style::Opaque(ColourSource::Cube) | Style::Transparent(ColourSource::Cube) => ("shape", "with_cube"),
+            Style::Sky => ("background", "sky"),
+            Style::Measure => ("measured_shape", "measure"),
+        }
+    }
+}
+
+const fn stepped<'a>(
+    array_stride: u64,
+    step_mode: wgpu::VertexStepMode,
+    attributes: &'a [wgpu::VertexAttribute],
+) -> Option<wgpu::VertexBufferLayout<'a>> {
+    Some(wgpu::VertexBufferLayout {
+        array_stride,
+        step_mode,
+        attributes,
+    })
+}
+
+/// Buffers that shapes are drawn from: vertices and instances.
+const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
+    stepped(
+        32,
+        wgpu::VertexStepMode::Vertex,
+        &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
+    ),
+    stepped(
+        4 * INSTANCE as u64,
+        wgpu::VertexStepMode::Instance,
+        &wgpu::vertex_attr_array![
+            2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4,
+            8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Float32x4, 12 => Float32x4
+        ],
+    ),
+];
+/// Buffer that the background is drawn from: an index for each view.
+const VIEW_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [stepped(
+    4,
+    wgpu::VertexStepMode::Instance,
+    &wgpu::vertex_attr_array![0 => Float32],
+)];
+
 /// Layouts of the bind groups.
 #[derive(Debug)]
 pub struct Layouts {
-    /// Lights and views.
+    /// Layout of lights and views.
     pub views: wgpu::BindGroupLayout,
-    /// A sampler and an image.
+    /// Layout of a sampler and an image.
     pub image: wgpu::BindGroupLayout,
-    /// A sampler and the sides of a cube.
+    /// Layout of a sampler and the sides of a cube.
     pub cube: wgpu::BindGroupLayout,
 }
 
@@ -110,7 +158,7 @@ impl Layouts {
     }
 }
 
-/// All pipelines.
+/// All pipelines of a device.
 #[derive(Debug)]
 pub struct Pipelines {
     shader: wgpu::ShaderModule,
@@ -136,13 +184,7 @@ impl Pipelines {
     }
 
     fn make(&self, gpu: &Gpu, layouts: &Layouts, style: Style) -> wgpu::RenderPipeline {
-        let (vertex, fragment) = match style {
-            Style::Opaque(Paint::Plain) | Style::Transparent(Paint::Plain) => ("shape", "plain"),
-            Style::Opaque(Paint::Image) | Style::Transparent(Paint::Image) => ("shape", "with_image"),
-            Style::Opaque(Paint::Cube) | Style::Transparent(Paint::Cube) => ("shape", "with_cube"),
-            Style::Sky => ("background", "sky"),
-            Style::Measure => ("measured_shape", "measure"),
-        };
+        let (vertex, fragment) = style.entry_points();
         let texture = match fragment {
             "with_image" => Some(&layouts.image),
             "with_cube" | "sky" => Some(&layouts.cube),
@@ -155,24 +197,6 @@ impl Pipelines {
             bind_group_layouts: &groups[..used],
             immediate_size: 0,
         });
-        let per_vertex = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
-        let per_instance = wgpu::vertex_attr_array![
-            2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4,
-            8 => Float32x4, 9 => Float32x4, 10 => Float32x4, 11 => Float32x4, 12 => Float32x4
-        ];
-        let view_index = wgpu::vertex_attr_array![0 => Float32];
-        let stepped = |array_stride, step_mode, attributes| {
-            Some(wgpu::VertexBufferLayout {
-                array_stride,
-                step_mode,
-                attributes,
-            })
-        };
-        let shapes = [
-            stepped(32, wgpu::VertexStepMode::Vertex, &per_vertex[..]),
-            stepped(4 * INSTANCE as u64, wgpu::VertexStepMode::Instance, &per_instance[..]),
-        ];
-        let pictures = [stepped(4, wgpu::VertexStepMode::Instance, &view_index[..])];
         let sky = style == Style::Sky;
         let output = match style {
             Style::Measure => Output::Measure,
@@ -186,19 +210,9 @@ impl Pipelines {
                 module: &self.shader,
                 entry_point: Some(vertex),
                 compilation_options: Default::default(),
-                buffers: if sky { &pictures } else { &shapes },
+                buffers: if sky { &VIEW_BUFFERS } else { &SHAPE_BUFFERS },
             },
-            primitive: wgpu::PrimitiveState {
-                topology: if sky {
-                    wgpu::PrimitiveTopology::TriangleStrip
-                } else {
-                    wgpu::PrimitiveTopology::TriangleList
-                },
-                // pictures are upside down
-                front_face: wgpu::FrontFace::Cw,
-                cull_mode: (!sky).then_some(wgpu::Face::Back),
-                ..Default::default()
-            },
+            primitive: primitive(sky),
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: super::DEPTH,
                 depth_write_enabled: Some(matches!(style, Style::Opaque(_) | Style::Measure)),
@@ -223,5 +237,20 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         })
+    }
+}
+
+/// Returns how vertices make triangles: a strip over each image for the background, a list for shapes.
+fn primitive(sky: bool) -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState {
+        topology: if sky {
+            wgpu::PrimitiveTopology::TriangleStrip
+        } else {
+            wgpu::PrimitiveTopology::TriangleList
+        },
+        // images are upside down
+        front_face: wgpu::FrontFace::Cw,
+        cull_mode: (!sky).then_some(wgpu::Face::Back),
+        ..Default::default()
     }
 }

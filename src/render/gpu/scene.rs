@@ -1,4 +1,4 @@
-//! What does not move, on the device: meshes, textures, lights.
+//! The part of a scene that does not move, on the device: meshes, textures, lights.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,16 +7,16 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::pipelines::Layouts;
-use crate::render::mesh::{Mesh, Part};
-use crate::render::texture::{Face, Texture};
+use crate::render::mesh::{Mesh, MeshPart};
+use crate::render::texture::{Face, Level, Texture};
 use crate::render::visual::{Drawable, Shape, Visual};
 
-/// Lights in the shader.
-pub const LAMPS: usize = 8;
+/// Number of lights in the shader.
+pub const LIGHTS: usize = 8;
 
-/// How a drawable is coloured, which decides the pipeline.
+/// The source of a drawable's colour, which decides the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Paint {
+pub enum ColourSource {
     Plain,
     Image,
     Cube,
@@ -25,29 +25,29 @@ pub enum Paint {
 /// Drawables that share mesh and texture, drawn by one call.
 #[derive(Clone, Debug)]
 pub struct Class {
-    pub paint: Paint,
+    pub paint: ColourSource,
     pub texture: Option<usize>,
-    /// In the buffer of indices.
+    /// Range in the buffer of indices.
     pub indices: Range<u32>,
 }
 
 /// A scene on the device.
 #[derive(Debug)]
-pub struct Scene {
+pub struct GpuScene {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
-    /// Sorted by pipeline, then texture.
+    /// Classes of drawables, sorted by pipeline, then texture.
     pub classes: Vec<Class>,
     /// Class of each drawable.
     pub class_of: Vec<usize>,
-    /// The same seen from behind; differs for planes.
+    /// Class of each drawable seen from behind; differs for planes.
     pub class_behind: Vec<usize>,
     /// Bind groups of the textures of the visual.
     pub textures: Vec<wgpu::BindGroup>,
-    pub lamps: wgpu::Buffer,
+    pub lights: wgpu::Buffer,
 }
 
-impl Scene {
+impl GpuScene {
     pub fn new(gpu: &Gpu, layouts: &Layouts, visual: &Visual) -> Self {
         let (vertices, indices, ranges) = geometry(visual);
         let buffer = |label, contents: &[u8], usage| {
@@ -56,15 +56,15 @@ impl Scene {
                 .create_buffer_init(&wgpu::util::BufferInitDescriptor { label, contents, usage })
         };
         let paint = |d: &Drawable| match d.texture.map(|t| &visual.textures[t]) {
-            None => Paint::Plain,
-            Some(Texture::Flat(_)) => Paint::Image,
-            Some(Texture::Cube(_)) => Paint::Cube,
+            None => ColourSource::Plain,
+            Some(Texture::Flat(_)) => ColourSource::Image,
+            Some(Texture::Cube(_)) => ColourSource::Cube,
         };
         let behind = |shape: Shape| match shape {
             Shape::Plane => Shape::ALL.len(),
             other => other as usize,
         };
-        // keys in the order of drawing
+        // keys in drawing order
         let keys = |mesh: &dyn Fn(Shape) -> usize| -> Vec<_> {
             let key = |d: &Drawable| (paint(d), d.texture, mesh(d.shape));
             visual.drawables.iter().map(key).collect()
@@ -88,27 +88,26 @@ impl Scene {
             class_of: front.iter().map(|k| index[k]).collect(),
             class_behind: back.iter().map(|k| index[k]).collect(),
             textures: visual.textures.iter().map(|t| upload(gpu, layouts, t)).collect(),
-            lamps: buffer(
-                "lamps",
-                bytemuck::cast_slice(lamps(visual).as_flattened()),
+            lights: buffer(
+                "lights",
+                bytemuck::cast_slice(lights(visual).as_flattened()),
                 wgpu::BufferUsages::UNIFORM,
             ),
         }
     }
 }
 
-/// Vertices (place and part, normal), indices, and which indices belong to which mesh: those of [`Visual::meshes`], then
-/// the plane seen from behind.
+/// Lists vertices (position and part, normal), indices, and the range of indices of each mesh: those of
+/// [`Visual::meshes`], then the plane seen from behind.
 fn geometry(visual: &Visual) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
     let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
     let mut first = 0;
     let mut add = |mesh: &Mesh, flipped: bool| {
         for (i, n) in mesh.normal.iter().enumerate() {
-            let part = mesh.parts.iter().find(|p| i < p.1).map_or(Part::Body, |p| p.0);
-            let part = match part {
-                Part::Body => 0.0,
-                Part::Top => 1.0,
-                Part::Bottom => 2.0,
+            let part = match mesh.part_of(i) {
+                MeshPart::Body => 0.0,
+                MeshPart::Top => 1.0,
+                MeshPart::Bottom => 2.0,
             };
             vertices.extend([mesh.x[i], mesh.y[i], mesh.z[i], part, n[0], n[1], n[2], 0.0]);
         }
@@ -131,9 +130,9 @@ fn geometry(visual: &Visual) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
     (vertices, indices, ranges)
 }
 
-/// The uniform block `Scene` of the shader.
-fn lamps(visual: &Visual) -> [[f32; 4]; 4 * LAMPS + 1] {
-    let mut block = [[0.0; 4]; 4 * LAMPS + 1];
+/// Fills the uniform block `Scene` of the shader.
+fn lights(visual: &Visual) -> [[f32; 4]; 4 * LIGHTS + 1] {
+    let mut block = [[0.0; 4]; 4 * LIGHTS + 1];
     let with = |[a, b, c]: [f32; 3], w: f32| [a, b, c, w];
     let head = visual.headlight.map(|[ambient, diffuse, specular]| {
         let attenuation = [1.0, 0.0, 0.0, 0.0];
@@ -144,7 +143,7 @@ fn lamps(visual: &Visual) -> [[f32; 4]; 4 * LAMPS + 1] {
             attenuation,
         ]
     });
-    let others = visual.lamps.iter().map(|l| {
+    let others = visual.lights.iter().map(|l| {
         let attenuation = with(l.attenuation, l.exponent);
         [
             with(l.ambient, 0.0),
@@ -154,15 +153,51 @@ fn lamps(visual: &Visual) -> [[f32; 4]; 4 * LAMPS + 1] {
         ]
     });
     let mut count = 0;
-    for lamp in head.into_iter().chain(others).take(LAMPS) {
-        block[4 * count..4 * count + 4].copy_from_slice(&lamp);
+    for light in head.into_iter().chain(others).take(LIGHTS) {
+        block[4 * count..4 * count + 4].copy_from_slice(&light);
         count += 1;
     }
     let glow = if count == 0 { 0.3 } else { 0.0 };
-    block[4 * LAMPS] = [count as f32, glow, 0.0, 0.0];
+    block[4 * LIGHTS] = [count as f32, glow, 0.0, 0.0];
     block
 }
 
+/// Uploads one mip level of one side of a texture.
+fn write_level(gpu: &Gpu, texture: &wgpu::Texture, [z, mip_level]: [u32; 2], level: &Level) {
+    let to = wgpu::TexelCopyTextureInfo {
+        texture,
+        mip_level,
+        origin: wgpu::Origin3d { x: 0, y: 0, z },
+        aspect: wgpu::TextureAspect::All,
+    };
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(4 * level.width as u32),
+        rows_per_image: None,
+    };
+    let size = wgpu::Extent3d {
+        width: level.width as u32,
+        height: level.height as u32,
+        depth_or_array_layers: 1,
+    };
+    gpu.queue.write_texture(to, level.pixels.as_flattened(), layout, size);
+}
+
+/// Creates a trilinear sampler.
+fn sampler(gpu: &Gpu, wrap: wgpu::AddressMode) -> wgpu::Sampler {
+    let linear = wgpu::FilterMode::Linear;
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: wrap,
+        address_mode_v: wrap,
+        address_mode_w: wrap,
+        mag_filter: linear,
+        min_filter: linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+/// Uploads a texture, and binds it with its sampler.
 fn upload(gpu: &Gpu, layouts: &Layouts, texture: &Texture) -> wgpu::BindGroup {
     let (faces, dimension, wrap, layout): (&[Face], _, _, _) = match texture {
         Texture::Flat(face) => (
@@ -178,14 +213,13 @@ fn upload(gpu: &Gpu, layouts: &Layouts, texture: &Texture) -> wgpu::BindGroup {
             &layouts.cube,
         ),
     };
-    let extent = |width: usize, height: usize, layers: usize| wgpu::Extent3d {
-        width: width as u32,
-        height: height as u32,
-        depth_or_array_layers: layers as u32,
-    };
     let made = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("texture"),
-        size: extent(faces[0][0].width, faces[0][0].height, faces.len()),
+        size: wgpu::Extent3d {
+            width: faces[0][0].width as u32,
+            height: faces[0][0].height as u32,
+            depth_or_array_layers: faces.len() as u32,
+        },
         mip_level_count: faces[0].len() as u32,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -195,39 +229,14 @@ fn upload(gpu: &Gpu, layouts: &Layouts, texture: &Texture) -> wgpu::BindGroup {
     });
     for (z, face) in faces.iter().enumerate() {
         for (k, level) in face.iter().enumerate() {
-            let to = wgpu::TexelCopyTextureInfo {
-                texture: &made,
-                mip_level: k as u32,
-                origin: wgpu::Origin3d {
-                    x: 0,
-                    y: 0,
-                    z: z as u32,
-                },
-                aspect: wgpu::TextureAspect::All,
-            };
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(4 * level.width as u32),
-                rows_per_image: None,
-            };
-            let size = extent(level.width, level.height, 1);
-            gpu.queue.write_texture(to, level.pixels.as_flattened(), layout, size);
+            write_level(gpu, &made, [z as u32, k as u32], level);
         }
     }
     let view = made.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(dimension),
         ..Default::default()
     });
-    let linear = wgpu::FilterMode::Linear;
-    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        address_mode_u: wrap,
-        address_mode_v: wrap,
-        address_mode_w: wrap,
-        mag_filter: linear,
-        min_filter: linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    });
+    let sampler = sampler(gpu, wrap);
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("texture"),
         layout,

@@ -1,4 +1,4 @@
-//! What a pass draws into.
+//! The textures that a pass draws into.
 
 use super::device::Gpu;
 use super::pipelines::Output;
@@ -7,10 +7,10 @@ use super::pipelines::Output;
 #[derive(Debug)]
 pub struct Target {
     pub size: [u32; 2],
-    /// What is copied out.
+    /// Texture that is copied to the buffer.
     pub resolved: wgpu::Texture,
     resolved_view: wgpu::TextureView,
-    /// With several samples per pixel.
+    /// Texture with several samples per pixel, if the output has them.
     sampled: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
 }

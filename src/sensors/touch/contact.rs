@@ -1,53 +1,53 @@
-//! Contacts as the skin feels them.
+//! Contacts with skin, from the side of the body that is touched.
 
 use crate::config::Compat;
 use crate::math::*;
-use crate::model::{BodyId, GeomId, Model};
+use crate::model::Model;
 use crate::physics::Contact;
 use crate::sensors::touch::SkinLayout;
 
-/// Contacts with a smaller normal force (N) are not felt.
+/// Least normal force (N) of a contact that is felt.
 const MIN_FORCE: f64 = 1e-9;
 
-/// One side of a contact: what a body that feels is touched by.
+/// One side of a contact: a body with skin, and what touches it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchContact {
     /// Index in the list of contacts.
     pub contact: usize,
-    /// The body that feels.
-    pub body: BodyId,
-    /// Its geom.
-    pub geom: GeomId,
-    /// The geom that touches it.
-    pub other: GeomId,
+    /// Body with the skin, by id.
+    pub body: usize,
+    /// Its geom in the contact, by id.
+    pub geom: usize,
+    /// Geom that touches it, by id.
+    pub other: usize,
     /// Normal force, N, >= 0.
     pub normal: f64,
     /// Force that the other geom exerts on the body, N, world frame.
     pub force: Vec3,
-    /// The same in the frame of the body.
+    /// Force that the other geom exerts on the body, N, frame of the body.
     pub force_body: Vec3,
-    /// Where it is touched, m, world frame.
+    /// Point of contact, m, world frame.
     pub point: Vec3,
-    /// The same in the frame of the body.
+    /// Point of contact, m, frame of the body.
     pub point_body: Vec3,
     /// Index of the body in [`SkinLayout::bodies`].
     pub(super) index: usize,
-    /// Which of the contact's geoms this is.
+    /// Index of the touched geom among the contact's two.
     pub(super) side: usize,
 }
 
 impl TouchContact {
-    /// -1 for the first geom of the contact, 1 for the second: the sign of the contact's force on it.
+    /// Returns the sign of the contact's force on this side: -1 for the first geom of the contact, 1 for the second.
     pub(super) fn sign(&self) -> f64 {
         2.0 * self.side as f64 - 1.0
     }
 }
 
-/// The sides of `contacts` that the bodies of a skin feel, first geom first, appended to `out`.
+/// Appends to `out` the sides of `contacts` whose bodies have skin, the side of the first geom first.
 ///
 /// `xpos` (m) and `xmat` are the poses of all bodies at the instant of the contacts. The point of a contact, halfway
-/// between the surfaces, is moved to the surface of the body that feels; under `compat: reference` both sides of a contact
-/// whose first body feels are at the first body's place, as the Python code turns the normal around in place.
+/// between the surfaces, is moved to the surface of the body with skin; under `compat: reference` both sides of a contact
+/// whose first body has skin are at the first body's point, as the Python code inverts the normal in place.
 pub fn touch_contacts(
     layout: &SkinLayout,
     model: &Model,
@@ -59,7 +59,7 @@ pub fn touch_contacts(
 ) {
     for (k, c) in contacts.iter().enumerate() {
         let body = c.geom.map(|g| model.geom_bodyid[g]);
-        let index = body.map(|b| layout.index(BodyId(b)));
+        let index = body.map(|b| layout.index(b));
         if index == [None; 2] || c.force[0].abs() < MIN_FORCE {
             continue;
         }
@@ -71,7 +71,7 @@ pub fn touch_contacts(
             let sign = 2.0 * side as f64 - 1.0;
             let outward = match compat {
                 Compat::Api => sign,
-                Compat::Reference if side == 1 && layout.index(BodyId(body[0])).is_some() => -1.0,
+                Compat::Reference if side == 1 && layout.index(body[0]).is_some() => -1.0,
                 Compat::Reference => sign,
             };
             let point = if c.dist < 0.0 {
@@ -82,9 +82,9 @@ pub fn touch_contacts(
             let force = scale(force, sign);
             out.push(TouchContact {
                 contact: k,
-                body: BodyId(b),
-                geom: GeomId(c.geom[side]),
-                other: GeomId(c.geom[1 - side]),
+                body: b,
+                geom: c.geom[side],
+                other: c.geom[1 - side],
                 normal: c.force[0].max(0.0),
                 force,
                 force_body: mat_t_vec(&xmat[b], force),

@@ -1,18 +1,19 @@
-//! A uniform grid over the sensors of a body, to find those near a contact point.
+//! A uniform grid over the sensors of a body, for finding those near a contact point.
 
 use crate::math::{Vec3, sub};
 
-/// Most cells along an axis; a grid with fewer has larger cells, which is slower but as right.
+/// Greatest number of cells along an axis; beyond it cells become larger, which is slower but as exact.
 const MAX_CELLS: f64 = 256.0;
 
-/// Sensors by cell. The coordinates lie in the order of cells, x fastest, so that a row of cells is one run of memory.
+/// Sensors by cell. Coordinates are stored in the order of cells, x fastest, so that a row of cells is one run of
+/// memory.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
     low: Vec3,
     /// Cells per metre.
     per_metre: f64,
     cells: [usize; 3],
-    /// First entry of each cell, and the end.
+    /// Index of the first entry of each cell, and the end.
     start: Vec<u32>,
     x: Vec<f64>,
     y: Vec<f64>,
@@ -21,7 +22,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Over `points` with cells of at least `cell` (m).
+    /// Creates a grid over `points` with cells of at least `cell` (m).
     pub fn new(points: &[Vec3], cell: f64) -> Self {
         let bound = |pick: fn(f64, f64) -> f64, from: f64| {
             std::array::from_fn::<f64, 3, _>(|k| points.iter().fold(from, |m, p| pick(m, p[k])))
@@ -68,7 +69,7 @@ impl Grid {
         grid
     }
 
-    /// Cell of a point, which may be off the grid.
+    /// Returns the cell of a point, which may lie off the grid.
     fn cell(&self, p: Vec3) -> [i64; 3] {
         std::array::from_fn(|k| {
             let c = ((p[k] - self.low[k]) * self.per_metre).floor() as i64;
@@ -109,8 +110,8 @@ impl Grid {
         }
     }
 
-    /// The sensor nearest to `p`, of those that are equally near the first; looks within `radius` first. `None` without
-    /// sensors.
+    /// Returns the sensor nearest to `p`, the first among equally near ones; `None` without sensors. The search begins
+    /// within `radius` (m).
     pub fn nearest(&self, p: Vec3, radius: f64) -> Option<u32> {
         let mut best = (f64::INFINITY, u32::MAX);
         let mut consider = |sensor: u32, d2: f64| {
@@ -136,9 +137,9 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::env::NumpyRng;
     use crate::model::GeomType;
     use crate::sensors::touch::points::surface_points;
+    use crate::spaces::NumpyRng;
 
     #[test]
     fn the_grid_finds_what_a_search_of_all_finds() {

@@ -1,4 +1,4 @@
-//! Convex hulls of sensor points, to tell which sensors of a body lie inside another of its geoms.
+//! Convex hulls of sensor points, for finding the sensors of a body that lie inside another of its geoms.
 
 use std::ops::Range;
 
@@ -7,9 +7,8 @@ use crate::math::*;
 /// A face of the hull under construction.
 struct Face {
     corner: [usize; 3],
-    /// Outward unit normal and offset: `normal . p + offset` is the distance of `p` from the face's plane.
-    normal: Vec3,
-    offset: f64,
+    /// Half space of the face.
+    plane: HalfSpace,
     /// Faces across the edges `corner[i]` to `corner[i + 1]`.
     neighbor: [usize; 3],
     /// Points above the face that are not yet in the hull.
@@ -23,8 +22,10 @@ impl Face {
         let (normal, area) = unit(cross(sub(b, a), sub(c, a)));
         (area > MINVAL).then(|| Self {
             corner,
-            normal,
-            offset: -dot(normal, a),
+            plane: HalfSpace {
+                normal,
+                offset: -dot(normal, a),
+            },
             neighbor: [usize::MAX; 3],
             above: Vec::new(),
             alive: true,
@@ -32,33 +33,44 @@ impl Face {
     }
 
     fn distance(&self, p: Vec3) -> f64 {
+        self.plane.distance(p)
+    }
+}
+
+/// A half space: `normal . p + offset` is the distance of `p` from its plane, negative inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct HalfSpace {
+    /// Outward unit normal.
+    normal: Vec3,
+    offset: f64,
+}
+
+impl HalfSpace {
+    fn distance(&self, p: Vec3) -> f64 {
         dot(self.normal, p) + self.offset
     }
 }
 
-/// A half space: outward unit normal and offset.
-type Plane = (Vec3, f64);
-
-/// Bounds of a run of planes whose normals lie close together. Runs split in two until they are short.
+/// Bounds of a run of planes whose normals lie close together; runs are split in two until they are short.
 #[derive(Clone, Debug, PartialEq)]
 struct Bundle {
     planes: Range<usize>,
-    /// Box around the normals.
+    /// Lower corner of the box around the normals.
     low: Vec3,
     high: Vec3,
     /// Largest offset.
     offset: f64,
-    /// The second half, if the bundle is split; the first follows the bundle itself.
+    /// Index of the second half, if the bundle is split; the first half follows the bundle itself.
     second: Option<usize>,
 }
 
-/// Planes in a bundle that is not split.
+/// Number of planes in a bundle that is not split.
 const BUNDLE: usize = 8;
 /// Slack (m) for the rounding of bounds, far below the spacing of sensors.
 const ROUNDING: f64 = 1e-12;
 
 impl Bundle {
-    /// An upper bound of the distance of `p` from the planes.
+    /// Returns an upper bound of the distance of `p` from the planes.
     fn bound(&self, p: Vec3) -> f64 {
         (0..3).fold(self.offset + ROUNDING, |sum, k| {
             sum + (self.low[k] * p[k]).max(self.high[k] * p[k])
@@ -66,15 +78,15 @@ impl Bundle {
     }
 }
 
-/// The convex hull of a set of points, as half spaces in a tree of bundles: most are dismissed together.
+/// The convex hull of a set of points, as half spaces in a tree of bundles, most of which are dismissed at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    planes: Vec<Plane>,
+    planes: Vec<HalfSpace>,
     bundles: Vec<Bundle>,
 }
 
 impl Hull {
-    /// Of `points`, which may have any number of coplanar and cospherical ones. `None` if they span no volume.
+    /// Creates the hull of `points`, of which any number may be coplanar or cospherical. `None` if they span no volume.
     ///
     /// Points that leave the hull by less than 1e-12 times its size are taken to be on it, far below the spacing of
     /// sensors and far above rounding, so that rings, walls and grids need no special treatment.
@@ -84,7 +96,7 @@ impl Hull {
         let faces = [1e-12, 1e-11, 1e-10]
             .iter()
             .find_map(|tolerance| quickhull(points, tolerance * extent))?;
-        let planes: Vec<Plane> = faces.iter().filter(|f| f.alive).map(|f| (f.normal, f.offset)).collect();
+        let planes: Vec<HalfSpace> = faces.iter().filter(|f| f.alive).map(|f| f.plane).collect();
         let all = 0..planes.len();
         let mut hull = Self {
             planes,
@@ -98,10 +110,10 @@ impl Hull {
     fn bundle(&mut self, run: Range<usize>) {
         let planes = &mut self.planes[run.clone()];
         let bound = |pick: fn(f64, f64) -> f64, from: f64| {
-            std::array::from_fn::<f64, 3, _>(|k| planes.iter().fold(from, |m, (n, _)| pick(m, n[k])))
+            std::array::from_fn::<f64, 3, _>(|k| planes.iter().fold(from, |m, p| pick(m, p.normal[k])))
         };
         let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
-        let offset = planes.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.1));
+        let offset = planes.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.offset));
         let index = self.bundles.len();
         self.bundles.push(Bundle {
             planes: run.clone(),
@@ -114,14 +126,14 @@ impl Hull {
             let width = sub(high, low);
             let axis = (1..3).fold(0, |best, k| if width[k] > width[best] { k } else { best });
             let middle = run.len() / 2;
-            planes.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+            planes.select_nth_unstable_by(middle, |a, b| a.normal[axis].total_cmp(&b.normal[axis]));
             self.bundle(run.start..run.start + middle);
             self.bundles[index].second = Some(self.bundles.len());
             self.bundle(run.start + middle..run.end);
         }
     }
 
-    /// Whether `p` is inside, or outside by less than `margin` (m) from the plane of every face.
+    /// Returns whether `p` is inside, or outside by less than `margin` (m) from the plane of every face.
     pub fn contains(&self, p: Vec3, margin: f64) -> bool {
         self.inside(0, p, margin)
     }
@@ -135,12 +147,12 @@ impl Hull {
             Some(second) => self.inside(bundle + 1, p, margin) && self.inside(second, p, margin),
             None => self.planes[b.planes.clone()]
                 .iter()
-                .all(|(n, d)| dot(*n, p) + d < margin),
+                .all(|plane| plane.distance(p) < margin),
         }
     }
 }
 
-/// Four points that span a volume, the last below the face of the others.
+/// Returns four points that span a volume, the last below the face of the others; `None` if there are none.
 fn first_corners(points: &[Vec3], tolerance: f64) -> Option<[usize; 4]> {
     let farthest = |measure: &dyn Fn(Vec3) -> f64| {
         let mut best = (0, f64::NEG_INFINITY);
@@ -163,9 +175,8 @@ fn first_corners(points: &[Vec3], tolerance: f64) -> Option<[usize; 4]> {
     Some(if above { [a, c, b, d] } else { [a, b, c, d] })
 }
 
-/// Barber, Dobkin, Huhdanpaa: The Quickhull Algorithm for Convex Hulls (1996). `None` if it gets stuck.
-fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
-    let [a, b, c, d] = first_corners(points, tolerance)?;
+/// Creates the faces of a tetrahedron; `None` if one has no area.
+fn tetrahedron(points: &[Vec3], [a, b, c, d]: [usize; 4]) -> Option<Vec<Face>> {
     let mut faces = Vec::new();
     for (corner, neighbor) in [
         ([a, b, c], [1, 2, 3]),
@@ -177,6 +188,69 @@ fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
         face.neighbor = neighbor;
         faces.push(face);
     }
+    Some(faces)
+}
+
+/// An edge of the border between removed faces and others: its two corners, and the face beyond it.
+type BorderEdge = (usize, usize, usize);
+
+/// Removes the faces that a new corner sees, beginning with `first`; returns their border and the points above them.
+fn remove_seen(faces: &mut [Face], first: usize, sees: impl Fn(&Face) -> bool) -> (Vec<BorderEdge>, Vec<usize>) {
+    let (mut stack, mut border, mut orphans) = (vec![first], Vec::new(), Vec::new());
+    faces[first].alive = false;
+    while let Some(k) = stack.pop() {
+        orphans.append(&mut faces[k].above);
+        for e in 0..3 {
+            let other = faces[k].neighbor[e];
+            if !faces[other].alive {
+                continue;
+            }
+            if sees(&faces[other]) {
+                faces[other].alive = false;
+                stack.push(other);
+            } else {
+                border.push((faces[k].corner[e], faces[k].corner[(e + 1) % 3], other));
+            }
+        }
+    }
+    (border, orphans)
+}
+
+/// Joins a border to a new corner by new faces; `None` if it is not one closed line. `starting_at` has an unset entry for
+/// each point before and after.
+fn join(
+    points: &[Vec3],
+    faces: &mut Vec<Face>,
+    eye: usize,
+    border: &[BorderEdge],
+    starting_at: &mut [usize],
+) -> Option<()> {
+    let first = faces.len();
+    for (n, &(from, to, other)) in border.iter().enumerate() {
+        let mut face = Face::new(points, [from, to, eye])?;
+        face.neighbor[0] = other;
+        if starting_at[from] != usize::MAX {
+            return None;
+        }
+        starting_at[from] = first + n;
+        let edge = (0..3).find(|&e| faces[other].corner[e] == to && faces[other].corner[(e + 1) % 3] == from)?;
+        faces[other].neighbor[edge] = first + n;
+        faces.push(face);
+    }
+    for (n, &(_, to, _)) in border.iter().enumerate() {
+        let next = starting_at[to];
+        faces.get(next)?;
+        faces[first + n].neighbor[1] = next;
+        faces[next].neighbor[2] = first + n;
+    }
+    border.iter().for_each(|b| starting_at[b.0] = usize::MAX);
+    Some(())
+}
+
+/// Computes the faces of the hull by Quickhull; `None` if it gets stuck. Source: Barber, Dobkin, Huhdanpaa, The
+/// Quickhull Algorithm for Convex Hulls (1996).
+fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
+    let mut faces = tetrahedron(points, first_corners(points, tolerance)?)?;
     let assign = |i: usize, faces: &mut [Face]| {
         if let Some(face) = faces.iter_mut().find(|f| f.distance(points[i]) > tolerance) {
             face.above.push(i);
@@ -192,43 +266,9 @@ fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
         let height = |i: &usize| faces[f].distance(points[*i]);
         let eye = *faces[f].above.iter().max_by(|i, j| height(i).total_cmp(&height(j)))?;
 
-        // what the new corner sees goes; the border of that is joined to the corner
-        let (mut stack, mut border, mut orphans) = (vec![f], Vec::new(), Vec::new());
-        faces[f].alive = false;
-        while let Some(k) = stack.pop() {
-            orphans.append(&mut faces[k].above);
-            for e in 0..3 {
-                let other = faces[k].neighbor[e];
-                if !faces[other].alive {
-                    continue;
-                }
-                if faces[other].distance(points[eye]) > tolerance {
-                    faces[other].alive = false;
-                    stack.push(other);
-                } else {
-                    border.push((faces[k].corner[e], faces[k].corner[(e + 1) % 3], other));
-                }
-            }
-        }
+        let (border, orphans) = remove_seen(&mut faces, f, |other| other.distance(points[eye]) > tolerance);
         let first = faces.len();
-        for (n, &(from, to, other)) in border.iter().enumerate() {
-            let mut face = Face::new(points, [from, to, eye])?;
-            face.neighbor[0] = other;
-            if starting_at[from] != usize::MAX {
-                return None; // the border is not one closed line
-            }
-            starting_at[from] = first + n;
-            let edge = (0..3).find(|&e| faces[other].corner[e] == to && faces[other].corner[(e + 1) % 3] == from)?;
-            faces[other].neighbor[edge] = first + n;
-            faces.push(face);
-        }
-        for (n, &(_, to, _)) in border.iter().enumerate() {
-            let next = starting_at[to];
-            faces.get(next)?;
-            faces[first + n].neighbor[1] = next;
-            faces[next].neighbor[2] = first + n;
-        }
-        border.iter().for_each(|b| starting_at[b.0] = usize::MAX);
+        join(points, &mut faces, eye, &border, &mut starting_at)?;
         orphans
             .into_iter()
             .filter(|&i| i != eye)
@@ -244,7 +284,8 @@ mod tests {
     use crate::model::GeomType;
     use crate::sensors::touch::points::surface_points;
 
-    /// The faces contain all points, each touches three of them, and together they close: Euler's formula.
+    /// Checks that the faces contain all points, that each touches three of them, and that together they close: Euler's
+    /// formula.
     #[test]
     fn hulls_of_sensor_points_contain_them_all() {
         let mut worst = 0.0_f64;
@@ -278,7 +319,7 @@ mod tests {
         assert!(worst < 1e-12);
     }
 
-    /// Bundles give what all planes give, one by one.
+    /// Checks that bundles give what all planes give, one by one.
     #[test]
     fn bundles_dismiss_no_plane_that_matters() {
         let points = surface_points(GeomType::Capsule, [0.052, 0.035, 0.0], 0.004);
@@ -287,7 +328,7 @@ mod tests {
         for (i, p) in points.iter().enumerate() {
             for stretch in [0.3, 0.9, 0.99, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 1.01, 1.5] {
                 let p = scale(*p, stretch);
-                let plain = hull.planes.iter().all(|(n, d)| dot(*n, p) + d < 1e-9);
+                let plain = hull.planes.iter().all(|plane| plane.distance(p) < 1e-9);
                 assert_eq!(hull.contains(p, 1e-9), plain, "point {i} at {stretch}");
                 inside += usize::from(plain);
             }

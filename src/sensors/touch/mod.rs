@@ -1,7 +1,7 @@
-//! The sense of touch: thousands of sensors all over MIMo's body that feel contact forces.
+//! Touch: thousands of sensors all over MIMo's body that feel contact forces.
 //!
-//! A [`SkinLayout`] says where the sensors are; a [`Touch`] turns contacts into their values. Both work on any [`Model`]
-//! with contacts and poses from anywhere:
+//! A [`SkinLayout`] places the sensors; a [`Touch`] turns contacts into their values. Both work with any [`Model`], and
+//! with contacts and poses from any source:
 //!
 //! ```
 //! use babybench::config::{Compat, TouchFunction, TouchResponse};
@@ -17,57 +17,54 @@
 //! let mut env = blueprint.env()?;
 //! env.reset(Some(0))?;
 //! let s = env.state();
-//! touch.sense(model, &s.contacts, &s.xpos, &s.xmat);
+//! touch.sense(model, &s.contact, &s.xpos, &s.xmat);
 //! for sensor in touch.active() {
 //!     println!("sensor {} of {:?} feels {:?} N", sensor.index, sensor.body, sensor.value);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Sensors, responses and forces are those of MIMo's touch (Mattern et al., "MIMo: A Multi-Modal Infant Model for Studying
-//! Cognitive Development", 2024), without its meshes: the sensors it finds along the surface within twice their distance
-//! are always those of the Euclidean ball.
+//! Sensors, responses and forces are those of MIMo's touch (Mattern et al., "MIMo: A Multi-Modal Infant Model for
+//! Studying Cognitive Development", 2024), without its meshes: the sensors it finds along the surface within twice
+//! their distance are always those of the Euclidean ball.
 
 mod contact;
 mod grid;
 mod hull;
 mod layout;
-mod picture;
-mod points;
-mod trace;
+pub(crate) mod points;
 
 use std::sync::Arc;
 
 pub use contact::{TouchContact, touch_contacts};
 pub use hull::Hull;
 pub use layout::{MAX_SENSORS, SkinBody, SkinError, SkinGeom, SkinLayout};
-pub use picture::{Picture, draw_skin};
 pub use points::surface_points;
 
 use crate::config::{Compat, Config, TouchFunction, TouchResponse};
 use crate::math::*;
-use crate::model::{BodyId, GeomId, Model};
+use crate::model::Model;
 use crate::physics::{Contact, State};
 
-/// Sensors within this many times their distance share a force ([`TouchResponse::SpreadLinear`]).
+/// Reach of a force, in multiples of the sensor distance ([`TouchResponse::SpreadLinear`]).
 const REACH: f64 = 2.0;
 
-/// The reference does not respond where the x component of the force times the sum of weights is at most this.
+/// Bound below which the reference does not respond: the x component of the force times the sum of weights.
 const DROPPED: f64 = 1e-10;
 
-/// Rotation from the frame of the body of sensors on up to this many geoms is computed once per contact.
+/// Greatest number of geoms for which the rotation to a sensor's frame is kept during a contact.
 const MAX_GEOMS: usize = 8;
 
-/// A sensor that feels something.
+/// A sensor that feels a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveSensor<'a> {
-    /// The sensor, counted over all bodies.
+    /// Index of the sensor, counted over all bodies.
     pub sensor: usize,
-    /// Its body.
-    pub body: BodyId,
-    /// The sensor, counted within the body: index into [`SkinLayout::sensor_positions`].
+    /// Its body, by id.
+    pub body: usize,
+    /// Index of the sensor within the body, as in [`SkinLayout::sensor_positions`].
     pub index: usize,
-    /// One or three numbers, N.
+    /// One or three values, N.
     pub value: &'a [f32],
 }
 
@@ -79,7 +76,7 @@ pub struct Touch {
     response: TouchResponse,
     compat: Compat,
     values: Vec<f32>,
-    /// Sensors that were written, and for each sensor whether it was.
+    /// Sensors that were written, and for each sensor whether it was written.
     touched: Vec<u32>,
     is_touched: Vec<bool>,
     contacts: Vec<TouchContact>,
@@ -88,12 +85,12 @@ pub struct Touch {
 }
 
 impl Touch {
-    /// A sense that feels nothing yet.
+    /// Creates a sense that feels nothing yet.
     ///
     /// Any `function` may be combined with any `compat`: [`TouchFunction::Normal`] is the page's normal force,
     /// [`TouchFunction::NormalForce`] the Python code's. `compat` decides about
     /// - the frame of [`TouchFunction::ForceVector`]: that of the sensor's geom, or (reference) that of its body,
-    /// - the place of the second side of contacts between bodies that feel, see [`touch_contacts`],
+    /// - the point of the second side of contacts between bodies with skin, see [`touch_contacts`],
     /// - [`TouchResponse::SpreadLinear`] of a force with no x component: shared like any other, or (reference) lost.
     pub fn new(layout: Arc<SkinLayout>, function: TouchFunction, response: TouchResponse, compat: Compat) -> Self {
         let width = if function == TouchFunction::Normal { 1 } else { 3 };
@@ -111,43 +108,43 @@ impl Touch {
         }
     }
 
-    /// As configured by `touch_function`, `touch_response` and `compat`.
+    /// Creates the sense that `touch_function`, `touch_response` and `compat` ask for.
     pub fn configured(layout: Arc<SkinLayout>, config: &Config) -> Self {
         Self::new(layout, config.touch_function, config.touch_response, config.compat)
     }
 
-    /// Where the sensors are.
+    /// Returns where the sensors are.
     pub fn layout(&self) -> &Arc<SkinLayout> {
         &self.layout
     }
 
-    /// What a sensor reports.
+    /// Returns what a sensor reports.
     pub fn function(&self) -> TouchFunction {
         self.function
     }
 
-    /// Numbers per sensor: 1 for [`TouchFunction::Normal`], else 3.
+    /// Returns the number of values per sensor: 1 for [`TouchFunction::Normal`], else 3.
     pub fn width(&self) -> usize {
         if self.function == TouchFunction::Normal { 1 } else { 3 }
     }
 
-    /// Number of values.
+    /// Returns the number of values.
     pub fn len(&self) -> usize {
         self.values.len()
     }
 
-    /// Whether there are no sensors.
+    /// Returns whether there are no sensors.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// Values of all sensors, N: sensor by sensor, [`Self::width`] numbers each.
+    /// Returns the values of all sensors, N: sensor by sensor, [`Self::width`] numbers each.
     pub fn values(&self) -> &[f32] {
         &self.values
     }
 
-    /// Values of the sensors of a body; empty if it does not feel.
-    pub fn body_values(&self, body: BodyId) -> &[f32] {
+    /// Returns the values of the sensors of a body; empty if it has none.
+    pub fn body_values(&self, body: usize) -> &[f32] {
         let width = self.width();
         let range = self
             .layout
@@ -156,7 +153,7 @@ impl Touch {
         &self.values[range]
     }
 
-    /// The sensors whose value is not zero, in the order in which contacts reached them.
+    /// Iterates over the sensors whose value is not zero, in the order in which contacts reached them.
     pub fn active(&self) -> impl Iterator<Item = ActiveSensor<'_>> {
         let width = self.width();
         self.touched.iter().filter_map(move |&sensor| {
@@ -172,19 +169,19 @@ impl Touch {
         })
     }
 
-    /// The contacts that are felt, with points and forces in world and body frame: the sense without its sensors. Both
-    /// sides of a contact between two bodies that feel are listed.
+    /// Returns the contacts with skin, with points and forces in the world and body frames: touch before it is spread
+    /// over the sensors. A contact between two bodies with skin is listed from both sides.
     pub fn contacts(&self) -> &[TouchContact] {
         &self.contacts
     }
 
-    /// Sum of the contact forces on a body that feels, N, world frame.
-    pub fn force_on_body(&self, body: BodyId) -> Vec3 {
+    /// Returns the sum of the contact forces on a body with skin, N, world frame.
+    pub fn force_on_body(&self, body: usize) -> Vec3 {
         self.sum(|c| c.body == body)
     }
 
-    /// Sum of the contact forces on a geom of a body that feels, N, world frame.
-    pub fn force_on_geom(&self, geom: GeomId) -> Vec3 {
+    /// Returns the sum of the contact forces on a geom of a body with skin, N, world frame.
+    pub fn force_on_geom(&self, geom: usize) -> Vec3 {
         self.sum(|c| c.geom == geom)
     }
 
@@ -193,12 +190,12 @@ impl Touch {
         felt.fold([0.0; 3], |sum, c| add(sum, c.force))
     }
 
-    /// [`Self::sense`] of a state: the contacts and poses of the start of its last step.
+    /// Senses a state: the contacts and poses of the start of its last step.
     pub fn observe(&mut self, model: &Model, s: &State) {
-        self.sense(model, &s.contacts, &s.xpos, &s.xmat);
+        self.sense(model, &s.contact, &s.xpos, &s.xmat);
     }
 
-    /// Feels `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, and forgets what was felt before.
+    /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, and forgets what was felt before.
     ///
     /// Costs what is touched, whatever the number of sensors, and allocates nothing after a few calls.
     pub fn sense(&mut self, model: &Model, contacts: &[Contact], xpos: &[Vec3], xmat: &[Mat3]) {
@@ -214,25 +211,25 @@ impl Touch {
                 TouchFunction::ForceVectorGlobal => c.force,
                 TouchFunction::NormalForce => {
                     let contact = &contacts[c.contact];
-                    // the code takes a column of the contact frame for the normal
+                    // the Python code takes a column of the contact frame for the normal
                     let normal = column(&contact.frame, 0);
-                    mat_t_vec(&xmat[c.body.0], scale(normal, c.sign() * contact.force[0]))
+                    mat_t_vec(&xmat[c.body], scale(normal, c.sign() * contact.force[0]))
                 }
             };
             self.touch(skin, c.point_body, value);
         }
     }
 
-    /// Presses `value` (in the frame of the body, N) on the skin of a body at `point` (same frame, m), in addition to what
-    /// is felt already. Without effect on [`Self::contacts`].
-    pub fn press(&mut self, body: BodyId, point: Vec3, value: Vec3) {
+    /// Adds `value` (in the frame of the body, N), pressed on the skin of a body at `point` (same frame, m), to what is
+    /// felt already; [`Self::contacts`] do not change.
+    pub fn press(&mut self, body: usize, point: Vec3, value: Vec3) {
         let layout = self.layout.clone();
         if let Some(skin) = layout.body(body) {
             self.touch(skin, point, value);
         }
     }
 
-    /// Forgets what was felt.
+    /// Sets all sensors to zero and removes all contacts.
     pub fn clear(&mut self) {
         let width = self.width();
         for &sensor in &self.touched {
@@ -246,7 +243,7 @@ impl Touch {
 
     /// Shares `value` among the sensors around `point`.
     fn touch(&mut self, skin: &SkinBody, point: Vec3, value: Vec3) {
-        let radius = REACH * skin.scale;
+        let radius = REACH * skin.spacing;
         match self.response {
             TouchResponse::Nearest => {
                 if let Some(sensor) = skin.grid.nearest(point, radius) {

@@ -1,4 +1,4 @@
-//! Where the sensors of a single geom are: points on its surface at a given spacing.
+//! Sensor positions on a single geom: points on its surface at a given spacing.
 //!
 //! The formulas are those of MIMo's meshes, point by point and in their order, so that sensor `i` here is sensor `i`
 //! there.
@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use crate::math::Vec3;
 use crate::model::GeomType;
 
-/// Points on the surface of a geom, in its frame, m, about `spacing` (m, > 0) apart.
+/// Places points on the surface of a geom, in its frame, m, about `spacing` (m, > 0) apart.
 ///
 /// A geom that is small against the spacing has a single point, its centre. A plane has none.
 pub fn surface_points(kind: GeomType, size: Vec3, spacing: f64) -> Vec<Vec3> {
@@ -22,7 +22,7 @@ pub fn surface_points(kind: GeomType, size: Vec3, spacing: f64) -> Vec<Vec3> {
     }
 }
 
-/// About how many points [`surface_points`] makes, never less than a quarter of it.
+/// Estimates how many points [`surface_points`] makes, never less than a quarter of it.
 pub(super) fn estimate(kind: GeomType, size: Vec3, spacing: f64) -> f64 {
     let half = match kind {
         GeomType::Plane => return 0.0,
@@ -44,7 +44,7 @@ fn dedupe(points: Vec<Vec3>) -> Vec<Vec3> {
     points.into_iter().filter(|p| seen.insert(key(p))).collect()
 }
 
-/// `count` points on a circle about the z axis.
+/// Appends `count` points on a circle about the z axis.
 fn ring(radius: f64, count: usize, z: f64, out: &mut Vec<Vec3>) {
     for j in 0..count {
         let (s, c) = pxfm::f_sincos(2.0 * std::f64::consts::PI * j as f64 / count as f64);
@@ -52,12 +52,12 @@ fn ring(radius: f64, count: usize, z: f64, out: &mut Vec<Vec3>) {
     }
 }
 
-/// A count from a quotient that is rounded already.
+/// Converts a quotient that is already rounded to a count.
 fn count(x: f64) -> usize {
     x as usize
 }
 
-/// `n >= 2` equally spaced values from `a` to `b`.
+/// Returns `n >= 2` equally spaced values from `a` to `b`.
 fn linspace(a: f64, b: f64, n: usize) -> Vec<f64> {
     let step = (b - a) / (n - 1) as f64;
     (0..n)
@@ -106,7 +106,7 @@ fn ellipsoid(radii: Vec3, spacing: f64) -> Vec<Vec3> {
     points
 }
 
-/// The wall of a capsule or cylinder: rings from bottom to top.
+/// Appends the wall of a capsule or cylinder: rings from bottom to top.
 fn pipe(r: f64, length: f64, around: usize, spacing: f64, out: &mut Vec<Vec3>) {
     let rows = count((length / spacing).ceil()) + 1;
     for i in 0..rows {
@@ -165,7 +165,7 @@ fn cylinder(r: f64, length: f64, spacing: f64) -> Vec<Vec3> {
 mod tests {
     use super::*;
 
-    /// Numbers of points in MIMo's own meshes.
+    /// Compares the numbers of points with those of MIMo's own meshes.
     #[test]
     fn counts_are_those_of_the_reference() {
         for (kind, size, spacing, expect) in [

@@ -1,0 +1,66 @@
+//! Values of arguments.
+
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+/// Parses a whole number from 0.
+pub fn number<T: FromStr + PartialOrd + Display + Default>(text: &str) -> Result<T, String> {
+    from(text, T::default())
+}
+
+/// Parses a whole number from 1.
+pub fn count<T: FromStr + PartialOrd + Display + From<u8>>(text: &str) -> Result<T, String> {
+    from(text, T::from(1))
+}
+
+fn from<T: FromStr + PartialOrd + Display>(text: &str, least: T) -> Result<T, String> {
+    match text.parse() {
+        Ok(n) if n >= least => Ok(n),
+        _ => Err(format!("expected a whole number of at least {least}")),
+    }
+}
+
+/// Returns a parser of file names that end in `.png`.
+pub fn png() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.extension() {
+        Some(end) if end.eq_ignore_ascii_case("png") => Ok(path),
+        _ => Err("pictures are PNG files: expected a name that ends in .png"),
+    })
+}
+
+/// Quotes a path so that it is one word of a command line.
+pub fn word(path: impl Display) -> String {
+    let path = path.to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/\\.:_-+,~@%=".contains(c);
+    match path.chars().all(plain) && !path.is_empty() {
+        true => path,
+        false if cfg!(windows) => format!("\"{path}\""),
+        false => shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_bounds() {
+        assert_eq!(number::<u64>("0"), Ok(0));
+        assert_eq!(count::<u32>("4294967295"), Ok(u32::MAX));
+        for text in ["0", "-1", "1.5", "many", "", "4294967296"] {
+            let refused = count::<u32>(text).expect_err(text);
+            assert_eq!(refused, "expected a whole number of at least 1");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn words_can_be_typed() {
+        assert_eq!(word("results/self_touch"), "results/self_touch");
+        assert_eq!(word("my results/é"), "'my results/é'");
+        assert_eq!(word(""), "''");
+    }
+}

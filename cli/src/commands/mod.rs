@@ -1,0 +1,147 @@
+//! The subcommands; each reads its arguments and calls the library.
+
+mod evaluate;
+mod inspect;
+mod render;
+mod replay;
+mod report;
+mod run;
+mod score;
+mod test_installation;
+mod train;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use babybench::assets::{AssetSource, DirAssets};
+use babybench::config::{Compat, Config, RendererKind};
+use babybench::formats::npz::Npz;
+use babybench::mimo::embedded;
+use babybench::runs::{Recording, ReplayError};
+use babybench::{Blueprint, Env};
+use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// BabyBench in Rust: the infant model MIMo, its scenes and senses
+#[derive(Parser)]
+#[command(version, about)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run episodes with random actions and print information and timings
+    Run(run::Run),
+    /// Print what a configuration contains: sizes, joints, actuators, action and observation space
+    Inspect(inspect::Inspect),
+    /// Draw the scene, or what an eye sees
+    Render(render::Render),
+    /// Replay a recording (.npz) from its start with its actions
+    Replay(replay::ReplayArgs),
+    /// Check that everything works here, and write a scene, a log and a short video
+    TestInstallation(test_installation::TestInstallation),
+    /// Train with the random policy: log episodes with random actions in the configuration's save_dir
+    Train(train::Train),
+    /// Print the score of a training log and what it consists of
+    Score(score::ScoreArgs),
+    /// Write a page about a run: score, learning curve, what was touched or seen, key frames of the video
+    Report(report::ReportArgs),
+    /// Run evaluation episodes of a policy, with logs and videos in the configuration's save_dir
+    Evaluate(evaluate::Evaluate),
+}
+
+/// What an environment is built from.
+#[derive(Args)]
+struct Source {
+    /// Configuration file (YAML); see configs/
+    #[arg(long, value_name = "FILE")]
+    config: PathBuf,
+    /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones
+    #[arg(long, value_name = "DIR")]
+    assets: Option<PathBuf>,
+    /// Follow the API page (api) or the Python code (reference) where they disagree; overrides the configuration
+    #[arg(long, value_name = "WHICH", value_parser = parse_compat)]
+    compat: Option<Compat>,
+}
+
+fn parse_compat(text: &str) -> Result<Compat, String> {
+    Compat::from_name(text).ok_or_else(|| format!("expected one of {}", Compat::NAMES.join(", ")))
+}
+
+impl Source {
+    /// Builds the environment's blueprint. `compat` is that of a configuration that does
+    /// not say.
+    fn blueprint(&self, compat: Compat) -> Result<Blueprint, Box<dyn Error>> {
+        self.blueprint_with(compat, None)
+    }
+
+    /// Builds the environment's blueprint with another renderer than that of the configuration.
+    fn blueprint_with(&self, compat: Compat, renderer: Option<RendererKind>) -> Result<Blueprint, Box<dyn Error>> {
+        let base = Config {
+            compat,
+            ..Config::default()
+        };
+        let mut config = base.overlay_file(&self.config)?;
+        if let Some(compat) = self.compat {
+            config.compat = compat;
+        }
+        config.renderer = renderer.unwrap_or(config.renderer);
+        let blueprint = match &self.assets {
+            Some(dir) => Blueprint::with_assets(config, &*self.assets()?)
+                .map_err(|e| format!("--assets {}: {e}", dir.display()))?,
+            None => Blueprint::new(config)?,
+        };
+        Ok(blueprint)
+    }
+
+    /// Returns the assets that the blueprint is built from.
+    fn assets(&self) -> Result<Box<dyn AssetSource>, Box<dyn Error>> {
+        Ok(match &self.assets {
+            Some(dir) => Box::new(
+                DirAssets::new(dir)
+                    .map_err(|e| format!("--assets: {e}; it is a folder with babybench/*.xml and tex/*.png"))?,
+            ),
+            None => Box::new(embedded()),
+        })
+    }
+}
+
+/// Reads a recording for an environment.
+fn read_recording(path: &Path, env: &Env) -> Result<Recording, Box<dyn Error>> {
+    match Recording::read(&Npz::open(path)?, env) {
+        // these name the file
+        Err(ReplayError::Npz(e)) => Err(e.into()),
+        Err(e) => Err(format!("{}: {e}; was it recorded with another configuration?", path.display()).into()),
+        Ok(recording) => Ok(recording),
+    }
+}
+
+/// Creates a progress bar over steps.
+fn progress_bar(steps: u64, quiet: bool) -> Result<ProgressBar, Box<dyn Error>> {
+    let bar = if quiet {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new(steps)
+    };
+    bar.set_style(ProgressStyle::with_template(
+        "{bar:40} {pos}/{len} steps, {per_sec}, {eta} left",
+    )?);
+    Ok(bar)
+}
+
+/// Runs the command line of the process.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    match Cli::parse().command {
+        Command::Run(c) => c.run(),
+        Command::Inspect(c) => c.run(),
+        Command::Render(c) => c.run(),
+        Command::Replay(c) => c.run(),
+        Command::TestInstallation(c) => c.run(),
+        Command::Train(c) => c.run(),
+        Command::Score(c) => c.run(),
+        Command::Report(c) => c.run(),
+        Command::Evaluate(c) => c.run(),
+    }
+}

@@ -1,0 +1,100 @@
+//! `babybench render`
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use babybench::config::{Compat, RendererKind};
+use babybench::env::Viewer;
+use babybench::formats::npz::Npz;
+use babybench::formats::png::write_png;
+use clap::Args;
+
+use super::Source;
+use crate::arguments::{count, number, png};
+use crate::print::say;
+
+/// Arguments of `render`.
+#[derive(Args)]
+pub struct Render {
+    #[command(flatten)]
+    source: Source,
+    /// Camera: corner, top, side1, side2, closeup, eye_left or eye_right
+    #[arg(long, value_name = "NAME", default_value = "corner")]
+    camera: String,
+    /// Width and height in pixels; render_size of the configuration by default
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<usize>)]
+    size: Option<usize>,
+    /// Renderer: cpu, or wgpu (cargo feature wgpu); overrides the configuration
+    #[arg(long, value_name = "WHICH", value_parser = parse_renderer)]
+    renderer: Option<RendererKind>,
+    /// PNG image to write
+    #[arg(long, value_name = "FILE", value_parser = png())]
+    out: PathBuf,
+    /// Draw a state of this recording (its rows of qpos and qvel) instead of the settled one
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Row of the recording; its start (qpos0, qvel0) by default
+    #[arg(long, value_name = "T", requires = "state", allow_negative_numbers = true, value_parser = number::<usize>)]
+    step: Option<usize>,
+}
+
+fn parse_renderer(text: &str) -> Result<RendererKind, String> {
+    RendererKind::from_name(text).ok_or_else(|| format!("expected one of {}", RendererKind::NAMES.join(", ")))
+}
+
+impl Render {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let mut env = self.source.blueprint_with(Compat::Api, self.renderer)?.env()?;
+        let cameras = &env.model().cam_name;
+        if !cameras.contains(&self.camera) {
+            let (camera, all) = (&self.camera, cameras.join(", "));
+            return Err(format!("--camera {camera}: the scene has no such camera; it has {all}").into());
+        }
+        match &self.state {
+            Some(path) => {
+                let [qpos, qvel] = self.positions(path)?;
+                let misfit = |e| {
+                    format!(
+                        "{}: {e}; was it recorded with another scene or behavior?",
+                        path.display()
+                    )
+                };
+                env.reset_to(&qpos, &qvel).map_err(misfit)?;
+            }
+            None => {
+                let blueprint = env.blueprint().clone();
+                env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
+            }
+        }
+        let size = self.size.unwrap_or(env.config().render_size as usize);
+        let mut viewer = Viewer::new(env.blueprint())?;
+        let picture = viewer.draw(&env, &self.camera, size, size)?;
+        write_png(&self.out, picture, size, size)?;
+        say!(
+            "{}: {size} x {size} pixels from camera {}",
+            self.out.display(),
+            self.camera
+        )?;
+        Ok(())
+    }
+
+    /// Reads positions and velocities from a recording.
+    fn positions(&self, path: &Path) -> Result<[Vec<f64>; 2], Box<dyn Error>> {
+        let archive = Npz::open(path)?;
+        let Some(step) = self.step else {
+            return Ok([archive.get_f64("qpos0")?.data, archive.get_f64("qvel0")?.data]);
+        };
+        let file = path.display();
+        let row = |name: &str| -> Result<Vec<f64>, Box<dyn Error>> {
+            let a = archive.get_f64(name)?;
+            match a.shape[..] {
+                [rows, columns] if step < rows => Ok(a.data[step * columns..(step + 1) * columns].to_vec()),
+                [rows, _] => {
+                    Err(format!("{file}: --step {step} is out of range: {name} has {rows} rows, counted from 0").into())
+                }
+                _ => Err(format!("{file}: {name} has shape {:?}, but needs one row per step", a.shape).into()),
+            }
+        };
+        Ok([row("qpos")?, row("qvel")?])
+    }
+}

@@ -1,0 +1,175 @@
+//! `babybench run`
+
+use std::error::Error;
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+use babybench::config::Compat;
+use babybench::env::EnvStage;
+use babybench::{Env, EnvError};
+use clap::Args;
+use indicatif::ProgressBar;
+
+use super::{Source, progress_bar};
+use crate::arguments::{count, number};
+use crate::print::say;
+
+/// Arguments of `run`.
+#[derive(Args)]
+pub struct Run {
+    #[command(flatten)]
+    source: Source,
+    /// Number of episodes
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<u64>)]
+    episodes: u64,
+    /// Maximum number of steps of an episode; max_episode_steps of the configuration by default
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count::<u64>)]
+    steps: Option<u64>,
+    /// Random seed; that of the configuration by default
+    #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
+    seed: Option<u64>,
+    /// Do not show a progress bar
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Time spent in each stage since the start.
+struct Clock {
+    spent: Vec<(EnvStage, Duration)>,
+    since: Option<(EnvStage, Instant)>,
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self {
+            spent: EnvStage::all().map(|stage| (stage, Duration::ZERO)).collect(),
+            since: None,
+        }
+    }
+
+    fn enter(&mut self, stage: Option<EnvStage>) {
+        let now = Instant::now();
+        if let Some((last, since)) = self.since
+            && let Some((_, spent)) = self.spent.iter_mut().find(|(stage, _)| *stage == last)
+        {
+            *spent += now - since;
+        }
+        self.since = stage.map(|s| (s, now));
+    }
+}
+
+/// What a run has counted.
+#[derive(Default)]
+struct Tally {
+    steps: u64,
+    contacts: usize,
+    most_contacts: usize,
+    iterations: usize,
+    stepping: Duration,
+}
+
+impl Run {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let started = Instant::now();
+        let blueprint = self.source.blueprint(Compat::Api)?;
+        let mut env = blueprint.env()?;
+        let construction = started.elapsed();
+        let config = blueprint.config();
+        say!(
+            "{} in {}, {}: {} joints, {} actuators, {} numbers observed",
+            config.behavior,
+            config.scene,
+            config.actuation_model,
+            env.proprioception().joints().len(),
+            env.model().nu(),
+            env.observation_space()
+                .iter()
+                .map(|s| s.shape.iter().product::<usize>())
+                .sum::<usize>(),
+        )?;
+        let clock = Arc::new(Mutex::new(Clock::new()));
+        let probe = clock.clone();
+        env.set_probe(Some(Arc::new(move |stage| lock(&probe).enter(stage))));
+
+        let length = self.steps.unwrap_or(config.max_episode_steps);
+        let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;
+        let mut seed = self.seed;
+        let mut tally = Tally::default();
+        for episode in 0..self.episodes {
+            env.reset(seed.take())?;
+            tally.episode(&mut env, length, &clock, &bar)?;
+            bar.suspend(|| say!("episode {episode}: {}", env.info().to_json()))?;
+        }
+        bar.finish_and_clear();
+        say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
+        let step = env.model().opt.timestep * f64::from(config.frame_skip);
+        tally.print(step, &lock(&clock).spent)?;
+        if let Some(kib) = peak_memory() {
+            say!("peak memory of the process: {:.1} MiB", kib as f64 / 1024.0)?;
+        }
+        Ok(())
+    }
+}
+
+impl Tally {
+    /// Steps through an episode with random actions.
+    fn episode(&mut self, env: &mut Env, length: u64, clock: &Mutex<Clock>, bar: &ProgressBar) -> Result<(), EnvError> {
+        let mut action = Vec::new();
+        lock(clock).enter(None);
+        for k in 0..length {
+            env.sample_action(&mut action);
+            let before = Instant::now();
+            let truncated = env.step(&action)?.truncated;
+            lock(clock).enter(None);
+            self.stepping += before.elapsed();
+            self.steps += 1;
+            let n = env.state().contact.len();
+            self.contacts += n;
+            self.most_contacts = self.most_contacts.max(n);
+            self.iterations += env.state().solver_iterations;
+            if k % 16 == 15 {
+                bar.inc(16);
+            }
+            if truncated {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints speed, the time in each stage, and means. `step` is the simulated time of a step, s.
+    fn print(&self, step: f64, spent: &[(EnvStage, Duration)]) -> io::Result<()> {
+        let n = self.steps.max(1) as f64;
+        let per_step = |d: Duration| d.as_secs_f64() * 1e6 / n;
+        let seconds = self.stepping.as_secs_f64();
+        say!(
+            "{} steps in {seconds:.2} s: {:.0} steps/s, {:.0} us per step, {:.1} times real time",
+            self.steps,
+            self.steps as f64 / seconds,
+            per_step(self.stepping),
+            self.steps as f64 * step / seconds
+        )?;
+        for (stage, spent) in spent {
+            let share = 100.0 * spent.as_secs_f64() / seconds.max(f64::MIN_POSITIVE);
+            say!("  {:12} {:8.1} us {share:5.1} %", stage.name(), per_step(*spent))?;
+        }
+        say!(
+            "contacts per step: mean {:.1}, at most {}; solver iterations per step: mean {:.1}",
+            self.contacts as f64 / n,
+            self.most_contacts,
+            self.iterations as f64 / n
+        )
+    }
+}
+
+fn lock(clock: &Mutex<Clock>) -> MutexGuard<'_, Clock> {
+    clock.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Returns the peak resident memory in KiB, where the system tells (Linux).
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    line.split_whitespace().next()?.parse().ok()
+}

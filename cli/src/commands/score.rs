@@ -1,0 +1,62 @@
+//! `babybench score`
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use babybench::Config;
+use babybench::config::Behavior;
+use babybench::eval::{ScoreParts, Touchables, eval_logs};
+use babybench::mimo::{build_model, embedded};
+use babybench::runs::read_scene;
+use clap::Args;
+
+use crate::print::{note, say};
+
+/// Arguments of `score`.
+#[derive(Args)]
+pub struct ScoreArgs {
+    /// Folder of a training run: its save_dir, with logs/training.pkl
+    #[arg(value_name = "SAVE_DIR")]
+    save_dir: PathBuf,
+    /// Print the score as one line of JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl ScoreArgs {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        if self.save_dir.is_file() {
+            let file = self.save_dir.display();
+            return Err(format!(
+                "{file}: this is a file; give the folder of a run (its save_dir), which contains logs/training.pkl"
+            )
+            .into());
+        }
+        let score = eval_logs(&self.save_dir)?;
+        let skin = match score.parts {
+            // names of parts are those of the run's scene; folders of the Python kit hold one that need not load here
+            ScoreParts::SelfTouch { .. } => match read_scene(&self.save_dir) {
+                Ok(model) => Touchables::new(&model),
+                Err(e) => {
+                    if self.save_dir.join("scene.xml").exists() {
+                        note!(
+                            "note: names come from the built-in MIMo v1, because the run's scene cannot be loaded: {e}"
+                        );
+                    }
+                    let behavior = Behavior::SelfTouch;
+                    let config = Config {
+                        behavior,
+                        ..Config::default()
+                    };
+                    Touchables::new(&build_model(&config, &embedded())?)
+                }
+            },
+            ScoreParts::HandRegard { .. } => None,
+        };
+        match self.json {
+            true => say!("{}", score.to_json(skin.as_ref()))?,
+            false => say!("{}", score.to_text(skin.as_ref()).trim_end())?,
+        }
+        Ok(())
+    }
+}

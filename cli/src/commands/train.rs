@@ -1,0 +1,139 @@
+//! `babybench train`
+
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+use babybench::Config;
+use babybench::config::Compat;
+use babybench::eval::Score;
+use babybench::runs::logs::{read_records, training_path};
+use babybench::runs::{RunEnv, start_training_from};
+use clap::Args;
+
+use super::{Source, progress_bar};
+use crate::arguments::{count, number, word};
+use crate::interrupt::{Interrupt, Interrupted};
+use crate::print::{note, say};
+
+/// Training logs are saved at least this often, under `compat: api`.
+const SAVE_EVERY: Duration = Duration::from_secs(5);
+
+/// Arguments of `train`: the kit's random policies for both behaviors.
+#[derive(Args)]
+pub struct Train {
+    #[command(flatten)]
+    source: Source,
+    /// Total number of steps, over all episodes
+    #[arg(long, value_name = "STEPS", default_value_t = 10_000, allow_negative_numbers = true, value_parser = count::<u64>)]
+    train_for: u64,
+    /// Resume the training log in save_dir, whose steps count, instead of overwriting it
+    #[arg(long)]
+    resume: bool,
+    /// Random seed; that of the configuration by default
+    #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
+    seed: Option<u64>,
+    /// Do not show a progress bar
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl Train {
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let interrupt = Interrupt::watch();
+        let blueprint = self.source.blueprint(Compat::Api)?;
+        let config = blueprint.config();
+        if !self.resume {
+            look_at_old_log(config)?;
+        }
+        let assets = self.source.assets()?;
+        let mut env = start_training_from(&blueprint, &*assets, self.resume)?;
+        let before = env.log().map_or(&[][..], |log| log.records());
+        let (episodes, done) = (before.len() as u64, before.iter().map(|r| r.steps).sum::<u64>());
+        if self.resume && episodes > 0 {
+            say!("resuming after {episodes} episodes, {done} steps")?;
+        }
+        let bar = progress_bar(self.train_for, self.quiet)?;
+        bar.set_position(done);
+        bar.reset_eta();
+        // a resumed run must not repeat the actions of the run before
+        let seed = self.seed.unwrap_or(config.seed).wrapping_add(episodes);
+        env.seed_action_space(seed);
+        let (mut steps, mut over, mut saved) = (done, true, Instant::now());
+        let mut action = Vec::new();
+        while steps < self.train_for && !interrupt.wanted() {
+            if over {
+                env.reset(None)?;
+            }
+            env.sample_action(&mut action);
+            over = env.step(&action)?.truncated;
+            steps += 1;
+            if steps % 16 == 0 {
+                bar.set_position(steps);
+                if config.compat == Compat::Api && saved.elapsed() >= SAVE_EVERY {
+                    env.log().map_or(Ok(()), |log| log.save())?;
+                    saved = Instant::now();
+                }
+            }
+        }
+        bar.finish_and_clear();
+        if over && steps > done && config.compat == Compat::Reference {
+            // only a reset logs an episode there
+            env.reset(None)?;
+        }
+        env.finish_training()?;
+        self.print_result(&env, steps)
+    }
+
+    /// Prints what the log holds now, and its score.
+    fn print_result(&self, env: &RunEnv, steps: u64) -> Result<(), Box<dyn Error>> {
+        let config = env.config();
+        let records = env.log().map_or(&[][..], |log| log.records());
+        let (n, dir) = (records.len(), word(&config.save_dir));
+        if steps < self.train_for {
+            let goal = self.train_for;
+            let done = format!("{n} records, {steps} of {goal} steps are in {dir}; --resume continues from there");
+            return Err(Interrupted(done).into());
+        }
+        say!("{n} records, {steps} steps: {}", config.save_dir)?;
+        match Score::new(records) {
+            Ok(score) => {
+                say!("{score}")?;
+                if score.episodes == 0 {
+                    say!("No record counts yet (the oldest never does); train for at least two episodes")?;
+                }
+                say!("Details: babybench score {dir}, babybench report {dir}")?;
+            }
+            Err(e) => say!("No score yet: {e}")?,
+        }
+        Ok(())
+    }
+}
+
+/// Refuses to replace the training log of another behavior, and warns before another is replaced.
+fn look_at_old_log(config: &Config) -> Result<(), Box<dyn Error>> {
+    let path = training_path(&config.save_dir);
+    if !path.exists() {
+        return Ok(());
+    }
+    let path = path.display();
+    match read_records(training_path(&config.save_dir)) {
+        Ok(records) => match records.first().map(|r| r.behavior.name()) {
+            Some(found) if found != config.behavior.name() => {
+                let wanted = config.behavior;
+                return Err(format!(
+                    "{path} is the training log of a run with behavior {found}, but the configuration is for {wanted}; \
+                     choose another save_dir or delete the log"
+                )
+                .into());
+            }
+            Some(_) => note!(
+                "warning: replacing the training log of {} records in {} (--resume continues it)",
+                records.len(),
+                config.save_dir
+            ),
+            None => {}
+        },
+        Err(e) => note!("warning: replacing a training log that cannot be read: {e}"),
+    }
+    Ok(())
+}

@@ -1,0 +1,402 @@
+//! The command line where users go wrong: what it says, and what it leaves behind.
+
+#[path = "../../tests/common/mod.rs"]
+mod common;
+#[path = "common/program.rs"]
+mod program;
+
+use std::path::Path;
+
+use babybench::config::{ActuationModel, Behavior, Scene};
+use babybench::mimo::embedded;
+use babybench::runs::logs::evaluation_path;
+use babybench::runs::{
+    EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, start_training_from,
+};
+use babybench::{Blueprint, Config};
+use common::*;
+use program::*;
+
+/// Checks that the program fails without a panic and says all of `parts`.
+fn refused(dir: &Path, arguments: &[&str], parts: &[&str]) {
+    let out = babybench(dir, arguments);
+    let said = text(&out);
+    assert!(!out.status.success(), "{arguments:?} succeeds: {said}");
+    assert!(
+        out.stdout.is_empty() || arguments[0] == "evaluate",
+        "{arguments:?}: {said}"
+    );
+    assert!(!said.contains("panicked"), "{arguments:?}: {said}");
+    for part in parts {
+        assert!(said.contains(part), "{arguments:?}: no {part:?} in {said}");
+    }
+}
+
+/// Returns every file in a folder, with its contents.
+fn contents(folder: &Path) -> Vec<(std::path::PathBuf, Vec<u8>)> {
+    let mut out = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(next).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            match path.is_dir() {
+                true => folders.push(path),
+                false => out.push((path.clone(), std::fs::read(&path).expect("a file"))),
+            }
+        }
+    }
+    out.sort();
+    out
+}
+
+#[test]
+fn wrong_options_say_what_is_expected() {
+    let folder = Folder::new("options");
+    let config = short_config(&folder);
+    for (command, option, values, part) in [
+        ("run", "--episodes", ["0", "-1", "many"], "whole number of at least 1"),
+        ("run", "--steps", ["0", "-1", "1.5"], "whole number of at least 1"),
+        (
+            "run",
+            "--seed",
+            ["-1", "x", "99999999999999999999"],
+            "whole number of at least 0",
+        ),
+        ("train", "--train-for", ["0", "-5", ""], "whole number of at least 1"),
+        (
+            "evaluate",
+            "--episodes",
+            ["0", "-1", "1e3"],
+            "whole number of at least 1",
+        ),
+        ("evaluate", "--duration", ["0", "-1", "x"], "whole number of at least 1"),
+        ("evaluate", "--jobs", ["0", "-1", "x"], "whole number of at least 1"),
+        ("evaluate", "--fps", ["0", "-1", "1001"], "from 1 to 1000"),
+        ("evaluate", "--policy-timeout", ["0", "-1", "inf"], "expected seconds"),
+        ("render", "--size", ["0", "-4", "big"], "whole number of at least 1"),
+        ("render", "--out", ["a.jpg", "a", "png"], "ends in .png"),
+        ("inspect", "--touch", ["a.jpg", "a", "png"], "ends in .png"),
+        (
+            "replay",
+            "--images-every",
+            ["0", "-1", "x"],
+            "whole number of at least 1",
+        ),
+    ] {
+        for value in values {
+            refused(
+                folder.path(),
+                &[command, "--config", &config, option, value],
+                &[option, value, part],
+            );
+        }
+    }
+    refused(
+        folder.path(),
+        &["render", "--config", &config, "--camera", "eye", "--out", "a.png"],
+        &["closeup, eye_left"],
+    );
+    refused(
+        folder.path(),
+        &["render", "--config", &config, "--size", "5000", "--out", "a.png"],
+        &["1 to 4096"],
+    );
+    assert_eq!(contents(folder.path()).len(), 1, "nothing but the configuration");
+}
+
+#[test]
+fn wrong_files_say_which_and_what_to_do() {
+    let folder = Folder::new("files");
+    let config = short_config(&folder);
+    let dir = folder.path();
+    folder.file("empty.yml", "save_dir: ''\n");
+    let before = contents(dir);
+    let config = ["--config", &config];
+    let with = |command: &'static str, rest: &[&'static str]| [&[command][..], &config[..], rest].concat();
+    refused(
+        dir,
+        &["run", "--config", "no.yml"],
+        &["no.yml", "hint: check the spelling"],
+    );
+    refused(
+        dir,
+        &["run", "--config", "empty.yml"],
+        &["empty.yml:1:11", "at least one character"],
+    );
+    refused(
+        dir,
+        &with("run", &["--assets", "none"]),
+        &["--assets", "none", "babybench/*.xml"],
+    );
+    refused(
+        dir,
+        &with("render", &["--out", "none/a.png"]),
+        &["none/a.png", "hint: check the spelling"],
+    );
+    assert_eq!(contents(dir), before, "nothing is left behind");
+}
+
+#[test]
+fn wrong_recordings_and_folders_say_what_to_do() {
+    let folder = Folder::new("recordings");
+    let config = short_config(&folder);
+    let dir = folder.path();
+    folder.file("file", "neither a picture nor a recording");
+    let blocked = Config {
+        save_dir: "file".to_string(),
+        ..short()
+    };
+    let blocked = folder.file("blocked.yml", blocked.to_yaml()).display().to_string();
+    let before = contents(dir);
+    let config = ["--config", &config];
+    let with = |command: &'static str, rest: &[&'static str]| [&[command][..], &config[..], rest].concat();
+    let state = ["--out", "a.png", "--state", "file"];
+    refused(
+        dir,
+        &with("render", &state),
+        &["file: not a readable npz", "truncated or of another format"],
+    );
+    refused(
+        dir,
+        &with("replay", &["--recording", "file", "--out", "r"]),
+        &["file: not a readable npz"],
+    );
+    refused(
+        dir,
+        &with("replay", &["--recording", "no.npz", "--out", "r"]),
+        &["no.npz", "hint:"],
+    );
+    for command in ["train", "evaluate"] {
+        let parts = ["file", "hint: there is a file where a folder is needed"];
+        refused(dir, &[command, "--config", &blocked], &parts);
+    }
+    for command in ["score", "report"] {
+        refused(dir, &[command, "file"], &["this is a file", "save_dir"]);
+    }
+    assert_eq!(contents(dir), before, "nothing is left behind");
+}
+
+#[test]
+fn an_evaluation_alone_has_its_scene() {
+    let folder = Folder::new("alone");
+    let config = short_config(&folder);
+    let run = folder.path().join("run");
+    let evaluate = |config: &str| -> Vec<String> {
+        let rest = ["--episodes", "1", "--duration", "2", "--no-render", "--quiet"];
+        [&["evaluate", "--config", config][..], &rest]
+            .concat()
+            .iter()
+            .map(|s| s.to_string())
+            .collect()
+    };
+    let call = |arguments: &[String]| {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let out = babybench(folder.path(), &arguments);
+        assert!(out.status.success(), "{arguments:?}: {}", text(&out));
+        text(&out)
+    };
+    call(&evaluate(&config));
+    let scene = std::fs::read_to_string(run.join("scene.xml")).expect("the scene");
+    assert_eq!(read_config(&scene).expect("the configuration"), short());
+    assert!(read_scene(&run).is_ok_and(|m| m == **blueprint(short()).model()));
+    assert_eq!(EvaluationLog::read(evaluation_path(&run, 0)).expect("a log").len(), 2);
+    // the scene of a training is not touched, and nothing is mixed with what belongs to another scene or behavior
+    let train = ["train", "--config", &config, "--train-for", "30", "--quiet"];
+    assert!(babybench(folder.path(), &train).status.success());
+    let other = |name: &str, change: fn(&mut Config)| {
+        let mut config = short();
+        change(&mut config);
+        folder.file(name, config.to_yaml()).display().to_string()
+    };
+    let base = other("base.yml", |c| c.scene = Scene::Base);
+    let none = other("none.yml", |c| c.behavior = Behavior::None);
+    let before = contents(&run);
+    let own = "save_dir";
+    let refuse = |arguments: &[String], parts: &[&str]| {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        refused(folder.path(), &arguments, parts);
+        assert_eq!(contents(&run), before, "{arguments:?} changed the run");
+    };
+    refuse(
+        &evaluate(&base),
+        &["scene.xml", "the scene crib with MIMo v1", "the scene base", own],
+    );
+    refuse(&evaluate(&none), &["training.pkl", "behavior self_touch", own]);
+    let train = |config: &str| ["train", "--config", config].map(String::from).to_vec();
+    refuse(&train(&none), &["training.pkl", "a run with behavior self_touch", own]);
+    refuse(
+        &[&train(&base)[..], &["--resume".to_string()]].concat(),
+        &["the scene crib", own],
+    );
+    call(&evaluate(&config));
+    let after = std::fs::read_to_string(run.join("scene.xml")).expect("the scene");
+    assert_eq!(after, scene, "the training's");
+    // one that does not load, as the kit's, stays too
+    folder.file("run/scene.xml", "<mujoco><include file=\"/kit/mimo.xml\"/></mujoco>");
+    assert!(call(&evaluate(&config)).contains("is left unchanged"));
+    let after = std::fs::read_to_string(run.join("scene.xml")).expect("the scene");
+    assert!(after.contains("/kit/mimo.xml"));
+}
+
+#[test]
+fn scenes_are_kept_or_refused() {
+    let folder = Folder::new("kept");
+    let config = |scene: Scene, actuation_model: ActuationModel| Config {
+        save_dir: folder.text(),
+        actuation_model,
+        ..free(Behavior::SelfTouch, scene)
+    };
+    let make = |scene, actuation| blueprint(config(scene, actuation));
+    let keep = |blueprint: &Blueprint| keep_scene(blueprint, &embedded());
+    let motors = make(Scene::Crib, ActuationModel::SpringDamper);
+    assert!(matches!(keep(&motors), Ok(KeptScene::Written)));
+    assert!(matches!(keep(&motors), Ok(KeptScene::Same)));
+    assert!(matches!(
+        keep(&make(Scene::Crib, ActuationModel::Muscle)),
+        Ok(KeptScene::Same)
+    ));
+    let servos = make(Scene::Crib, ActuationModel::Positional);
+    assert!(matches!(keep(&servos), Ok(KeptScene::Similar)));
+    let cubes = make(Scene::Cubes, ActuationModel::SpringDamper);
+    assert!(matches!(keep(&cubes), Err(SceneFileError::Different { .. })));
+    start_training_from(&motors, &embedded(), false).expect("a training");
+    let resumed = start_training_from(&cubes, &embedded(), true);
+    let error = resumed.expect_err("another scene");
+    assert!(error.to_string().contains("the scene crib with MIMo v1"), "{error}");
+    folder.file("scene.xml", "<mujoco>");
+    assert!(matches!(keep(&motors), Ok(KeptScene::Foreign(_))));
+}
+
+/// Ctrl-C.
+#[cfg(target_os = "linux")]
+mod interrupts {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    use babybench::runs::read_training;
+
+    use super::*;
+
+    /// Starts the program, waits for a file to be written, sends the signal, and returns the exit code and what was
+    /// said.
+    fn interrupt(dir: &Path, arguments: &[&str], until: &Path, signal: &str) -> (Option<i32>, String) {
+        let (before, started) = (std::fs::read(until).ok(), Instant::now());
+        let mut child = with_signals(&program(dir, arguments))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        while std::fs::read(until).ok() == before && started.elapsed() < Duration::from_secs(120) {
+            assert!(child.try_wait().expect("a status").is_none(), "it ended");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+        assert!(sent.expect("the signal is sent").success());
+        let out = child.wait_with_output().expect("it ends");
+        (out.status.code(), text(&out))
+    }
+
+    /// The program with its signals as they are by default: under nohup they are ignored here, and so by what is started.
+    fn with_signals(program: &Command) -> Command {
+        let mut command = Command::new("env");
+        command
+            .args(["--default-signal=HUP,INT,TERM", "--"])
+            .arg(program.get_program());
+        command.args(program.get_args());
+        if let Some(dir) = program.get_current_dir() {
+            command.current_dir(dir);
+        }
+        command
+    }
+
+    #[test]
+    fn an_interrupted_training_keeps_every_step() {
+        let folder = Folder::new("interrupt");
+        let config = short_config(&folder);
+        let run = folder.path().join("run");
+        let log = run.join("logs/training.pkl");
+        let arguments = [
+            "train",
+            "--config",
+            &config,
+            "--train-for",
+            "100000000",
+            "--resume",
+            "--quiet",
+        ];
+        let mut before = 0;
+        for signal in ["-INT", "-TERM"] {
+            let (code, said) = interrupt(folder.path(), &arguments, &log, signal);
+            assert_eq!(code, Some(130), "{said}");
+            let records = read_training(&run).expect("a whole log");
+            let steps: u64 = records.iter().map(|r| r.steps).sum();
+            let told = format!("interrupted: {} records, {steps} of 100000000 steps", records.len());
+            assert!(said.contains(&told) && said.contains("--resume"), "{told}: {said}");
+            assert!(steps >= before);
+            before = steps;
+        }
+    }
+
+    #[test]
+    fn an_interrupted_evaluation_leaves_whole_files_only() {
+        let folder = Folder::new("interrupt_evaluation");
+        let config = short_config(&folder);
+        let first = folder.path().join("run/videos/evaluation_0.avi");
+        let arguments = [
+            "evaluate",
+            "--config",
+            &config,
+            "--episodes",
+            "100000",
+            "--quiet",
+            "--jobs",
+            "2",
+        ];
+        let (code, said) = interrupt(folder.path(), &arguments, &first, "-INT");
+        assert_eq!(code, Some(130), "{said}");
+        assert!(said.contains("of 100000 episodes; their logs are complete"), "{said}");
+        let files = contents(&folder.path().join("run"));
+        let names = files.iter().map(|(path, _)| path.display().to_string());
+        let unfinished: Vec<String> = names.filter(|n| n.contains(".tmp")).collect();
+        assert!(unfinished.is_empty(), "{unfinished:?}");
+    }
+}
+
+/// Runs the program in a folder, checks that it succeeds, and returns what it says.
+fn works(dir: &Path, arguments: &[&str]) -> String {
+    let out = babybench(dir, arguments);
+    assert!(out.status.success(), "{arguments:?}: {}", text(&out));
+    String::from_utf8_lossy(&out.stdout).into_owned()
+}
+
+#[test]
+fn all_behaviors_and_actuation_models_run_from_the_command_line() {
+    let folder = Folder::new("configurations");
+    for &behavior in Behavior::ALL {
+        for &kind in ActuationModel::ALL {
+            let config = Config {
+                actuation_model: kind,
+                ..free(behavior, Scene::Base)
+            };
+            let path = folder.file(&format!("{behavior}_{kind}.yml"), config.to_yaml());
+            let file = path.to_str().expect("a path of ours");
+            let ran = works(folder.path(), &["run", "--quiet", "--steps", "5", "--config", file]);
+            assert!(ran.contains("\"steps\": 5"), "{ran}");
+            let inspected = works(folder.path(), &["inspect", "--config", file]);
+            let env = env(config);
+            for name in env.actuation().action_names(env.model()) {
+                assert!(inspected.contains(&name), "{name} is not explained");
+            }
+            for entry in env.proprioception().entries(env.model(), env.actuation()) {
+                let line = format!(
+                    "{:4}..{:4} {:10} {}",
+                    entry.range.start,
+                    entry.range.end,
+                    entry.component.name(),
+                    entry.name
+                );
+                assert!(inspected.contains(&line), "{line:?} is not in the output");
+            }
+        }
+    }
+}

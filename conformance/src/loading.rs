@@ -1,0 +1,104 @@
+//! A comparison of how MuJoCo and our loader take the same document.
+
+use babybench::assets::AssetSource;
+use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
+use babybench::physics::compile;
+
+use crate::arrays::{actuators, derived, looks, names, narrowed, options, physical};
+use crate::mujoco::{Mujoco, Simulation};
+
+/// Relative tolerance of compiled numbers; absolute below 1.
+const TOLERANCE: f64 = 1e-10;
+
+/// The same for inverse weights, which magnify rounding by the condition of the inertia.
+const DERIVED: f64 = 1e-8;
+
+/// The outcome of giving one document to both loaders.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// Both load it, and the models agree.
+    Equal,
+    /// Both reject it.
+    Rejected,
+    /// Ours rejects what MuJoCo takes, for a reason of [`deliberate`].
+    Stricter(&'static str),
+    /// A difference that should not be.
+    Fault(String),
+}
+
+/// Tells why our loader rejects what MuJoCo accepts, where it is meant to.
+pub fn deliberate(error: &LoadError) -> Option<&'static str> {
+    match &error.kind {
+        ErrorKind::UnknownElement(_) | ErrorKind::UnknownAttribute(_) => {
+            Some("elements and attributes that are not supported")
+        }
+        ErrorKind::OutOfRange { .. } => Some("numbers outside their physical range, such as negative damping"),
+        ErrorKind::BadNumber { .. } => Some("not a number, infinity and hexadecimal numbers"),
+        ErrorKind::WrongCount { found: 0, .. } => Some("attributes without a value, which MuJoCo takes for absent"),
+        ErrorKind::WrongCount { attribute: "gear", .. } => {
+            Some("gears beyond the first, which scalar joints do not use")
+        }
+        ErrorKind::UnknownName { name, .. } if name.is_empty() => Some("references without a name"),
+        ErrorKind::MissingAttribute("target") => Some("cameras without the target of their mode"),
+        ErrorKind::Invalid(r#"only a camera with mode="targetbody" has a target"#) => {
+            Some("cameras with a target that their mode does not use")
+        }
+        ErrorKind::Invalid("the tendon names this joint twice") => Some("tendons that name a joint twice"),
+        ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => {
+            Some("inertias that are singular")
+        }
+        ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
+        ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),
+        _ => None,
+    }
+}
+
+/// Loads the document `main` of `files` with both, and compares the compiled models.
+pub fn compare(api: &'static Mujoco, main: &str, files: &[(&str, &str)], assets: &dyn AssetSource) -> Outcome {
+    let text = files.iter().find(|f| f.0 == main).map_or("", |f| f.1);
+    let ours = load_str(text, main, assets).and_then(compile);
+    let bytes: Vec<(&str, &[u8])> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
+    let theirs = Simulation::new(api, main, &bytes);
+    match (ours, theirs) {
+        (Err(_), Err(_)) => Outcome::Rejected,
+        (Ok(_), Err(e)) => Outcome::Fault(format!("we load it, MuJoCo does not: {}", e.trim())),
+        (Err(e), Ok(_)) => match deliberate(&e) {
+            Some(reason) => Outcome::Stricter(reason),
+            None => Outcome::Fault(format!("MuJoCo loads it, we do not: {e}")),
+        },
+        (Ok(model), Ok(simulation)) => difference(&model, &simulation).map_or(Outcome::Equal, Outcome::Fault),
+    }
+}
+
+/// Describes the first difference between the models; `None` if they agree.
+pub fn difference(model: &babybench::Model, simulation: &Simulation) -> Option<String> {
+    for (kind, ours) in names(model) {
+        let theirs = simulation.names(kind);
+        if ours != theirs {
+            return Some(format!("names of {kind}: {ours:?} instead of {theirs:?}"));
+        }
+    }
+    let compiled = physical(model)
+        .into_iter()
+        .chain(actuators(model))
+        .chain(looks(model))
+        .chain(options(model));
+    let compiled = compiled.map(|(name, values)| (name, values, TOLERANCE));
+    let derived = derived(model).into_iter().map(|(name, values)| (name, values, DERIVED));
+    for (name, ours, tolerance) in compiled.chain(derived) {
+        let theirs = simulation.model_array(name).or_else(|| simulation.model_value(name));
+        let Some(theirs) = theirs.or_else(|| simulation.known_size(name).map(|n| vec![n as f64])) else {
+            continue;
+        };
+        let theirs = narrowed(name, &theirs);
+        if ours.len() != theirs.len() {
+            return Some(format!("{name} has {} values, MuJoCo {}", ours.len(), theirs.len()));
+        }
+        // an inertia that is singular has no inverse
+        let far = |(a, b): (&f64, &f64)| b.is_finite() && (a.is_nan() || (a - b).abs() > tolerance * b.abs().max(1.0));
+        if let Some(k) = ours.iter().zip(&theirs).position(far) {
+            return Some(format!("{name}[{k}] is {:e}, MuJoCo's {:e}", ours[k], theirs[k]));
+        }
+    }
+    None
+}

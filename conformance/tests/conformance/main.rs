@@ -1,0 +1,52 @@
+//! How far babybench is from MuJoCo 3.3.0. What lacks its yardstick is reported as ignored, with the reason.
+
+mod actuation;
+mod compiled_model;
+mod complete_models;
+mod contact_free;
+mod contact_geometry;
+mod kit;
+mod live_loader;
+mod live_mujoco;
+mod live_one_step;
+mod live_rollout;
+mod logs;
+mod mutations;
+mod rapier_engine;
+mod recordings;
+mod render;
+#[cfg(feature = "wgpu")]
+mod render_gpu;
+mod replay;
+mod settling;
+mod static_quantities;
+mod touch;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let all = [
+        actuation::trials(),
+        compiled_model::trials(),
+        complete_models::trials(),
+        contact_free::trials(),
+        contact_geometry::trials(),
+        kit::trials(),
+        live_loader::trials(),
+        live_mujoco::trials(),
+        live_one_step::trials(),
+        live_rollout::trials(),
+        logs::trials(),
+        mutations::trials(),
+        rapier_engine::trials(),
+        recordings::trials(),
+        render::trials(),
+        #[cfg(feature = "wgpu")]
+        render_gpu::trials(),
+        replay::trials(),
+        settling::trials(),
+        static_quantities::trials(),
+        touch::trials(),
+    ];
+    testkit::harness::run(all.concat())
+}

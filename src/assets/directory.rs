@@ -1,0 +1,91 @@
+//! A directory as a source of assets.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use super::{AssetError, AssetSource, resolve};
+use crate::limits::Limits;
+
+/// Reads files from a directory of the file system. Nothing outside it can be read, not even through links.
+#[derive(Clone, Debug)]
+pub struct DirAssets {
+    root: PathBuf,
+    /// Bytes of a file.
+    limit: u64,
+}
+
+impl DirAssets {
+    /// Opens the directory `root`.
+    ///
+    /// # Errors
+    /// A directory that does not exist, a path that is not a directory.
+    pub fn new(root: impl AsRef<Path>) -> Result<Self, AssetError> {
+        Self::with_limits(root, &Limits::default())
+    }
+
+    /// Opens the directory `root`, from which files of at most [`Limits::asset_bytes`] are read.
+    ///
+    /// # Errors
+    /// As [`DirAssets::new`].
+    pub fn with_limits(root: impl AsRef<Path>, limits: &Limits) -> Result<Self, AssetError> {
+        let root = root.as_ref();
+        let canonical = root
+            .canonicalize()
+            .map_err(|e| io_error(&root.display().to_string(), &e))?;
+        if canonical.is_dir() {
+            Ok(DirAssets {
+                root: canonical,
+                limit: limits.asset_bytes,
+            })
+        } else {
+            Err(AssetError::NotFound(root.display().to_string()))
+        }
+    }
+
+    /// Returns the real path of a file, once it is known to lie inside the root.
+    fn locate(&self, path: &str) -> Result<PathBuf, AssetError> {
+        let inside = resolve("", path)?;
+        let real = self.root.join(&inside).canonicalize().map_err(|e| io_error(path, &e))?;
+        if !real.starts_with(&self.root) {
+            return Err(AssetError::BadPath(path.to_owned()));
+        }
+        if real.is_file() {
+            Ok(real)
+        } else {
+            Err(AssetError::NotFound(inside))
+        }
+    }
+}
+
+fn io_error(path: &str, error: &std::io::Error) -> AssetError {
+    match error.kind() {
+        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => AssetError::NotFound(path.to_owned()),
+        _ => AssetError::Io {
+            path: path.to_owned(),
+            message: error.to_string(),
+        },
+    }
+}
+
+impl AssetSource for DirAssets {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        use std::io::Read;
+        let file = std::fs::File::open(self.locate(path)?).map_err(|e| io_error(path, &e))?;
+        // One byte more than allowed tells a file that is too large from one that just fits, whatever its metadata say.
+        let mut bytes = Vec::new();
+        file.take(self.limit.saturating_add(1))
+            .read_to_end(&mut bytes)
+            .map_err(|e| io_error(path, &e))?;
+        if bytes.len() as u64 > self.limit {
+            return Err(AssetError::TooLarge {
+                path: path.to_owned(),
+                limit: self.limit,
+            });
+        }
+        Ok(Cow::Owned(bytes))
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        self.locate(path).is_ok()
+    }
+}

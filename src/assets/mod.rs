@@ -1,0 +1,180 @@
+//! Sources of MJCF documents and textures: directories, memory, files embedded in the program, and layers of them.
+//!
+//! A source maps normalised relative paths to bytes; nothing outside it can be reached. The library's own files are those of
+//! [`crate::mimo::embedded`].
+//!
+//! ```
+//! use babybench::assets::{AssetSource, MemoryAssets, Overlay};
+//! use babybench::mimo::embedded;
+//!
+//! let mut changed = MemoryAssets::new();
+//! changed.insert("babybench/crib.xml", "<mujoco/>")?;
+//! let assets = embedded();
+//! let assets = Overlay::new(vec![&changed, &assets]);
+//! assert_eq!(assets.read("babybench/crib.xml")?.len(), 9);
+//! # Ok::<(), babybench::assets::AssetError>(())
+//! ```
+
+mod directory;
+
+pub use directory::DirAssets;
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// An error in reading a file from a source.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AssetError {
+    /// The source has no such file.
+    #[error("file \"{0}\" does not exist")]
+    NotFound(String),
+    /// A path that is empty, absolute, leads out of the source or uses characters other than `/` to separate.
+    #[error("path \"{0}\" is not a relative path inside the asset source")]
+    BadPath(String),
+    /// The file is larger than [`crate::Limits::asset_bytes`].
+    #[error("file \"{path}\" is larger than {limit} bytes")]
+    TooLarge {
+        /// The path.
+        path: String,
+        /// The limit, bytes.
+        limit: u64,
+    },
+    /// The file system failed.
+    #[error("file \"{path}\": {message}")]
+    Io {
+        /// The path.
+        path: String,
+        /// What the system said.
+        message: String,
+    },
+}
+
+/// A source of files by their paths.
+///
+/// Paths are normalised, relative to the root of the source and separated by `/`.
+pub trait AssetSource {
+    /// Returns the content of a file.
+    ///
+    /// # Errors
+    /// A path that leads out of the source, a file that does not exist, is too large or cannot be read.
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError>;
+
+    /// Tells whether the file exists.
+    fn contains(&self, path: &str) -> bool {
+        self.read(path).is_ok()
+    }
+}
+
+/// Joins a directory of the source and a relative reference in a document. `..` may climb up to the root, not beyond.
+///
+/// # Errors
+/// [`AssetError::BadPath`]: empty, absolute, beyond the root, or with another separator than `/`.
+pub fn resolve(dir: &str, file: &str) -> Result<String, AssetError> {
+    let bad = || AssetError::BadPath(file.to_owned());
+    if file.is_empty() || file.starts_with('/') || file.contains(['\\', ':', '\0']) {
+        return Err(bad());
+    }
+    let mut parts: Vec<&str> = Vec::new();
+    for part in dir.split('/').chain(file.split('/')) {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop().ok_or_else(bad)?;
+            }
+            name => parts.push(name),
+        }
+    }
+    if parts.is_empty() {
+        Err(bad())
+    } else {
+        Ok(parts.join("/"))
+    }
+}
+
+/// Returns the directory part of a path, without the last `/`.
+pub(crate) fn directory(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(dir, _)| dir)
+}
+
+/// A source of files that are in memory.
+#[derive(Clone, Debug, Default)]
+pub struct MemoryAssets {
+    files: BTreeMap<String, Vec<u8>>,
+}
+
+impl MemoryAssets {
+    /// Creates a source without files.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds or replaces a file.
+    ///
+    /// # Errors
+    /// As [`resolve`].
+    pub fn insert(&mut self, path: &str, bytes: impl Into<Vec<u8>>) -> Result<(), AssetError> {
+        self.files.insert(resolve("", path)?, bytes.into());
+        Ok(())
+    }
+}
+
+impl AssetSource for MemoryAssets {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        let found = self.files.get(&resolve("", path)?);
+        found
+            .map(|bytes| Cow::Borrowed(bytes.as_slice()))
+            .ok_or_else(|| AssetError::NotFound(path.to_owned()))
+    }
+}
+
+/// A source of files that are embedded in the program, as pairs of path and content.
+#[derive(Clone, Copy, Debug)]
+pub struct EmbeddedAssets(pub &'static [(&'static str, &'static [u8])]);
+
+impl AssetSource for EmbeddedAssets {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        let path = resolve("", path)?;
+        match self.0.iter().find(|(name, _)| *name == path) {
+            Some((_, bytes)) => Ok(Cow::Borrowed(bytes)),
+            None => Err(AssetError::NotFound(path)),
+        }
+    }
+}
+
+/// Combines several sources: the first that has a file gives it.
+#[derive(Clone)]
+pub struct Overlay<'a> {
+    layers: Vec<&'a dyn AssetSource>,
+}
+
+impl std::fmt::Debug for Overlay<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Overlay")
+            .field("layers", &self.layers.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Overlay<'a> {
+    /// Lays sources over each other, the topmost first.
+    pub fn new(layers: Vec<&'a dyn AssetSource>) -> Self {
+        Overlay { layers }
+    }
+}
+
+impl AssetSource for Overlay<'_> {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        for layer in &self.layers {
+            match layer.read(path) {
+                Err(AssetError::NotFound(_)) => {}
+                answer => return answer,
+            }
+        }
+        Err(AssetError::NotFound(path.to_owned()))
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        self.layers.iter().any(|layer| layer.contains(path))
+    }
+}

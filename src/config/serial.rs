@@ -1,0 +1,288 @@
+//! A [`Config`] as a flat map in the formats of serde, through the table of keys.
+
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::ser::SerializeMap as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::error::{self, Location};
+use super::keys::{KEYS, Key, KeyKind, KeyValue, Misfit};
+use super::{Config, ConfigError, yaml};
+
+/// What errors call a configuration that is no file.
+const NAME: &str = "configuration";
+
+impl Serialize for KeyValue {
+    /// Serializes a boolean, a number or a text.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Bool(on) => serializer.serialize_bool(*on),
+            Self::Whole(number) => serializer.serialize_u64(*number),
+            Self::Number(number) => serializer.serialize_f64(*number),
+            Self::Choice(name) => serializer.serialize_str(name),
+            Self::Text(text) => serializer.serialize_str(text),
+        }
+    }
+}
+
+impl Serialize for Config {
+    /// Serializes every key with its value, in the order of [`Config::keys`].
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(KEYS.len()))?;
+        for key in KEYS {
+            map.serialize_entry(key.name, &key.value(self))?;
+        }
+        map.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for Config {
+    /// Deserializes a flat map and validates it. Missing keys have their default; unknown keys, keys given twice and
+    /// values that are not allowed are errors that name the key.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(ConfigVisitor)
+    }
+}
+
+fn place() -> Location {
+    Location {
+        file: NAME.to_string(),
+        position: None,
+    }
+}
+
+struct ConfigVisitor;
+
+impl<'de> Visitor<'de> for ConfigVisitor {
+    type Value = Config;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a flat map of configuration keys")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Config, A::Error> {
+        let mut config = Config::default();
+        let mut seen = vec![false; KEYS.len()];
+        while let Some(index) = map.next_key_seed(KeySeed)? {
+            let key = &KEYS[index];
+            if std::mem::replace(&mut seen[index], true) {
+                return Err(A::Error::duplicate_field(key.name));
+            }
+            let value = map.next_value_seed(ValueSeed { key })?;
+            if !key.assign(&mut config, &value) {
+                let refusal = yaml::refusal(key, Misfit::WrongType, value.to_yaml(), place());
+                return Err(A::Error::custom(refusal));
+            }
+        }
+        config.validate().map_err(A::Error::custom)?;
+        Ok(config)
+    }
+}
+
+/// Reads a key as an index into [`KEYS`].
+struct KeySeed;
+
+impl<'de> DeserializeSeed<'de> for KeySeed {
+    type Value = usize;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<usize, D::Error> {
+        deserializer.deserialize_identifier(self)
+    }
+}
+
+impl Visitor<'_> for KeySeed {
+    type Value = usize;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a configuration key")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<usize, E> {
+        KEYS.iter().position(|key| key.name == name).ok_or_else(|| {
+            E::custom(ConfigError::UnknownKey {
+                location: place(),
+                key: error::shown(name),
+                nearest: error::nearest(name, KEYS.iter().map(|key| key.name)),
+            })
+        })
+    }
+}
+
+/// Reads the value of a key.
+struct ValueSeed {
+    key: &'static Key,
+}
+
+impl ValueSeed {
+    fn refusal<E: serde::de::Error>(&self, misfit: Misfit, written: String) -> E {
+        E::custom(yaml::refusal(self.key, misfit, written, place()))
+    }
+
+    /// Checks a value against the table.
+    fn checked<E: serde::de::Error>(&self, value: KeyValue) -> Result<KeyValue, E> {
+        match self.key.kind.check(&value) {
+            Ok(()) => Ok(value),
+            Err(misfit) => Err(self.refusal(misfit, value.to_yaml())),
+        }
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for ValueSeed {
+    type Value = KeyValue;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<KeyValue, D::Error> {
+        if deserializer.is_human_readable() {
+            return deserializer.deserialize_any(self);
+        }
+        // binary formats need to be told what comes
+        match self.key.kind {
+            KeyKind::Bool => deserializer.deserialize_bool(self),
+            KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
+            KeyKind::ZeroOrAtLeast(_) => deserializer.deserialize_f64(self),
+            KeyKind::Choice(_) | KeyKind::Text => deserializer.deserialize_str(self),
+        }
+    }
+}
+
+impl<'de> Visitor<'de> for ValueSeed {
+    type Value = KeyValue;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} for `{}`", self.key.kind.expected(), self.key.name)
+    }
+
+    fn visit_bool<E: serde::de::Error>(self, on: bool) -> Result<KeyValue, E> {
+        self.checked(KeyValue::Bool(on))
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<KeyValue, E> {
+        self.checked(match self.key.kind {
+            KeyKind::ZeroOrAtLeast(_) => KeyValue::Number(number as f64),
+            _ => KeyValue::Whole(number),
+        })
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, number: i64) -> Result<KeyValue, E> {
+        match u64::try_from(number) {
+            Ok(number) => self.visit_u64(number),
+            Err(_) if matches!(self.key.kind, KeyKind::Whole { .. }) => {
+                Err(self.refusal(Misfit::OutOfRange { nearest: None }, number.to_string()))
+            }
+            Err(_) => self.visit_f64(number as f64),
+        }
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<KeyValue, E> {
+        self.checked(KeyValue::Number(number + 0.0)) // -0 becomes 0
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<KeyValue, E> {
+        match self.key.kind {
+            KeyKind::Choice(_) | KeyKind::Text => match self.key.kind.parse(text, false) {
+                Ok(value) => Ok(value),
+                Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
+            },
+            _ => Err(self.refusal(Misfit::WrongType, format!("'{}' in quotes", error::shown(text)))),
+        }
+    }
+
+    fn visit_unit<E: serde::de::Error>(self) -> Result<KeyValue, E> {
+        Err(self.refusal(Misfit::Missing, "null".to_string()))
+    }
+
+    fn visit_none<E: serde::de::Error>(self) -> Result<KeyValue, E> {
+        self.visit_unit()
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, _: A) -> Result<KeyValue, A::Error> {
+        Err(self.refusal(Misfit::WrongType, "a list".to_string()))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<KeyValue, A::Error> {
+        Err(self.refusal(Misfit::WrongType, "a map".to_string()))
+    }
+}
+
+#[cfg(all(test, feature = "eval"))]
+mod tests {
+    use super::*;
+    use crate::config::{Behavior, Compat, EngineKind, Scene, TouchFunction};
+
+    fn read(json: &str) -> Result<Config, String> {
+        serde_json::from_str(json).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_configuration_comes_back_from_json() {
+        let mut config = Config {
+            save_dir: "a \"b\" \\ \u{301}é\u{2028}".to_string(),
+            behavior: Behavior::HandRegard,
+            scene: Scene::Cubes,
+            engine: EngineKind::Rapier,
+            seed: u64::MAX,
+            touch_scale: 0.1 + 0.2,
+            touch_function: TouchFunction::ForceVector,
+            ..Config::default()
+        };
+        config.lock.head = true;
+        let json = serde_json::to_string(&config).expect("JSON");
+        assert_eq!(read(&json), Ok(config));
+        assert_eq!(read("{}"), Ok(Config::default()));
+        assert_eq!(read(r#"{"touch_scale": 2}"#).map(|c| c.touch_scale), Ok(2.0));
+    }
+
+    #[test]
+    fn keys_are_those_of_the_file_in_its_order() {
+        let json = serde_json::to_string(&Config::default()).expect("JSON");
+        let places: Vec<_> = KEYS.iter().map(|k| json.find(&format!("\"{}\":", k.name))).collect();
+        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}");
+    }
+
+    #[test]
+    fn what_a_file_may_not_hold_is_refused_by_its_key() {
+        for (json, parts) in [
+            (
+                r#"{"behaviour": 1}"#,
+                &["unknown key `behaviour`", "did you mean `behavior`?"][..],
+            ),
+            (r#"{"seed": 1, "seed": 2}"#, &["duplicate field `seed`"]),
+            (r#"{"seed": -1}"#, &["`seed` is -1, expected a whole number from 0"]),
+            (r#"{"seed": 1.5}"#, &["`seed` is 1.5, expected a whole number"]),
+            (r#"{"seed": "1"}"#, &["`seed` is '1' in quotes"]),
+            (r#"{"frame_skip": 0}"#, &["`frame_skip` is 0"]),
+            (r#"{"frame_skip": true}"#, &["`frame_skip` is true"]),
+            (r#"{"touch_scale": 0.001}"#, &["`touch_scale` is 0.001, expected 0 or"]),
+            (r#"{"touch_scale": -1}"#, &["`touch_scale` is -1"]),
+            (r#"{"act_eyes": 1}"#, &["`act_eyes` is 1, expected true or false"]),
+            (r#"{"act_eyes": null}"#, &["`act_eyes` needs a value"]),
+            (r#"{"act_eyes": [true]}"#, &["`act_eyes` is a list"]),
+            (r#"{"scene": {"name": "crib"}}"#, &["`scene` is a map"]),
+            (r#"{"scene": "crip"}"#, &["`scene` is crip", "did you mean `crib`?"]),
+            (r#"{"save_dir": ""}"#, &["`save_dir`"]),
+            (r#"{"save_dir": "a\u0000b"}"#, &["`save_dir`", "no control characters"]),
+            (r#"{"save_dir": 3}"#, &["`save_dir` is 3"]),
+            (
+                r#"{"touch_function": "normal_force"}"#,
+                &["`touch_function`", "compat: reference"],
+            ),
+            (r#"["behavior"]"#, &["a flat map of configuration keys"]),
+        ] {
+            let error = read(json).expect_err(json);
+            for part in parts {
+                assert!(error.contains(part), "{json}: {error}: no {part:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn choices_are_their_names() {
+        for compat in Compat::ALL {
+            let json = serde_json::to_string(compat).expect("JSON");
+            assert_eq!(json, format!("\"{compat}\""));
+            assert_eq!(serde_json::from_str::<Compat>(&json).ok(), Some(*compat));
+        }
+        let error = serde_json::from_str::<Compat>("\"apy\"").expect_err("no such name");
+        assert!(error.to_string().contains("unknown variant `apy`"), "{error}");
+    }
+}

@@ -1,0 +1,138 @@
+//! Tests of the table of keys.
+
+use super::*;
+
+/// Values of a key, as they stand in a file.
+struct Values {
+    good: Vec<String>,
+    wrong_type: &'static [&'static str],
+    out_of_range: Vec<String>,
+}
+
+/// Returns values that a key accepts and values that it refuses.
+fn values(kind: KeyKind) -> Values {
+    let (good, wrong_type, out_of_range): (Vec<String>, &'static [&'static str], Vec<String>) = match kind {
+        KeyKind::Bool => {
+            let words = [
+                "True", "TRUE", "true", "yes", "Yes", "on", "ON", "False", "FALSE", "no", "NO", "off",
+            ];
+            (
+                words.map(String::from).into(),
+                &["1", "y", "'True'", "tru", "[true]"],
+                vec![],
+            )
+        }
+        KeyKind::Whole { min, max } => (
+            vec![min.to_string(), max.to_string(), "1_000".to_string(), "+7".to_string()],
+            &["1.0", "010", "1e3", "'1'", "many", "true", "0x10", "1__", "{a: 1}"][..6],
+            vec!["-1".to_string(), (i128::from(max) + 1).to_string(), "9".repeat(99)]
+                .into_iter()
+                .chain(min.checked_sub(1).map(|below| below.to_string()))
+                .collect(),
+        ),
+        KeyKind::ZeroOrAtLeast(_) => (
+            ["0", "0.0", "-0.0", "0.01", "1.", ".5", "2", "1e3", "1.5e+3"]
+                .map(String::from)
+                .into(),
+            &["one", "true", "'1'", "1.2.3", "1e", "inf", "nan", "_1.", "+"],
+            ["-1", "0.001", "1e999", ".inf", "-.INF", ".nan"]
+                .map(String::from)
+                .into(),
+        ),
+        KeyKind::Choice(names) => {
+            // Values that depend on other keys have tests of their own.
+            let legal = |name: &&&str| !["normal_force", "reference"].contains(*name);
+            let good = names
+                .iter()
+                .filter(legal)
+                .flat_map(|name| [name.to_string(), format!("'{name}'")]);
+            let bad = ["nonsense", "1", "true", "''"].map(String::from).to_vec();
+            (good.collect(), &["[none]"], bad)
+        }
+        KeyKind::Text => {
+            let good = [
+                "out",
+                "'2025'",
+                "\"true\"",
+                "a/b c",
+                "C:\\new",
+                "~/x",
+                "\"\\u4e16 \\\"\"",
+                ">\n a\n b",
+            ];
+            let bad = ["''", "\"a\\0b\"", "\"a\\nb\""].map(String::from).to_vec();
+            (good.map(String::from).into(), &["2025", "true", "1.5", "off"], bad)
+        }
+    };
+    Values {
+        good,
+        wrong_type,
+        out_of_range,
+    }
+}
+
+/// Returns the error for a value of a key, which names the key, its line and what is allowed.
+fn refusal(key: &Key, value: &str) -> ConfigError {
+    let name = key.name;
+    match read(&format!("\n{name}: {value}\n")) {
+        Ok(_) => panic!("{name}: {value} was accepted"),
+        Err(error) => {
+            assert_eq!(
+                (error.key(), error.position().map(|(line, _)| line)),
+                (Some(name), Some(2)),
+                "{error}"
+            );
+            let expected = key.kind.expected();
+            assert!(error.to_string().contains(&expected), "{error} does not say {expected}");
+            error
+        }
+    }
+}
+
+/// Checks every key of the table: other values load, are the only change, and survive `to_yaml`; a wrong type, null, a
+/// list and values past the range are errors naming key, value and line.
+#[test]
+fn every_key_takes_what_it_says_and_nothing_else() {
+    for key in Config::keys() {
+        let name = key.name;
+        let Values {
+            good,
+            wrong_type,
+            out_of_range,
+        } = values(key.kind);
+        for value in good {
+            // A block scalar ends with a line break, which no folder name may have, unless stripped.
+            let value = value.replace(">\n", ">-\n");
+            let config =
+                read(&format!("\n{name}: {value}\n")).unwrap_or_else(|error| panic!("{name}: {value}: {error}"));
+            for other in Config::keys().iter().filter(|other| other.name != name) {
+                assert_eq!(
+                    other.value(&config),
+                    other.default_value(),
+                    "{name} changes {}",
+                    other.name
+                );
+            }
+            assert_eq!(read(&config.to_yaml()).ok(), Some(config), "{name}: {value}");
+        }
+        let refused = |value: &str| refusal(key, value);
+        for value in wrong_type {
+            assert!(
+                matches!(refused(value), ConfigError::WrongType { .. }),
+                "{name}: {value}"
+            );
+        }
+        for value in &out_of_range {
+            assert!(
+                matches!(refused(value), ConfigError::OutOfRange { .. }),
+                "{name}: {value}"
+            );
+        }
+        for value in ["", "~", "null", "Null", "NULL"] {
+            assert!(
+                matches!(refused(value), ConfigError::MissingValue { .. }),
+                "{name}: {value}"
+            );
+        }
+    }
+}

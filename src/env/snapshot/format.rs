@@ -1,0 +1,224 @@
+//! The bytes of a snapshot: header, checksum, numbers.
+
+use thiserror::Error;
+
+use crate::config::Config;
+use crate::model::Model;
+
+/// First bytes of a snapshot.
+pub(super) const MAGIC: [u8; 8] = *b"BBSNAP\r\n";
+/// Layout of the bytes that follow.
+pub(super) const VERSION: u32 = 2;
+/// Magic, version, a zero, fingerprint, checksum.
+pub(super) const HEADER: usize = 32;
+
+/// An environment at one moment: [`Env::snapshot`](crate::Env::snapshot) takes it, [`Env::restore`](crate::Env::restore) goes back to it.
+///
+/// It holds positions, velocities, controls, muscles, applied forces, the start of the solver, all parameters with the
+/// locks, the random generator, the information and counters of the episode, and the vectors
+/// `observation` and `vestibular`. A continuation from it has the same bits as the original, in the same environment or
+/// in another of the same configuration and scene.
+///
+/// The bytes are little-endian and the same on all machines: the magic `BBSNAP\r\n`, the version of the layout (`u32`), a
+/// zero (`u32`), a fingerprint of configuration and scene (`u64`), a checksum of what follows (`u64`), whole numbers
+/// (`u64`), numbers (`f64`), flags (a byte each), touched geoms (`u32`).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Snapshot {
+    pub(super) bytes: Vec<u8>,
+}
+
+/// What a [`Snapshot`] says about itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SnapshotInfo {
+    /// Version of the layout of its bytes.
+    pub version: u32,
+    /// Fingerprint of the configuration and the scene that it belongs to.
+    pub fingerprint: u64,
+    /// Physics steps since the scene was last set up.
+    pub physics_steps: u64,
+    /// Steps of the environment in its episode.
+    pub steps: u64,
+    /// Whether the episode can go on; otherwise the next step needs a reset.
+    pub ready: bool,
+    /// Seed of the random generator.
+    pub seed: u64,
+    /// Numbers that the generator has drawn since it was seeded.
+    pub drawn: u64,
+    /// Length of the snapshot, bytes.
+    pub bytes: u64,
+}
+
+/// An error in reading or restoring a snapshot.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SnapshotError {
+    /// The bytes are something else.
+    #[error("these bytes are not a snapshot: they do not begin with the magic bytes of one")]
+    NotASnapshot,
+    /// Written by another version of this library.
+    #[error("the snapshot has layout {found}, but this library reads layout {VERSION}")]
+    Version {
+        /// Version found.
+        found: u32,
+    },
+    /// The bytes were cut or changed.
+    #[error("the snapshot is damaged: {what}")]
+    Damaged {
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// Taken from an environment of another configuration or scene.
+    #[error("the snapshot was taken with another behavior, scene, actuation model, compat or set of actuators")]
+    OtherEnvironment,
+}
+
+impl Snapshot {
+    /// Returns what the snapshot says about itself.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let config = Config { touch_active: false, vision_active: false, ..Config::default() };
+    /// let mut env = Env::new(config)?;
+    /// env.reset(Some(7))?;
+    /// env.step(&vec![0.0; env.action_space().len()])?;
+    /// let info = env.snapshot().info();
+    /// assert_eq!((info.steps, info.seed, info.ready), (1, 7, true));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    pub fn info(&self) -> SnapshotInfo {
+        // a snapshot has its header and its whole numbers, or it would not be one
+        let mut header = Reader(self.bytes.get(MAGIC.len()..HEADER).unwrap_or_default());
+        let (version, _, fingerprint) = (header.u32(), header.u32(), header.u64());
+        let mut whole = Reader(self.bytes.get(HEADER..).unwrap_or_default());
+        let [physics_steps, steps, _, ready, seed, drawn] = std::array::from_fn(|_| whole.u64().unwrap_or_default());
+        SnapshotInfo {
+            version: version.unwrap_or_default(),
+            fingerprint: fingerprint.unwrap_or_default(),
+            physics_steps,
+            steps,
+            ready: ready == 1,
+            seed,
+            drawn,
+            bytes: self.bytes.len() as u64,
+        }
+    }
+
+    /// Returns the bytes, to be kept.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Reads a snapshot from bytes that were kept.
+    ///
+    /// # Errors
+    /// Bytes that are no snapshot of this version, or were cut or changed.
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, SnapshotError> {
+        if !bytes.starts_with(&MAGIC) {
+            return Err(SnapshotError::NotASnapshot);
+        }
+        let mut header = Reader(bytes.get(MAGIC.len()..HEADER).ok_or(CUT)?);
+        let version = header.u32().ok_or(CUT)?;
+        if version != VERSION {
+            return Err(SnapshotError::Version { found: version });
+        }
+        let (zero, _, sum) = (header.u32(), header.u64(), header.u64());
+        if zero != Some(0) || sum != Some(checksum(&bytes[HEADER..])) {
+            return Err(damaged("the checksum does not match"));
+        }
+        if bytes.len() < HEADER + 8 * super::WHOLE {
+            return Err(CUT);
+        }
+        Ok(Self { bytes })
+    }
+
+    pub(super) fn fingerprint(&self) -> Option<u64> {
+        Reader(self.bytes.get(MAGIC.len() + 8..HEADER)?).u64()
+    }
+}
+
+pub(super) fn damaged(what: &'static str) -> SnapshotError {
+    SnapshotError::Damaged { what }
+}
+
+pub(super) const CUT: SnapshotError = SnapshotError::Damaged {
+    what: "it is too short",
+};
+
+/// Computes a checksum, eight bytes at a time.
+pub(super) fn checksum(bytes: &[u8]) -> u64 {
+    let (words, rest) = bytes.as_chunks::<8>();
+    let mix = |h: u64, w: u64| (h ^ w).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    let h = words
+        .iter()
+        .fold(bytes.len() as u64, |h, w| mix(h, u64::from_le_bytes(*w)));
+    rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
+}
+
+/// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, and the keys that shape an
+/// environment's memory.
+pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
+    let mut bytes = Vec::new();
+    for names in [
+        &model.body_name,
+        &model.jnt_name,
+        &model.actuator_name,
+        &model.geom_name,
+    ] {
+        for name in names {
+            bytes.extend_from_slice(name.as_bytes());
+            bytes.push(0);
+        }
+        bytes.push(1);
+    }
+    for v in model.qpos0.iter().chain(&model.body_mass) {
+        bytes.extend_from_slice(&v.to_le_bytes());
+    }
+    for name in [
+        config.behavior.name(),
+        config.scene.name(),
+        config.actuation_model.name(),
+        config.compat.name(),
+        config.engine.name(),
+    ] {
+        bytes.extend_from_slice(name.as_bytes());
+        bytes.push(0);
+    }
+    checksum(&bytes)
+}
+
+/// A reader that takes numbers from the front of bytes.
+pub(super) struct Reader<'a>(pub(super) &'a [u8]);
+
+impl<'a> Reader<'a> {
+    pub(super) fn take(&mut self, n: usize) -> Option<&'a [u8]> {
+        let (head, tail) = self.0.split_at_checked(n)?;
+        self.0 = tail;
+        Some(head)
+    }
+
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        Some(u32::from_le_bytes(self.take(4)?.try_into().ok()?))
+    }
+
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
+    }
+
+    /// Fills `out`. The length was checked before.
+    pub(super) fn fill(&mut self, out: &mut [f64]) {
+        let (words, _) = self.take(8 * out.len()).unwrap_or(&[]).as_chunks::<8>();
+        for (v, w) in out.iter_mut().zip(words) {
+            *v = f64::from_le_bytes(*w);
+        }
+    }
+
+    /// Fills `out`. The length was checked before.
+    pub(super) fn fill_flags(&mut self, out: &mut [bool]) {
+        let bytes = self.take(out.len()).unwrap_or(&[]);
+        for (v, b) in out.iter_mut().zip(bytes) {
+            *v = *b != 0;
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The parts of the work of a step, for timing.
+
+use std::sync::Arc;
+
+use crate::env::Env;
+use crate::physics::{Probe, Stage};
+
+/// A part of the work of [`Env::step`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EnvStage {
+    /// From the action to controls and torques.
+    Actuation,
+    /// A part of the physics steps.
+    Physics(Stage),
+    /// Observations and information.
+    Senses,
+}
+
+impl EnvStage {
+    /// Lists all stages, in the order of a step.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let physics = Stage::ALL.into_iter().map(Self::Physics);
+        std::iter::once(Self::Actuation)
+            .chain(physics)
+            .chain(std::iter::once(Self::Senses))
+    }
+
+    /// Returns the name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Actuation => "actuation",
+            Self::Physics(stage) => stage.name(),
+            Self::Senses => "senses",
+        }
+    }
+}
+
+/// A function that is called when a stage begins, and with `None` when a step is done; for timing, as the library has no
+/// clock.
+pub type EnvProbe = Arc<dyn Fn(Option<EnvStage>) + Send + Sync>;
+
+impl Env {
+    /// Installs or removes a probe that is told when each stage of a step begins and when the step is done.
+    pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
+        self.physics.engine.set_probe(probe.clone().map(|probe| -> Probe {
+            Box::new(move |stage| {
+                // between the physics steps the actuation is at work
+                probe(Some(stage.map_or(EnvStage::Actuation, EnvStage::Physics)));
+            })
+        }));
+        self.probe = probe;
+    }
+
+    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    #[inline]
+    pub(super) fn mark(&self, stage: Option<EnvStage>) {
+        if let Some(probe) = &self.probe {
+            probe(stage);
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Videos of evaluation episodes: what makes them, and the frame that the Python kit composes.
+
+mod frame;
+mod room;
+mod skin_panel;
+
+use std::error::Error;
+use std::path::Path;
+
+pub use frame::{FRAME_HEIGHT, FRAME_WIDTH, FrameComposer, FrameError, Panel};
+pub use room::RoomFilm;
+
+use crate::env::Env;
+
+/// An error in making a video.
+pub type FilmError = Box<dyn Error + Send + Sync>;
+
+/// A recorder of the videos of evaluation episodes.
+pub trait Film {
+    /// Adds a frame of the environment's current step; the first one begins a video.
+    ///
+    /// # Errors
+    /// What the drawing, the coding or the file system says.
+    fn frame(&mut self, env: &Env) -> Result<(), FilmError>;
+
+    /// Finishes the video and moves it to `path`, replacing what was there. The folder must exist.
+    ///
+    /// # Errors
+    /// As [`Film::frame`].
+    fn end(&mut self, path: &Path) -> Result<(), FilmError>;
+
+    /// Discards the video that was begun.
+    fn discard(&mut self);
+}

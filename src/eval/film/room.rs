@@ -1,0 +1,122 @@
+//! Videos of evaluation episodes, one composed frame for each step.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::skin_panel::SkinPanel;
+use super::{FRAME_HEIGHT, FRAME_WIDTH, Film, FilmError, FrameComposer, Panel};
+use crate::config::Behavior;
+use crate::env::Env;
+use crate::formats::avi::{AviWriter, DEFAULT_FPS};
+use crate::render::{Poses, Visual};
+
+/// A film of the room, the view from above and what the behavior is about, in `.avi` files.
+///
+/// That is the skin (unless touch is off) for `self_touch`, what both eyes see for `hand_regard`, and the room from the
+/// side for `none`.
+pub struct RoomFilm {
+    composer: FrameComposer,
+    skin: SkinPanel,
+    visual: Arc<Visual>,
+    folder: PathBuf,
+    frame: Vec<u8>,
+    fps: u32,
+    writer: Option<(PathBuf, AviWriter<File>)>,
+}
+
+impl std::fmt::Debug for RoomFilm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RoomFilm")
+            .field("folder", &self.folder)
+            .finish_non_exhaustive()
+    }
+}
+
+impl RoomFilm {
+    /// Creates a film for environments of the scene of `env`. An unfinished video lies in `folder`, which must be on
+    /// the file system that the videos end up on; it is made if it is not there.
+    ///
+    /// # Errors
+    /// Textures that cannot be read, a scene without the cameras, a folder that cannot be made.
+    pub fn new(env: &Env, folder: impl Into<PathBuf>) -> Result<Self, FilmError> {
+        let folder = folder.into();
+        std::fs::create_dir_all(&folder)?;
+        Ok(Self {
+            composer: FrameComposer::new(env.model())?,
+            skin: SkinPanel::new(),
+            visual: env.blueprint().visual()?,
+            folder,
+            frame: vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT],
+            fps: DEFAULT_FPS,
+            writer: None,
+        })
+    }
+
+    /// Sets the number of frames per second, [`DEFAULT_FPS`] if not called; as many as there are steps in a second of
+    /// the scene show it in real time.
+    #[must_use]
+    pub fn with_fps(mut self, fps: u32) -> Self {
+        self.fps = fps;
+        self
+    }
+
+    /// Creates a temporary file in the folder.
+    fn begin(&self) -> Result<(PathBuf, AviWriter<File>), FilmError> {
+        let mut number = 0;
+        let (path, file) = loop {
+            let path = self.folder.join(format!(".evaluation.{number}.tmp"));
+            match File::options().write(true).create_new(true).open(&path) {
+                Ok(file) => break (path, file),
+                Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists && number < 1000 => number += 1,
+                Err(e) => return Err(e.into()),
+            }
+        };
+        let writer = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, self.fps)?;
+        Ok((path, writer))
+    }
+}
+
+impl Film for RoomFilm {
+    fn frame(&mut self, env: &Env) -> Result<(), FilmError> {
+        let mut taken = match self.writer.take() {
+            Some(taken) => taken,
+            None => self.begin()?,
+        };
+        let panel = match env.config().behavior {
+            Behavior::HandRegard => Panel::Binocular,
+            Behavior::SelfTouch => self.skin.draw(env).map_or(Panel::Side, Panel::Picture),
+            Behavior::None => Panel::Side,
+        };
+        let composed = self
+            .composer
+            .compose(&self.visual, &Poses::from(env.state()), panel, &mut self.frame);
+        let written = match composed {
+            Ok(()) => taken.1.frame(&self.frame).map_err(FilmError::from),
+            Err(e) => Err(e.into()),
+        };
+        self.writer = Some(taken);
+        written
+    }
+
+    fn end(&mut self, path: &Path) -> Result<(), FilmError> {
+        if let Some((temporary, writer)) = self.writer.take() {
+            writer.into_inner().sync_all()?;
+            std::fs::rename(temporary, path)?;
+        }
+        Ok(())
+    }
+
+    fn discard(&mut self) {
+        if let Some((temporary, _)) = self.writer.take() {
+            // a leftover does no harm
+            let _ = std::fs::remove_file(temporary);
+        }
+    }
+}
+
+impl Drop for RoomFilm {
+    fn drop(&mut self) {
+        self.discard();
+    }
+}

@@ -1,0 +1,265 @@
+//! Archives, read.
+
+use super::header::{self, Number};
+use super::{Array, ArrayInfo, NpzError};
+use crate::limits::Limits;
+use flate2::bufread::DeflateDecoder;
+use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder, ZipSliceArchive};
+use std::collections::BTreeSet;
+use std::io::Read;
+use std::path::Path;
+
+/// An archive in memory, whose arrays are inflated when they are asked for.
+#[derive(Debug)]
+pub struct Npz {
+    file: String,
+    archive: ZipSliceArchive<Vec<u8>>,
+    entries: Vec<Entry>,
+    /// Bytes of an array in memory.
+    array_bytes: usize,
+}
+
+#[derive(Debug)]
+struct Entry {
+    info: ArrayInfo,
+    fortran_order: bool,
+    header_bytes: usize,
+    deflated: bool,
+    place: ZipArchiveEntryWayfinder,
+}
+
+impl Npz {
+    /// Reads the archive at `path`.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or as [`Npz::from_bytes`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, NpzError> {
+        Self::open_with(path, &Limits::DEFAULT)
+    }
+
+    /// Reads the archive at `path` within other limits than the default ones.
+    ///
+    /// # Errors
+    /// As [`Npz::open`].
+    pub fn open_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Self, NpzError> {
+        let most = limits.npz_bytes;
+        let file = path.as_ref().display().to_string();
+        let mut bytes = Vec::new();
+        match std::fs::File::open(path).and_then(|open| open.take(most.saturating_add(1)).read_to_end(&mut bytes)) {
+            Ok(count) if count as u64 > most => Err(NpzError::Archive {
+                file,
+                reason: format!("more than {most} bytes"),
+            }),
+            Ok(_) => Self::from_bytes_with(bytes, &file, limits),
+            Err(source) => Err(NpzError::Io { file, source }),
+        }
+    }
+
+    /// Takes an archive from memory; `file_name` only names it in errors.
+    ///
+    /// # Errors
+    /// When the bytes are no archive, or the header of an array is damaged.
+    pub fn from_bytes(bytes: Vec<u8>, file_name: &str) -> Result<Self, NpzError> {
+        Self::from_bytes_with(bytes, file_name, &Limits::DEFAULT)
+    }
+
+    /// Takes an archive from memory, as [`Npz::from_bytes`] does, within other limits than the default ones.
+    ///
+    /// # Errors
+    /// As [`Npz::from_bytes`].
+    pub fn from_bytes_with(bytes: Vec<u8>, file_name: &str, limits: &Limits) -> Result<Self, NpzError> {
+        let broken = |reason: String| NpzError::Archive {
+            file: file_name.to_string(),
+            reason,
+        };
+        let archive = ZipArchive::from_slice(bytes)
+            .map_err(|error| broken(format!("{error} (it is truncated or of another format)")))?;
+        let mut entries: Vec<Entry> = Vec::new();
+        let mut names = BTreeSet::new();
+        let mut records = archive.entries();
+        while let Some(record) = records.next_entry().map_err(|error| broken(error.to_string()))? {
+            let path = String::from_utf8_lossy(record.file_path().as_bytes()).into_owned();
+            // NumPy keeps arrays under `NAME.npy`; anything else in the archive is not one.
+            let Some(name) = path.strip_suffix(".npy") else {
+                continue;
+            };
+            let damaged = |reason: &str| NpzError::Array {
+                file: file_name.to_string(),
+                array: name.chars().take(100).collect(),
+                reason: reason.to_string(),
+            };
+            let deflated = match record.compression_method() {
+                _ if record.flags().is_encrypted() => return Err(damaged("encrypted")),
+                CompressionMethod::STORE => false,
+                CompressionMethod::DEFLATE => true,
+                _ => return Err(damaged("compressed with a method other than deflate")),
+            };
+            if !names.insert(name.to_string()) {
+                return Err(damaged("stored twice"));
+            }
+            if entries.len() >= limits.npz_arrays {
+                return Err(broken(format!("more than {} arrays", limits.npz_arrays)));
+            }
+            let place = record.wayfinder();
+            let data = archive.get_entry(place).map_err(|error| damaged(&error.to_string()))?;
+            let header = header::read(inflate(data.data(), deflated), limits.npz_header_bytes)
+                .map_err(|reason| damaged(&reason))?;
+            let info = ArrayInfo {
+                name: name.to_string(),
+                shape: header.shape,
+                dtype: header.dtype,
+            };
+            let (fortran_order, header_bytes) = (header.fortran_order, header.bytes);
+            entries.push(Entry {
+                info,
+                fortran_order,
+                header_bytes,
+                deflated,
+                place,
+            });
+        }
+        Ok(Self {
+            file: file_name.to_string(),
+            archive,
+            entries,
+            array_bytes: limits.npz_array_bytes,
+        })
+    }
+
+    /// Lists every array, in the order of the archive.
+    pub fn arrays(&self) -> impl Iterator<Item = &ArrayInfo> {
+        self.entries.iter().map(|entry| &entry.info)
+    }
+
+    /// Reads an array's numbers as `f64`: any float or integer type, as long as every number is represented exactly.
+    ///
+    /// # Errors
+    /// When there is no such array, its data are damaged, or a number does not fit.
+    pub fn get_f64(&self, name: &str) -> Result<Array<f64>, NpzError> {
+        self.get(name, "f64", |number| match number {
+            Number::Float(value) => Some(value),
+            Number::Int(value) => (value as f64 as i128 == value).then_some(value as f64),
+        })
+    }
+
+    /// Reads an array's numbers as `i64`: any integer type or boolean.
+    ///
+    /// # Errors
+    /// As [`Npz::get_f64`].
+    pub fn get_i64(&self, name: &str) -> Result<Array<i64>, NpzError> {
+        self.get(name, "i64", |number| match number {
+            Number::Int(value) => i64::try_from(value).ok(),
+            Number::Float(_) => None,
+        })
+    }
+
+    /// Reads an array's numbers as `u8`: any integer type or boolean whose numbers are from 0 to 255.
+    ///
+    /// # Errors
+    /// As [`Npz::get_f64`].
+    pub fn get_u8(&self, name: &str) -> Result<Array<u8>, NpzError> {
+        self.get(name, "u8", |number| match number {
+            Number::Int(value) => u8::try_from(value).ok(),
+            Number::Float(_) => None,
+        })
+    }
+
+    fn get<T: Copy>(
+        &self,
+        name: &str,
+        wanted: &'static str,
+        convert: impl Fn(Number) -> Option<T>,
+    ) -> Result<Array<T>, NpzError> {
+        let file = || self.file.clone();
+        let Some(entry) = self.entries.iter().find(|entry| entry.info.name == name) else {
+            return Err(NpzError::Missing {
+                file: file(),
+                array: name.to_string(),
+            });
+        };
+        let damaged = |reason: String| NpzError::Array {
+            file: file(),
+            array: name.to_string(),
+            reason,
+        };
+        let ArrayInfo { shape, dtype, .. } = &entry.info;
+        let Some((width, number)) = header::decoder(dtype) else {
+            return Err(damaged(format!("numbers of type {dtype} are not supported")));
+        };
+        let bytes = self.bytes(entry, width, width.max(size_of::<T>())).map_err(damaged)?;
+        let data: Option<Vec<T>> = bytes.chunks_exact(width).map(|chunk| convert(number(chunk))).collect();
+        let Some(data) = data else {
+            return Err(NpzError::Type {
+                file: file(),
+                array: name.to_string(),
+                dtype: dtype.clone(),
+                wanted,
+            });
+        };
+        let data = if entry.fortran_order {
+            row_major(&data, shape)
+        } else {
+            data
+        };
+        Ok(Array {
+            shape: shape.clone(),
+            data,
+        })
+    }
+
+    /// Returns the bytes of an array after its header: `width` per number, which become at most `widest` in memory.
+    fn bytes(&self, entry: &Entry, width: usize, widest: usize) -> Result<Vec<u8>, String> {
+        let shape = &entry.info.shape;
+        let count = shape
+            .iter()
+            .try_fold(1_usize, |count, length| count.checked_mul(*length));
+        let limit = self.array_bytes;
+        let fits = |count: &usize| count.checked_mul(widest).is_some_and(|most| most <= limit);
+        let count = count.filter(fits);
+        let size = width * count.ok_or_else(|| format!("shape {shape:?} needs more than {limit} bytes"))?;
+        let data = self.archive.get_entry(entry.place).map_err(|error| error.to_string())?;
+        // One byte more than expected, so that surplus shows and the checksum is reached; memory grows with the data.
+        let expected = entry.header_bytes + size;
+        let mut bytes = Vec::new();
+        let reader = data.verifying_reader(inflate(data.data(), entry.deflated));
+        reader
+            .take(expected as u64 + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| error.to_string())?;
+        if bytes.len() != expected {
+            let relation = if bytes.len() < expected { "fewer" } else { "more" };
+            return Err(format!("holds {relation} than the {size} bytes of its shape {shape:?}"));
+        }
+        bytes.drain(..entry.header_bytes);
+        Ok(bytes)
+    }
+}
+
+fn inflate(data: &[u8], deflated: bool) -> Box<dyn Read + '_> {
+    if deflated {
+        Box::new(DeflateDecoder::new(data))
+    } else {
+        Box::new(data)
+    }
+}
+
+/// Converts column-major data to row-major order.
+fn row_major<T: Copy>(data: &[T], shape: &[usize]) -> Vec<T> {
+    let mut strides = vec![1; shape.len()];
+    for i in 1..shape.len() {
+        strides[i] = strides[i - 1] * shape[i - 1];
+    }
+    let mut index = vec![0; shape.len()];
+    let mut out = Vec::with_capacity(data.len());
+    for _ in 0..data.len() {
+        out.push(data[index.iter().zip(&strides).map(|(i, stride)| i * stride).sum::<usize>()]);
+        for (i, length) in index.iter_mut().zip(shape).rev() {
+            *i += 1;
+            if *i < *length {
+                break;
+            }
+            *i = 0;
+        }
+    }
+    out
+}

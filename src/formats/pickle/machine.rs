@@ -1,0 +1,179 @@
+//! Protocols 2 to 5 to values: the opcodes that logs need.
+
+use super::objects::{Item, Object};
+use super::stack::{Done, Machine};
+use super::{PickleError, Value};
+use crate::limits::Limits;
+
+/// Reads a pickle of protocol 2 to 5.
+///
+/// # Errors
+/// Anything that logs do not need, anything damaged, anything larger than the default [`Limits`]. Input is never
+/// trusted: nothing is looked up or called, and errors name the byte.
+pub fn from_bytes(bytes: &[u8]) -> Result<Value, PickleError> {
+    from_bytes_with(bytes, &Limits::DEFAULT)
+}
+
+/// Reads a pickle as [`from_bytes`] does, within other limits than the default ones.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Value, PickleError> {
+    if bytes.len() > limits.pickle_bytes {
+        let (what, limit) = ("bytes", limits.pickle_bytes);
+        return Err(PickleError::Limit { what, limit });
+    }
+    Machine::new(bytes, limits).run()
+}
+
+impl Machine<'_> {
+    fn run(mut self) -> Result<Value, PickleError> {
+        if self.bytes.first().is_some_and(|b| *b != 0x80) {
+            return Err(self.bad("it does not start with a protocol number from 2 on"));
+        }
+        loop {
+            self.op = self.at;
+            let [opcode] = self.array()?;
+            if opcode == b'.' {
+                break;
+            }
+            self.step(opcode)?;
+            if self.objects.len().max(self.stack.len()).max(self.memo.len()) > self.limits.pickle_objects {
+                let (what, limit) = ("values", self.limits.pickle_objects);
+                return Err(PickleError::Limit { what, limit });
+            }
+        }
+        let root = self.pop()?;
+        if !self.stack.is_empty() || !self.marks.is_empty() {
+            return Err(self.bad("it ends with more than one value"));
+        }
+        self.unfold(root)
+    }
+
+    fn step(&mut self, opcode: u8) -> Done {
+        match opcode {
+            0x80 => match self.array()? {
+                [2..=5] => Ok(()),
+                _ => Err(self.bad("a protocol other than 2 to 5")),
+            },
+            0x95 => self.take(8).map(drop), // length of a frame: only for buffering
+            b'c' => {
+                let (module, name) = (self.line()?, self.line()?);
+                self.global(module, name)
+            }
+            0x93 => {
+                let [module, name] = self.pops()?;
+                let (module, name) = (self.as_text(module)?, self.as_text(name)?);
+                self.global(module, name)
+            }
+            b'R' => self.reduce(),
+            b'b' => self.set_state(),
+            b'N' | 0x88 | 0x89 | b'J' | b'K' | b'M' | 0x8a | b'G' => self.scalar(opcode),
+            0x8c | b'X' | 0x8d | b'C' | b'B' | 0x8e | 0x96 => self.bytes(opcode),
+            0x94 | b'q' | b'h' | b'r' | b'j' => self.recall(opcode),
+            _ => self.collection(opcode),
+        }
+    }
+
+    /// Pushes a scalar: None, a boolean, an integer or a float.
+    fn scalar(&mut self, opcode: u8) -> Done {
+        let item = match opcode {
+            b'N' => Item::None,
+            0x88 | 0x89 => Item::Bool(opcode == 0x88),
+            b'J' => Item::Int(i64::from(i32::from_le_bytes(self.array()?))),
+            b'K' => Item::Int(i64::from(u8::from_le_bytes(self.array()?))),
+            b'M' => Item::Int(i64::from(u16::from_le_bytes(self.array()?))),
+            b'G' => Item::Float(f64::from_be_bytes(self.array()?)),
+            _ => {
+                let digits = self.sized::<1>()?;
+                let negative = digits.last().is_some_and(|b| b & 0x80 != 0);
+                let mut all = [if negative { 0xff } else { 0 }; 8];
+                match all.get_mut(..digits.len()) {
+                    Some(low) => low.copy_from_slice(digits),
+                    None => return Err(self.bad("an integer of more than 64 bits")),
+                }
+                Item::Int(i64::from_le_bytes(all))
+            }
+        };
+        self.stack.push(item);
+        Ok(())
+    }
+
+    /// Pushes text or bytes.
+    fn bytes(&mut self, opcode: u8) -> Done {
+        let bytes = match opcode {
+            0x8c | b'C' => self.sized::<1>()?,
+            b'X' | b'B' => self.sized::<4>()?,
+            _ => self.sized::<8>()?,
+        };
+        match opcode {
+            0x8c | b'X' | 0x8d => self.push_text(bytes)?,
+            _ => self.push_bytes(bytes),
+        }
+        Ok(())
+    }
+
+    /// Writes to the memo, or pushes what it remembers.
+    fn recall(&mut self, opcode: u8) -> Done {
+        let index = match opcode {
+            0x94 => self.memo.len(),
+            b'q' | b'h' => usize::from(u8::from_le_bytes(self.array()?)),
+            _ => u32::from_le_bytes(self.array()?) as usize,
+        };
+        match opcode {
+            b'h' | b'j' => self.get(index),
+            _ => self.put(index),
+        }
+    }
+
+    /// Makes or fills a list, a tuple or a dictionary.
+    fn collection(&mut self, opcode: u8) -> Done {
+        match opcode {
+            b'(' => self.marks.push(self.stack.len()),
+            b']' => self.push(Object::List(Vec::new())),
+            b'}' => self.push(Object::Dict(Vec::new())),
+            b')' => self.push(Object::Tuple(Vec::new())),
+            0x85 => return self.pops::<1>().map(|v| self.push(Object::Tuple(v.to_vec()))),
+            0x86 => return self.pops::<2>().map(|v| self.push(Object::Tuple(v.to_vec()))),
+            0x87 => return self.pops::<3>().map(|v| self.push(Object::Tuple(v.to_vec()))),
+            b't' => {
+                let items = self.pop_mark()?;
+                self.spend(items.len())?;
+                self.push(Object::Tuple(items));
+            }
+            b'a' => return self.pop().and_then(|item| self.append(vec![item])),
+            b'e' => return self.pop_mark().and_then(|items| self.append(items)),
+            b's' => return self.pops::<2>().and_then(|pair| self.set_items(&pair)),
+            b'u' => return self.pop_mark().and_then(|items| self.set_items(&items)),
+            opcode => return Err(PickleError::Opcode { at: self.op, opcode }),
+        }
+        Ok(())
+    }
+
+    fn append(&mut self, items: Vec<Item>) -> Done {
+        self.spend(items.len())?;
+        match self.top()? {
+            Item::Object(list) => match &mut self.objects[list] {
+                Object::List(l) => l.extend(items),
+                _ => return Err(self.bad("items for something that is not a list")),
+            },
+            _ => return Err(self.bad("items for something that is not a list")),
+        }
+        Ok(())
+    }
+
+    fn set_items(&mut self, items: &[Item]) -> Done {
+        let (pairs, []) = items.as_chunks::<2>() else {
+            return Err(self.bad("a key without a value"));
+        };
+        self.spend(items.len())?;
+        match self.top()? {
+            Item::Object(dict) => match &mut self.objects[dict] {
+                Object::Dict(d) => d.extend(pairs.iter().map(|&[k, v]| (k, v))),
+                _ => return Err(self.bad("entries for something that is not a dictionary")),
+            },
+            _ => return Err(self.bad("entries for something that is not a dictionary")),
+        }
+        Ok(())
+    }
+}

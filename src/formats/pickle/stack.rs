@@ -1,0 +1,225 @@
+//! The stack machine of a pickle: bytes in, values on a stack, objects and a memo.
+
+use std::borrow::Cow;
+
+use super::PickleError;
+use super::numbers::Dtype;
+use super::objects::{Item, Object};
+use crate::limits::Limits;
+
+/// The outcome of an opcode.
+pub(super) type Done = Result<(), PickleError>;
+
+/// A pickle being read: the bytes, the stack, the memo and the objects made so far.
+pub(super) struct Machine<'a> {
+    pub bytes: &'a [u8],
+    pub at: usize,
+    /// Where the current opcode stands.
+    pub op: usize,
+    pub stack: Vec<Item>,
+    pub marks: Vec<usize>,
+    pub memo: Vec<Item>,
+    pub objects: Vec<Object<'a>>,
+    pub limits: &'a Limits,
+    /// What of [`Limits::pickle_numbers`] is left.
+    budget: usize,
+}
+
+impl<'a> Machine<'a> {
+    /// Starts at the first byte of a pickle.
+    pub fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
+        Self {
+            bytes,
+            at: 0,
+            op: 0,
+            stack: Vec::new(),
+            marks: Vec::new(),
+            memo: Vec::new(),
+            objects: Vec::new(),
+            limits,
+            budget: limits.pickle_numbers,
+        }
+    }
+
+    /// Returns the error of the present opcode.
+    pub fn bad(&self, reason: &'static str) -> PickleError {
+        PickleError::Malformed { at: self.op, reason }
+    }
+
+    /// Returns the next `n` bytes.
+    pub fn take(&mut self, n: usize) -> Result<&'a [u8], PickleError> {
+        let piece = self.bytes.get(self.at..).and_then(|rest| rest.get(..n));
+        let piece = piece.ok_or(PickleError::Truncated { at: self.bytes.len() })?;
+        self.at += n;
+        Ok(piece)
+    }
+
+    /// Returns the next `N` bytes as an array.
+    pub fn array<const N: usize>(&mut self) -> Result<[u8; N], PickleError> {
+        let mut out = [0; N];
+        out.copy_from_slice(self.take(N)?);
+        Ok(out)
+    }
+
+    /// Returns the bytes after their length in `N` bytes.
+    pub fn sized<const N: usize>(&mut self) -> Result<&'a [u8], PickleError> {
+        let length = self
+            .array::<N>()?
+            .iter()
+            .rev()
+            .fold(0_u64, |n, &b| n << 8 | u64::from(b));
+        let length = usize::try_from(length).unwrap_or(usize::MAX);
+        self.take(length)
+    }
+
+    /// Returns the text up to the next line break.
+    pub fn line(&mut self) -> Result<&'a str, PickleError> {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let end = rest.iter().position(|b| *b == b'\n');
+        let line = self.take(end.unwrap_or(rest.len()))?;
+        self.take(1)?;
+        self.utf8(line)
+    }
+
+    /// Returns bytes as text.
+    pub fn utf8(&self, bytes: &'a [u8]) -> Result<&'a str, PickleError> {
+        std::str::from_utf8(bytes).map_err(|_| self.bad("text that is not UTF-8"))
+    }
+
+    /// Pushes a new object.
+    pub fn push(&mut self, object: Object<'a>) {
+        self.stack.push(Item::Object(self.objects.len()));
+        self.objects.push(object);
+    }
+
+    /// Pushes text.
+    pub fn push_text(&mut self, bytes: &'a [u8]) -> Done {
+        let text = self.utf8(bytes)?;
+        self.push(Object::Text(text));
+        Ok(())
+    }
+
+    /// Pushes bytes.
+    pub fn push_bytes(&mut self, bytes: &'a [u8]) {
+        self.push(Object::Bytes(Cow::Borrowed(bytes)));
+    }
+
+    /// Pops the top value above the last mark.
+    pub fn pop(&mut self) -> Result<Item, PickleError> {
+        if self.stack.len() <= self.marks.last().copied().unwrap_or(0) {
+            return Err(self.bad("a value is missing"));
+        }
+        self.stack.pop().ok_or_else(|| self.bad("a value is missing"))
+    }
+
+    /// Pops the top `N` values, the lowest first.
+    pub fn pops<const N: usize>(&mut self) -> Result<[Item; N], PickleError> {
+        let mut out = [Item::None; N];
+        for slot in out.iter_mut().rev() {
+            *slot = self.pop()?;
+        }
+        Ok(out)
+    }
+
+    /// Pops everything above the last mark, and the mark.
+    pub fn pop_mark(&mut self) -> Result<Vec<Item>, PickleError> {
+        let mark = self.marks.pop().ok_or_else(|| self.bad("a mark is missing"))?;
+        Ok(self.stack.split_off(mark))
+    }
+
+    /// Returns the top value and leaves it there.
+    pub fn top(&mut self) -> Result<Item, PickleError> {
+        let item = self.pop()?;
+        self.stack.push(item);
+        Ok(item)
+    }
+
+    /// Remembers the top value in the memo.
+    pub fn put(&mut self, index: usize) -> Done {
+        let item = self.top()?;
+        if index < self.memo.len() {
+            self.memo[index] = item;
+        } else if index == self.memo.len() {
+            self.memo.push(item);
+        } else {
+            return Err(self.bad("the memo has a hole"));
+        }
+        Ok(())
+    }
+
+    /// Pushes a value of the memo.
+    pub fn get(&mut self, index: usize) -> Done {
+        let item = self.memo.get(index).copied();
+        self.stack
+            .push(item.ok_or_else(|| self.bad("the memo has no such entry"))?);
+        Ok(())
+    }
+
+    /// Takes numbers off the budget.
+    pub fn spend(&mut self, numbers: usize) -> Done {
+        let (what, limit) = ("numbers", self.limits.pickle_numbers);
+        let left = self.budget.checked_sub(numbers);
+        self.budget = left.ok_or(PickleError::Limit { what, limit })?;
+        Ok(())
+    }
+
+    /// Returns an item that must be text.
+    pub fn as_text(&self, item: Item) -> Result<&'a str, PickleError> {
+        match item {
+            Item::Object(o) => match &self.objects[o] {
+                Object::Text(t) => Ok(t),
+                _ => Err(self.bad("something other than text where text belongs")),
+            },
+            _ => Err(self.bad("something other than text where text belongs")),
+        }
+    }
+
+    /// Returns an item that must be bytes.
+    pub fn as_bytes(&self, item: Item) -> Result<&[u8], PickleError> {
+        match item {
+            Item::Object(o) => match &self.objects[o] {
+                Object::Bytes(b) => Ok(b),
+                _ => Err(self.bad("something other than bytes where bytes belong")),
+            },
+            _ => Err(self.bad("something other than bytes where bytes belong")),
+        }
+    }
+
+    /// Returns an item that must be a tuple.
+    pub fn as_tuple(&self, item: Item) -> Result<&[Item], PickleError> {
+        match item {
+            Item::Object(o) => match &self.objects[o] {
+                Object::Tuple(t) => Ok(t),
+                _ => Err(self.bad("something other than a tuple where a tuple belongs")),
+            },
+            _ => Err(self.bad("something other than a tuple where a tuple belongs")),
+        }
+    }
+
+    /// Returns an item that must be a type of numbers.
+    pub fn as_dtype(&self, item: Item) -> Result<Dtype, PickleError> {
+        match item {
+            Item::Object(o) => match &self.objects[o] {
+                Object::Dtype(d) => Ok(*d),
+                _ => Err(self.bad("something other than a type of numbers where one belongs")),
+            },
+            _ => Err(self.bad("something other than a type of numbers where one belongs")),
+        }
+    }
+
+    /// Returns an item that must be the shape of an array.
+    pub fn as_shape(&self, item: Item) -> Result<Vec<usize>, PickleError> {
+        let one = |item: &Item| match *item {
+            Item::Int(i) => usize::try_from(i).ok(),
+            _ => None,
+        };
+        let shape = match item {
+            Item::Int(_) => one(&item).map(|n| vec![n]),
+            _ => match self.as_tuple(item)? {
+                dims if dims.len() > self.limits.pickle_dimensions => None,
+                dims => dims.iter().map(one).collect(),
+            },
+        };
+        shape.ok_or_else(|| self.bad("an invalid shape"))
+    }
+}

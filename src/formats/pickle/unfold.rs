@@ -1,0 +1,80 @@
+//! Objects of the stack machine -> values.
+
+use std::sync::Arc;
+
+use super::objects::{Item, Object};
+use super::stack::Machine;
+use super::{PickleError, Value};
+
+/// The progress of building a value; the number is how deeply it is nested.
+enum Built {
+    Not,
+    Now,
+    Value(Value, usize),
+}
+
+impl Machine<'_> {
+    /// Converts an item to a value.
+    pub(super) fn unfold(&self, root: Item) -> Result<Value, PickleError> {
+        let mut built: Vec<Built> = Vec::new();
+        built.resize_with(self.objects.len(), || Built::Not);
+        self.build_value(root, &mut built, 0)
+    }
+
+    /// Converts an item to a value. Each object is built once and shared from then on.
+    fn build_value(&self, item: Item, built: &mut [Built], depth: usize) -> Result<Value, PickleError> {
+        let object = match item {
+            Item::None => return Ok(Value::None),
+            Item::Bool(b) => return Ok(Value::Bool(b)),
+            Item::Int(i) => return Ok(Value::Int(i)),
+            Item::Float(f) => return Ok(Value::Float(f)),
+            Item::Object(object) => object,
+        };
+        let height = match &built[object] {
+            Built::Not => 0,
+            Built::Now => return Err(self.bad("a value that contains itself")),
+            Built::Value(_, height) => *height,
+        };
+        // sharing must not make deep what looks flat
+        if depth + height > self.limits.pickle_depth {
+            let (what, limit) = ("levels of nesting", self.limits.pickle_depth);
+            return Err(PickleError::Limit { what, limit });
+        }
+        if let Built::Value(value, _) = &built[object] {
+            return Ok(value.clone());
+        }
+        built[object] = Built::Now;
+        let mut children = Vec::new();
+        let value = match &self.objects[object] {
+            Object::Text(text) => Value::Text((*text).into()),
+            Object::List(items) | Object::Tuple(items) => {
+                children.extend(items);
+                let items = items.iter().map(|&i| self.build_value(i, built, depth + 1));
+                Value::List(Arc::new(items.collect::<Result<_, _>>()?))
+            }
+            Object::Dict(items) => {
+                let mut out: Vec<(Arc<str>, Value)> = Vec::with_capacity(items.len());
+                for &(key, item) in items {
+                    let Value::Text(key) = self.build_value(key, built, depth + 1)? else {
+                        return Err(self.bad("a key that is not text"));
+                    };
+                    children.push(item);
+                    out.push((key, self.build_value(item, built, depth + 1)?));
+                }
+                Value::Dict(Arc::new(out))
+            }
+            Object::Array(Some(array)) => Value::Array(array.clone()),
+            Object::Array(None) => return Err(self.bad("an array without numbers")),
+            _ => return Err(self.bad("a kind of value that does not occur in logs")),
+        };
+        let heights = children.iter().map(|child| match child {
+            Item::Object(o) => match &built[*o] {
+                Built::Value(_, height) => 1 + height,
+                _ => 1,
+            },
+            _ => 1,
+        });
+        built[object] = Built::Value(value.clone(), heights.max().unwrap_or(0));
+        Ok(value)
+    }
+}

@@ -1,0 +1,440 @@
+//! Attributes: what one may hold, how its text becomes a value, and how a value reaches a field of the typed document.
+
+use super::error::ErrorKind;
+use crate::limits::Limits;
+
+/// Bounds on a number.
+#[derive(Clone, Copy)]
+pub(super) enum Sign {
+    Any,
+    NonNegative,
+    Positive,
+    Unit,
+}
+
+/// What an attribute holds.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    Text,
+    Flag,
+    Word(&'static [&'static str]),
+    Int {
+        min: i64,
+        max: i64,
+    },
+    Reals {
+        min: usize,
+        max: usize,
+        sign: Sign,
+    },
+    /// Four numbers that are not all zero.
+    Quat,
+    /// Three letters that name the axes of Euler angles.
+    EulerSeq,
+    /// Numbers for programs, as many as the limits allow.
+    User,
+    /// The length of such data; -1 for that of the longest.
+    UserCount,
+}
+
+pub(super) const TEXT: Kind = Kind::Text;
+pub(super) const FLAG: Kind = Kind::Flag;
+pub(super) const fn int(min: i64, max: i64) -> Kind {
+    Kind::Int { min, max }
+}
+pub(super) const fn real(sign: Sign) -> Kind {
+    reals(1, sign)
+}
+/// Returns the kind of an attribute of exactly `n` values.
+pub(super) const fn reals(n: usize, sign: Sign) -> Kind {
+    Kind::Reals { min: n, max: n, sign }
+}
+/// Returns the kind of an attribute of between `min` and `max` values; the others keep their defaults.
+pub(super) const fn some(min: usize, max: usize, sign: Sign) -> Kind {
+    Kind::Reals { min, max, sign }
+}
+
+impl Kind {
+    /// Returns the kind itself. A table asks whatever stands in its column of kinds, which may also be [`Words`].
+    pub const fn kind(self) -> Kind {
+        self
+    }
+
+    pub fn store(self, value: &Value, into: &mut impl Store) {
+        into.store(value);
+    }
+
+    /// Returns how a document would write what a field holds.
+    pub fn show(self, field: &impl Store) -> String {
+        field.show()
+    }
+}
+
+/// Words that an attribute may say, each with the value that it stands for.
+#[derive(Clone, Copy)]
+pub(super) struct Words<T: 'static> {
+    pub names: &'static [&'static str],
+    pub values: &'static [T],
+}
+
+/// Pairs words with values: `words! { "fixed" => false, "targetbody" => true }`.
+macro_rules! words {
+    ($($name:literal => $value:expr),* $(,)?) => {
+        $crate::mjcf_loader::attribute::Words { names: &[$($name),*], values: &[$($value),*] }
+    };
+}
+pub(super) use words;
+
+impl<T: Copy + PartialEq> Words<T> {
+    pub const fn kind(self) -> Kind {
+        Kind::Word(self.names)
+    }
+
+    /// Returns the words without the first one.
+    pub const fn rest(self) -> Self {
+        match (self.names, self.values) {
+            ([_, names @ ..], [_, values @ ..]) => Words { names, values },
+            _ => self,
+        }
+    }
+
+    pub fn store(self, value: &Value, into: &mut T) {
+        if let Value::Word(index) = value
+            && let Some(value) = self.values.get(*index)
+        {
+            *into = *value;
+        }
+    }
+
+    pub fn show(self, field: &T) -> String {
+        let mut pairs = self.names.iter().zip(self.values);
+        pairs
+            .find(|(_, value)| *value == field)
+            .map(|(name, _)| (*name).to_owned())
+            .unwrap_or_default()
+    }
+}
+
+/// Attributes of which an element may have one at most.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rivals {
+    Orientation,
+    Inertia,
+}
+
+impl Rivals {
+    pub const ALL: [Rivals; 2] = [Rivals::Orientation, Rivals::Inertia];
+}
+
+/// An attribute: one line of a table.
+pub(super) struct Attr {
+    pub name: &'static str,
+    pub kind: Kind,
+    /// What it means, for people.
+    pub meaning: &'static str,
+    /// Writes the default as a document would; empty when there is none.
+    pub default: fn() -> String,
+    /// Whether the element must have it.
+    pub required: bool,
+    /// Whether it belongs to the element alone and has no place in a default class.
+    pub own: bool,
+    pub rivals: Option<Rivals>,
+}
+
+impl Attr {
+    pub const fn new(name: &'static str, kind: Kind, meaning: &'static str, default: fn() -> String) -> Attr {
+        Attr {
+            name,
+            kind,
+            meaning,
+            default,
+            required: false,
+            own: false,
+            rivals: None,
+        }
+    }
+
+    pub const fn own(self) -> Attr {
+        Attr { own: true, ..self }
+    }
+
+    pub const fn required(self) -> Attr {
+        Attr {
+            required: true,
+            own: true,
+            ..self
+        }
+    }
+
+    pub const fn orientation(self) -> Attr {
+        Attr {
+            rivals: Some(Rivals::Orientation),
+            ..self
+        }
+    }
+
+    pub const fn inertia(self) -> Attr {
+        Attr {
+            rivals: Some(Rivals::Inertia),
+            ..self
+        }
+    }
+
+    /// Reads the text of the attribute.
+    pub fn parse(&self, text: &str, limits: &Limits) -> Result<Value, ErrorKind> {
+        let attribute = self.name;
+        match self.kind {
+            Kind::Text if text.len() > limits.text_bytes => Err(ErrorKind::TooMuch {
+                what: "bytes in a name or path",
+                limit: limits.text_bytes,
+            }),
+            Kind::Text => Ok(Value::Text(text.to_owned())),
+            Kind::Flag => Ok(Value::Flag(word(attribute, text, &["false", "true"])? == 1)),
+            Kind::Word(allowed) => Ok(Value::Word(word(attribute, text, allowed)?)),
+            Kind::Int { min, max } => whole(attribute, text, min, max).map(Value::Int),
+            Kind::UserCount => {
+                whole(attribute, text, -1, i64::try_from(limits.user).unwrap_or(i64::MAX)).map(Value::Int)
+            }
+            Kind::User => numbers(attribute, text, 0, limits.user, Sign::Any, limits.real).map(Value::Reals),
+            Kind::Reals { min, max, sign } => numbers(attribute, text, min, max, sign, limits.real).map(Value::Reals),
+            Kind::Quat => match numbers(attribute, text, 4, 4, Sign::Any, limits.real)? {
+                zero if zero.iter().all(|&v| v == 0.0) => Err(ErrorKind::Invalid(ZERO_QUAT)),
+                quat => Ok(Value::Reals(quat)),
+            },
+            Kind::EulerSeq => {
+                let letters: Option<[u8; 3]> = text.as_bytes().try_into().ok();
+                letters
+                    .filter(|letters| letters.iter().all(|letter| b"xyzXYZ".contains(letter)))
+                    .map(Value::Letters)
+                    .ok_or(ErrorKind::Invalid("eulerseq must be three letters of xyzXYZ"))
+            }
+        }
+    }
+}
+
+/// The value of an attribute.
+pub(super) enum Value {
+    Text(String),
+    Flag(bool),
+    /// The index of the word.
+    Word(usize),
+    Int(i64),
+    Reals(Vec<f64>),
+    Letters([u8; 3]),
+}
+
+/// Stands also where `fromto` or another orientation takes the place of the quaternion.
+pub(super) const ZERO_QUAT: &str = "a zero quaternion is not an orientation";
+
+fn whole(attribute: &'static str, text: &str, min: i64, max: i64) -> Result<i64, ErrorKind> {
+    let value: i64 = text.trim().parse().map_err(|_| ErrorKind::BadNumber {
+        attribute,
+        text: excerpt(text),
+    })?;
+    if value >= min && value <= max {
+        return Ok(value);
+    }
+    let want = if value < min && min == 0 {
+        "at least 0"
+    } else {
+        "within the limits of the loader"
+    };
+    Err(ErrorKind::OutOfRange {
+        attribute,
+        value: value as f64,
+        want,
+    })
+}
+
+fn numbers(
+    attribute: &'static str,
+    text: &str,
+    min: usize,
+    max: usize,
+    sign: Sign,
+    limit: f64,
+) -> Result<Vec<f64>, ErrorKind> {
+    let words = text.split_ascii_whitespace();
+    let found = words.clone().count();
+    if found < min || found > max {
+        return Err(ErrorKind::WrongCount {
+            attribute,
+            found,
+            min,
+            max,
+        });
+    }
+    words.map(|word| number(attribute, word, sign, limit)).collect()
+}
+
+/// Returns the beginning of a text, for messages.
+fn excerpt(text: &str) -> String {
+    text.chars().take(60).collect()
+}
+
+fn word(attribute: &'static str, text: &str, allowed: &'static [&'static str]) -> Result<usize, ErrorKind> {
+    let found = allowed.iter().position(|word| *word == text);
+    found.ok_or_else(|| ErrorKind::BadWord {
+        attribute,
+        text: excerpt(text),
+        allowed,
+    })
+}
+
+fn number(attribute: &'static str, text: &str, sign: Sign, limit: f64) -> Result<f64, ErrorKind> {
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    let value = value.ok_or_else(|| ErrorKind::BadNumber {
+        attribute,
+        text: excerpt(text),
+    })?;
+    // digits of the mantissa that are lost, as in 1e-320 and 1e-400
+    let digits = text.split(['e', 'E']).next().unwrap_or_default();
+    if value.is_subnormal() || value == 0.0 && digits.contains(|c: char| ('1'..='9').contains(&c)) {
+        return Err(ErrorKind::TooSmall {
+            attribute,
+            text: excerpt(text),
+        });
+    }
+    if value.abs() > limit {
+        return Err(ErrorKind::TooGreat {
+            attribute,
+            value,
+            limit,
+        });
+    }
+    let (allowed, want) = match sign {
+        Sign::Any => (true, ""),
+        Sign::NonNegative => (value >= 0.0, "at least 0"),
+        Sign::Positive => (value > 0.0, "positive"),
+        Sign::Unit => ((0.0..=1.0).contains(&value), "between 0 and 1"),
+    };
+    if allowed {
+        Ok(value)
+    } else {
+        Err(ErrorKind::OutOfRange { attribute, value, want })
+    }
+}
+
+/// A field that an attribute can be stored in.
+pub(super) trait Store {
+    /// Stores a value. A value of another kind, which the tables rule out, changes nothing.
+    fn store(&mut self, value: &Value);
+
+    /// Returns how a document would write the content; empty for nothing.
+    fn show(&self) -> String;
+}
+
+impl Store for String {
+    fn store(&mut self, value: &Value) {
+        if let Value::Text(text) = value {
+            text.clone_into(self);
+        }
+    }
+
+    fn show(&self) -> String {
+        self.clone()
+    }
+}
+
+impl Store for bool {
+    fn store(&mut self, value: &Value) {
+        if let Value::Flag(flag) = value {
+            *self = *flag;
+        }
+    }
+
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl Store for f64 {
+    fn store(&mut self, value: &Value) {
+        if let Value::Reals(values) = value
+            && let [first, ..] = values[..]
+        {
+            *self = first;
+        }
+    }
+
+    fn show(&self) -> String {
+        self.to_string()
+    }
+}
+
+impl<const N: usize> Store for [f64; N] {
+    fn store(&mut self, value: &Value) {
+        if let Value::Reals(values) = value {
+            for (to, from) in self.iter_mut().zip(values) {
+                *to = *from;
+            }
+        }
+    }
+
+    fn show(&self) -> String {
+        self.map(|value| value.to_string()).join(" ")
+    }
+}
+
+impl Store for Vec<f64> {
+    fn store(&mut self, value: &Value) {
+        if let Value::Reals(values) = value {
+            self.clone_from(values);
+        }
+    }
+
+    fn show(&self) -> String {
+        self.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl Store for [u8; 3] {
+    fn store(&mut self, value: &Value) {
+        if let Value::Letters(letters) = value {
+            *self = *letters;
+        }
+    }
+
+    fn show(&self) -> String {
+        self.map(char::from).iter().collect()
+    }
+}
+
+macro_rules! store_whole {
+    ($($ty:ty),*) => {$(
+        impl Store for $ty {
+            fn store(&mut self, value: &Value) {
+                if let Value::Int(value) = value
+                    && let Ok(value) = Self::try_from(*value)
+                {
+                    *self = value;
+                }
+            }
+
+            fn show(&self) -> String {
+                self.to_string()
+            }
+        }
+    )*};
+}
+store_whole!(usize, u32, i32);
+
+/// What need not be given. A negative count, which the tables allow as -1, counts as not given.
+macro_rules! store_optional {
+    ($([$($parameter:tt)*] $ty:ty = $empty:expr),* $(,)?) => {$(
+        impl<$($parameter)*> Store for Option<$ty> {
+            fn store(&mut self, value: &Value) {
+                if !matches!(value, Value::Int(..0)) {
+                    let mut given = $empty;
+                    given.store(value);
+                    *self = Some(given);
+                }
+            }
+
+            fn show(&self) -> String {
+                self.as_ref().map(Store::show).unwrap_or_default()
+            }
+        }
+    )*};
+}
+store_optional!([] String = String::new(), [] f64 = 0.0, [] usize = 0, [const N: usize] [f64; N] = [0.0; N]);

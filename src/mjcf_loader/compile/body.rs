@@ -1,0 +1,393 @@
+//! Compiles bodies with their joints, geoms, sites, cameras and lights.
+
+use std::f64::consts::PI;
+
+use super::context::{Context, Ids, user_length};
+use super::geometry::{
+    EPS, Solid, bounding_radius, inertia, merge, normalize, orientation, principal, segment, size_count, volume,
+};
+use crate::math::{MINVAL, QUAT_ID, Quat, Vec3};
+use crate::mjcf_loader::document::{Body, Camera, Document, Frame, Geom, Joint, Light, Orientation, Site, Tri};
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::settings::single;
+use crate::model::{self, Arrays, CameraMode, GeomType, JointType};
+
+/// Compiles all bodies in order, so that ids are grouped by body.
+pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
+    let mut last_dof = Vec::with_capacity(document.bodies.len());
+    let cameras = document.bodies.iter().flat_map(|body| &body.cameras);
+    let nuser_cam = user_length(document.size.nuser_cam, cameras.map(|camera| &camera.user));
+    for (id, body) in document.bodies.iter().enumerate() {
+        frame(context, body, id, arrays)?;
+        arrays.body_jntadr.push(arrays.jnt_name.len());
+        arrays.body_dofadr.push(arrays.nv);
+        let mut dof = last_dof.get(body.parent).copied().flatten();
+        for joint in &body.joints {
+            compile_joint(context, joint, body, id, &mut dof, arrays)?;
+        }
+        last_dof.push(dof);
+        arrays.body_jntnum.push(body.joints.len());
+        arrays.body_dofnum.push(arrays.nv - arrays.body_dofadr[id]);
+        if arrays.body_dofnum[id] > 6 {
+            return Err(context.invalid(body.at, "a body can have at most 6 degrees of freedom"));
+        }
+        arrays.body_weldid.push(if id == 0 || !body.joints.is_empty() {
+            id
+        } else {
+            arrays.body_weldid[body.parent]
+        });
+        arrays.body_geomadr.push(arrays.geom_name.len());
+        arrays.body_geomnum.push(body.geoms.len());
+        let mut solids = Vec::with_capacity(body.geoms.len());
+        for geom in &body.geoms {
+            solids.push(compile_geom(context, geom, id, ids, arrays)?);
+        }
+        inertial(context, body, id, &solids, arrays)?;
+        for site in &body.sites {
+            compile_site(context, site, id, ids, arrays)?;
+        }
+        for camera in &body.cameras {
+            compile_camera(context, camera, id, nuser_cam, ids, arrays)?;
+        }
+        for light in &body.lights {
+            arrays.lights.push(compile_light(context, light, id, ids)?);
+        }
+    }
+    subtree_masses(arrays);
+    check_moving_masses(context, document, arrays)
+}
+
+fn frame(context: &Context, body: &Body, id: usize, arrays: &mut Arrays) -> Result<(), LoadError> {
+    let root = match (id, body.parent) {
+        (_, 0) => id,
+        (_, parent) => arrays.body_rootid[parent],
+    };
+    arrays.body_name.push(body.name.clone());
+    arrays.body_parentid.push(body.parent);
+    arrays.body_rootid.push(root);
+    arrays.body_pos.push(body.frame.pos);
+    arrays.body_quat.push(quat_of(context, body.at, &body.frame)?);
+    Ok(())
+}
+
+fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
+    orientation(&frame.orientation, context.compiler).map_err(|message| context.invalid(at, message))
+}
+
+fn compile_joint(
+    context: &Context,
+    joint: &Joint,
+    body: &Body,
+    body_id: usize,
+    dof: &mut Option<usize>,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    let id = arrays.jnt_name.len();
+    let turns = joint.kind == JointType::Hinge && context.compiler.degree;
+    let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
+    let mut axis = joint.axis;
+    let mut pos = joint.pos;
+    let mut limited = false;
+    if joint.kind == JointType::Free {
+        if body_id == 0 || body.parent != 0 {
+            return Err(context.invalid(joint.at, "a free joint can only be in a child of the world"));
+        }
+        if body.joints.len() > 1 {
+            return Err(context.invalid(joint.at, "a free joint must be the only joint of its body"));
+        }
+        (axis, pos) = ([0.0, 0.0, 1.0], [0.0; 3]);
+    } else {
+        if normalize(&mut axis) < EPS {
+            return Err(context.invalid(joint.at, "the axis is too short"));
+        }
+        limited = context.limited(joint.at, "range", joint.limited, joint.range)?;
+    }
+    arrays.jnt_name.push(joint.name.clone());
+    arrays.jnt_type.push(joint.kind);
+    arrays.jnt_bodyid.push(body_id);
+    arrays.jnt_qposadr.push(arrays.nq);
+    arrays.jnt_dofadr.push(arrays.nv);
+    arrays.jnt_pos.push(pos);
+    arrays.jnt_axis.push(axis);
+    arrays.jnt_limited.push(limited);
+    // A range that does not limit stays as written.
+    arrays
+        .jnt_range
+        .push(if limited { joint.range.map(angle) } else { joint.range });
+    arrays.jnt_margin.push(joint.margin);
+    arrays.jnt_stiffness.push(joint.stiffness);
+    arrays.jnt_solref.push(joint.solref_limit);
+    arrays.jnt_solimp.push(joint.solimp_limit);
+    arrays.jnt_group.push(joint.group);
+    if joint.kind == JointType::Free {
+        let pose = arrays.body_pos[body_id].into_iter().chain(arrays.body_quat[body_id]);
+        arrays.qpos0.extend(pose.clone());
+        arrays.qpos_spring.extend(pose);
+    } else {
+        arrays.qpos0.push(angle(joint.reference));
+        arrays.qpos_spring.push(angle(joint.springref));
+    }
+    push_dofs(joint, body_id, id, dof, arrays);
+    arrays.nq += joint.kind.nq();
+    Ok(())
+}
+
+/// Adds the degrees of freedom of a joint. `last` is the last one that moves its body so far.
+fn push_dofs(joint: &Joint, body: usize, id: usize, last: &mut Option<usize>, arrays: &mut Arrays) {
+    for _ in 0..joint.kind.nv() {
+        arrays.dof_bodyid.push(body);
+        arrays.dof_jntid.push(id);
+        arrays.dof_parentid.push(*last);
+        arrays.dof_armature.push(joint.armature);
+        arrays.dof_damping.push(joint.damping);
+        arrays.dof_frictionloss.push(joint.frictionloss);
+        arrays.dof_solref.push(joint.solref_friction);
+        arrays.dof_solimp.push(joint.solimp_friction);
+        *last = Some(arrays.nv);
+        arrays.nv += 1;
+    }
+}
+
+/// Returns the position, orientation and size of a shape, from its frame or from `fromto`.
+fn place(
+    context: &Context,
+    at: usize,
+    kind: GeomType,
+    mut size: Vec3,
+    frame: &Frame,
+    fromto: Option<[f64; 6]>,
+) -> Result<(Vec3, Quat, Vec3), LoadError> {
+    let Some(fromto) = fromto else {
+        return Ok((frame.pos, quat_of(context, at, frame)?, size));
+    };
+    if frame.pos != [0.0; 3] {
+        return Err(context.invalid(at, "fromto and a pos that is not 0 are mutually exclusive"));
+    }
+    let (pos, quat, half) = segment(&fromto);
+    match kind {
+        GeomType::Capsule | GeomType::Cylinder => size[1] = half,
+        GeomType::Box | GeomType::Ellipsoid => size = [size[0], size[0], half],
+        GeomType::Plane | GeomType::Sphere => {
+            return Err(context.invalid(at, "fromto needs a capsule, cylinder, box or ellipsoid"));
+        }
+    }
+    if half < EPS {
+        return Err(context.invalid(at, "the points of fromto are too close"));
+    }
+    Ok((pos, quat, size))
+}
+
+/// Checks that the entries of a size that the shape uses are positive; the extent of a plane may be zero, that is,
+/// infinite.
+fn check_size(context: &Context, at: usize, kind: GeomType, size: &Vec3) -> Result<(), LoadError> {
+    let first = if kind == GeomType::Plane { 2 } else { 0 };
+    match size[first..size_count(kind)].iter().find(|value| **value <= 0.0) {
+        Some(&value) => Err(context.error(
+            at,
+            ErrorKind::OutOfRange {
+                attribute: "size",
+                value,
+                want: "positive",
+            },
+        )),
+        None => Ok(()),
+    }
+}
+
+fn compile_geom(
+    context: &Context,
+    geom: &Geom,
+    body: usize,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<Solid, LoadError> {
+    let (pos, quat, size) = place(context, geom.at, geom.kind, geom.size, &geom.frame, geom.fromto)?;
+    check_size(context, geom.at, geom.kind, &size)?;
+    if !matches!(geom.condim, 1 | 3 | 4 | 6) {
+        return Err(context.invalid(geom.at, "condim must be 1, 3, 4 or 6"));
+    }
+    if geom.kind == GeomType::Plane && arrays.body_weldid[body] != 0 {
+        return Err(context.invalid(geom.at, "a plane can only be in a body that does not move"));
+    }
+    let find = |name: &String| ids.material.find(context.tree, geom.at, "material", name);
+    arrays.geom_name.push(geom.name.clone());
+    arrays.geom_type.push(geom.kind);
+    arrays.geom_size.push(size);
+    arrays.geom_bodyid.push(body);
+    arrays.geom_pos.push(pos);
+    arrays.geom_quat.push(quat);
+    arrays.geom_contype.push(geom.contype);
+    arrays.geom_conaffinity.push(geom.conaffinity);
+    arrays.geom_condim.push(geom.condim);
+    arrays.geom_priority.push(geom.priority);
+    arrays.geom_friction.push(geom.friction);
+    arrays.geom_solmix.push(geom.solmix);
+    arrays.geom_solref.push(geom.solref);
+    arrays.geom_solimp.push(geom.solimp);
+    arrays.geom_margin.push(geom.margin);
+    arrays.geom_gap.push(geom.gap);
+    arrays.geom_rbound.push(bounding_radius(geom.kind, &size));
+    arrays.geom_group.push(geom.group);
+    arrays.geom_rgba.push(geom.rgba.map(single));
+    arrays.geom_matid.push(geom.material.as_ref().map(find).transpose()?);
+    let volume = volume(geom.kind, &size);
+    let mass = match geom.mass {
+        Some(mass) if volume > EPS => mass,
+        Some(_) => 0.0,
+        None => geom.density * volume,
+    };
+    Ok(Solid {
+        pos,
+        quat,
+        mass,
+        inertia: inertia(geom.kind, &size, mass),
+    })
+}
+
+/// Fills in mass and inertia of a body: explicit, else from its geoms, else none.
+fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays: &mut Arrays) -> Result<(), LoadError> {
+    let from_geoms = match context.compiler.inertiafromgeom {
+        Tri::No => false,
+        Tri::Yes => true,
+        Tri::Auto => body.inertial.is_none(),
+    };
+    let invalid = |message| context.invalid(body.at, message);
+    // Without mass the inertial frame repeats the frame of the body in its parent, as in MuJoCo.
+    let mut solid = Solid {
+        pos: arrays.body_pos[id],
+        quat: arrays.body_quat[id],
+        mass: 0.0,
+        inertia: [0.0; 3],
+    };
+    match (&body.inertial, solids) {
+        _ if id == 0 => {}
+        (_, [single]) if from_geoms => solid = Solid { ..*single },
+        (_, [_, _, ..]) if from_geoms => solid = merge(solids).map_err(invalid)?,
+        (Some(given), _) => {
+            solid.pos = given.frame.pos;
+            solid.quat = quat_of(context, given.at, &given.frame)?;
+            (solid.mass, solid.inertia) = (given.mass, given.diaginertia);
+            if let Some(full) = &given.fullinertia {
+                if !matches!(given.frame.orientation, Orientation::Quat(QUAT_ID)) {
+                    return Err(context.invalid(given.at, "fullinertia and an orientation are mutually exclusive"));
+                }
+                (solid.quat, solid.inertia) = principal(full).map_err(|m| context.invalid(given.at, m))?;
+            }
+        }
+        _ => {}
+    }
+    let [a, b, c] = solid.inertia;
+    if a + b < c || a + c < b || b + c < a {
+        return Err(invalid("the principal moments must satisfy A + B >= C"));
+    }
+    arrays.body_ipos.push(solid.pos);
+    arrays.body_iquat.push(solid.quat);
+    arrays.body_mass.push(solid.mass);
+    arrays.body_inertia.push(solid.inertia);
+    Ok(())
+}
+
+fn compile_site(context: &Context, site: &Site, body: usize, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
+    let (pos, quat, size) = place(context, site.at, site.kind, site.size, &site.frame, site.fromto)?;
+    check_size(context, site.at, site.kind, &size)?;
+    let find = |name: &String| ids.material.find(context.tree, site.at, "material", name);
+    arrays.site_name.push(site.name.clone());
+    arrays.site_type.push(site.kind);
+    arrays.site_bodyid.push(body);
+    arrays.site_size.push(size);
+    arrays.site_pos.push(pos);
+    arrays.site_quat.push(quat);
+    arrays.site_group.push(site.group);
+    arrays.site_rgba.push(site.rgba.map(single));
+    arrays.site_matid.push(site.material.as_ref().map(find).transpose()?);
+    Ok(())
+}
+
+fn compile_camera(
+    context: &Context,
+    camera: &Camera,
+    body: usize,
+    nuser: usize,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    let mode = match (&camera.target, camera.targets) {
+        (Some(name), true) => CameraMode::TargetBody(ids.body.find(context.tree, camera.at, "target", name)?),
+        (None, true) => return Err(context.error(camera.at, ErrorKind::MissingAttribute("target"))),
+        (Some(_), false) => {
+            return Err(context.invalid(camera.at, "only a camera with mode=\"targetbody\" has a target"));
+        }
+        (None, false) => CameraMode::Fixed,
+    };
+    if camera.fovy >= 180.0 {
+        let want = "below 180 degrees";
+        return Err(context.error(
+            camera.at,
+            ErrorKind::OutOfRange {
+                attribute: "fovy",
+                value: camera.fovy,
+                want,
+            },
+        ));
+    }
+    arrays.cam_name.push(camera.name.clone());
+    arrays.cam_mode.push(mode);
+    arrays.cam_bodyid.push(body);
+    arrays.cam_pos.push(camera.frame.pos);
+    arrays.cam_quat.push(quat_of(context, camera.at, &camera.frame)?);
+    arrays.cam_fovy.push(camera.fovy);
+    let excess = "user has more values than nuser_cam";
+    arrays
+        .cam_user
+        .push(context.user(camera.at, &camera.user, nuser, excess)?);
+    Ok(())
+}
+
+fn compile_light(context: &Context, light: &Light, body: usize, ids: &Ids) -> Result<model::Light, LoadError> {
+    let mut dir = light.dir;
+    if normalize(&mut dir) < EPS {
+        return Err(context.invalid(light.at, "the direction is too short"));
+    }
+    let find = |name: &String| ids.body.find(context.tree, light.at, "target", name);
+    Ok(model::Light {
+        name: light.name.clone(),
+        bodyid: body,
+        directional: light.directional,
+        castshadow: light.castshadow,
+        pos: light.pos,
+        dir,
+        mode: light.mode,
+        targetbodyid: light.target.as_ref().map(find).transpose()?,
+        pos0: [0.0; 3],
+        poscom0: [0.0; 3],
+        dir0: [0.0; 3],
+        ambient: light.ambient.map(single),
+        diffuse: light.diffuse.map(single),
+        specular: light.specular.map(single),
+        attenuation: light.attenuation.map(single),
+        cutoff: single(light.cutoff),
+        exponent: single(light.exponent),
+    })
+}
+
+fn subtree_masses(arrays: &mut Arrays) {
+    arrays.body_subtreemass = arrays.body_mass.clone();
+    for body in (1..arrays.body_mass.len()).rev() {
+        arrays.body_subtreemass[arrays.body_parentid[body]] += arrays.body_subtreemass[body];
+    }
+}
+
+/// Checks that what moves as one has mass and inertia, without which the joint-space inertia is singular.
+fn check_moving_masses(context: &Context, document: &Document, arrays: &Arrays) -> Result<(), LoadError> {
+    let mut heavy = vec![false; arrays.body_mass.len()];
+    for (body, &weld) in arrays.body_weldid.iter().enumerate() {
+        let inert = arrays.body_inertia[body].iter().all(|&moment| moment > MINVAL);
+        heavy[weld] |= arrays.body_mass[body] > MINVAL && inert;
+    }
+    for (id, body) in document.bodies.iter().enumerate() {
+        if !body.joints.is_empty() && !heavy[id] {
+            return Err(context.invalid(body.at, "a moving body must have mass and inertia"));
+        }
+    }
+    Ok(())
+}

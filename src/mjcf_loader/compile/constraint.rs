@@ -1,0 +1,150 @@
+//! Compiles contact pairs, equalities and tendons.
+
+use super::context::{Context, Ids};
+use crate::math::quat_normalize;
+use crate::mjcf_loader::document::Document;
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::relation::{Equality, Held, JointEquality, Tendon, WeldEquality, Wrap};
+use crate::model::{Arrays, EqualityKind};
+
+/// Compiles explicit pairs and excludes, both sorted by the pair of bodies.
+pub(super) fn compile_contacts(
+    context: &Context,
+    document: &Document,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    let mut pairs = Vec::with_capacity(document.pairs.len());
+    for pair in &document.pairs {
+        if !matches!(pair.condim, 1 | 3 | 4 | 6) {
+            return Err(context.invalid(pair.at, "condim must be 1, 3, 4 or 6"));
+        }
+        let mut geoms = [
+            ids.geom.find(context.tree, pair.at, "geom1", &pair.geom1)?,
+            ids.geom.find(context.tree, pair.at, "geom2", &pair.geom2)?,
+        ];
+        if geoms[0] == geoms[1] {
+            return Err(context.invalid(pair.at, "a geom cannot pair with itself"));
+        }
+        let mut bodies = geoms.map(|geom| arrays.geom_bodyid[geom]);
+        if bodies[0] > bodies[1] {
+            geoms.swap(0, 1);
+            bodies.swap(0, 1);
+        }
+        pairs.push((bodies, geoms, pair));
+    }
+    pairs.sort_by_key(|(bodies, ..)| *bodies);
+    for (_, geoms, pair) in pairs {
+        arrays.pair_geom.push(geoms);
+        arrays.pair_dim.push(pair.condim);
+        arrays.pair_solref.push(pair.solref);
+        arrays.pair_solreffriction.push(pair.solreffriction);
+        arrays.pair_solimp.push(pair.solimp);
+        arrays.pair_friction.push(pair.friction);
+        arrays.pair_margin.push(pair.margin);
+        arrays.pair_gap.push(pair.gap);
+    }
+    for exclude in &document.excludes {
+        let mut bodies = [
+            ids.body.find(context.tree, exclude.at, "body1", &exclude.body1)?,
+            ids.body.find(context.tree, exclude.at, "body2", &exclude.body2)?,
+        ];
+        bodies.sort_unstable();
+        arrays.exclude.push(bodies);
+    }
+    arrays.exclude.sort_unstable();
+    Ok(())
+}
+
+/// Compiles an equality. A weld without a pose of its own gets it at `qpos0`, which needs kinematics; until then its
+/// quaternion is zero.
+pub(super) fn compile_equality(
+    context: &Context,
+    equality: &Equality,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    let at = equality.at;
+    let kind = match &equality.held {
+        Held::Joint(JointEquality {
+            joint1,
+            joint2,
+            polycoef,
+        }) => {
+            let find = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
+            EqualityKind::Joint {
+                joint1: find("joint1", joint1)?,
+                joint2: joint2.as_ref().map(|name| find("joint2", name)).transpose()?,
+                polycoef: *polycoef,
+            }
+        }
+        Held::Weld(WeldEquality {
+            body1,
+            body2,
+            relpose,
+            anchor,
+            torquescale,
+        }) => {
+            let body1 = ids.body.find(context.tree, at, "body1", body1)?;
+            let body2 = match body2 {
+                Some(name) => ids.body.find(context.tree, at, "body2", name)?,
+                None => 0,
+            };
+            if body1 == body2 {
+                return Err(context.invalid(at, "a body cannot be welded to itself"));
+            }
+            let [x, y, z, quat @ ..] = *relpose;
+            let (relpos, relquat) = match quat {
+                [0.0, 0.0, 0.0, 0.0] => ([0.0; 3], quat),
+                quat => ([x, y, z], quat_normalize(quat)),
+            };
+            EqualityKind::Weld {
+                body1,
+                body2,
+                anchor: *anchor,
+                relpos,
+                relquat,
+                torquescale: *torquescale,
+            }
+        }
+    };
+    arrays.eq_name.push(equality.name.clone());
+    arrays.eq_kind.push(kind);
+    arrays.eq_active0.push(equality.active);
+    arrays.eq_solref.push(equality.solref);
+    arrays.eq_solimp.push(equality.solimp);
+    Ok(())
+}
+
+/// MuJoCo takes such a tendon, but lets its length depend on both coefficients and its force on the last alone.
+const JOINT_TWICE: &str = "the tendon names this joint twice";
+
+/// Compiles a tendon.
+pub(super) fn compile_tendon(
+    context: &Context,
+    tendon: &Tendon,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    if tendon.wrap.is_empty() {
+        return Err(context.invalid(tendon.at, "the tendon has no joints"));
+    }
+    let mut wrap = Vec::with_capacity(tendon.wrap.len());
+    for Wrap { at, joint, coef } in &tendon.wrap {
+        let joint = ids.scalar_joint(context, arrays, *at, "joint", joint)?;
+        if wrap.iter().any(|&(other, _)| other == joint) {
+            return Err(context.error(*at, ErrorKind::Invalid(JOINT_TWICE)));
+        }
+        wrap.push((joint, *coef));
+    }
+    arrays.tendon_name.push(tendon.name.clone());
+    arrays.tendon_wrap.push(wrap);
+    arrays
+        .tendon_limited
+        .push(context.limited(tendon.at, "range", tendon.limited, tendon.range)?);
+    arrays.tendon_range.push(tendon.range);
+    arrays.tendon_margin.push(tendon.margin);
+    arrays.tendon_solref_lim.push(tendon.solref_limit);
+    arrays.tendon_solimp_lim.push(tendon.solimp_limit);
+    Ok(())
+}

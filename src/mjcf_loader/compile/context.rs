@@ -1,0 +1,180 @@
+//! What the stages of compilation share: names, their ids, errors with places.
+
+use std::collections::BTreeMap;
+
+use crate::mjcf_loader::document::{Compiler, Document, Tri};
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::surface::Texture;
+use crate::mjcf_loader::xml::Tree;
+use crate::model::{Arrays, JointType};
+
+/// Ids by name for one kind of element.
+pub(super) struct Names {
+    kind: &'static str,
+    ids: BTreeMap<String, usize>,
+}
+
+impl Names {
+    /// Collects the ids of named elements, leaving out the unnamed; a name used twice is an error at its second place.
+    pub fn new<'a>(
+        tree: &Tree,
+        kind: &'static str,
+        named: impl Iterator<Item = (usize, &'a String)>,
+    ) -> Result<Names, LoadError> {
+        let mut ids = BTreeMap::new();
+        for (id, (at, name)) in named.enumerate() {
+            if !name.is_empty() && ids.insert(name.clone(), id).is_some() {
+                return Err(tree.error(
+                    at,
+                    ErrorKind::DuplicateName {
+                        kind,
+                        name: name.clone(),
+                    },
+                ));
+            }
+        }
+        Ok(Names { kind, ids })
+    }
+
+    /// Returns the id of the element that a reference names.
+    pub fn find(&self, tree: &Tree, at: usize, attribute: &'static str, name: &str) -> Result<usize, LoadError> {
+        self.ids.get(name).copied().ok_or_else(|| {
+            tree.error(
+                at,
+                ErrorKind::UnknownName {
+                    attribute,
+                    kind: self.kind,
+                    name: name.to_owned(),
+                },
+            )
+        })
+    }
+}
+
+/// What the stages of compilation share.
+pub(super) struct Context<'a> {
+    pub tree: &'a Tree,
+    pub compiler: &'a Compiler,
+}
+
+/// Returns the length of all user data of a kind: the length that is given, else that of the longest.
+pub fn user_length<'a>(given: Option<usize>, users: impl Iterator<Item = &'a Vec<f64>>) -> usize {
+    given.unwrap_or_else(|| users.map(Vec::len).max().unwrap_or(0))
+}
+
+impl Context<'_> {
+    /// Returns user data at the length of all of their kind; more is an error with the message `excess`.
+    pub fn user(&self, at: usize, user: &[f64], length: usize, excess: &'static str) -> Result<Vec<f64>, LoadError> {
+        if user.len() > length {
+            return Err(self.invalid(at, excess));
+        }
+        let mut user = user.to_vec();
+        user.resize(length, 0.0);
+        Ok(user)
+    }
+
+    pub fn error(&self, at: usize, kind: impl Into<ErrorKind>) -> LoadError {
+        self.tree.error(at, kind)
+    }
+
+    pub fn invalid(&self, at: usize, message: &'static str) -> LoadError {
+        self.tree.error(at, ErrorKind::Invalid(message))
+    }
+
+    /// Tells whether a range applies; if so, checks that it is one.
+    pub fn limited(
+        &self,
+        at: usize,
+        attribute: &'static str,
+        limited: Tri,
+        range: [f64; 2],
+    ) -> Result<bool, LoadError> {
+        let proper = range[0] < range[1];
+        match limited {
+            Tri::No => Ok(false),
+            Tri::Yes if proper => Ok(true),
+            Tri::Yes => {
+                let want = "greater than the lower end of the range";
+                Err(self.error(
+                    at,
+                    ErrorKind::OutOfRange {
+                        attribute,
+                        value: range[1],
+                        want,
+                    },
+                ))
+            }
+            Tri::Auto if self.compiler.autolimits => Ok(proper),
+            Tri::Auto if range == [0.0; 2] => Ok(false),
+            Tri::Auto => Err(self.invalid(
+                at,
+                match attribute {
+                    "ctrlrange" => "a ctrlrange is given, but autolimits is off: set ctrllimited to true or false",
+                    "forcerange" => "a forcerange is given, but autolimits is off: set forcelimited to true or false",
+                    _ => "a range is given, but autolimits is off: set limited to true or false",
+                },
+            )),
+        }
+    }
+}
+
+/// The names, by kind, that other elements refer to.
+pub(super) struct Ids {
+    pub body: Names,
+    pub joint: Names,
+    pub geom: Names,
+    pub site: Names,
+    pub texture: Names,
+    pub material: Names,
+}
+
+impl Ids {
+    /// Collects the names of all elements. `arrays` holds the textures already, some of which are named after their files.
+    pub fn new(tree: &Tree, document: &Document, textures: &[Texture], arrays: &Arrays) -> Result<Ids, LoadError> {
+        check_unreferenced(tree, document)?;
+        let bodies = &document.bodies;
+        let joints = bodies.iter().flat_map(|b| &b.joints).map(|j| (j.at, &j.name));
+        let geoms = bodies.iter().flat_map(|b| &b.geoms).map(|g| (g.at, &g.name));
+        let sites = bodies.iter().flat_map(|b| &b.sites).map(|s| (s.at, &s.name));
+        let textures = textures.iter().zip(&arrays.textures).map(|(t, m)| (t.at, &m.name));
+        Ok(Ids {
+            body: Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name)))?,
+            joint: Names::new(tree, "joint", joints)?,
+            geom: Names::new(tree, "geom", geoms)?,
+            site: Names::new(tree, "site", sites)?,
+            texture: Names::new(tree, "texture", textures)?,
+            material: Names::new(tree, "material", document.materials.iter().map(|m| (m.at, &m.name)))?,
+        })
+    }
+
+    /// Finds a joint with one coordinate, which tendons, equalities and actuators need.
+    pub fn scalar_joint(
+        &self,
+        context: &Context,
+        arrays: &Arrays,
+        at: usize,
+        attribute: &'static str,
+        name: &str,
+    ) -> Result<usize, LoadError> {
+        let joint = self.joint.find(context.tree, at, attribute, name)?;
+        if arrays.jnt_type[joint] == JointType::Free {
+            return Err(context.invalid(at, "only hinge and slide joints can be used here, not free joints"));
+        }
+        Ok(joint)
+    }
+}
+
+/// Refuses a name that is used twice by elements to which nothing refers.
+fn check_unreferenced(tree: &Tree, document: &Document) -> Result<(), LoadError> {
+    let cameras = document.bodies.iter().flat_map(|b| &b.cameras).map(|c| (c.at, &c.name));
+    let lights = document.bodies.iter().flat_map(|b| &b.lights).map(|l| (l.at, &l.name));
+    Names::new(tree, "camera", cameras)?;
+    Names::new(tree, "light", lights)?;
+    Names::new(tree, "equality", document.equalities.iter().map(|e| (e.at, &e.name)))?;
+    Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?;
+    Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?;
+    Names::new(tree, "sensor", document.sensors.iter().map(|s| (s.at, &s.name)))?;
+    Names::new(tree, "pair", document.pairs.iter().map(|p| (p.at, &p.name)))?;
+    Names::new(tree, "exclude", document.excludes.iter().map(|e| (e.at, &e.name)))?;
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! Typed document -> [`Arrays`]: names become ids, angles radians, shapes masses.
+
+mod actuator;
+mod body;
+mod constraint;
+mod context;
+mod geometry;
+mod surface;
+
+use context::{Context, Ids};
+
+use super::document::Document;
+use super::error::LoadError;
+use super::xml::Tree;
+use crate::assets::AssetSource;
+use crate::model::{Arrays, SameFrame};
+
+/// Compiles the document into everything but what needs dynamics. Images are looked up in `source`, relative to `dir`, and
+/// not decoded.
+pub(super) fn compile(
+    tree: &Tree,
+    document: &Document,
+    source: &dyn AssetSource,
+    dir: &str,
+) -> Result<Arrays, LoadError> {
+    let (name, opt) = (document.model.clone(), document.option.clone());
+    let (vis, stat) = (document.visual.clone(), document.statistic.clone());
+    let mut arrays = Arrays::without_elements(name, opt, vis, stat);
+    let context = Context {
+        tree,
+        compiler: &document.compiler,
+    };
+    for texture in &document.textures {
+        let texture = surface::compile_texture(&context, texture, source, dir)?;
+        arrays.textures.push(texture);
+    }
+    let ids = Ids::new(tree, document, &document.textures, &arrays)?;
+    for material in &document.materials {
+        let material = surface::compile_material(&context, material, &ids)?;
+        arrays.materials.push(material);
+    }
+    body::compile(&context, document, &ids, &mut arrays)?;
+    same_frames(&mut arrays);
+    constraint::compile_contacts(&context, document, &ids, &mut arrays)?;
+    for equality in &document.equalities {
+        constraint::compile_equality(&context, equality, &ids, &mut arrays)?;
+    }
+    for tendon in &document.tendons {
+        constraint::compile_tendon(&context, tendon, &ids, &mut arrays)?;
+    }
+    actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
+    actuator::compile_sensors(&context, document, &ids, &mut arrays)?;
+    Ok(arrays)
+}
+
+/// Finds frames that are the same as a body's own or its inertial frame.
+fn same_frames(arrays: &mut Arrays) {
+    let none = ([f64::INFINITY; 3], [f64::INFINITY; 4]);
+    let bodies = arrays.body_ipos.iter().zip(&arrays.body_iquat);
+    arrays.body_sameframe = bodies.map(|(&p, &q)| SameFrame::of(p, q, none.0, none.1)).collect();
+    let in_body = |b: &[usize], pos: &[[f64; 3]], quat: &[[f64; 4]]| -> Vec<SameFrame> {
+        let frame = |i: usize| SameFrame::of(pos[i], quat[i], arrays.body_ipos[b[i]], arrays.body_iquat[b[i]]);
+        (0..b.len()).map(frame).collect()
+    };
+    let geoms = in_body(&arrays.geom_bodyid, &arrays.geom_pos, &arrays.geom_quat);
+    let sites = in_body(&arrays.site_bodyid, &arrays.site_pos, &arrays.site_quat);
+    (arrays.geom_sameframe, arrays.site_sameframe) = (geoms, sites);
+}

@@ -1,0 +1,108 @@
+//! Compiles textures and materials.
+
+use super::context::{Context, Ids};
+use crate::assets::{AssetError, AssetSource, resolve};
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::settings::single;
+use crate::mjcf_loader::surface;
+use crate::model::{self, Builtin, TextureType};
+
+/// Compiles a texture. Its images are looked up in `source`, relative to `dir`, and not decoded.
+pub(super) fn compile_texture(
+    context: &Context,
+    texture: &surface::Texture,
+    source: &dyn AssetSource,
+    dir: &str,
+) -> Result<model::Texture, LoadError> {
+    let path = |file: &String| image_path(context, texture.at, file, source, dir);
+    let mut cube_files = [const { None }; 6];
+    for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
+        *to = from.as_ref().map(path).transpose()?;
+    }
+    let file = texture.file.as_ref().map(path).transpose()?;
+    // the faces of a builtin cube are as high as wide
+    let flat = texture.kind == TextureType::Flat2d;
+    let builtin = texture.builtin != Builtin::None;
+    let invalid = |message| Err(context.invalid(texture.at, message));
+    if !builtin {
+        if file.is_none() && cube_files.iter().all(Option::is_none) {
+            return invalid("the texture has neither a builtin nor a file");
+        }
+    } else if texture.width == 0 || flat && texture.height == 0 {
+        return invalid("a builtin texture needs a width, and if it is flat a height");
+    }
+    Ok(model::Texture {
+        name: texture_name(context, texture)?,
+        kind: texture.kind,
+        builtin: texture.builtin,
+        mark: texture.mark,
+        rgb1: texture.rgb1,
+        rgb2: texture.rgb2,
+        markrgb: texture.markrgb,
+        random: texture.random,
+        width: texture.width,
+        height: if builtin && !flat {
+            6 * texture.width
+        } else {
+            texture.height
+        },
+        file,
+        cube_files,
+    })
+}
+
+/// Returns the path of an image in the source, which must have it.
+fn image_path(
+    context: &Context,
+    at: usize,
+    file: &str,
+    source: &dyn AssetSource,
+    dir: &str,
+) -> Result<String, LoadError> {
+    let file = match context.compiler.texturedir.trim_end_matches('/') {
+        "" => file.to_owned(),
+        texturedir => format!("{texturedir}/{file}"),
+    };
+    let path = resolve(dir, &file).map_err(|e| context.error(at, e))?;
+    if source.contains(&path) {
+        Ok(path)
+    } else {
+        Err(context.error(at, AssetError::NotFound(path)))
+    }
+}
+
+/// Returns the name of a texture; one without a name is called after its file, without directory and extension.
+fn texture_name(context: &Context, texture: &surface::Texture) -> Result<String, LoadError> {
+    if !texture.name.is_empty() {
+        return Ok(texture.name.clone());
+    }
+    let file = texture.file.as_deref();
+    let stem = file.map(|file| file.rsplit('/').next().unwrap_or(file));
+    let name = stem.map(|stem| stem.rsplit_once('.').map_or(stem, |(name, _)| name));
+    match name.unwrap_or_default() {
+        "" if texture.kind != TextureType::Skybox => {
+            Err(context.error(texture.at, ErrorKind::MissingAttribute("name")))
+        }
+        name => Ok(name.to_owned()),
+    }
+}
+
+/// Compiles a material, which may refer to a texture.
+pub(super) fn compile_material(
+    context: &Context,
+    material: &surface::Material,
+    ids: &Ids,
+) -> Result<model::Material, LoadError> {
+    let find = |name: &String| ids.texture.find(context.tree, material.at, "texture", name);
+    Ok(model::Material {
+        name: material.name.clone(),
+        texture: material.texture.as_ref().map(find).transpose()?,
+        rgba: material.rgba.map(single),
+        specular: single(material.specular),
+        shininess: single(material.shininess),
+        reflectance: single(material.reflectance),
+        emission: single(material.emission),
+        texrepeat: material.texrepeat.map(single),
+        texuniform: material.texuniform,
+    })
+}

@@ -1,0 +1,110 @@
+//! The MJCF that is understood: which element may stand in which, and the tables of its attributes. What is not here is an
+//! error.
+
+use crate::model::{Options, Statistic};
+
+use super::attribute::{Attr, TEXT};
+use super::document::{Body, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
+use super::relation::{Actuator, Equality, Exclude, JointEquality, Pair, Sensor, Servo, Tendon, WeldEquality, Wrap};
+use super::schema::{self, Rule};
+use super::settings::{Global, Headlight, Map, Quality, Rgba, Root};
+use super::surface::{Material, Texture};
+use super::table::Table;
+
+/// The groups of attributes of a table.
+type Groups = &'static [&'static [Attr]];
+
+const fn rule(name: &'static str, tables: &'static [Groups], children: &'static [&'static Rule]) -> Rule {
+    Rule { name, tables, children }
+}
+
+/// The default class of an element, which the reader looks up before it reads the rest.
+const CLASS: Groups = &[&[Attr::new("class", TEXT, "Default class.", String::new).own()]];
+/// The name of a section of default classes.
+const CLASS_NAME: Groups = &[&[Attr::new(
+    "class",
+    TEXT,
+    "Name of the class; \"main\" at the top.",
+    String::new,
+)]];
+
+static COMPILER: Rule = rule("compiler", &[Compiler::ATTRIBUTES], &[]);
+static OPTION: Rule = rule("option", &[Options::ATTRIBUTES], &[]);
+static SIZE: Rule = rule("size", &[Size::ATTRIBUTES], &[]);
+static GLOBAL: Rule = rule("global", &[Global::ATTRIBUTES], &[]);
+static MAP: Rule = rule("map", &[Map::ATTRIBUTES], &[]);
+static QUALITY: Rule = rule("quality", &[Quality::ATTRIBUTES], &[]);
+static HEADLIGHT: Rule = rule("headlight", &[Headlight::ATTRIBUTES], &[]);
+static RGBA: Rule = rule("rgba", &[Rgba::ATTRIBUTES], &[]);
+static VISUAL: Rule = rule("visual", &[], &[&GLOBAL, &MAP, &QUALITY, &HEADLIGHT, &RGBA]);
+static STATISTIC: Rule = rule("statistic", &[Statistic::ATTRIBUTES], &[]);
+
+static DEFAULT_EQUALITY: Rule = rule("equality", &[Equality::ATTRIBUTES], &[]);
+static DEFAULT_TENDON: Rule = rule("tendon", &[Tendon::ATTRIBUTES], &[]);
+static DEFAULT: Rule = rule(
+    schema::DEFAULT,
+    &[CLASS_NAME],
+    &[
+        &DEFAULT,
+        &JOINT,
+        &GEOM,
+        &SITE,
+        &CAMERA,
+        &LIGHT,
+        &PAIR,
+        &DEFAULT_EQUALITY,
+        &DEFAULT_TENDON,
+        &MOTOR,
+        &POSITION,
+        &MATERIAL,
+    ],
+);
+
+static TEXTURE: Rule = rule("texture", &[Texture::ATTRIBUTES], &[]);
+static MATERIAL: Rule = rule("material", &[CLASS, Material::ATTRIBUTES], &[]);
+static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL]);
+
+static INERTIAL: Rule = rule("inertial", &[Inertial::ATTRIBUTES], &[]);
+static JOINT: Rule = rule("joint", &[CLASS, Joint::ATTRIBUTES], &[]);
+static FREEJOINT: Rule = rule("freejoint", &[FreeJoint::ATTRIBUTES], &[]);
+static GEOM: Rule = rule("geom", &[CLASS, Geom::ATTRIBUTES], &[]);
+static SITE: Rule = rule("site", &[CLASS, Site::ATTRIBUTES], &[]);
+static CAMERA: Rule = rule("camera", &[CLASS, Camera::ATTRIBUTES], &[]);
+static LIGHT: Rule = rule("light", &[CLASS, Light::ATTRIBUTES], &[]);
+static BODY: Rule = rule(
+    "body",
+    &[Body::ATTRIBUTES],
+    &[&BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT],
+);
+static WORLDBODY: Rule = rule("worldbody", &[], &[&BODY, &GEOM, &SITE, &CAMERA, &LIGHT]);
+
+static PAIR: Rule = rule("pair", &[CLASS, Pair::ATTRIBUTES], &[]);
+static EXCLUDE: Rule = rule("exclude", &[Exclude::ATTRIBUTES], &[]);
+static CONTACT: Rule = rule("contact", &[], &[&PAIR, &EXCLUDE]);
+
+static EQUALITY_JOINT: Rule = rule("joint", &[CLASS, JointEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
+static EQUALITY_WELD: Rule = rule("weld", &[CLASS, WeldEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
+static EQUALITY: Rule = rule("equality", &[], &[&EQUALITY_JOINT, &EQUALITY_WELD]);
+
+static TENDON_JOINT: Rule = rule("joint", &[Wrap::ATTRIBUTES], &[]);
+static FIXED: Rule = rule("fixed", &[CLASS, Tendon::ATTRIBUTES], &[&TENDON_JOINT]);
+static TENDON: Rule = rule("tendon", &[], &[&FIXED]);
+
+static MOTOR: Rule = rule("motor", &[CLASS, Actuator::ATTRIBUTES], &[]);
+static POSITION: Rule = rule("position", &[CLASS, Actuator::ATTRIBUTES, Servo::ATTRIBUTES], &[]);
+static ACTUATOR: Rule = rule("actuator", &[], &[&MOTOR, &POSITION]);
+
+static ACCELEROMETER: Rule = rule("accelerometer", &[Sensor::ATTRIBUTES], &[]);
+static GYRO: Rule = rule("gyro", &[Sensor::ATTRIBUTES], &[]);
+static TORQUE: Rule = rule("torque", &[Sensor::ATTRIBUTES], &[]);
+static SENSOR: Rule = rule("sensor", &[], &[&ACCELEROMETER, &GYRO, &TORQUE]);
+
+/// The root.
+pub(super) static MUJOCO: Rule = rule(
+    "mujoco",
+    &[Root::ATTRIBUTES],
+    &[
+        &COMPILER, &OPTION, &SIZE, &VISUAL, &STATISTIC, &DEFAULT, &ASSET, &WORLDBODY, &CONTACT, &EQUALITY, &TENDON,
+        &ACTUATOR, &SENSOR,
+    ],
+);

@@ -1,0 +1,113 @@
+//! The MJCF that is understood, as a list for people.
+
+use super::attribute::{Attr, Kind, Sign};
+use super::elements::MUJOCO;
+use super::schema::{DEFAULT, Rule};
+
+/// An element that the loader understands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ElementInfo {
+    /// Where it stands, for instance `worldbody/body/geom`. Elements that may also stand elsewhere are listed once.
+    pub path: String,
+    /// Its attributes, in the order of its table.
+    pub attributes: Vec<AttributeInfo>,
+}
+
+/// An attribute that the loader understands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AttributeInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// What it may hold, for instance `3 numbers`.
+    pub values: String,
+    /// What holds when it is not given, as a document would write it; empty for nothing.
+    pub default: String,
+    /// Whether the element must have it.
+    pub required: bool,
+    /// Whether a default class may give it.
+    pub in_default: bool,
+    /// What it means, and whether it is ignored.
+    pub meaning: &'static str,
+}
+
+/// Lists the elements and attributes that the loader understands; everything else in a document is an error.
+///
+/// ```
+/// use babybench::mjcf_loader::elements;
+/// let camera = elements().into_iter().find(|e| e.path == "worldbody/body/camera").unwrap();
+/// let fovy = camera.attributes.iter().find(|a| a.name == "fovy").unwrap();
+/// assert_eq!((fovy.values.as_str(), fovy.default.as_str()), ("1 number, positive", "45"));
+/// ```
+#[must_use]
+pub fn elements() -> Vec<ElementInfo> {
+    let mut found: Vec<(&'static Rule, ElementInfo)> = Vec::new();
+    list(&MUJOCO, "", &mut found);
+    found.into_iter().map(|(_, element)| element).collect()
+}
+
+/// Lists an element and those in it, each once. Default classes hold elements of other sections, which are listed there.
+fn list(rule: &'static Rule, above: &str, found: &mut Vec<(&'static Rule, ElementInfo)>) {
+    if found.iter().any(|(other, _)| std::ptr::eq(*other, rule)) {
+        return;
+    }
+    let path = match above {
+        "" | "mujoco" => rule.name.to_owned(),
+        _ => format!("{above}/{}", rule.name),
+    };
+    // What takes defaults names the class that it takes them from.
+    let classes = rule.attributes().any(|attr| attr.own && attr.name == "class");
+    let mut attributes: Vec<AttributeInfo> = Vec::new();
+    for attr in rule.attributes() {
+        if attributes.iter().all(|other| other.name != attr.name) {
+            attributes.push(info(attr, classes));
+        }
+    }
+    let element = ElementInfo {
+        path: path.clone(),
+        attributes,
+    };
+    found.push((rule, element));
+    if rule.name != DEFAULT {
+        rule.children.iter().for_each(|child| list(child, &path, found));
+    }
+}
+
+fn info(attr: &Attr, classes: bool) -> AttributeInfo {
+    AttributeInfo {
+        name: attr.name,
+        values: values(attr.kind),
+        default: if attr.required { String::new() } else { (attr.default)() },
+        required: attr.required,
+        in_default: classes && !attr.own,
+        meaning: attr.meaning,
+    }
+}
+
+/// Describes a kind of value in words.
+fn values(kind: Kind) -> String {
+    match kind {
+        Kind::Text => "text".to_owned(),
+        Kind::Flag => "false, true".to_owned(),
+        Kind::Word(words) => words.join(", "),
+        Kind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
+        Kind::Int { min, max } => format!("whole number, {min} to {max}"),
+        Kind::Quat => "4 numbers, not all 0".to_owned(),
+        Kind::User => "numbers".to_owned(),
+        Kind::UserCount => "whole number from -1".to_owned(),
+        Kind::EulerSeq => "three letters of xyzXYZ".to_owned(),
+        Kind::Reals { min, max, sign } => {
+            let count = match (min, max) {
+                (1, 1) => "1 number".to_owned(),
+                _ if min == max => format!("{max} numbers"),
+                _ => format!("{min} to {max} numbers"),
+            };
+            let sign = match sign {
+                Sign::Any => "",
+                Sign::NonNegative => ", at least 0",
+                Sign::Positive => ", positive",
+                Sign::Unit => ", 0 to 1",
+            };
+            count + sign
+        }
+    }
+}

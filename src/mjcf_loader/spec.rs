@@ -1,0 +1,78 @@
+//! What a document says, before the constants that need dynamics.
+
+use super::error::{ErrorKind, LoadError};
+use super::xml::Tree;
+use crate::model::Arrays;
+
+/// What an MJCF document says, checked and with MuJoCo's ids and units, as MuJoCo's `mjSpec` does.
+///
+/// [`crate::physics::compile`] makes a [`crate::Model`] of it.
+#[derive(Clone, Debug)]
+pub struct Spec {
+    pub(super) arrays: Arrays,
+    pub(super) places: Places,
+}
+
+/// The places of the elements in their document.
+#[derive(Clone, Debug)]
+pub(crate) struct Places {
+    pub(super) tree: Tree,
+    /// The body elements (nbody), the root for the world.
+    pub(super) bodies: Vec<usize>,
+    /// The tendon elements (ntendon).
+    pub(super) tendons: Vec<usize>,
+}
+
+impl Places {
+    /// Returns an error at a body; the world stands for the whole document.
+    pub fn body_error(&self, body: usize, message: &'static str) -> LoadError {
+        self.tree.error(self.bodies[body], ErrorKind::Invalid(message))
+    }
+
+    /// Returns an error at a tendon.
+    pub fn tendon_error(&self, tendon: usize, message: &'static str) -> LoadError {
+        self.tree.error(self.tendons[tendon], ErrorKind::Invalid(message))
+    }
+}
+
+macro_rules! counts {
+    ($($fun:ident $field:ident $what:literal),* $(,)?) => {
+        impl Spec {$(
+            #[doc = concat!("Returns the number of ", $what, ".")]
+            pub fn $fun(&self) -> usize {
+                self.arrays.$field.len()
+            }
+        )*}
+    };
+}
+
+counts! {
+    nq qpos0 "position coordinates",
+    nv dof_jntid "degrees of freedom",
+    nbody body_name "bodies, the world included",
+    njnt jnt_name "joints",
+    ngeom geom_name "geoms",
+    nsite site_name "sites",
+    ncam cam_name "cameras",
+    nlight lights "lights",
+    nmat materials "materials",
+    ntex textures "textures",
+    npair pair_geom "explicit contact pairs",
+    nexclude exclude "excluded body pairs",
+    neq eq_name "equality constraints",
+    ntendon tendon_name "tendons",
+    nu actuator_name "actuators",
+    nsensor sensor_name "sensors",
+}
+
+impl Spec {
+    /// Returns the name of the model.
+    pub fn name(&self) -> &str {
+        &self.arrays.name
+    }
+
+    /// Returns the arrays, without the constants that need dynamics, and the places of the elements.
+    pub(crate) fn into_parts(self) -> (Arrays, Places) {
+        (self.arrays, self.places)
+    }
+}

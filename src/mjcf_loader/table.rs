@@ -1,0 +1,138 @@
+//! One table per element. A line of a table is an attribute, and everything about it: name, field, default, form, meaning.
+//!
+//! ```text
+//! table! {
+//!     /// A camera.
+//!     element Camera {
+//!         also  targets: bool = false;                                    a field that no attribute of its own fills
+//!         set   "mode" => targets, CAMERA_MODES, "How it is aimed.";      an attribute that goes into such a field
+//!               "fovy" fovy: f64 = 45.0, real(Positive), "Angle of view.";    an attribute with its field
+//!         check "model" | "lens", TEXT, "Name of the optics.";            attributes that are checked and not kept
+//!         with  frame: Frame;                                             a field that has a table itself
+//!     }
+//! }
+//! ```
+//!
+//! Sections come in this order, and each may be absent. Between form and meaning of a `set` or a field may stand `own` (not
+//! allowed in default classes), `required`, `orientation` or `inertia` (an element may have one of those so marked). `element` makes a struct that also
+//! keeps its place in the text, `at`; `group` makes a struct without; `fields` fills a struct that is declared elsewhere.
+
+use super::attribute::{Attr, Value};
+use super::schema::Element;
+
+/// A struct that attributes fill.
+pub(super) trait Table: Sized {
+    /// The attributes, those of the table itself first. Of two with one name the first counts.
+    const ATTRIBUTES: &'static [&'static [Attr]];
+
+    /// Returns what holds when no attribute is given.
+    fn initial() -> Self;
+
+    /// Stores the value of an attribute; returns whether the table has the attribute.
+    fn set(&mut self, name: &str, value: &Value) -> bool;
+
+    /// Stores the place in the text.
+    fn locate(&mut self, _at: usize) {}
+
+    /// Stores the place and the attributes of an element. What the element does not give stays.
+    fn apply(&mut self, e: &Element) {
+        self.locate(e.at);
+        for (name, value) in e.values() {
+            self.set(name, value);
+        }
+    }
+
+    /// Reads an element without a default class.
+    fn read(e: &Element) -> Self {
+        let mut table = Self::initial();
+        table.apply(e);
+        table
+    }
+}
+
+macro_rules! table {
+    ($(#[$meta:meta])* element $T:ident { $($body:tt)* }) => {
+        table! { @struct [$(#[$meta])*] $T [at] { $($body)* } }
+        table! { @impl $T [at] { $($body)* } }
+    };
+    ($(#[$meta:meta])* group $T:ident { $($body:tt)* }) => {
+        table! { @struct [$(#[$meta])*] $T [] { $($body)* } }
+        table! { @impl $T [] { $($body)* } }
+    };
+    (fields $T:ident { $($body:tt)* }) => {
+        table! { @impl $T [] { $($body)* } }
+    };
+
+    (@struct [$(#[$meta:meta])*] $T:ident [$($at:ident)?] {
+        $(also $extra:ident: $extra_ty:ty = $extra_default:expr;)*
+        $(set $set:literal => $to:ident $(.$sub:ident)* $([$k:literal])?, $set_form:expr, $($set_flag:ident,)* $set_meaning:literal;)*
+        $($name:literal $field:ident: $ty:ty = $default:expr, $form:expr, $($flag:ident,)* $meaning:literal;)*
+        $(check $($check:literal)|+, $check_form:expr, $check_meaning:literal;)*
+        $(with $group:ident: $Group:ty;)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone)]
+        pub(super) struct $T {
+            $(pub $at: usize,)?
+            $(pub $extra: $extra_ty,)*
+            $(#[doc = $meaning] pub $field: $ty,)*
+            $(pub $group: $Group,)*
+        }
+
+        impl Default for $T {
+            fn default() -> Self {
+                <Self as $crate::mjcf_loader::table::Table>::initial()
+            }
+        }
+    };
+
+    (@impl $T:ident [$($at:ident)?] {
+        $(also $extra:ident: $extra_ty:ty = $extra_default:expr;)*
+        $(set $set:literal => $to:ident $(.$sub:ident)* $([$k:literal])?, $set_form:expr, $($set_flag:ident,)* $set_meaning:literal;)*
+        $($name:literal $field:ident: $ty:ty = $default:expr, $form:expr, $($flag:ident,)* $meaning:literal;)*
+        $(check $($check:literal)|+, $check_form:expr, $check_meaning:literal;)*
+        $(with $group:ident: $Group:ty;)*
+    }) => {
+        impl $crate::mjcf_loader::table::Table for $T {
+            const ATTRIBUTES: &'static [&'static [$crate::mjcf_loader::attribute::Attr]] = &[
+                &[
+                    $($crate::mjcf_loader::attribute::Attr::new($set, $set_form.kind(), $set_meaning, || {
+                        $set_form.show(&Self::initial().$to $(.$sub)* $([$k])?)
+                    })$(.$set_flag())*,)*
+                    $($crate::mjcf_loader::attribute::Attr::new($name, $form.kind(), $meaning, || {
+                        $form.show(&Self::initial().$field)
+                    })$(.$flag())*,)*
+                    $($($crate::mjcf_loader::attribute::Attr::new(
+                        $check, $check_form.kind(), $check_meaning, String::new
+                    ),)+)*
+                ],
+                $(<$Group as $crate::mjcf_loader::table::Table>::ATTRIBUTES[0],)*
+            ];
+
+            fn initial() -> Self {
+                Self {
+                    $($at: 0,)?
+                    $($extra: $extra_default,)*
+                    $($field: { let default: $ty = $default; default },)*
+                    $($group: <$Group as $crate::mjcf_loader::table::Table>::initial(),)*
+                }
+            }
+
+            fn set(&mut self, name: &str, value: &$crate::mjcf_loader::attribute::Value) -> bool {
+                let _ = value;
+                match name {
+                    $($set => $set_form.store(value, &mut self.$to $(.$sub)* $([$k])?),)*
+                    $($name => $form.store(value, &mut self.$field),)*
+                    $($($check)|+ => {})*
+                    _ => return false $(|| <$Group as $crate::mjcf_loader::table::Table>::set(&mut self.$group, name, value))*,
+                }
+                true
+            }
+
+            $(fn locate(&mut self, at: usize) {
+                self.$at = at;
+            })?
+        }
+    };
+}
+pub(super) use table;

@@ -1,0 +1,137 @@
+//! What the tables share: words with their values, bounds, defaults, and poses as they are written.
+
+use crate::math::Vec3;
+use crate::model::{Builtin, GeomType, JointType, LightMode, Mark, TextureType};
+
+use super::attribute::Sign::Any;
+use super::attribute::{Kind, Value, Words, reals, words};
+use super::table::table;
+
+pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
+pub(super) const SOLIMP: [f64; 5] = [0.9, 0.95, 0.001, 0.5, 2.0];
+pub(super) const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
+
+pub(super) const MAX_GROUP: i64 = 5;
+pub(super) const MAX_BITS: i64 = u32::MAX as i64;
+pub(super) const MAX_COUNT: i64 = 1 << 30;
+pub(super) const MAX_PIXELS: i64 = 16384;
+
+/// A switch that may follow from whether a range is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tri {
+    No,
+    Yes,
+    Auto,
+}
+
+pub(super) const TRI: Words<Tri> = words! { "false" => Tri::No, "true" => Tri::Yes, "auto" => Tri::Auto };
+pub(super) const JOINTS: Words<JointType> = words! {
+    "free" => JointType::Free,
+    "slide" => JointType::Slide,
+    "hinge" => JointType::Hinge,
+};
+pub(super) const SHAPES: Words<GeomType> = words! {
+    "plane" => GeomType::Plane,
+    "sphere" => GeomType::Sphere,
+    "capsule" => GeomType::Capsule,
+    "ellipsoid" => GeomType::Ellipsoid,
+    "cylinder" => GeomType::Cylinder,
+    "box" => GeomType::Box,
+};
+/// The shapes of sites, which have no planes.
+pub(super) const SITE_SHAPES: Words<GeomType> = SHAPES.rest();
+pub(super) const TEXTURES: Words<TextureType> = words! {
+    "2d" => TextureType::Flat2d,
+    "cube" => TextureType::Cube,
+    "skybox" => TextureType::Skybox,
+};
+pub(super) const BUILTINS: Words<Builtin> = words! {
+    "none" => Builtin::None,
+    "gradient" => Builtin::Gradient,
+    "checker" => Builtin::Checker,
+    "flat" => Builtin::Flat,
+};
+pub(super) const MARKS: Words<Mark> = words! {
+    "none" => Mark::None,
+    "edge" => Mark::Edge,
+    "cross" => Mark::Cross,
+    "random" => Mark::Random,
+};
+pub(super) const LIGHT_MODES: Words<LightMode> = words! {
+    "fixed" => LightMode::Fixed,
+    "track" => LightMode::Track,
+    "trackcom" => LightMode::TrackCom,
+    "targetbody" => LightMode::TargetBody,
+    "targetbodycom" => LightMode::TargetBodyCom,
+};
+
+/// An orientation as written.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Orientation {
+    Quat([f64; 4]),
+    AxisAngle([f64; 4]),
+    XyAxes([f64; 6]),
+    ZAxis([f64; 3]),
+    Euler([f64; 3]),
+}
+
+impl Orientation {
+    pub const IDENTITY: Orientation = Orientation::Quat([1.0, 0.0, 0.0, 0.0]);
+}
+
+/// One way to write an orientation.
+#[derive(Clone, Copy)]
+struct Rotation<const N: usize> {
+    kind: Kind,
+    make: fn([f64; N]) -> Orientation,
+}
+
+const QUAT: Rotation<4> = Rotation {
+    kind: Kind::Quat,
+    make: Orientation::Quat,
+};
+const fn rotation<const N: usize>(make: fn([f64; N]) -> Orientation) -> Rotation<N> {
+    Rotation {
+        kind: reals(N, Any),
+        make,
+    }
+}
+
+impl<const N: usize> Rotation<N> {
+    const fn kind(self) -> Kind {
+        self.kind
+    }
+
+    fn store(self, value: &Value, into: &mut Orientation) {
+        if let Value::Reals(values) = value
+            && let Ok(values) = values[..].try_into()
+        {
+            *into = match ((self.make)(values), *into) {
+                // A default class that rotates by other means wins over a quaternion, as in MuJoCo.
+                (Orientation::Quat(_), inherited) if !matches!(inherited, Orientation::Quat(_)) => inherited,
+                (written, _) => written,
+            };
+        }
+    }
+
+    fn show(self, field: &Orientation) -> String {
+        match (self.kind, field) {
+            (Kind::Quat, Orientation::Quat(quat)) => super::attribute::Store::show(quat),
+            _ => String::new(),
+        }
+    }
+}
+
+table! {
+    /// A pose as written.
+    #[derive(Copy, Debug)]
+    group Frame {
+        also orientation: Orientation = Orientation::IDENTITY;
+        set "quat" => orientation, QUAT, orientation, "Orientation as a quaternion, w first.";
+        set "axisangle" => orientation, rotation(Orientation::AxisAngle), orientation, "Orientation as an axis and an angle about it.";
+        set "xyaxes" => orientation, rotation(Orientation::XyAxes), orientation, "Orientation as the x axis and the y axis.";
+        set "zaxis" => orientation, rotation(Orientation::ZAxis), orientation, "Orientation as the z axis, by the shortest rotation.";
+        set "euler" => orientation, rotation(Orientation::Euler), orientation, "Orientation as three angles about the axes of `eulerseq`.";
+        "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Position in the body, m.";
+    }
+}

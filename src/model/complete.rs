@@ -1,0 +1,99 @@
+//! The model as the owner of complete arrays.
+
+use std::ops::Deref;
+
+use super::{Arrays, EqualityKind, Statistic};
+use crate::math::{Quat, Vec3};
+
+/// Owns the complete arrays of a compiled scene; they can be read, but not changed.
+///
+/// Every array of [`Arrays`] can be read through the model (`model.body_mass[b]`, `model.nbody()`). Only
+/// [`crate::physics::compile`] makes a model, so that constants which need dynamics (`body_invweight0`, `dof_invweight0`,
+/// `tendon_invweight0`, `dof_m0`, statistics, poses of welds) are never missing:
+///
+/// ```
+/// use babybench::{assets::MemoryAssets, mjcf_loader, physics};
+///
+/// let text = "<mujoco><worldbody><body><freejoint/><geom size='.1' mass='2'/></body></worldbody></mujoco>";
+/// let model = physics::compile(mjcf_loader::load_str(text, "ball.xml", &MemoryAssets::new())?)?;
+/// assert!((model.dof_invweight0[0] - 0.5).abs() < 1e-15);
+/// # Ok::<(), mjcf_loader::LoadError>(())
+/// ```
+///
+/// To change a scene, change its MJCF text and compile it again. A model itself stays as it is:
+///
+/// ```compile_fail,E0596
+/// fn lighten(model: &mut babybench::Model) {
+///     model.body_mass[1] = 0.0; // cannot borrow data in dereference of `Model` as mutable
+/// }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    arrays: Arrays,
+}
+
+impl Deref for Model {
+    type Target = Arrays;
+
+    fn deref(&self) -> &Arrays {
+        &self.arrays
+    }
+}
+
+/// Everything in a model that needs dynamics at `qpos0`.
+#[derive(Clone, Debug)]
+pub(crate) struct Constants {
+    /// See [`Arrays::body_invweight0`].
+    pub body_invweight0: Vec<[f64; 2]>,
+    /// See [`Arrays::dof_invweight0`].
+    pub dof_invweight0: Vec<f64>,
+    /// See [`Arrays::dof_m0`].
+    pub dof_m0: Vec<f64>,
+    /// See [`Arrays::tendon_invweight0`].
+    pub tendon_invweight0: Vec<f64>,
+    /// The statistics, given or computed.
+    pub stat: Statistic,
+    /// The relative pose of each weld that is to hold that at `qpos0`.
+    pub weld_poses: Vec<WeldPose>,
+    /// What lights keep of their pose at `qpos0`, for every light.
+    pub light_poses: Vec<LightPose>,
+}
+
+/// The relative pose of a weld at `qpos0`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WeldPose {
+    /// Which equality it is.
+    pub equality: usize,
+    /// See [`EqualityKind::Weld`].
+    pub relpos: Vec3,
+    /// See [`EqualityKind::Weld`].
+    pub relquat: Quat,
+}
+
+/// What a light keeps of its pose at `qpos0`; see [`super::Light`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightPose {
+    pub pos0: Vec3,
+    pub poscom0: Vec3,
+    pub dir0: Vec3,
+}
+
+impl Model {
+    /// Completes the arrays of a document with the constants that need dynamics.
+    pub(crate) fn new(mut arrays: Arrays, constants: Constants) -> Self {
+        arrays.body_invweight0 = constants.body_invweight0;
+        arrays.dof_invweight0 = constants.dof_invweight0;
+        arrays.dof_m0 = constants.dof_m0;
+        arrays.tendon_invweight0 = constants.tendon_invweight0;
+        arrays.stat = constants.stat;
+        for pose in constants.weld_poses {
+            if let EqualityKind::Weld { relpos, relquat, .. } = &mut arrays.eq_kind[pose.equality] {
+                (*relpos, *relquat) = (pose.relpos, pose.relquat);
+            }
+        }
+        for (light, pose) in arrays.lights.iter_mut().zip(constants.light_poses) {
+            (light.pos0, light.poscom0, light.dir0) = (pose.pos0, pose.poscom0, pose.dir0);
+        }
+        Self { arrays }
+    }
+}

@@ -1,0 +1,90 @@
+//! Which tiles of the Hessian of an island are not zero, and which rows are eliminated into which.
+
+use crate::physics::constraint::hessian::{Hessian, NONE};
+use crate::physics::constraint::island::Island;
+use crate::physics::tiles::ZERO;
+
+impl Hessian {
+    /// Finds the pattern for an island.
+    pub(in crate::physics::constraint) fn analyse(&mut self, island: &Island) {
+        let n = island.tiles();
+        self.words = n.div_ceil(64);
+        let words = self.words;
+        self.bits.clear();
+        self.bits.resize(n * words, 0);
+        for i in 0..n {
+            for &j in island.m_pattern.cols(i) {
+                set(&mut self.bits[i * words..], j);
+            }
+        }
+        let several = island.several.iter().map(|s| &s.1);
+        for j in several.chain(island.cones.iter().map(|c| &c.1)) {
+            // elimination hands the coupling down to the lower rows
+            if let [cols @ .., last] = island.cols(j) {
+                let row = *last as usize * words;
+                cols.iter().for_each(|&c| set(&mut self.bits[row..], c));
+            }
+        }
+        self.eliminate(n);
+        let tiles = self.pattern.tiles();
+        self.h.resize(tiles, ZERO);
+        self.factor.resize(tiles, ZERO);
+        self.inv.resize(n, [0.0; 4]);
+        self.changed.clear();
+        self.changed.resize(n, true);
+        self.weight.clear();
+        self.zone.clear();
+    }
+
+    /// Eliminates symbolically, then collects the columns of each row.
+    fn eliminate(&mut self, n: usize) {
+        let words = self.words;
+        self.child.clear();
+        self.child.resize(n, NONE);
+        self.sibling.clear();
+        self.sibling.resize(n, NONE);
+        for i in (0..n).rev() {
+            let (head, row) = self.bits.split_at_mut(i * words);
+            row[i / 64] &= !(1 << (i % 64));
+            // a row hands its pattern to its last nonzero column
+            if let Some(w) = (0..words).rev().find(|&w| row[w] != 0) {
+                let j = w * 64 + 63 - row[w].leading_zeros() as usize;
+                let target = &mut head[j * words..(j + 1) * words];
+                for (t, r) in target.iter_mut().zip(&row[..words]) {
+                    *t |= r;
+                }
+                self.sibling[i] = self.child[j];
+                self.child[j] = i as u32;
+            }
+        }
+        self.pattern.clear();
+        self.place.resize((n * n).max(self.place.len()), 0);
+        self.update_adr.clear();
+        let mut updates = 0;
+        for i in 0..n {
+            let start = self.pattern.tiles();
+            let mut push = |col: usize| {
+                self.place[i * n + col] = self.pattern.tiles() as u32;
+                self.pattern.push_col(col as u32);
+            };
+            for w in 0..words {
+                let mut bits = self.bits[i * words + w];
+                while bits != 0 {
+                    push(w * 64 + bits.trailing_zeros() as usize);
+                    bits &= bits - 1;
+                }
+            }
+            push(i);
+            self.pattern.end_row();
+            let cols = self.pattern.tiles() - start - 1;
+            self.update_adr.push(updates);
+            updates += cols * (cols + 1) / 2;
+        }
+        self.update.resize(updates, ZERO);
+    }
+}
+
+#[inline]
+fn set(bits: &mut [u64], i: u32) {
+    bits[i as usize / 64] |= 1 << (i % 64);
+}

@@ -1,0 +1,90 @@
+//! Constraint rows without a friction cone, four at a time.
+
+use crate::physics::constraint::{Block, ConstraintType, Efc};
+use crate::physics::tiles::Lanes;
+
+/// No row.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Four rows whose force is `-d jar`, clamped: by nothing (equalities), to the dry friction, to one sign (limits and
+/// contacts without friction). Rows that are not there are zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quad {
+    /// Inverse of the regularisation.
+    pub(super) d: Lanes,
+    /// Regularisation.
+    r: Lanes,
+    /// Bounds of `d jar`.
+    low: Lanes,
+    high: Lanes,
+    pub(super) aref: Lanes,
+    /// `J a - aref`
+    pub(super) jar: Lanes,
+    /// `J` times the search direction.
+    pub(super) jv: Lanes,
+    pub(super) force: Lanes,
+    /// Curvature: `d` between the bounds, else 0.
+    pub(super) weight: Lanes,
+    /// Rows of [`Efc`].
+    pub(super) row: [u32; 4],
+}
+
+/// Four rows that are not there.
+pub(super) const NO_ROWS: Quad = Quad {
+    d: [0.0; 4],
+    r: [0.0; 4],
+    low: [0.0; 4],
+    high: [0.0; 4],
+    aref: [0.0; 4],
+    jar: [0.0; 4],
+    jv: [0.0; 4],
+    force: [0.0; 4],
+    weight: [0.0; 4],
+    row: [NONE; 4],
+};
+
+impl Quad {
+    pub(super) fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
+        let (low, high) = match b.kind {
+            ConstraintType::FrictionDof => (-b.frictionloss, b.frictionloss),
+            ConstraintType::LimitJoint | ConstraintType::LimitTendon | ConstraintType::ContactFrictionless => {
+                (f64::NEG_INFINITY, 0.0)
+            }
+            ConstraintType::Equality | ConstraintType::ContactElliptic => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        (self.d[k], self.r[k], self.aref[k]) = (efc.d[row], efc.r[row], efc.aref[row]);
+        (self.low[k], self.high[k], self.row[k]) = (low, high, row as u32);
+    }
+
+    /// Fills force and weight; returns the costs.
+    #[inline(always)]
+    pub(super) fn evaluate(&mut self) -> Lanes {
+        let mut cost = [0.0; 4];
+        for k in 0..4 {
+            let pull = self.d[k] * self.jar[k];
+            let clamped = clamp(pull, self.low[k], self.high[k]);
+            self.weight[k] = if clamped == pull { self.d[k] } else { 0.0 };
+            self.force[k] = -clamped;
+            cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
+        }
+        cost
+    }
+
+    /// Adds first and second derivatives of the cost at `jar + alpha jv`.
+    #[inline(always)]
+    pub(super) fn add_slopes(&self, alpha: f64, first: &mut Lanes, second: &mut Lanes) {
+        for k in 0..4 {
+            let pull = self.d[k] * (self.jar[k] + alpha * self.jv[k]);
+            let clamped = clamp(pull, self.low[k], self.high[k]);
+            let curvature = self.d[k] * self.jv[k] * self.jv[k];
+            first[k] += clamped * self.jv[k];
+            second[k] += if clamped == pull { curvature } else { 0.0 };
+        }
+    }
+}
+
+#[inline(always)]
+fn clamp(x: f64, low: f64, high: f64) -> f64 {
+    let x = if x < low { low } else { x };
+    if x > high { high } else { x }
+}

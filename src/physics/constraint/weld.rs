@@ -1,0 +1,75 @@
+//! The pose error of a weld, and how its rows act.
+
+use crate::math::*;
+use crate::model::{EqualityKind, Model};
+use crate::physics::state::State;
+
+/// The pose error of a weld and what its Jacobian needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Weld {
+    /// Constrained point as body 1 carries it, world, m.
+    pub point1: Vec3,
+    /// Constrained point as body 2 carries it, world, m.
+    pub point2: Vec3,
+    /// Position error (m) and `torquescale` times the vector part of the relative quaternion.
+    pub error: [f64; 6],
+    quat1: Quat,
+    quat2_conj: Quat,
+    torquescale: f64,
+}
+
+impl Weld {
+    /// Returns the rate of the rotational error under a relative angular velocity `w` of body 1 (world, rad/s).
+    pub fn rotation_rate(&self, w: Vec3) -> Vec3 {
+        let q = quat_mul(quat_mul(self.quat2_conj, [0.0, w[0], w[1], w[2]]), self.quat1);
+        scale([q[1], q[2], q[3]], 0.5 * self.torquescale)
+    }
+
+    /// Returns the torque on body 1 (world, N m) of the multipliers of the rotational rows: the transpose of
+    /// [`Self::rotation_rate`].
+    pub fn torque_of_rows(&self, f: Vec3) -> Vec3 {
+        std::array::from_fn(|k| {
+            let mut axis = [0.0; 3];
+            axis[k] = 1.0;
+            dot(self.rotation_rate(axis), f)
+        })
+    }
+}
+
+/// Returns the current state of weld `id`; `None` when that equality is not a weld.
+pub fn weld_points(model: &Model, s: &State, id: usize) -> Option<Weld> {
+    let EqualityKind::Weld {
+        body1,
+        body2,
+        anchor,
+        relpos,
+        relquat,
+        torquescale,
+    } = model.eq_kind[id]
+    else {
+        return None;
+    };
+    let (b1, b2) = (body1, body2);
+    let point1 = add(mat_vec(&s.xmat[b1], relpos), s.xpos[b1]);
+    let point2 = add(mat_vec(&s.xmat[b2], anchor), s.xpos[b2]);
+    let quat1 = quat_mul(s.xquat[b1], relquat);
+    let quat2_conj = quat_conj(s.xquat[b2]);
+    let q = quat_mul(quat2_conj, quat1);
+    let p = sub(point1, point2);
+    let error = [
+        p[0],
+        p[1],
+        p[2],
+        torquescale * q[1],
+        torquescale * q[2],
+        torquescale * q[3],
+    ];
+    Some(Weld {
+        point1,
+        point2,
+        error,
+        quat1,
+        quat2_conj,
+        torquescale,
+    })
+}

@@ -1,0 +1,41 @@
+//! What Rapier's multibodies can represent.
+
+use crate::model::{EqualityKind, JointType, Model};
+use crate::physics::rapier::RapierError;
+use crate::physics::topology::Topology;
+
+/// Refuses what Rapier's multibodies cannot represent.
+pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierError> {
+    let tree = |j: usize| topology.dof_tree[model.jnt_dofadr[j]];
+    for j in 0..model.njnt() {
+        let b = model.jnt_bodyid[j];
+        let what = match model.jnt_type[j] {
+            JointType::Slide => "slide joints are not supported",
+            JointType::Free if model.body_jntnum[b] > 1 => "a free joint must be the only one of its body",
+            JointType::Free if model.body_parentid[b] != 0 => "a free joint must be on a child of the world",
+            _ => continue,
+        };
+        return Err(RapierError::unsupported("joint", &model.jnt_name[j], what));
+    }
+    for t in 0..model.ntendon() {
+        let pair = matches!(model.tendon_wrap[t][..], [(a, x), (b, y)]
+            if a != b && x != 0.0 && y != 0.0 && tree(a) == tree(b));
+        if model.tendon_limited[t] && !pair {
+            let what = "a limited tendon must span two joints of the same tree";
+            return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
+        }
+    }
+    for e in 0..model.neq() {
+        if let EqualityKind::Joint {
+            joint1,
+            joint2: Some(joint2),
+            ..
+        } = model.eq_kind[e]
+            && (joint1 == joint2 || tree(joint1) != tree(joint2))
+        {
+            let what = "a joint equality must be between two joints of the same tree";
+            return Err(RapierError::unsupported("equality", &model.eq_name[e], what));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,201 @@
+//! Policies: what chooses the actions of an evaluation.
+
+mod command;
+#[cfg(feature = "onnx")]
+mod onnx;
+mod protocol;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+pub use command::{CommandPolicy, DEFAULT_LIMIT};
+#[cfg(feature = "onnx")]
+pub use onnx::{OnnxError, OnnxPolicy};
+use thiserror::Error;
+
+use crate::env::Env;
+
+/// An error of a policy.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PolicyError {
+    /// The command cannot be started.
+    #[error(
+        "cannot start the policy {command:?}: {source}; a policy is random, zero, an .onnx file, or a command with its \
+         arguments"
+    )]
+    Start {
+        /// The command.
+        command: String,
+        /// The error of the system.
+        source: std::io::Error,
+    },
+    /// The command cannot be split into words.
+    #[error("cannot start the policy {command:?}: {reason}")]
+    Words {
+        /// The command.
+        command: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// The command ended.
+    #[error("the policy {command:?} ended ({status}) {when}")]
+    Ended {
+        /// The command.
+        command: String,
+        /// Its exit status.
+        status: String,
+        /// The episode and the step.
+        when: Moment,
+    },
+    /// The command does not answer.
+    #[error(
+        "the policy {command:?} gave no action within {seconds} s {when}; raise --policy-timeout for a slow policy"
+    )]
+    Timeout {
+        /// The command.
+        command: String,
+        /// The time limit, s.
+        seconds: f64,
+        /// The episode and the step.
+        when: Moment,
+    },
+    /// The command's answer is not an action.
+    #[error(
+        "the policy {command:?} answered {answer:?} {when}: {reason}; it must write one line per observation to its \
+         standard output, a JSON list of {expected} numbers; anything else belongs on its standard error"
+    )]
+    Answer {
+        /// The command.
+        command: String,
+        /// The start of its answer.
+        answer: String,
+        /// What is wrong with it.
+        reason: String,
+        /// Length of an action.
+        expected: usize,
+        /// The episode and the step.
+        when: Moment,
+    },
+    /// The model does not fit.
+    #[cfg(feature = "onnx")]
+    #[error("{}: {source}", path.display())]
+    Onnx {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: OnnxError,
+    },
+    /// The policy is a model, but the feature `onnx` is off.
+    #[error(
+        "{}: this program was built without ONNX; build it with `cargo build --release --features onnx`, or with \
+         `--features babybench/onnx` from another project", path.display()
+    )]
+    NoOnnx {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// A moment of an evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    /// Episodes before this one, of this policy.
+    pub episode: u64,
+    /// Steps before this one in the episode.
+    pub step: u64,
+}
+
+impl std::fmt::Display for Moment {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "at step {} of its episode {}", self.step, self.episode)
+    }
+}
+
+/// Chooses actions.
+pub trait Policy: Send {
+    /// Begins an episode; the environment has been reset.
+    ///
+    /// # Errors
+    /// The policy cannot go on.
+    fn begin(&mut self, env: &mut Env) -> Result<(), PolicyError> {
+        let _ = env;
+        Ok(())
+    }
+
+    /// Writes the action for the environment's current observation into `action`.
+    ///
+    /// # Errors
+    /// The policy cannot go on.
+    fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError>;
+}
+
+/// A policy of random actions, drawn from the environment's generator.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RandomPolicy;
+
+impl Policy for RandomPolicy {
+    fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
+        env.sample_action(action);
+        Ok(())
+    }
+}
+
+/// A policy whose action is always 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ZeroPolicy;
+
+impl Policy for ZeroPolicy {
+    fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
+        action.clear();
+        action.resize(env.action_space().len(), 0.0);
+        Ok(())
+    }
+}
+
+/// A policy as the command line names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PolicySource {
+    /// `random`
+    Random,
+    /// `zero`
+    Zero,
+    /// A file that ends in `.onnx`.
+    Onnx(PathBuf),
+    /// Anything else.
+    Command(String),
+}
+
+impl PolicySource {
+    /// Parses the name of a policy. A name that ends in `.onnx` is a model if it is a file or a single word, in quotes
+    /// if it has spaces; otherwise it is a command with a model among its arguments.
+    pub fn new(text: &str) -> Self {
+        let text = text.trim();
+        let model = |name: &str| name.to_ascii_lowercase().ends_with(".onnx");
+        match text {
+            "random" => Self::Random,
+            "zero" => Self::Zero,
+            file if model(file) && Path::new(file).is_file() => Self::Onnx(file.into()),
+            _ => match command::words(text).as_deref() {
+                Some([word]) if model(word) => Self::Onnx(word.into()),
+                _ => Self::Command(text.to_string()),
+            },
+        }
+    }
+
+    /// Opens the policy. `limit` is the time limit of a command for an action.
+    ///
+    /// # Errors
+    /// A command that cannot be started, a model that cannot be read.
+    pub fn open(&self, limit: Duration) -> Result<Box<dyn Policy>, PolicyError> {
+        Ok(match self {
+            Self::Random => Box::new(RandomPolicy),
+            Self::Zero => Box::new(ZeroPolicy),
+            #[cfg(feature = "onnx")]
+            Self::Onnx(path) => Box::new(OnnxPolicy::open(path)?),
+            #[cfg(not(feature = "onnx"))]
+            Self::Onnx(path) => return Err(PolicyError::NoOnnx { path: path.clone() }),
+            Self::Command(command) => Box::new(CommandPolicy::start(command)?.with_limit(limit)),
+        })
+    }
+}

@@ -1,0 +1,165 @@
+//! The target of rasterisation: the nearest triangle at each sample, and the fragments of transparent triangles.
+
+use std::marker::PhantomData;
+
+use wide::f32x4;
+
+use super::plane::Vertex;
+use super::raster::{Depth, Fixed, Sink, scan};
+use super::sampling::Sampling;
+
+/// Index of nothing.
+pub const NONE: u32 = u32::MAX;
+
+/// A triangle that is visible somewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle {
+    /// Index of the drawable.
+    pub draw: u32,
+    /// Indices of its vertices in the frame.
+    pub vertices: [u32; 3],
+    /// Index of its shading, or [`NONE`].
+    pub setup: u32,
+}
+
+/// The image being drawn; row 0 is the lowest.
+#[derive(Debug, Default)]
+pub struct Target {
+    pub width: usize,
+    pub height: usize,
+    /// Depth of each sample; 0 is the farthest.
+    pub depth: Vec<[f32; 4]>,
+    /// Index of the record that each sample shows.
+    pub ids: Vec<[u32; 4]>,
+    pub records: Vec<Triangle>,
+    /// Fragments of transparent triangles.
+    pub fragments: Vec<Fragment>,
+}
+
+/// The samples of one pixel that a transparent triangle covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment {
+    /// Index of the pixel, counted from the lower left.
+    pub at: u32,
+    /// Index of the record.
+    pub id: u32,
+    /// One bit for each sample.
+    pub samples: u32,
+}
+
+impl Target {
+    pub fn clear(&mut self, width: usize, height: usize) {
+        (self.width, self.height) = (width, height);
+        self.depth.clear();
+        self.depth.resize(width * height, [0.0; 4]);
+        self.ids.clear();
+        self.ids.resize(width * height, [NONE; 4]);
+        self.records.clear();
+        self.fragments.clear();
+    }
+
+    /// Returns whether every sample in a range of pixels shows something nearer than the depth `z`.
+    pub fn hides(&self, x: std::ops::Range<usize>, y: std::ops::Range<usize>, z: f32) -> bool {
+        y.into_iter().all(|row| {
+            let row = &self.depth[row * self.width..][x.clone()];
+            row.iter()
+                .all(|&d| f32x4::new(d).simd_gt(f32x4::splat(z)).to_bitmask() == 15)
+        })
+    }
+
+    /// Draws a counterclockwise triangle as `K` says: [`Opaque`] or [`Transparent`]. `record` has the indices of its corners
+    /// among `vertices`.
+    #[inline(never)]
+    pub fn triangle<'a, S: Sampling, K>(&'a mut self, fixed: &[Fixed; 3], vertices: &[Vertex], record: Triangle)
+    where
+        Writer<'a, K>: Sink,
+    {
+        let size = [self.width, self.height];
+        let corners = record.vertices;
+        let mut writer = Writer {
+            target: self,
+            record,
+            id: NONE,
+            kind: PhantomData::<K>,
+        };
+        let depth = || Depth::new::<S>(corners.map(|v| &vertices[v as usize]), size);
+        scan::<S>(&mut writer, size, fixed, depth);
+    }
+}
+
+/// The kind of triangle that hides what is behind it: each sample keeps the nearest.
+pub struct Opaque;
+/// The kind of triangle that hides nothing: its fragments in front of everything opaque are collected.
+pub struct Transparent;
+
+/// A sink that writes a triangle to a target, and records it at the first sample that shows it.
+pub struct Writer<'a, K> {
+    target: &'a mut Target,
+    record: Triangle,
+    id: u32,
+    kind: PhantomData<K>,
+}
+
+/// Records a triangle unless it is recorded already; `id` is its index among the records, or [`NONE`].
+#[inline(always)]
+fn keep(id: &mut u32, records: &mut Vec<Triangle>, record: Triangle) {
+    if *id == NONE {
+        *id = records.len() as u32;
+        records.push(record);
+    }
+}
+
+impl Sink for Writer<'_, Opaque> {
+    #[inline(always)]
+    fn pixel(&mut self, at: usize, inside: u32, z: f32x4) {
+        let depth = &mut self.target.depth[at];
+        let before = f32x4::new(*depth);
+        let mut seen = inside & z.simd_ge(before).to_bitmask();
+        if seen == 0 {
+            return;
+        }
+        let ids = &mut self.target.ids[at];
+        let records = &mut self.target.records;
+        // at equal depth the one that comes later in the model is seen
+        let tie = seen & z.simd_eq(before).to_bitmask();
+        if tie != 0 {
+            for k in 0..4 {
+                let later = |id: u32| records.get(id as usize).is_some_and(|r| r.draw > self.record.draw);
+                if tie & 1 << k != 0 && ids[k] != self.id && later(ids[k]) {
+                    seen &= !(1 << k);
+                }
+            }
+            if seen == 0 {
+                return;
+            }
+        }
+        keep(&mut self.id, records, self.record);
+        let z = z.to_array();
+        if seen == 15 {
+            *depth = z;
+            *ids = [self.id; 4];
+            return;
+        }
+        for k in 0..4 {
+            if seen & 1 << k != 0 {
+                depth[k] = z[k];
+                ids[k] = self.id;
+            }
+        }
+    }
+}
+
+impl Sink for Writer<'_, Transparent> {
+    fn pixel(&mut self, at: usize, inside: u32, z: f32x4) {
+        let samples = inside & z.simd_ge(f32x4::new(self.target.depth[at])).to_bitmask();
+        if samples == 0 {
+            return;
+        }
+        keep(&mut self.id, &mut self.target.records, self.record);
+        self.target.fragments.push(Fragment {
+            at: at as u32,
+            id: self.id,
+            samples,
+        });
+    }
+}

@@ -1,0 +1,190 @@
+//! Pictures of MIMo with parts of the body in colour.
+
+use image::ExtendedColorType;
+
+use crate::assets::AssetSource;
+use crate::formats::png::png;
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::{State, Topology, cameras, kinematics};
+use crate::render::{Aim, CpuRenderer, Element, Light, Poses, View, Visual};
+
+/// Width of a picture, pixels.
+pub(super) const WIDTH: usize = 400;
+/// Height of a picture, pixels.
+pub(super) const HEIGHT: usize = 600;
+/// Vertical field of view, degrees: nearly parallel.
+const FOVY: f64 = 9.0;
+/// Free space around MIMo, as a share of the picture's height.
+const MARGIN: f64 = 0.05;
+/// Posture in which every part can be seen, rad; joints that are not here are at 0.
+const POSTURE: [(&str, f64); 8] = [
+    ("robot:right_shoulder_ad_ab", 0.45),
+    ("robot:left_shoulder_ad_ab", 0.45),
+    ("robot:right_elbow", -0.3),
+    ("robot:left_elbow", -0.3),
+    ("robot:right_hip2", -0.12),
+    ("robot:left_hip2", -0.12),
+    ("robot:right_knee", -0.1),
+    ("robot:left_knee", -0.1),
+];
+
+/// Bodies that keep their textures: clothes would hide the colours.
+const FACE: [&str; 3] = ["head", "left_eye", "right_eye"];
+
+/// The side from which MIMo is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Front,
+    Back,
+}
+
+/// MIMo without the scene, standing with the arms away from the body.
+pub(super) struct Doll {
+    visual: Visual,
+    state: State,
+    hip: usize,
+    center: Vec3,
+    distance: f64,
+    renderer: CpuRenderer,
+}
+
+impl Doll {
+    /// Takes MIMo out of a scene; returns `None` if there is no MIMo or no camera. MIMo has a face if its textures are
+    /// in `assets`.
+    pub fn new(model: &Model, assets: &dyn AssetSource) -> Option<Self> {
+        let hip = model.body("hip")?;
+        if model.ncam() == 0 {
+            return None;
+        }
+        let visual = Visual::new(model, assets).or_else(|_| Visual::without_textures(model));
+        let mut visual = visual.ok()?;
+        visual.sky = None;
+        let own = |g: usize| model.in_subtree(model.geom_bodyid[g], hip);
+        visual
+            .drawables
+            .retain(|d| matches!(d.element, Element::Geom(g) if own(g)));
+        for drawable in &mut visual.drawables {
+            (drawable.specular, drawable.exponent, drawable.emission) = (0.15, 20.0, 0.0);
+            let face = |g: usize| FACE.contains(&model.body_name[model.geom_bodyid[g]].as_str());
+            if !matches!(drawable.element, Element::Geom(g) if face(g)) {
+                drawable.texture = None;
+            }
+        }
+        visual.cameras[0].fovy = FOVY;
+        let mut state = State::new(model, &Topology::new(model));
+        for (joint, angle) in POSTURE {
+            if let Some(j) = model.joint(joint) {
+                state.qpos[model.jnt_qposadr[j]] = angle;
+            }
+        }
+        kinematics(model, &mut state);
+        cameras(model, &mut state);
+        // the box around MIMo along the axes of the hip
+        let frame = state.xmat[hip];
+        let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
+        for d in &visual.drawables {
+            let Element::Geom(g) = d.element else { continue };
+            let at = mat_t_vec(&frame, state.geom_xpos[g]);
+            let radius = model.geom_size[g].iter().fold(0.0, |m: f64, s| m.max(*s));
+            for k in 0..3 {
+                low[k] = low[k].min(at[k] - radius);
+                high[k] = high[k].max(at[k] + radius);
+            }
+        }
+        let size = sub(high, low);
+        let needed = size[2].max(size[1] * HEIGHT as f64 / WIDTH as f64) * (0.5 + MARGIN);
+        let distance = needed / pxfm::f_tan((0.5 * FOVY).to_radians());
+        (visual.near, visual.far) = (0.2 * distance, 3.0 * distance);
+        let center = mat_vec(&frame, scale(add(low, high), 0.5));
+        let renderer = CpuRenderer::new();
+        Some(Self {
+            visual,
+            state,
+            hip,
+            center,
+            distance,
+            renderer,
+        })
+    }
+
+    /// Draws a PNG image with a transparent background, each geom in a colour.
+    pub fn draw(&mut self, side: Side, color: &dyn Fn(usize) -> [f32; 3]) -> Option<Vec<u8>> {
+        let frame = self.state.xmat[self.hip];
+        let turn = if side == Side::Front { 1.0 } else { -1.0 };
+        let (forward, left, up) = (
+            scale(column(&frame, 0), turn),
+            scale(column(&frame, 1), turn),
+            column(&frame, 2),
+        );
+        self.state.cam_xpos[0] = add_scaled(self.center, forward, self.distance);
+        let columns = [left, up, forward];
+        self.state.cam_xmat[0] = std::array::from_fn(|k| columns[k % 3][k / 3]);
+        for drawable in &mut self.visual.drawables {
+            if let Element::Geom(g) = drawable.element {
+                let [r, g, b] = match drawable.texture {
+                    // a face stays one under its colour
+                    Some(_) => color(g).map(|c| 0.5 + 0.5 * c),
+                    None => color(g),
+                };
+                drawable.rgba = [r, g, b, 1.0];
+            }
+        }
+        let light = |dir: Vec3, strength: f32| Light {
+            body: self.hip,
+            pos: None,
+            dir: unit([turn * dir[0], turn * dir[1], dir[2]]).0,
+            aim: Aim::Body,
+            ambient: [0.2; 3],
+            diffuse: [strength; 3],
+            specular: [0.3; 3],
+            attenuation: [1.0, 0.0, 0.0],
+            cos_cutoff: -1.0,
+            exponent: 0.0,
+        };
+        self.visual.headlight = None;
+        self.visual.lights = vec![light([-0.7, -0.5, -0.8], 0.5), light([-0.8, 0.9, -0.2], 0.22)];
+        let light = self.picture()?;
+        // the same all in white is how much of each pixel is covered
+        self.visual.lights.clear();
+        for drawable in &mut self.visual.drawables {
+            (drawable.rgba, drawable.emission) = ([1.0; 4], 1.0);
+        }
+        let textures = self
+            .visual
+            .drawables
+            .iter_mut()
+            .map(|d| d.texture.take())
+            .collect::<Vec<_>>();
+        let cover = self.picture()?;
+        for (drawable, texture) in self.visual.drawables.iter_mut().zip(textures) {
+            (drawable.emission, drawable.texture) = (0.0, texture);
+        }
+        let rgba = cut_out(&light, &cover);
+        png(&rgba, WIDTH, HEIGHT, ExtendedColorType::Rgba8).ok()
+    }
+
+    fn picture(&mut self) -> Option<Vec<u8>> {
+        let view = View {
+            camera: 0,
+            width: WIDTH,
+            height: HEIGHT,
+        };
+        let mut rgb = vec![0; view.rgb_len()];
+        let poses = Poses::from(&self.state);
+        self.renderer.rgb(&self.visual, &poses, &view, &mut rgb).ok()?;
+        Some(rgb)
+    }
+}
+
+/// Makes the background of an RGB picture on black transparent; `cover` is the same scene all in white.
+fn cut_out(picture: &[u8], cover: &[u8]) -> Vec<u8> {
+    let pixels = picture.chunks_exact(3).zip(cover.chunks_exact(3));
+    pixels
+        .flat_map(|(c, a)| {
+            let alpha = u32::from(a[0]);
+            let over = |v: u8| (u32::from(v) * 255).checked_div(alpha).unwrap_or(0).min(255) as u8;
+            [over(c[0]), over(c[1]), over(c[2]), a[0]]
+        })
+        .collect()
+}

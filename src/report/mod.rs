@@ -1,0 +1,100 @@
+//! A report of a run: one HTML page that needs no other file, with the score, the learning curve, what the hands
+//! touched or the eyes saw, and key frames of the video.
+
+mod curve;
+mod doll;
+mod gaze;
+mod page;
+mod run;
+pub mod skin;
+mod strip;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::files::replace_file;
+use run::Run;
+
+/// An error in building a report.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The folder is not there.
+    #[error("{}: {}; give the save_dir of a run (babybench train makes one)", path.display(), missing(path))]
+    Missing {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder is of something else.
+    #[error(
+        "{}: not the folder of a run: it has neither logs/training.pkl nor logs/evaluation_N.pkl; run babybench train or \
+         babybench evaluate into it first", path.display()
+    )]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There are logs, but none that can be read.
+    #[error("{}: none of the logs can be read: {reasons}", path.display())]
+    Unreadable {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong with each.
+        reasons: String,
+    },
+    /// The file system refuses.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+}
+
+/// Says in which way a folder is missing.
+fn missing(path: &Path) -> &'static str {
+    match path.exists() {
+        true => "this is a file, not a folder",
+        false => "no such folder",
+    }
+}
+
+/// A written report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// The page.
+    pub html: String,
+    /// What is missing in it, and why.
+    pub notices: Vec<String>,
+}
+
+impl Report {
+    /// Builds the report of the folder of a run, ours or the Python kit's. What is not there yet (training,
+    /// evaluation, video) is left out, with a notice.
+    ///
+    /// # Errors
+    /// A folder that is missing or is not that of a run; logs of which none can be read.
+    pub fn new(save_dir: impl AsRef<Path>) -> Result<Self, ReportError> {
+        let mut run = Run::read(save_dir.as_ref())?;
+        let html = page::page(&mut run);
+        Ok(Self {
+            html,
+            notices: run.notices,
+        })
+    }
+
+    /// Writes the page to a file, which is replaced as a whole.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ReportError> {
+        let path = path.as_ref();
+        replace_file(path, self.html.as_bytes()).map_err(|source| ReportError::Io {
+            path: path.to_path_buf(),
+            source,
+        })
+    }
+}

@@ -1,0 +1,265 @@
+//! The page.
+
+mod evaluation;
+mod touch;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use self::evaluation::evaluation_section;
+use self::touch::touch_section;
+use super::curve::curve;
+use super::gaze::Gaze;
+use super::run::Run;
+use crate::config::{Behavior, Compat, Config, Scene};
+use crate::env::EYE_HAND_PAIRS;
+use crate::eval::{Score, ScoreParts};
+use crate::mimo::Version;
+
+const STYLE: &str = include_str!("style.css");
+/// The hands: name, class, colour.
+const HANDS: [(&str, &str, [f32; 3]); 2] = [
+    ("right hand", "right", [0.894, 0.341, 0.18]),
+    ("left hand", "left", [0.18, 0.525, 0.87]),
+];
+/// Returns a file as a `data:` address.
+fn embed(kind: &str, bytes: &[u8]) -> String {
+    let mut out = format!("data:image/{kind};base64,");
+    STANDARD.encode_string(bytes, &mut out);
+    out
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// Formats a simulated time.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// Formats a number with thin spaces between thousands.
+fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (k, c) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            out.push('\u{202f}');
+        }
+        out.push(c);
+    }
+    out
+}
+
+fn title(run: &Run) -> String {
+    let behavior = match run.behavior {
+        Behavior::SelfTouch => "Self-touch",
+        Behavior::HandRegard => "Hand regard",
+        Behavior::None => "MIMo",
+    };
+    match run.config.as_ref().map(|c| c.scene) {
+        Some(Scene::Crib) => format!("{behavior} in the crib"),
+        Some(Scene::Cubes) => format!("{behavior} among the cubes"),
+        Some(Scene::Base) => format!("{behavior} on the floor"),
+        None => behavior.to_string(),
+    }
+}
+
+/// Returns the simulated time of a step, s.
+fn step_time(run: &Run) -> f64 {
+    let skip = run.config.as_ref().map_or(1, |c| c.frame_skip);
+    run.model.as_ref().map_or(0.005, |m| m.opt.timestep) * f64::from(skip)
+}
+
+/// Returns the whole page, and adds notices about what could not be drawn.
+pub(super) fn page(run: &mut Run) -> String {
+    let body = match run.behavior {
+        Behavior::SelfTouch => touch_section(run),
+        Behavior::HandRegard => gaze_section(run),
+        Behavior::None => html! {},
+    };
+    let evaluation = evaluation_section(run);
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (title(run)) " – BabyBench report" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                (header(run))
+                main {
+                    @if !run.notices.is_empty() {
+                        aside { @for notice in &run.notices { p { (notice) } } }
+                    }
+                    (score_section(run))
+                    (curve_section(run))
+                    (body)
+                    (evaluation)
+                    @if let Some(config) = &run.config { (config_section(config)) }
+                }
+                footer { "Written by babybench " (env!("CARGO_PKG_VERSION")) }
+            }
+        }
+    };
+    markup.into_string()
+}
+
+fn header(run: &Run) -> Markup {
+    let about = run.config.as_ref().map(|c| {
+        let version = Version::of(c.behavior).name();
+        format!(
+            "MIMo {version} · {} · compat: {}",
+            c.actuation_model.name().replace('_', " "),
+            c.compat
+        )
+    });
+    html! {
+        header {
+            p.over { "BabyBench report" }
+            h1 { (title(run)) }
+            p.under { (run.dir.display()) @if let Some(about) = about { " · " (about) } }
+        }
+    }
+}
+
+fn card(value: &str, what: &str) -> Markup {
+    html! { div.card { b { (value) } span { (what) } } }
+}
+
+fn score_section(run: &Run) -> Markup {
+    let Some(score) = &run.score else {
+        return html! {};
+    };
+    let best = match (&score.parts, &run.touchables) {
+        (ScoreParts::SelfTouch { .. }, Some(t)) => {
+            let reachable = [0, 1].map(|hand| t.reachable(hand).len());
+            Score::of_parts(reachable[0] + reachable[1])
+        }
+        _ => 1.0,
+    };
+    html! {
+        section {
+            h2 { "Preliminary training score" }
+            div.cards {
+                div.card.big {
+                    b { (format!("{:.3}", score.value)) }
+                    div.bar { i style=(format!("width:{:.1}%", 100.0 * (score.value / best).min(1.0))) {} }
+                    span { "of " (format!("{best:.3}")) " at best" }
+                }
+                (card(&grouped(score.episodes as u64), "episodes counted"))
+                (card(&grouped(score.steps), "steps"))
+                (card(&duration(score.steps as f64 * step_time(run)), "simulated"))
+                @match &score.parts {
+                    ScoreParts::SelfTouch { touched } => {
+                        @for (touched, (name, ..)) in touched.each_ref().into_iter().zip(&HANDS) {
+                            (card(&touched.len().to_string(), &format!("parts, {name}")))
+                        }
+                    }
+                    ScoreParts::HandRegard { .. } => {}
+                }
+            }
+            @if let Some(fractions) = score.fractions() { (fractions_table(&fractions.to_array())) }
+        }
+    }
+}
+
+/// Draws the shares of the steps of the four pairs of eye and hand.
+fn fractions_table(fractions: &[f64; 4]) -> Markup {
+    let most = fractions.iter().fold(0.01, |m: f64, f| m.max(*f));
+    html! {
+        table.bars {
+            @for (k, name) in EYE_HAND_PAIRS.iter().enumerate() {
+                tr {
+                    th { (name.replacen("eye_", "eye, ", 1).replace('_', " ")) }
+                    td.wide { div.bar.(HANDS[k % 2].1) { i style=(format!("width:{:.1}%", 100.0 * fractions[k] / most)) {} } }
+                    td.number { (format!("{:.2} %", 100.0 * fractions[k])) }
+                }
+            }
+        }
+    }
+}
+
+fn curve_section(run: &Run) -> Markup {
+    let reachable = run.touchables.as_ref().map_or(31, |t| t.reachable(0).len());
+    let Some(chart) = curve(run.counted(), reachable) else {
+        return html! {};
+    };
+    let what = match run.behavior {
+        Behavior::SelfTouch => "Different parts of the body that each palm has touched so far.",
+        _ => "Share of the steps with the hand in the central field of view, mean over the last episodes.",
+    };
+    html! {
+        section {
+            h2 { "Learning curve" }
+            p { (what) " As in the score, the first record of the log does not count." }
+            figure.chart { (chart) }
+        }
+    }
+}
+
+fn gaze_section(run: &mut Run) -> Markup {
+    let compat = run.config.as_ref().map_or(Compat::Api, |c| c.compat);
+    let gaze = run.model.as_ref().and_then(|m| Gaze::new(m, &run.evaluations, compat));
+    let Some(gaze) = gaze else {
+        if !run.evaluations.is_empty() {
+            run.notices
+                .push("There is no gaze map: the run's scene does not match the evaluation logs.".to_string());
+        }
+        return html! {};
+    };
+    html! {
+        section {
+            h2 { "Where the eyes saw the hands" }
+            p { "In evaluation, " (grouped(gaze.steps as u64)) " steps: directions of the hands from each eye, as angles from "
+                "where it looks. Dashed circle: the field of view that is scored"
+                @if compat == Compat::Reference { " (under compat: reference, it lies below the gaze)" }
+                ". Thin line: the border of the eye's image." }
+            div.maps {
+                @for (eye, name) in [(1, "left eye"), (0, "right eye")] {
+                    figure { (gaze.map(eye)) figcaption { b { (name) } } }
+                }
+            }
+            p.legend { @for (name, class, _) in HANDS { span.key.(class) { (name) } } }
+        }
+    }
+}
+
+fn config_section(config: &Config) -> Markup {
+    let yaml = config.to_yaml();
+    let lines = yaml
+        .lines()
+        .filter(|l| !l.starts_with('#'))
+        .filter_map(|l| l.split_once(':'));
+    html! {
+        section {
+            h2 { "Configuration" }
+            details {
+                summary { "all keys" }
+                dl.config { @for (key, value) in lines { div { dt { (key.trim()) } dd { (value.trim()) } } } }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(grouped(7), "7");
+        assert_eq!(grouped(1234567), "1\u{202f}234\u{202f}567");
+        assert_eq!(duration(50.0), "50.0 s");
+        assert_eq!(duration(600.0), "10.0 min");
+        assert_eq!(duration(36000.0), "10.0 h");
+    }
+}

@@ -1,0 +1,204 @@
+//! What the folder of a run holds.
+
+use std::path::{Path, PathBuf};
+
+use super::ReportError;
+use crate::config::{Behavior, Config, Scene};
+use crate::env::Info;
+use crate::eval::{Score, Touchables};
+use crate::mimo::{build_model, embedded};
+use crate::model::Model;
+use crate::runs::logs::{EvaluationLog, evaluation_path, read_training, training_path};
+use crate::runs::{read_config, read_scene};
+
+/// Maximum number of evaluation episodes that are read.
+const MAX_EVALUATIONS: usize = 100;
+
+/// An evaluation episode.
+pub(super) struct Evaluated {
+    pub episode: u64,
+    pub log: EvaluationLog,
+    /// The video, if there is one.
+    pub video: Option<PathBuf>,
+}
+
+/// A run.
+pub(super) struct Run {
+    pub dir: PathBuf,
+    pub behavior: Behavior,
+    pub config: Option<Config>,
+    /// The scene of the run, or, if that does not load here, one with the same MIMo.
+    pub model: Option<Model>,
+    pub touchables: Option<Touchables>,
+    pub training: Vec<Info>,
+    pub score: Option<Score>,
+    pub evaluations: Vec<Evaluated>,
+    pub notices: Vec<String>,
+}
+
+impl Run {
+    /// Reads the folder of a run as far as that goes; what is missing or damaged is noticed.
+    pub fn read(dir: &Path) -> Result<Self, ReportError> {
+        let path = || dir.to_path_buf();
+        if !dir.is_dir() {
+            return Err(ReportError::Missing { path: path() });
+        }
+        let episodes = episodes(dir)?;
+        if episodes.is_empty() && !training_path(dir).exists() {
+            return Err(ReportError::NoRun { path: path() });
+        }
+        let (mut failures, mut notices) = (Vec::new(), Vec::new());
+        let training = training(dir, &mut failures, &mut notices);
+        let evaluations = evaluations(dir, &episodes, &mut failures);
+        if episodes.is_empty() {
+            notices.push("No evaluation yet; babybench evaluate makes one.".to_string());
+        }
+        if episodes.len() > MAX_EVALUATIONS {
+            let all = episodes.len();
+            notices.push(format!(
+                "Only the first {MAX_EVALUATIONS} of {all} evaluation episodes are shown."
+            ));
+        }
+        let records = || {
+            training
+                .iter()
+                .chain(evaluations.iter().filter_map(|e| e.log.info.last()))
+        };
+        let found = records().next().map(|r| r.behavior.name());
+        if found.is_none() && !failures.is_empty() {
+            let reasons = failures.join("; ");
+            return Err(ReportError::Unreadable { path: path(), reasons });
+        }
+        notices.splice(0..0, failures);
+        let config = std::fs::read_to_string(dir.join("scene.xml"))
+            .ok()
+            .and_then(|xml| read_config(&xml).ok());
+        let of_config = config.as_ref().map(|c| c.behavior);
+        let behavior = found.and_then(Behavior::from_name).or(of_config).unwrap_or_default();
+        let score = match training.is_empty() {
+            true => None,
+            false => Score::new(&training).map_err(|e| notices.push(e.to_string())).ok(),
+        };
+        let nq = evaluations.first().map(|e| e.log.nq);
+        let model = scene(dir, behavior, nq, &mut notices);
+        Ok(Self {
+            dir: dir.to_path_buf(),
+            behavior,
+            touchables: model.as_ref().and_then(Touchables::new),
+            config,
+            model,
+            training,
+            score,
+            evaluations,
+            notices,
+        })
+    }
+
+    /// Returns the records that count for the score.
+    pub fn counted(&self) -> &[Info] {
+        Score::counted(&self.training)
+    }
+
+    /// Returns the parts that each hand touched, each with the share of episodes in which it did: in training, or,
+    /// without that, in the evaluation.
+    pub fn touched(&self) -> [Vec<(usize, f64)>; 2] {
+        let last: Vec<&Info> = match self.counted() {
+            [] => self.evaluations.iter().filter_map(|e| e.log.info.last()).collect(),
+            records => records.iter().collect(),
+        };
+        [0, 1].map(|hand| {
+            let mut parts: Vec<(usize, f64)> = Vec::new();
+            for &geom in last.iter().filter_map(|r| r.behavior.touches()).flat_map(|t| t[hand]) {
+                match parts.iter_mut().find(|(g, _)| *g == geom) {
+                    Some((_, n)) => *n += 1.0,
+                    None => parts.push((geom, 1.0)),
+                }
+            }
+            parts.iter_mut().for_each(|(_, n)| *n /= last.len() as f64);
+            parts.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+            parts
+        })
+    }
+}
+
+/// Reads the training log, if there is one.
+fn training(dir: &Path, failures: &mut Vec<String>, notices: &mut Vec<String>) -> Vec<Info> {
+    if !training_path(dir).exists() {
+        notices.push("No training log yet; babybench train writes one.".to_string());
+        return Vec::new();
+    }
+    match read_training(dir) {
+        Ok(records) => {
+            if records.is_empty() {
+                notices.push("The training log has no episodes yet.".to_string());
+            }
+            records
+        }
+        Err(e) => {
+            failures.push(e.to_string());
+            Vec::new()
+        }
+    }
+}
+
+/// Reads the scene of the run, or builds a likely one if that does not load here.
+fn scene(dir: &Path, behavior: Behavior, nq: Option<usize>, notices: &mut Vec<String>) -> Option<Model> {
+    match read_scene(dir) {
+        Ok(model) => Some(model),
+        Err(e) => {
+            if dir.join("scene.xml").exists() {
+                let why = format!("Names come from a built-in scene, because the run's cannot be loaded: {e}");
+                notices.push(why);
+            }
+            likely_scene(behavior, nq)
+        }
+    }
+}
+
+/// Builds a scene with the MIMo of a behavior, and with `nq` positions if they are known.
+fn likely_scene(behavior: Behavior, nq: Option<usize>) -> Option<Model> {
+    let build = |&scene: &Scene| {
+        let config = Config {
+            behavior,
+            scene,
+            ..Config::default()
+        };
+        build_model(&config, &embedded()).ok()
+    };
+    let mut models = Scene::ALL.iter().filter_map(build);
+    models.find(|m| nq.is_none_or(|nq| nq == m.nq))
+}
+
+/// Returns the numbers of the evaluation episodes in a folder, ascending.
+fn episodes(dir: &Path) -> Result<Vec<u64>, ReportError> {
+    let path = dir.join("logs");
+    let entries = match std::fs::read_dir(&path) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(source) => return Err(ReportError::Io { path, source }),
+    };
+    let number = |name: std::ffi::OsString| -> Option<u64> {
+        let name = name.into_string().ok()?;
+        let number = name.strip_prefix("evaluation_")?.strip_suffix(".pkl")?;
+        number.parse().ok()
+    };
+    let mut found: Vec<u64> = entries.flatten().filter_map(|e| number(e.file_name())).collect();
+    found.sort_unstable();
+    Ok(found)
+}
+
+fn evaluations(dir: &Path, episodes: &[u64], failures: &mut Vec<String>) -> Vec<Evaluated> {
+    let mut out = Vec::new();
+    for &episode in episodes.iter().take(MAX_EVALUATIONS) {
+        match EvaluationLog::read(evaluation_path(dir, episode)) {
+            Ok(log) if log.is_empty() => {}
+            Ok(log) => {
+                let video = dir.join("videos").join(format!("evaluation_{episode}.avi"));
+                let video = video.is_file().then_some(video);
+                out.push(Evaluated { episode, log, video });
+            }
+            Err(e) => failures.push(e.to_string()),
+        }
+    }
+    out
+}

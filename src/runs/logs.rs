@@ -1,0 +1,358 @@
+//! Logs of training and evaluation: `logs/training.pkl` and `logs/evaluation_N.pkl` in a run's folder, as the Python
+//! kit writes and reads them, each with the same data beside it for everyone else (`.jsonl`, `.npz`).
+//!
+//! Every file is replaced as a whole: a run that is killed leaves the last complete log.
+
+mod episode;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+pub use episode::EvaluationLog;
+use thiserror::Error;
+
+use crate::config::{Compat, Config};
+use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, InfoDetails, PartNames, PerHand};
+use crate::files::replace_file;
+use crate::formats::pickle::{self, PickleError, Value};
+use crate::json;
+use crate::limits::Limits;
+
+/// An error in reading or writing a log.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LogError {
+    /// There is no log.
+    #[error(
+        "{}: no such log; train into this save_dir first (babybench train, or make_env with training)", path.display()
+    )]
+    Missing {
+        /// Where it was expected.
+        path: PathBuf,
+    },
+    /// The file system refuses.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// The file is not a pickle of a log.
+    #[error("{}: {source}", path.display())]
+    Pickle {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: PickleError,
+    },
+    /// The file is a pickle, but not of such a log.
+    #[error("{}: not a {kind} log of BabyBench: {reason}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// Which log was expected.
+        kind: &'static str,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The log cannot be expressed.
+    #[error("cannot write the log: {0}")]
+    Write(String),
+}
+
+/// Returns the folder of the logs in the folder of a run.
+fn folder(save_dir: &Path) -> PathBuf {
+    save_dir.join("logs")
+}
+
+/// Returns the path of the training log in the folder of a run.
+pub fn training_path(save_dir: impl AsRef<Path>) -> PathBuf {
+    folder(save_dir.as_ref()).join("training.pkl")
+}
+
+/// Returns the path of the log of an evaluation episode in the folder of a run.
+pub fn evaluation_path(save_dir: impl AsRef<Path>, episode: u64) -> PathBuf {
+    folder(save_dir.as_ref()).join(format!("evaluation_{episode}.pkl"))
+}
+
+fn make_folder(save_dir: &Path) -> Result<(), LogError> {
+    let path = folder(save_dir);
+    std::fs::create_dir_all(&path).map_err(|source| LogError::Io { path, source })
+}
+
+fn write(path: PathBuf, bytes: &[u8]) -> Result<(), LogError> {
+    replace_file(&path, bytes).map_err(|source| LogError::Io { path, source })
+}
+
+fn write_pickle(path: PathBuf, value: &Value) -> Result<(), LogError> {
+    let bytes = pickle::to_bytes(value).map_err(|e| LogError::Write(e.to_string()))?;
+    write(path, &bytes)
+}
+
+fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
+    let io = |source: io::Error| {
+        let path = path.to_path_buf();
+        match source.kind() {
+            io::ErrorKind::NotFound => LogError::Missing { path },
+            _ => LogError::Io { path, source },
+        }
+    };
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(io)?;
+    io::Read::read_to_end(
+        &mut io::Read::take(file, (limits.pickle_bytes as u64).saturating_add(1)),
+        &mut bytes,
+    )
+    .map_err(io)?;
+    pickle::from_bytes_with(&bytes, limits).map_err(|source| {
+        let path = path.to_path_buf();
+        LogError::Pickle { path, source }
+    })
+}
+
+/// Converts a record to a dictionary with the keys of the kit, in its order.
+fn to_value(info: &Info) -> Value {
+    let count = |n: u64| Value::Int(i64::try_from(n).unwrap_or(i64::MAX));
+    let steps = ("steps", count(info.steps));
+    let geoms = |list: &[usize]| Value::list(list.iter().map(|&g| count(g as u64)));
+    match &info.behavior {
+        BehaviorInfo::None => Value::dict([steps]),
+        BehaviorInfo::SelfTouch { touches } => Value::dict([
+            ("right_hand_touches", geoms(&touches.right_hand)),
+            ("left_hand_touches", geoms(&touches.left_hand)),
+            steps,
+        ]),
+        BehaviorInfo::HandRegard { counts } => {
+            let counts = EYE_HAND_PAIRS.into_iter().zip(counts.to_array().map(count));
+            Value::dict(counts.chain([steps]))
+        }
+    }
+}
+
+/// Returns a record of what the kit knows of an episode.
+fn record(steps: u64, behavior: BehaviorInfo) -> Info {
+    Info {
+        steps,
+        behavior,
+        ..Info::default()
+    }
+}
+
+/// Converts a dictionary to a record; unknown keys are ignored.
+fn from_value(value: &Value, limits: &Limits) -> Result<Info, String> {
+    if !matches!(value, Value::Dict(_)) {
+        return Err("it is not a dictionary".to_string());
+    }
+    let count = |key: &str| {
+        let number = value.get(key).and_then(Value::count);
+        number.ok_or_else(|| format!("`{key}` is not a whole number"))
+    };
+    let geoms = |key: &str| {
+        let items = value.get(key).and_then(Value::items);
+        let items = items.filter(|l| l.len() <= limits.record_touches);
+        let numbers: Option<Vec<usize>> = items.and_then(|l| l.iter().map(|v| v.count().map(|n| n as usize)).collect());
+        numbers.ok_or_else(|| format!("`{key}` is not a list of geom ids"))
+    };
+    let behavior = if value.get("right_hand_touches").is_some() {
+        BehaviorInfo::SelfTouch {
+            touches: PerHand {
+                right_hand: geoms("right_hand_touches")?,
+                left_hand: geoms("left_hand_touches")?,
+            },
+        }
+    } else if value.get("right_eye_right_hand").is_some() {
+        let [a, b, c, d] = EYE_HAND_PAIRS.map(count);
+        BehaviorInfo::HandRegard {
+            counts: [a?, b?, c?, d?].into(),
+        }
+    } else {
+        BehaviorInfo::None
+    };
+    let steps = count("steps")?;
+    Ok(record(steps, behavior))
+}
+
+/// Converts a list to records, which must be of one behavior.
+fn records(path: &Path, kind: &'static str, value: &Value, limits: &Limits) -> Result<Vec<Info>, LogError> {
+    let foreign = |reason: String| {
+        let path = path.to_path_buf();
+        LogError::Foreign { path, kind, reason }
+    };
+    let items = value
+        .items()
+        .ok_or_else(|| foreign("it is not a list of records".to_string()))?;
+    let mut out: Vec<Info> = Vec::with_capacity(items.len());
+    let mut touches = 0;
+    for (k, item) in items.iter().enumerate() {
+        let info = from_value(item, limits).map_err(|e| foreign(format!("record {k}: {e}")))?;
+        let same = |first: &Info| std::mem::discriminant(&first.behavior) == std::mem::discriminant(&info.behavior);
+        if !out.first().is_none_or(same) {
+            return Err(foreign(format!("record {k} has another behavior than record 0")));
+        }
+        touches += info.behavior.touches().map_or(0, |t| t[0].len() + t[1].len());
+        if touches > limits.pickle_numbers {
+            return Err(foreign("it has too many touches".to_string()));
+        }
+        out.push(info);
+    }
+    Ok(out)
+}
+
+/// Reads the training log of a run: one record for each completed episode.
+///
+/// # Errors
+/// No log, a file that is none, one that is damaged.
+pub fn read_training(save_dir: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
+    read_records(training_path(save_dir))
+}
+
+/// Reads a training log by its path.
+///
+/// # Errors
+/// As [`read_training`].
+pub fn read_records(path: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
+    read_records_with(path, &Limits::DEFAULT)
+}
+
+/// Reads a training log by its path, within other limits than the default ones.
+///
+/// # Errors
+/// As [`read_training`].
+pub fn read_records_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Vec<Info>, LogError> {
+    let path = path.as_ref();
+    let value = read_pickle(path, limits)?;
+    if value.get("qpos").is_some() {
+        return Err(LogError::Foreign {
+            path: path.to_path_buf(),
+            kind: "training",
+            reason: "it is the log of an evaluation episode".to_string(),
+        });
+    }
+    records(path, "training", &value, limits)
+}
+
+/// The log of a training run, saved as often as its configuration says.
+///
+/// Under `compat: api` every episode of at least one step is a record, and the log is saved whenever their number is a
+/// multiple of `save_logs_every`. Under `compat: reference` every reset adds a record, also the first one (an empty
+/// record), and the log is saved when the number of steps of the ended episode is a multiple of `save_logs_every`.
+#[derive(Clone, Debug)]
+pub struct TrainingLog {
+    save_dir: PathBuf,
+    compat: Compat,
+    save_every: u64,
+    records: Vec<Info>,
+    resumed: bool,
+    /// For the names of touched parts in the lines of JSON.
+    names: Option<PartNames>,
+}
+
+impl TrainingLog {
+    /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn create(config: &Config) -> Result<Self, LogError> {
+        let log = Self {
+            save_dir: PathBuf::from(&config.save_dir),
+            compat: config.compat,
+            save_every: config.save_logs_every.max(1),
+            records: Vec::new(),
+            resumed: false,
+            names: None,
+        };
+        make_folder(&log.save_dir)?;
+        if log.compat == Compat::Api {
+            log.save()?;
+        }
+        Ok(log)
+    }
+
+    /// Resumes the log in the configuration's `save_dir`, or creates one if there is none. No empty record is added.
+    ///
+    /// # Errors
+    /// A log that cannot be read, or is of another behavior.
+    pub fn resume(config: &Config) -> Result<Self, LogError> {
+        let path = training_path(&config.save_dir);
+        if !path.exists() {
+            return Self::create(config);
+        }
+        let records = read_records(&path)?;
+        if let Some(found) = records
+            .first()
+            .map(|r| r.behavior.name())
+            .filter(|b| *b != config.behavior.name())
+        {
+            return Err(LogError::Foreign {
+                path,
+                kind: "training",
+                reason: format!("its behavior is {found}, not {}; use another save_dir", config.behavior),
+            });
+        }
+        make_folder(config.save_dir.as_ref())?;
+        Ok(Self {
+            save_dir: PathBuf::from(&config.save_dir),
+            compat: config.compat,
+            save_every: config.save_logs_every.max(1),
+            resumed: !records.is_empty(),
+            records,
+            names: None,
+        })
+    }
+
+    /// Adds names of the touched parts to `training.jsonl`.
+    #[must_use]
+    pub fn with_names(self, names: Option<PartNames>) -> Self {
+        Self { names, ..self }
+    }
+
+    /// Returns the records so far.
+    pub fn records(&self) -> &[Info] {
+        &self.records
+    }
+
+    /// Returns the folder of the run.
+    pub fn save_dir(&self) -> &Path {
+        &self.save_dir
+    }
+
+    /// Records an episode that ended after `steps` steps, and saves when it is time to. An environment that logs
+    /// ([`crate::make_env`]) does so by itself; this is for programs that run many environments into one log.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
+        let first = std::mem::take(&mut self.resumed);
+        if steps == 0 && (first || self.compat == Compat::Api) {
+            return Ok(());
+        }
+        let behavior = behavior.clone();
+        self.records.push(record(steps, behavior));
+        let count = match self.compat {
+            Compat::Api => self.records.len() as u64,
+            Compat::Reference => steps,
+        };
+        match count % self.save_every {
+            0 => self.save(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes `training.pkl` and `training.jsonl`, in which touched parts also have names (`right_hand_parts`,
+    /// `left_hand_parts`).
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn save(&self) -> Result<(), LogError> {
+        let path = training_path(&self.save_dir);
+        let mut lines = Vec::new();
+        for info in &self.records {
+            let details = self.names.as_ref().map(|names| InfoDetails::of(&info.behavior, names));
+            let details = details.as_ref();
+            json::line(&mut lines, &Detailed { info, details }).map_err(|e| LogError::Write(e.to_string()))?;
+        }
+        write(path.with_extension("jsonl"), &lines)?;
+        write_pickle(path, &Value::list(self.records.iter().map(to_value)))
+    }
+}

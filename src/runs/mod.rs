@@ -1,0 +1,16 @@
+//! Runs in folders: training with its log, the scene that belongs to the logs, recordings and their replay.
+
+pub mod logs;
+#[cfg(feature = "npz")]
+mod replay;
+mod scene_file;
+mod training;
+
+pub use logs::{EvaluationLog, LogError, TrainingLog, read_training};
+#[cfg(feature = "npz")]
+pub use replay::{Recording, Replay, ReplayError, TouchRows, replay, replay_with_images};
+pub use scene_file::{
+    KeptScene, SceneFile, SceneFileError, complete_scene, complete_scene_from, keep_scene, read_config, read_scene,
+    write_scene, write_scene_from,
+};
+pub use training::{RunEnv, RunError, for_evaluation, make_env, start_training, start_training_from};

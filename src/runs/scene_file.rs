@@ -1,0 +1,246 @@
+//! `scene.xml`: the complete scene of an environment in one MJCF document, which this library and MuJoCo load.
+//!
+//! Includes are replaced by what they include; a comment at the top holds the configuration. Images of textures are
+//! written beside it into `tex/`, so that the folder can be moved as a whole.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::assets::{AssetSource, DirAssets, directory, resolve};
+use crate::config::{Config, ConfigError};
+use crate::env::Blueprint;
+use crate::files::replace_file;
+use crate::limits::Limits;
+use crate::mimo::{DOCUMENT, Version, embedded, scene_xml};
+use crate::mjcf_loader::{LoadError, Tree, load};
+use crate::model::Model;
+use crate::physics::compile;
+
+/// The document in the folder of a run.
+const SCENE: &str = "scene.xml";
+/// Folder of the images, beside the document.
+const IMAGES: &str = "tex";
+/// Attributes that name images.
+const IMAGE_ATTRIBUTES: [&str; 7] = [
+    "file",
+    "fileright",
+    "fileleft",
+    "fileup",
+    "filedown",
+    "filefront",
+    "fileback",
+];
+
+/// An error in writing or reading the file of a scene.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneFileError {
+    /// The file system refuses.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// An asset cannot be put into one document.
+    #[error("scene: {file}: {reason}")]
+    Asset {
+        /// The asset.
+        file: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A scene that does not load.
+    #[error("cannot load the scene: {0}")]
+    Load(#[from] LoadError),
+    /// The folder's scene is another one.
+    #[error(
+        "{}: this is {found}, but the configuration describes {wanted}; positions and geoms in the logs would not \
+         match the scene: give the configuration a save_dir of its own", path.display()
+    )]
+    Different {
+        /// The document.
+        path: PathBuf,
+        /// What it is of.
+        found: String,
+        /// What is wanted.
+        wanted: String,
+    },
+    /// A scene without a configuration in its comment, or with one that is not allowed.
+    #[error("invalid configuration in the comment of the scene: {0}")]
+    Config(#[from] ConfigError),
+}
+
+/// A document and its images, by path relative to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    /// The document.
+    pub xml: String,
+    /// The images.
+    pub images: BTreeMap<String, Vec<u8>>,
+}
+
+/// Writes the scene of a configuration, from the embedded assets, as one document.
+///
+/// # Errors
+/// None with the embedded assets.
+pub fn complete_scene(config: &Config) -> Result<SceneFile, SceneFileError> {
+    complete_scene_from(config, &embedded())
+}
+
+/// Writes the scene of a configuration, from other assets that are laid out like the embedded ones, as one document.
+///
+/// # Errors
+/// Assets that are missing or no XML.
+pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
+    let (tree, root) = Tree::read(&scene_xml(config), DOCUMENT, assets, &Limits::default())?;
+    let mut xml = comment(config);
+    let mut images = BTreeMap::new();
+    tree.write(root, &mut xml, |element, attribute, value| {
+        let names_image = element == "texture" && IMAGE_ATTRIBUTES.contains(&attribute);
+        names_image.then(|| image(value, assets, &mut images)).transpose()
+    })?;
+    Ok(SceneFile { xml, images })
+}
+
+/// Writes `scene.xml` and its images, from the embedded assets, into the folder of a run, which is made if it is not there.
+///
+/// # Errors
+/// What the file system says.
+pub fn write_scene(config: &Config, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
+    write_scene_from(config, &embedded(), save_dir)
+}
+
+/// Writes `scene.xml` as [`write_scene`] does, from other assets that are laid out like the embedded ones.
+///
+/// # Errors
+/// Assets that are missing or no XML; what the file system says.
+pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
+    let scene = complete_scene_from(config, assets)?;
+    let io = |path: &Path| {
+        let path = path.to_path_buf();
+        move |source| SceneFileError::Io { path, source }
+    };
+    let folder = save_dir.join(IMAGES);
+    std::fs::create_dir_all(&folder).map_err(io(&folder))?;
+    for (name, bytes) in &scene.images {
+        let path = save_dir.join(name);
+        replace_file(&path, bytes).map_err(io(&path))?;
+    }
+    let path = save_dir.join(SCENE);
+    replace_file(&path, scene.xml.as_bytes()).map_err(io(&path))?;
+    Ok(path)
+}
+
+/// The scene that the folder of a run already had; see [`keep_scene`].
+#[derive(Debug)]
+pub enum KeptScene {
+    /// Nothing: it was written.
+    Written,
+    /// The same scene.
+    Same,
+    /// The same bodies, joints and geoms with other numbers, such as masses: of other assets or another release.
+    Similar,
+    /// A document that does not load here, such as the Python kit's, which names files of its installation.
+    Foreign(Box<SceneFileError>),
+}
+
+/// Ensures that the folder of a run holds the scene of an environment.
+///
+/// If there is none, it is written as training writes it; one that is there belongs to the logs beside it and is never
+/// changed. `assets` are those of the blueprint.
+///
+/// # Errors
+/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; what the file system says.
+pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<KeptScene, SceneFileError> {
+    let (config, model) = (blueprint.config(), blueprint.model());
+    let save_dir = Path::new(&config.save_dir);
+    let path = save_dir.join(SCENE);
+    if !path.exists() {
+        write_scene_from(config, assets, save_dir)?;
+        return Ok(KeptScene::Written);
+    }
+    Ok(match read_scene(save_dir) {
+        Ok(found) if found == **model => KeptScene::Same,
+        Ok(found) if same_ids(&found, model) => KeptScene::Similar,
+        Ok(_) => {
+            let xml = std::fs::read_to_string(&path).unwrap_or_default();
+            let found = read_config(&xml).map_or_else(|_| "another scene".to_string(), |found| about(&found));
+            let wanted = about(config);
+            return Err(SceneFileError::Different { path, found, wanted });
+        }
+        Err(e) => KeptScene::Foreign(Box::new(e)),
+    })
+}
+
+/// Tells whether `qpos` and the ids of bodies, joints and geoms mean the same in both models.
+fn same_ids(a: &Model, b: &Model) -> bool {
+    a.nq == b.nq && a.body_name == b.body_name && a.jnt_name == b.jnt_name && a.geom_bodyid == b.geom_bodyid
+}
+
+/// Names what decides the ids of a scene: the scene and the version of MIMo.
+fn about(config: &Config) -> String {
+    let version = Version::of(config.behavior).name();
+    format!("the scene {} with MIMo {version}", config.scene)
+}
+
+/// Loads and compiles the `scene.xml` of a run.
+///
+/// # Errors
+/// A missing folder or document, one that is not understood.
+pub fn read_scene(save_dir: &Path) -> Result<Model, SceneFileError> {
+    let assets = DirAssets::new(save_dir).map_err(|e| SceneFileError::Asset {
+        file: save_dir.display().to_string(),
+        reason: e.to_string(),
+    })?;
+    Ok(compile(load(&assets, SCENE)?)?)
+}
+
+/// Reads the configuration in the comment at the top of a `scene.xml`.
+///
+/// # Errors
+/// No such comment, a configuration that is not allowed.
+pub fn read_config(xml: &str) -> Result<Config, SceneFileError> {
+    let text = xml.strip_prefix("<!--").and_then(|rest| rest.split_once("-->"));
+    let text = text.map_or("", |(comment, _)| comment);
+    Ok(Config::from_yaml(text, "scene.xml")?)
+}
+
+/// Writes the configuration as an XML comment, without the explanations of its keys.
+fn comment(config: &Config) -> String {
+    let mut out = String::from("<!--\n# The scene of a BabyBench environment, complete, with this configuration:\n");
+    for line in config
+        .to_yaml()
+        .lines()
+        .filter(|l| !l.is_empty() && !l.starts_with('#'))
+    {
+        // two hyphens would end the comment; only quoted text can hold them
+        out.push_str(&line.replace("--", "-\\x2D"));
+        out.push('\n');
+    }
+    out.push_str("-->\n");
+    out
+}
+
+/// Takes an image along and returns its new path. Equal names in different folders would clash; assets have none.
+fn image(
+    file: &str,
+    assets: &dyn AssetSource,
+    images: &mut BTreeMap<String, Vec<u8>>,
+) -> Result<String, SceneFileError> {
+    let broken = |reason: String| SceneFileError::Asset {
+        file: file.to_string(),
+        reason,
+    };
+    let path = resolve(directory(DOCUMENT), file).map_err(|e| broken(e.to_string()))?;
+    let bytes = assets.read(&path).map_err(|e| broken(e.to_string()))?.into_owned();
+    let name = format!("{IMAGES}/{}", file.rsplit('/').next().unwrap_or(file));
+    let before = images.insert(name.clone(), bytes);
+    if before.is_some_and(|before| images.get(&name) != Some(&before)) {
+        return Err(broken("another image has the same name".to_string()));
+    }
+    Ok(name)
+}

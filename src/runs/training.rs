@@ -1,0 +1,195 @@
+//! Environments that log their episodes, as the kit's `make_env` makes them.
+
+use std::ops::Deref;
+use std::path::Path;
+
+use thiserror::Error;
+
+use super::logs::{LogError, TrainingLog};
+use super::scene_file::{SceneFileError, keep_scene, write_scene_from};
+use crate::assets::AssetSource;
+use crate::config::{Behavior, Compat, Config};
+use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step};
+use crate::mimo::embedded;
+
+/// An error that keeps a run from starting or continuing.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The environment fails.
+    #[error(transparent)]
+    Env(#[from] EnvError),
+    /// The log cannot be read or written.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// The scene cannot be written, or the folder holds a different one.
+    #[error(transparent)]
+    SceneFile(#[from] SceneFileError),
+}
+
+/// An [`Env`] whose episodes are added to a training log as they end, if it has one.
+///
+/// It reads like the [`Env`] in it. What changes it goes through [`RunEnv::reset`] and [`RunEnv::step`], so that no
+/// episode is lost.
+#[derive(Debug)]
+pub struct RunEnv {
+    env: Env,
+    log: Option<TrainingLog>,
+}
+
+impl Deref for RunEnv {
+    type Target = Env;
+
+    fn deref(&self) -> &Env {
+        &self.env
+    }
+}
+
+impl RunEnv {
+    /// Adds a training log, or none, to an environment.
+    pub fn new(env: Env, log: Option<TrainingLog>) -> Self {
+        let names = (env.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(env.model()));
+        let log = log.map(|log| log.with_names(names));
+        Self { env, log }
+    }
+
+    /// Logs the episode that ends and starts the next one: see [`Env::reset`].
+    ///
+    /// # Errors
+    /// As [`Env::reset`]; a log that cannot be written.
+    pub fn reset(&mut self, seed: Option<u64>) -> Result<Observation<'_>, RunError> {
+        self.log_episode()?;
+        Ok(self.env.reset(seed)?)
+    }
+
+    /// Applies an action: see [`Env::step`].
+    ///
+    /// # Errors
+    /// As [`Env::step`].
+    pub fn step(&mut self, action: &[f32]) -> Result<Step<'_>, EnvError> {
+        self.env.step(action)
+    }
+
+    /// Fills `action` with a random action: see [`Env::sample_action`].
+    pub fn sample_action(&mut self, action: &mut Vec<f32>) {
+        self.env.sample_action(action);
+    }
+
+    /// Seeds the random actions: see [`Env::seed_action_space`].
+    pub fn seed_action_space(&mut self, seed: u64) {
+        self.env.seed_action_space(seed);
+    }
+
+    /// Returns the environment, for whatever else changes it. Episodes that are reset through it are not logged.
+    pub fn env_mut(&mut self) -> &mut Env {
+        &mut self.env
+    }
+
+    /// Returns the log with the episodes so far, if this environment logs.
+    pub fn log(&self) -> Option<&TrainingLog> {
+        self.log.as_ref()
+    }
+
+    /// Saves the training log, under `compat: api` with the running episode, which ends. Without a log, nothing
+    /// happens.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn finish_training(&mut self) -> Result<(), LogError> {
+        if self.log.is_some() && self.env.config().compat == Compat::Api {
+            self.log_episode()?;
+        }
+        self.log.as_ref().map_or(Ok(()), TrainingLog::save)
+    }
+
+    fn log_episode(&mut self) -> Result<(), LogError> {
+        let steps = self.env.end_episode();
+        match &mut self.log {
+            Some(log) => log.end_episode(steps, &self.env.info().behavior),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Creates the environment of a configuration, for training or for evaluation.
+///
+/// For training, the folder `save_dir` gets the complete scene (`scene.xml`) and, as episodes end, the training log,
+/// which replaces an older one; [`RunEnv::finish_training`] saves what is not yet in it. An environment for evaluation
+/// writes nothing; under `compat: reference` its counters and lists go on from episode to episode, as the kit's do.
+///
+/// ```
+/// use babybench::{Config, make_env};
+///
+/// let save_dir = std::env::temp_dir().join("babybench_make_env_example");
+/// let config = Config {
+///     save_dir: save_dir.display().to_string(),
+///     touch_active: false,
+///     vision_active: false,
+///     max_episode_steps: 5,
+///     ..Config::default()
+/// };
+/// let mut env = make_env(config, true)?;
+/// let mut action = Vec::new();
+/// for _episode in 0..3 {
+///     env.reset(None)?;
+///     loop {
+///         env.sample_action(&mut action);
+///         if env.step(&action)?.truncated {
+///             break;
+///         }
+///     }
+/// }
+/// env.finish_training()?;
+/// assert_eq!(babybench::runs::read_training(&save_dir)?.len(), 3);
+/// # std::fs::remove_dir_all(&save_dir)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`Env::new`]; for training, files that cannot be written.
+pub fn make_env(config: Config, training: bool) -> Result<RunEnv, RunError> {
+    let blueprint = Blueprint::new(config)?;
+    if training {
+        start_training(&blueprint, false)
+    } else {
+        Ok(RunEnv::new(for_evaluation(&blueprint)?, None))
+    }
+}
+
+/// Creates an environment for training, from the embedded assets: writes `scene.xml` and starts the training log, or
+/// resumes the one that is there.
+///
+/// # Errors
+/// Files that cannot be written; to go on, a log that is damaged or of another behavior, a scene with other bodies.
+pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<RunEnv, RunError> {
+    start_training_from(blueprint, &embedded(), resume)
+}
+
+/// Creates an environment for training from other assets; see [`start_training`].
+///
+/// # Errors
+/// As [`start_training`], and assets that are missing.
+pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resume: bool) -> Result<RunEnv, RunError> {
+    let config = blueprint.config();
+    let env = blueprint.env()?;
+    let log = match resume {
+        true => TrainingLog::resume(config)?,
+        false => TrainingLog::create(config)?,
+    };
+    if resume {
+        keep_scene(blueprint, assets)?;
+    }
+    write_scene_from(config, assets, Path::new(&config.save_dir))?;
+    Ok(RunEnv::new(env, Some(log)))
+}
+
+/// Creates an environment that logs nothing; under `compat: reference`, information accumulates over episodes. The
+/// folder of a run without training gets its scene from [`keep_scene`].
+///
+/// # Errors
+/// As [`Blueprint::env`].
+pub fn for_evaluation(blueprint: &Blueprint) -> Result<Env, EnvError> {
+    let mut env = blueprint.env()?;
+    env.accumulate_info(blueprint.config().compat == Compat::Reference);
+    Ok(env)
+}

@@ -1,0 +1,14 @@
+//! What the tests of all packages share.
+//!
+//! - [`harness`] runs tests that need something beyond the repository, and reports those that cannot run as ignored, with
+//!   the reason.
+//! - [`yardsticks`] finds what tests compare with, and fetches it where it can.
+//! - [`mutation`] damages text and bytes, for tests of what untrusted input does.
+//!
+//! Nothing here knows a type of the library, so that its unit tests can use all of it.
+
+pub mod harness;
+pub mod mutation;
+pub mod yardsticks;
+
+pub use fastrand::Rng;

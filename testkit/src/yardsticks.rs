@@ -1,0 +1,134 @@
+//! What tests compare with and the repository does not hold: found, or set up by the scripts of `conformance/scripts`.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, SystemTime};
+
+use crate::harness::Need;
+
+/// The variable that makes it a failure when something cannot be set up: `MUJOCO_CONFORMANCE=required`.
+pub const REQUIRED: &str = "MUJOCO_CONFORMANCE";
+
+/// A Python with NumPy.
+pub const PYTHON: Need = Need::new("Python", Some(REQUIRED), || python().map(drop));
+
+/// A Python with MuJoCo, of which not every Python has a wheel.
+pub const PYTHON_MUJOCO: Need = Need::new("MuJoCo in Python", None, || {
+    let python = python()?;
+    has_module(&python, "mujoco")
+});
+
+/// A checkout of the BabyBench starter kit.
+pub const KIT: Need = Need::new("kit", None, || kit().map(drop));
+
+/// How long after a failure another process does not try again.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Returns the folder of the workspace.
+pub fn workspace() -> &'static Path {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    own.parent().unwrap_or(own)
+}
+
+/// Returns the folder of the BabyBench starter kit, which the variable `BABYBENCH_KIT` names.
+///
+/// # Errors
+/// Says that the variable is not set, or that its folder is not the kit.
+pub fn kit() -> Result<PathBuf, String> {
+    let folder = std::env::var_os("BABYBENCH_KIT").ok_or(
+        "BABYBENCH_KIT names no checkout of the BabyBench starter kit, whose files are not part of this repository",
+    )?;
+    let folder = workspace().join(folder);
+    let scenes = folder.join("MIMo/mimoEnv/assets/babybench");
+    match scenes.is_dir() {
+        true => Ok(folder),
+        false => Err(format!("BABYBENCH_KIT: there is no folder {}", scenes.display())),
+    }
+}
+
+/// Returns the folder with the kit's MJCF and textures.
+///
+/// # Errors
+/// Those of [`kit`].
+pub fn kit_assets() -> Result<PathBuf, String> {
+    Ok(kit()?.join("MIMo/mimoEnv/assets"))
+}
+
+/// Returns a Python that has NumPy: the one that the variable `PYTHON` names, or an environment in `target/python`, which
+/// is made where it is missing.
+///
+/// # Errors
+/// Says what is missing.
+pub fn python() -> Result<PathBuf, String> {
+    if let Some(python) = std::env::var_os("PYTHON") {
+        let python = PathBuf::from(python);
+        return has_module(&python, "numpy").map(|()| python);
+    }
+    let environment = workspace().join("target/python");
+    set_up("fetch_python.sh", &environment.join("ready"))?;
+    Ok(environment.join("bin/python"))
+}
+
+fn has_module(python: &Path, module: &str) -> Result<(), String> {
+    let import = format!("import {module}");
+    let found = Command::new(python).args(["-c", import.as_str()]).output();
+    match found.is_ok_and(|out| out.status.success()) {
+        true => Ok(()),
+        false => Err(format!("{} has no module {module}", python.display())),
+    }
+}
+
+/// Runs a script of `conformance/scripts` unless `result` is there. Processes take turns; after a failure they share its
+/// reason for ten minutes instead of trying again.
+///
+/// # Errors
+/// Says why the script failed.
+pub fn set_up(script: &str, result: &Path) -> Result<(), String> {
+    if result.exists() {
+        return Ok(());
+    }
+    if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        return Err(format!("conformance/scripts/{script} works on 64-bit Linux only"));
+    }
+    let target = workspace().join("target");
+    let failed = target.join(format!("{script}.failed"));
+    let lock = std::fs::create_dir_all(&target)
+        .and_then(|()| File::create(target.join(format!("{script}.lock"))))
+        .and_then(|file| file.lock().map(|()| file))
+        .map_err(|e| format!("{}: {e}", target.display()))?;
+    if result.exists() {
+        return Ok(());
+    }
+    if let Some(reason) = recent(&failed) {
+        return Err(reason);
+    }
+    let outcome = run_script(script);
+    match &outcome {
+        Ok(()) => drop(std::fs::remove_file(&failed)),
+        Err(reason) => drop(std::fs::write(&failed, reason)),
+    }
+    drop(lock);
+    outcome
+}
+
+/// Returns the reason of a failure that is not long ago.
+fn recent(failed: &Path) -> Option<String> {
+    let written = failed.metadata().and_then(|about| about.modified()).ok()?;
+    let age = SystemTime::now().duration_since(written).unwrap_or_default();
+    (age < PATIENCE).then(|| std::fs::read_to_string(failed).ok()).flatten()
+}
+
+fn run_script(script: &str) -> Result<(), String> {
+    let path = workspace().join("conformance/scripts").join(script);
+    eprintln!("running conformance/scripts/{script}, once");
+    let out = Command::new("bash").arg(&path).stdin(Stdio::null()).output();
+    let out = out.map_err(|e| format!("bash does not start: {e}"))?;
+    if out.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&out.stderr);
+    let last = said.lines().rev().find(|line| !line.trim().is_empty());
+    let last = last.unwrap_or("it does not say why").trim();
+    Err(format!("conformance/scripts/{script} failed: {last}"))
+}

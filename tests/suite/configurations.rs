@@ -1,0 +1,271 @@
+//! Every switch of the configuration: a grid of combinations, and each key alone.
+
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use babybench::config::{ActuationModel, Behavior, BodyParts, Compat, Part, Scene};
+use babybench::spaces::Dtype;
+use babybench::{Config, Env};
+use testkit::Rng;
+
+use crate::common::*;
+
+/// Parts of the body, each on but for one in `odds`.
+fn parts(rng: &mut Rng, odds: u32) -> BodyParts<bool> {
+    let mut parts = BodyParts::all(false);
+    for part in Part::ALL {
+        *parts.get_mut(part) = rng.u32(..odds) != 0;
+    }
+    parts
+}
+
+/// Combination `k`: behavior, scene, actuation model and compat in turn, everything else by chance.
+fn combination(k: usize) -> Config {
+    let mut rng = Rng::with_seed(k as u64);
+    let mut lock = parts(&mut rng, 2);
+    if rng.bool() {
+        lock = BodyParts::all(false);
+    }
+    Config {
+        behavior: Behavior::ALL[k % 3],
+        scene: Scene::ALL[k / 3 % 3],
+        actuation_model: ActuationModel::ALL[k / 9 % 3],
+        compat: Compat::ALL[k / 27 % 2],
+        act: parts(&mut rng, 4),
+        lock,
+        frame_skip: rng.u32(1..4),
+        max_episode_steps: rng.u64(15..25),
+        seed: rng.u64(..),
+        proprio_velocity: rng.bool(),
+        proprio_torque: rng.bool(),
+        proprio_limits: rng.bool(),
+        proprio_actuation: rng.bool(),
+        vestibular_active: rng.bool(),
+        vision_active: false,
+        touch_active: false,
+        ..Config::default()
+    }
+}
+
+/// Actuators of a part, in MIMo v1 and v2.
+fn actuators(part: Part) -> [usize; 2] {
+    match part {
+        Part::Body | Part::Head => [3, 3],
+        Part::Eyes | Part::Hands => [6, 6],
+        Part::Arms | Part::Legs => [8, 8],
+        Part::Fingers => [2, 44],
+        Part::Feet => [8, 10],
+    }
+}
+
+/// The spaces of the observation.
+fn spaces(env: &Env, config: &Config, length: usize) -> Result<(), String> {
+    let spaces = env.observation_space();
+    let keys: Vec<&str> = spaces.iter().map(|s| s.key).collect();
+    let expected: &[&str] = if config.vestibular_active {
+        &["observation", "vestibular"]
+    } else {
+        &["observation"]
+    };
+    if keys != expected
+        || spaces
+            .iter()
+            .any(|s| s.dtype != Dtype::F64 || s.low != f64::NEG_INFINITY)
+    {
+        return Err(format!("spaces {spaces:?}"));
+    }
+    expect("space of the observation", spaces[0].shape[0], length)?;
+    expect(
+        "entries",
+        env.proprioception()
+            .entries(env.model(), env.actuation())
+            .iter()
+            .map(|e| e.range.len())
+            .sum(),
+        length,
+    )
+}
+
+/// Numbers of actions and of entries of the observation.
+fn lengths(config: &Config) -> [usize; 2] {
+    let v2 = usize::from(config.behavior == Behavior::HandRegard);
+    let (joints, torques) = [(47, 21), (91, 53)][v2];
+    let n: usize = config.act.iter().filter(|a| *a.1).map(|a| actuators(a.0)[v2]).sum();
+    let (actions, of_actuators) = match config.actuation_model {
+        ActuationModel::SpringDamper => (n, 2 * n),
+        ActuationModel::Muscle => (2 * n, 4 * n),
+        ActuationModel::Positional => (n, n),
+    };
+    let all = config.compat == Compat::Reference;
+    let part = |on: bool, len: usize| if on || all { len } else { 0 };
+    let length = joints
+        + part(config.proprio_velocity, joints)
+        + part(config.proprio_limits, joints)
+        + part(config.proprio_torque, 3 * torques)
+        + part(config.proprio_actuation, of_actuators);
+    [actions, length]
+}
+
+fn expect(what: &str, found: usize, expected: usize) -> Result<(), String> {
+    match found == expected {
+        true => Ok(()),
+        false => Err(format!("{what}: {found}, not {expected}")),
+    }
+}
+
+/// Builds, resets, steps 20 times; says what is wrong.
+fn check(config: Config) -> Result<(), String> {
+    let [actions, length] = lengths(&config);
+    let text = |e: &dyn std::fmt::Display| e.to_string();
+    let mut env = Env::new(config.clone()).map_err(|e| text(&e))?;
+    expect("actions", env.action_space().len(), actions)?;
+    bounds(&env, &config)?;
+    spaces(&env, &config, length)?;
+    env.reset(None).map_err(|e| text(&e))?;
+    let start = if config.behavior == Behavior::None { 0 } else { 10 };
+    let mut action = Vec::new();
+    for k in 1..=20_u64 {
+        env.sample_action(&mut action);
+        let step = env.step(&action).map_err(|e| format!("step {k}: {e}"))?;
+        expect("observation", step.observation.proprioception.len(), length)?;
+        if !step.observation.proprioception.iter().all(|v| v.is_finite()) {
+            return Err(format!("step {k}: not finite"));
+        }
+        expect(
+            "vestibular",
+            step.observation.vestibular.map_or(0, <[f64]>::len),
+            6 * usize::from(config.vestibular_active),
+        )?;
+        if step.truncated != (k >= config.max_episode_steps) || step.terminated || step.reward != 0.0 {
+            return Err(format!("step {k}: truncated {}", step.truncated));
+        }
+    }
+    expect(
+        "physics steps",
+        env.state().step as usize,
+        start + 20 * config.frame_skip as usize,
+    )
+}
+
+fn bounds(env: &Env, config: &Config) -> Result<(), String> {
+    let (model, space) = (env.model(), env.action_space());
+    for i in 0..space.len() {
+        let a = i % model.nu();
+        let expected = match (config.actuation_model, config.compat) {
+            (ActuationModel::Muscle, _) => [0.0, 1.0],
+            (ActuationModel::Positional, _) => model.jnt_range[model.actuator_trnid[a]],
+            (ActuationModel::SpringDamper, Compat::Api) => [-1.0, 1.0],
+            (ActuationModel::SpringDamper, Compat::Reference) => model.actuator_forcerange[a],
+        };
+        let found = [space.low()[i], space.high()[i]];
+        if found != expected.map(|v| v as f32) {
+            return Err(format!("bounds of action {i}: {found:?}, not {expected:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Figures when written are in the output; without optimisation only some combinations run.
+#[test]
+fn combinations_build_and_run() {
+    let count = if cfg!(debug_assertions) { 54 } else { 540 };
+    let next = AtomicUsize::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
+    let worker = || {
+        let mut bad = Vec::new();
+        loop {
+            let k = next.fetch_add(1, Relaxed);
+            if k >= count {
+                return bad;
+            }
+            let config = combination(k);
+            if let Err(e) = check(config.clone()) {
+                bad.push(format!("{k}: {e}\n{config:?}"));
+            }
+        }
+    };
+    let bad: Vec<String> = std::thread::scope(|s| {
+        let workers: Vec<_> = (0..threads).map(|_| s.spawn(worker)).collect();
+        workers.into_iter().flat_map(|w| w.join().expect("a worker")).collect()
+    });
+    println!("{count} combinations on {threads} threads");
+    assert!(
+        bad.is_empty(),
+        "{} combinations are wrong:\n{}",
+        bad.len(),
+        bad.join("\n")
+    );
+}
+
+/// Everything an episode shows, as numbers.
+fn trace(config: Config) -> u64 {
+    let mut env = env(config);
+    let mut hash = Fnv::default();
+    let add = |hash: &mut Fnv, text: String| hash.add(&text.bytes().map(f64::from).collect::<Vec<_>>());
+    add(
+        &mut hash,
+        format!("{:?} {:?}", env.action_space(), env.observation_space()),
+    );
+    hash.add(env.reset(None).expect("no divergence").proprioception);
+    let mut action = Vec::new();
+    for _ in 0..20 {
+        env.sample_action(&mut action);
+        let step = env.step(&action).expect("no divergence");
+        hash.add(step.observation.proprioception);
+        hash.add(step.observation.vestibular.unwrap_or(&[]));
+        add(&mut hash, format!("{} {:?}", step.truncated, step.info));
+    }
+    hash.0
+}
+
+/// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, and senses with tests of their own.
+const ELSEWHERE: [&str; 5] = ["save_dir", "save_logs_every", "render_size", "engine", "renderer"];
+
+#[test]
+fn no_key_is_without_effect() {
+    let base = free(Behavior::None, Scene::Base);
+    let before = trace(base.clone());
+    assert_eq!(trace(base.clone()), before, "the trace repeats");
+    let mut checked = 0;
+    for key in Config::keys() {
+        let name = key.name;
+        if ELSEWHERE.contains(&name) || name.starts_with("touch_") || name.starts_with("vision_") {
+            continue;
+        }
+        let values: &[&str] = match name {
+            "behavior" => &["self_touch", "hand_regard"],
+            "scene" => &["crib", "cubes"],
+            "actuation_model" => &["muscle", "positional"],
+            "compat" => &["reference"],
+            "max_episode_steps" => &["7"],
+            "frame_skip" => &["2", "5"],
+            "seed" => &["1", "18446744073709551615"],
+            _ if name.starts_with("lock_") => &["True"],
+            _ => &["False"],
+        };
+        for value in values {
+            let config = base
+                .clone()
+                .overlay_yaml(&format!("{name}: {value}\n"), "test")
+                .expect("allowed");
+            assert_ne!(config, base, "{name}: {value} is another configuration");
+            assert_ne!(trace(config), before, "{name}: {value} changes nothing");
+            checked += 1;
+        }
+    }
+    println!("{checked} values checked");
+}
+
+/// A renderer that is not in this build is an error before anything is built.
+#[cfg(not(feature = "wgpu"))]
+#[test]
+fn without_the_feature_the_error_says_how_to_build() {
+    let config = Config {
+        renderer: babybench::config::RendererKind::Wgpu,
+        ..free(Behavior::None, Scene::Base)
+    };
+    let error = Env::new(config).expect_err("not in this build").to_string();
+    assert!(
+        error.contains("--features wgpu") && error.contains("renderer: cpu"),
+        "{error}"
+    );
+}

@@ -1,0 +1,12 @@
+//! What always holds, whatever the action: the invariants of `ARCHITECTURE.md`, by number. The fourth, that a step
+//! allocates nothing, is in `allocation.rs`; contacts and the live scene are in `scene.rs`.
+
+mod bits;
+mod doors;
+mod errors;
+mod life_cycle;
+mod mechanics;
+mod model;
+mod sensors;
+mod source;
+mod types;

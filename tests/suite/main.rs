@@ -1,0 +1,26 @@
+//! The tests that need nothing but the repository, in one program: each one more would link the whole library anew.
+//!
+//! What needs something else is in `tests/yardsticks`, what counts for a whole process in programs of its own.
+
+#[path = "../common/allocations.rs"]
+mod allocations;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod actuation;
+mod configurations;
+#[cfg(feature = "eval")]
+mod invariants;
+#[cfg(all(feature = "eval", feature = "npz"))]
+mod json;
+#[cfg(all(feature = "eval", feature = "npz"))]
+mod logs;
+#[cfg(feature = "eval")]
+mod policies;
+mod rapier_engine;
+mod render;
+#[cfg(feature = "report")]
+mod report;
+mod scene;
+mod snapshot;
+mod touch;

@@ -1,0 +1,332 @@
+//! The renderer: the same bytes every time, no allocation after warm-up, errors for what cannot be drawn.
+
+use std::sync::Arc;
+
+use babybench::assets::{AssetSource, MemoryAssets};
+use babybench::config::{Config, Scene};
+use babybench::env::Viewer;
+use babybench::mimo::{build_model, embedded};
+use babybench::render::{CpuRenderer, Poses, RenderError, View, Visual};
+use babybench::{Blueprint, Env, EnvError, Model};
+
+use crate::allocations;
+use crate::common::seen;
+
+fn env(scene: Scene) -> Env {
+    let mut env = Env::new(seen(scene)).expect("embedded assets");
+    env.reset(Some(0)).expect("no divergence");
+    env
+}
+
+fn hash(bytes: &[u8]) -> u64 {
+    let mix = |h: u64, b: &u8| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
+}
+
+#[test]
+fn eyes_are_part_of_the_observation() {
+    let mut e = env(Scene::Cubes);
+    let keys: Vec<_> = e.observation_space().iter().map(|s| (s.key, s.shape.clone())).collect();
+    let place = |key: &str| keys.iter().position(|k| k.0 == key).expect("in the space");
+    assert!(place("observation") < place("eye_left") && place("eye_right") == place("eye_left") + 1);
+    assert!(place("eye_right") < place("vestibular"));
+    assert_eq!(keys[place("eye_left")].1, [64, 64, 3]);
+    let action = vec![0.0; e.action_space().len()];
+    let step = e.step(&action).expect("no divergence");
+    let (left, right) = (step.observation.eye_left.unwrap(), step.observation.eye_right.unwrap());
+    assert_eq!((left.len(), right.len()), (64 * 64 * 3, 64 * 64 * 3));
+    assert_ne!(left, right);
+    // what the observation shows is what the camera sees
+    let left = left.to_vec();
+    let mut viewer = Viewer::new(e.blueprint()).unwrap();
+    assert_eq!(viewer.draw(&e, "eye_left", 64, 64).unwrap(), left);
+    let mut blind = Env::new(Config {
+        vision_active: false,
+        ..seen(Scene::Base)
+    })
+    .unwrap();
+    assert!(blind.reset(None).unwrap().eye_left.is_none());
+    let mut viewer = Viewer::new(blind.blueprint()).unwrap();
+    assert_eq!(viewer.render(&blind).unwrap().len(), 480 * 480 * 3);
+    assert!(viewer.draw(&blind, "nowhere", 8, 8).is_err());
+    assert!(viewer.draw(&blind, "top", 0, 8).is_err());
+}
+
+#[test]
+fn a_picture_is_the_same_every_time_and_from_every_renderer() {
+    let e = env(Scene::Cubes);
+    let mut viewer = Viewer::new(e.blueprint()).unwrap();
+    let first = viewer.draw(&e, "corner", 101, 67).unwrap().to_vec();
+    let _ = viewer.draw(&e, "eye_right", 64, 64).unwrap();
+    assert_eq!(viewer.draw(&e, "corner", 101, 67).unwrap(), first);
+    println!("corner 101 x 67 of cubes: {:016x}", hash(&first));
+    let other = env(Scene::Cubes);
+    let mut viewer = Viewer::new(other.blueprint()).unwrap();
+    assert_eq!(viewer.draw(&other, "corner", 101, 67).unwrap(), first);
+}
+
+#[test]
+fn a_halved_picture_has_the_pixels_of_the_whole() {
+    let e = env(Scene::Cubes);
+    let visual = e.blueprint().visual().unwrap();
+    let poses = Poses::from(e.state());
+    let mut renderer = CpuRenderer::new();
+    for (camera, width, height) in [("corner", 64, 48), ("top", 33, 21)] {
+        let camera = e.model().camera(camera).unwrap();
+        let view = View { camera, width, height };
+        let (w, h) = (width.div_ceil(2), height.div_ceil(2));
+        let (mut whole, mut half) = (vec![0; view.rgb_len()], vec![0; 3 * w * h]);
+        renderer.rgb(&visual, &poses, &view, &mut whole).unwrap();
+        renderer.rgb_halved(&visual, &poses, &view, &mut half).unwrap();
+        for i in 0..w * h {
+            let at = 2 * (i / w) * width + 2 * (i % w);
+            assert_eq!(half[3 * i..3 * i + 3], whole[3 * at..3 * at + 3]);
+        }
+        assert!(renderer.rgb_halved(&visual, &poses, &view, &mut whole).is_err());
+    }
+}
+
+#[test]
+fn drawing_allocates_nothing_after_warm_up() {
+    let mut e = env(Scene::Cubes);
+    let blueprint = e.blueprint().clone();
+    let visual = blueprint.visual().unwrap();
+    let mut renderer = CpuRenderer::new();
+    let views = ["eye_left", "eye_right"].map(|name| View {
+        camera: e.model().camera(name).unwrap(),
+        width: 64,
+        height: 64,
+    });
+    let mut out = vec![0; views[0].rgb_len()];
+    let mut action = Vec::new();
+    let mut late = 0;
+    for k in 0..120 {
+        e.sample_action(&mut action);
+        e.step(&action).unwrap();
+        let before = allocations::of_this_thread();
+        for view in &views {
+            renderer.rgb(&visual, &Poses::from(e.state()), view, &mut out).unwrap();
+        }
+        late += if k < 60 {
+            0
+        } else {
+            allocations::of_this_thread() - before
+        };
+    }
+    // a vector may still grow when more comes into view than ever before
+    assert!(late <= 4, "{late} allocations");
+}
+
+#[test]
+fn depth_segmentation_and_gray_describe_the_same_picture() {
+    let e = env(Scene::Cubes);
+    let visual = e.blueprint().visual().unwrap();
+    let camera = e.model().camera("top").unwrap();
+    let view = View {
+        camera,
+        width: 60,
+        height: 40,
+    };
+    let mut renderer = CpuRenderer::new();
+    let poses = Poses::from(e.state());
+    let (mut depth, mut ids) = (vec![0.0; view.pixels()], vec![0; view.pixels()]);
+    renderer.depth(&visual, &poses, &view, &mut depth).unwrap();
+    renderer.segmentation(&visual, &poses, &view, &mut ids).unwrap();
+    let (mut rgb, mut gray) = (vec![0; view.rgb_len()], vec![0; view.pixels()]);
+    renderer.gray(&visual, &poses, &view, &mut rgb, &mut gray).unwrap();
+    // the camera hangs 2 m above the floor and sees MIMo, the rug and the floor around it
+    let rug = e.model().geom("rug").unwrap() as i32;
+    let floor = e.model().geom("floor").unwrap() as i32;
+    for (z, id) in depth.iter().zip(&ids) {
+        match *id {
+            id if id == rug => assert!((z - 2.0005).abs() < 1e-3, "{z}"),
+            id if id == floor => assert!((z - 2.01).abs() < 1e-3, "{z}"),
+            id => assert!(id >= 0 && *z < 2.0, "{id} {z}"),
+        }
+    }
+    assert!(ids.contains(&rug) && ids.contains(&floor) && ids.iter().any(|&i| i != rug && i != floor));
+    assert_eq!(
+        rgb,
+        Viewer::new(e.blueprint()).unwrap().draw(&e, "top", 60, 40).unwrap()
+    );
+    assert!(gray.iter().any(|&g| g != gray[0]));
+}
+
+#[test]
+fn eyes_see_distances_geoms_and_grey() {
+    let mut blind = Env::new(Config {
+        touch_active: false,
+        vision_active: false,
+        ..Config::default()
+    })
+    .unwrap();
+    assert!(matches!(blind.eye_gray([&mut [], &mut []]), Err(EnvError::NoVision)));
+    let mut e = Env::new(Config {
+        vision_active: true,
+        vision_resolution: 32,
+        ..seen(Scene::Cubes)
+    })
+    .unwrap();
+    e.reset(Some(0)).unwrap();
+    let visual = e.blueprint().visual().unwrap();
+    let mut gray = [vec![0; 32 * 32], vec![0; 32 * 32]];
+    let mut depth = gray.clone().map(|v| vec![0.0; v.len()]);
+    let mut geoms = gray.clone().map(|v| vec![0; v.len()]);
+    e.eye_gray(gray.each_mut().map(|v| &mut v[..])).unwrap();
+    e.eye_depth(depth.each_mut().map(|v| &mut v[..])).unwrap();
+    e.eye_segmentation(geoms.each_mut().map(|v| &mut v[..])).unwrap();
+    let mut renderer = CpuRenderer::new();
+    for (k, eye) in babybench::sensors::EYES.iter().enumerate() {
+        let view = View {
+            camera: e.model().camera(eye).unwrap(),
+            width: 32,
+            height: 32,
+        };
+        let poses = Poses::from(e.state());
+        let (mut rgb, mut expected) = (vec![0; view.rgb_len()], vec![0; view.pixels()]);
+        renderer.gray(&visual, &poses, &view, &mut rgb, &mut expected).unwrap();
+        assert_eq!(gray[k], expected);
+        let mut expected = vec![0.0; view.pixels()];
+        renderer.depth(&visual, &poses, &view, &mut expected).unwrap();
+        assert_eq!(depth[k], expected);
+        let mut expected = vec![0; view.pixels()];
+        renderer.segmentation(&visual, &poses, &view, &mut expected).unwrap();
+        assert_eq!(geoms[k], expected);
+        assert!(geoms[k].iter().any(|&g| g >= 0));
+    }
+    let wrong = e.eye_gray([&mut [0; 3], &mut [0; 3]]);
+    assert!(
+        matches!(wrong, Err(EnvError::Render(RenderError::Buffer { .. }))),
+        "{wrong:?}"
+    );
+}
+
+#[test]
+fn wrong_requests_are_errors() {
+    let e = env(Scene::Base);
+    let visual = e.blueprint().visual().unwrap();
+    let mut renderer = CpuRenderer::new();
+    let poses = Poses::from(e.state());
+    let view = |camera, width| View {
+        camera,
+        width,
+        height: 8,
+    };
+    let mut out = [0; 8 * 8 * 3];
+    let mut draw = |poses: &Poses, view: View, n: usize| renderer.rgb(&visual, poses, &view, &mut out[..n]);
+    assert_eq!(draw(&poses, view(0, 8), 192), Ok(()));
+    assert!(matches!(
+        draw(&poses, view(99, 8), 192),
+        Err(RenderError::Camera { camera: 99, .. })
+    ));
+    assert!(matches!(
+        draw(&poses, view(0, 0), 0),
+        Err(RenderError::Size { width: 0, height: 8 })
+    ));
+    assert!(matches!(draw(&poses, view(0, 8), 191), Err(RenderError::Buffer { .. })));
+    let short = Poses {
+        geom_xpos: &poses.geom_xpos[1..],
+        ..poses
+    };
+    assert!(matches!(
+        draw(&short, view(0, 8), 192),
+        Err(RenderError::Poses { what: "geoms", .. })
+    ));
+}
+
+#[test]
+fn poses_that_are_not_numbers_draw_nothing_and_do_not_panic() {
+    let e = env(Scene::Base);
+    let visual = e.blueprint().visual().unwrap();
+    let mut renderer = CpuRenderer::new();
+    let poses = Poses::from(e.state());
+    let view = View {
+        camera: 0,
+        width: 8,
+        height: 8,
+    };
+    let mut out = [0; 8 * 8 * 3];
+    let mut draw = |poses: Poses| renderer.rgb(&visual, &poses, &view, &mut out);
+    let turned = vec![[f64::NAN; 9]; poses.geom_xpos.len()];
+    let geom_xmat = &turned[..];
+    assert_eq!(draw(Poses { geom_xmat, ..poses }), Ok(()));
+    for bad in [f64::NAN, 1e300, f64::INFINITY] {
+        let (geoms, eyes) = (
+            vec![[bad; 3]; poses.geom_xpos.len()],
+            vec![[bad; 3]; poses.cam_xpos.len()],
+        );
+        let (geom_xpos, cam_xpos) = (&geoms[..], &eyes[..]);
+        assert_eq!(draw(Poses { geom_xpos, ..poses }), Ok(()));
+        assert_eq!(draw(Poses { cam_xpos, ..poses }), Ok(()));
+    }
+}
+
+/// The embedded assets with one file replaced.
+fn with_file(path: &str, bytes: Vec<u8>) -> (Model, MemoryAssets) {
+    let model = build_model(&seen(Scene::Base), &embedded()).unwrap();
+    let mut assets = MemoryAssets::new();
+    for texture in &model.textures {
+        for file in texture.file.iter().chain(texture.cube_files.iter().flatten()) {
+            assets
+                .insert(file, embedded().read(file).unwrap().into_owned())
+                .unwrap();
+        }
+    }
+    assets.insert(path, bytes).unwrap();
+    (model, assets)
+}
+
+fn png(width: u32, height: u32) -> Vec<u8> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_fn(width, height, |x, y| image::Rgb([x as u8, y as u8, 7]));
+    image.write_to(&mut out, image::ImageFormat::Png).unwrap();
+    out.into_inner()
+}
+
+#[test]
+fn broken_images_are_errors_that_name_them() {
+    let rug = "tex/rug.png";
+    let good = embedded().read(rug).unwrap().into_owned();
+    let load = |bytes: Vec<u8>| {
+        let (model, assets) = with_file(rug, bytes);
+        Visual::new(&model, &assets)
+    };
+    assert!(load(good.clone()).is_ok());
+    assert!(load(png(300, 300)).is_ok(), "any square will do");
+    assert!(matches!(load(png(30, 31)), Err(RenderError::Texture { .. })));
+    for bytes in [vec![], b"not a png".to_vec(), good[..40].to_vec()] {
+        let error = load(bytes).unwrap_err();
+        assert!(
+            matches!(&error, RenderError::Image { path, .. } if path == rug),
+            "{error}"
+        );
+    }
+    // a header that promises 2^31 pixels a side
+    let mut huge = png(8, 8);
+    huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+    assert!(load(huge).is_err());
+    // no byte, changed, makes it panic
+    let mut state = 1u64;
+    for _ in 0..300 {
+        let mut bytes = good.clone();
+        for _ in 0..3 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let at = (state >> 33) as usize % bytes.len();
+            bytes[at] = (state >> 20) as u8;
+        }
+        if let Err(error) = load(bytes) {
+            assert!(error.to_string().contains("rug"), "{error}");
+        }
+    }
+}
+
+#[test]
+fn environments_of_a_blueprint_share_the_look() {
+    let blueprint = Blueprint::new(seen(Scene::Base)).unwrap();
+    let (a, b) = (blueprint.env().unwrap(), blueprint.env().unwrap());
+    let look = |e: &Env| e.vision().unwrap().visual().clone();
+    assert!(Arc::ptr_eq(&look(&a), &look(&b)));
+    assert!(look(&a).texture_bytes() < 32 << 20);
+}

@@ -1,0 +1,260 @@
+//! Snapshots: bit-identical continuation, bytes that keep, and bytes that are refused.
+
+use crate::common::*;
+use babybench::config::{ActuationModel, Behavior, Compat, Part, Scene};
+use babybench::env::{Snapshot, SnapshotError};
+use babybench::{Config, Env, EnvError};
+
+/// `n` random steps: everything that comes out of them, as text.
+fn course(env: &mut Env, n: usize) -> Vec<String> {
+    let mut action = Vec::new();
+    let mut seen = Vec::new();
+    for _ in 0..n {
+        env.sample_action(&mut action);
+        let step = env.step(&action).expect("no divergence");
+        seen.push(format!("{:?} {} {:?}", step.observation, step.truncated, step.info));
+    }
+    seen.push(bits(env.state()));
+    seen
+}
+
+fn started(config: Config) -> Env {
+    let mut env = env(config);
+    env.reset(Some(3)).expect("no divergence");
+    random_steps(&mut env, 7);
+    env
+}
+
+fn of(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, compat: Compat) -> Config {
+    Config {
+        actuation_model,
+        compat,
+        max_episode_steps: 12,
+        frame_skip: 2,
+        ..free(behavior, scene)
+    }
+}
+
+#[test]
+fn a_continuation_has_the_same_bits() {
+    for &kind in ActuationModel::ALL {
+        for (behavior, scene, compat) in [
+            (Behavior::SelfTouch, Scene::Crib, Compat::Api),
+            (Behavior::HandRegard, Scene::Base, Compat::Reference),
+            (Behavior::None, Scene::Cubes, Compat::Reference),
+        ] {
+            let mut env = started(of(kind, behavior, scene, compat));
+            env.lock(Part::Arms, 0.02).expect("locks");
+            random_steps(&mut env, 1);
+            let snapshot = env.snapshot();
+            let expect = course(&mut env, 10);
+
+            env.unlock(Part::Arms).expect("locks");
+            env.reset(Some(8)).expect("no divergence");
+            env.restore(&snapshot).expect("its own snapshot");
+            assert_eq!(
+                env.snapshot(),
+                snapshot,
+                "a restored environment gives the snapshot again"
+            );
+            assert!(course(&mut env, 10) == expect, "{kind} {behavior} {scene}: restored");
+
+            // kept as bytes, in another environment that was never reset
+            let kept = Snapshot::from_bytes(snapshot.as_bytes().to_vec()).expect("whole");
+            let mut other = env.blueprint().env().expect("available");
+            other.restore(&kept).expect("the same configuration");
+            assert!(
+                course(&mut other, 10) == expect,
+                "{kind} {behavior} {scene}: other environment"
+            );
+
+            // locks outlast resets there too
+            other.reset(Some(1)).expect("no divergence");
+            let on = |env: &Env| env.state().params.eq_active.iter().filter(|a| **a).count();
+            let locked = on(&other);
+            other.unlock(Part::Arms).expect("locks");
+            assert_eq!(locked - on(&other), 8);
+        }
+    }
+}
+
+#[test]
+fn the_observation_comes_back() {
+    let mut env = started(of(
+        ActuationModel::Muscle,
+        Behavior::SelfTouch,
+        Scene::Crib,
+        Compat::Api,
+    ));
+    let snapshot = env.snapshot();
+    let (before, info) = (env.observation().proprioception.to_vec(), env.info().clone());
+    random_steps(&mut env, 3);
+    assert_ne!(env.observation().proprioception, before);
+    env.restore(&snapshot).expect("its own snapshot");
+    assert_eq!(env.observation().proprioception, before);
+    assert_eq!(*env.info(), info);
+}
+
+#[test]
+fn a_snapshot_before_the_first_reset_asks_for_a_reset() {
+    let mut env = env(of(
+        ActuationModel::SpringDamper,
+        Behavior::None,
+        Scene::Base,
+        Compat::Api,
+    ));
+    let fresh = env.snapshot();
+    env.reset(Some(0)).expect("no divergence");
+    env.restore(&fresh).expect("its own snapshot");
+    let action = vec![0.0; env.action_space().len()];
+    assert!(matches!(env.step(&action), Err(EnvError::NotReset)));
+}
+
+#[test]
+fn a_snapshot_of_the_largest_scene_is_small() {
+    for &kind in ActuationModel::ALL {
+        let env = env(of(kind, Behavior::HandRegard, Scene::Cubes, Compat::Api));
+        let n = env.snapshot().as_bytes().len();
+        println!("{kind}: {n} bytes");
+        assert!(n <= 64 << 10);
+    }
+}
+
+#[test]
+fn snapshots_of_other_environments_are_refused() {
+    let base = of(ActuationModel::SpringDamper, Behavior::None, Scene::Base, Compat::Api);
+    let snapshot = started(base.clone()).snapshot();
+    let mut others = vec![
+        Config {
+            actuation_model: ActuationModel::Muscle,
+            ..base.clone()
+        },
+        Config {
+            scene: Scene::Crib,
+            ..base.clone()
+        },
+        Config {
+            behavior: Behavior::SelfTouch,
+            ..base.clone()
+        },
+        Config {
+            compat: Compat::Reference,
+            ..base.clone()
+        },
+    ];
+    let mut act = base.clone();
+    act.act.eyes = false;
+    others.push(act);
+    for config in others {
+        let mut other = started(config);
+        let before = other.snapshot();
+        assert_eq!(other.restore(&snapshot), Err(SnapshotError::OtherEnvironment));
+        assert_eq!(other.snapshot(), before);
+    }
+    // other senses: the same scene, another length
+    let mut other = started(Config {
+        proprio_torque: false,
+        ..base
+    });
+    assert!(matches!(other.restore(&snapshot), Err(SnapshotError::Damaged { .. })));
+}
+
+#[test]
+fn damaged_bytes_are_refused() {
+    let mut env = started(of(
+        ActuationModel::Muscle,
+        Behavior::SelfTouch,
+        Scene::Base,
+        Compat::Api,
+    ));
+    let good = env.snapshot().as_bytes().to_vec();
+    assert_eq!(Snapshot::from_bytes(Vec::new()), Err(SnapshotError::NotASnapshot));
+    assert_eq!(Snapshot::from_bytes(vec![7; 4096]), Err(SnapshotError::NotASnapshot));
+    for n in (0..good.len()).step_by(97).chain(good.len() - 9..good.len()) {
+        assert!(Snapshot::from_bytes(good[..n].to_vec()).is_err(), "cut at {n}");
+    }
+    for k in (0..good.len()).step_by(11).chain(0..40) {
+        let mut bytes = good.clone();
+        bytes[k] ^= 0x41;
+        // a changed fingerprint is noticed by the environment
+        match Snapshot::from_bytes(bytes) {
+            Ok(s) => assert_eq!(env.restore(&s), Err(SnapshotError::OtherEnvironment), "byte {k}"),
+            Err(e) => assert!(!e.to_string().is_empty()),
+        }
+    }
+    let mut newer = good.clone();
+    newer[8] = 9;
+    assert_eq!(Snapshot::from_bytes(newer), Err(SnapshotError::Version { found: 9 }));
+    let mut longer = good.clone();
+    longer.push(0);
+    assert!(Snapshot::from_bytes(longer).is_err());
+    assert_eq!(env.snapshot().as_bytes(), good);
+}
+
+/// Bytes whose checksum fits but whose content is nonsense: never a panic, and the environment stays as it was or runs on.
+#[test]
+fn forged_bytes_never_panic() {
+    let mut env = started(of(
+        ActuationModel::Muscle,
+        Behavior::SelfTouch,
+        Scene::Base,
+        Compat::Api,
+    ));
+    let good = env.snapshot();
+    let mut x = 1_u64;
+    let mut random = || {
+        x ^= x << 13;
+        x ^= x >> 7;
+        x ^= x << 17;
+        x
+    };
+    let (mut refused, mut taken) = (0, 0);
+    for k in 0..3000 {
+        let mut bytes = good.as_bytes().to_vec();
+        match k % 3 {
+            0 => {
+                let at = 32 + (random() as usize) % (bytes.len() - 40);
+                bytes[at..at + 8].copy_from_slice(&random().to_le_bytes());
+            }
+            1 => bytes.truncate(32 + (random() as usize) % (bytes.len() - 32)),
+            // counts and lists
+            _ => {
+                let at = 32 + 8 * ((random() as usize) % 10);
+                let value = [u64::MAX, 1 << 40, 3, 100][(random() % 4) as usize];
+                bytes[at..at + 8].copy_from_slice(&value.to_le_bytes());
+            }
+        }
+        let sum = checksum(&bytes[32..]);
+        bytes[24..32].copy_from_slice(&sum.to_le_bytes());
+        // the checksum fits, but too little may be left
+        let Ok(forged) = Snapshot::from_bytes(bytes) else {
+            refused += 1;
+            continue;
+        };
+        match env.restore(&forged) {
+            Err(_) => {
+                refused += 1;
+                assert_eq!(env.snapshot(), good);
+            }
+            Ok(()) => {
+                taken += 1;
+                let action = vec![0.5; env.action_space().len()];
+                let _ = env.step(&action);
+                env.restore(&good).expect("its own snapshot");
+            }
+        }
+    }
+    println!("{refused} refused, {taken} taken");
+    assert!(refused > 0 && taken > 0);
+}
+
+/// The checksum as the documentation of the layout has it.
+fn checksum(bytes: &[u8]) -> u64 {
+    let mix = |h: u64, w: u64| (h ^ w).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    let words = bytes.chunks_exact(8);
+    let rest = words.remainder();
+    let h = words.fold(bytes.len() as u64, |h, w| {
+        mix(h, u64::from_le_bytes(w.try_into().expect("eight")))
+    });
+    rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
+}
