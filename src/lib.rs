@@ -128,6 +128,7 @@ pub mod report;
 pub mod runs;
 pub mod sensors;
 pub mod spaces;
+pub mod vector;
 
 pub use config::Config;
 pub use env::{Blueprint, Env, EnvError, Info, Observation, Step};
@@ -135,6 +136,7 @@ pub use limits::Limits;
 pub use model::Model;
 #[cfg(feature = "eval")]
 pub use runs::make_env;
+pub use vector::{AutoresetMode, VectorEnv, VectorOptions};
 
 /// The programs in the README are compiled and run with the tests.
 #[cfg(doctest)]

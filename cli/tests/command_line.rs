@@ -11,7 +11,7 @@ use babybench::config::{ActuationModel, Behavior, Scene};
 use babybench::mimo::embedded;
 use babybench::runs::logs::evaluation_path;
 use babybench::runs::{
-    EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, start_training_from,
+    EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, read_training, start_training_from,
 };
 use babybench::{Blueprint, Config};
 use common::*;
@@ -62,6 +62,9 @@ fn wrong_options_say_what_is_expected() {
             ["-1", "x", "99999999999999999999"],
             "whole number of at least 0",
         ),
+        ("run", "--envs", ["0", "-1", "x"], "whole number of at least 1"),
+        ("run", "--threads", ["0", "-1", "x"], "whole number of at least 1"),
+        ("train", "--envs", ["0", "-1", "x"], "whole number of at least 1"),
         ("train", "--train-for", ["0", "-5", ""], "whole number of at least 1"),
         (
             "evaluate",
@@ -177,6 +180,92 @@ fn wrong_recordings_and_folders_say_what_to_do() {
 }
 
 #[test]
+fn many_environments_at_once_say_how_fast_they_are() {
+    let folder = Folder::new("many");
+    let config = short_config(&folder);
+    let run = |rest: &[&str]| {
+        let out = babybench(
+            folder.path(),
+            &[&["run", "--config", &config, "--quiet"], rest].concat(),
+        );
+        (out.status.success(), text(&out))
+    };
+    let (done, said) = run(&["--envs", "3", "--threads", "2", "--episodes", "2", "--seed", "4"]);
+    assert!(done, "{said}");
+    for part in [
+        "episode 0, environment 0: {",
+        "episode 1, environment 2: {",
+        "60 steps of 3 environments",
+    ] {
+        assert!(said.contains(part), "no {part:?} in {said}");
+    }
+    let lines: Vec<&str> = said.lines().filter(|l| !l.starts_with("peak memory")).collect();
+    let speed = lines
+        .last()
+        .and_then(|l| l.strip_prefix("environment steps per second: "));
+    assert!(speed.is_some_and(|v| v.parse::<u64>().is_ok_and(|v| v > 0)), "{said}");
+    // the first environment is the one that runs alone
+    let (_, alone) = run(&["--seed", "4"]);
+    let info = |said: &str, start: &str| {
+        let line = said.lines().find_map(|l| l.strip_prefix(start)).map(str::to_string);
+        line.unwrap_or_else(|| panic!("no {start:?} in {said}"))
+    };
+    assert_eq!(info(&said, "episode 0, environment 0: "), info(&alone, "episode 0: "));
+
+    let (_, said) = run(&["--envs", "2", "--threads", "1000"]);
+    assert_eq!(said.matches("instead of 1000 threads").count(), 1, "{said}");
+    refused(
+        folder.path(),
+        &["run", "--config", &config, "--envs", "1000000000"],
+        &["1000000000 environments would take", "PiB of memory", "use at most"],
+    );
+    refused(
+        folder.path(),
+        &["run", "--config", &config, "--threads", "2"],
+        &["--envs"],
+    );
+}
+
+#[test]
+fn a_training_in_many_environments_is_one_log_whatever_the_threads() {
+    let log = |name: &str, rest: &[&str]| {
+        let folder = Folder::new(name);
+        let config = short_config(&folder);
+        let train = ["train", "--config", &config, "--train-for", "47", "--quiet"];
+        let out = babybench(folder.path(), &[&train[..], rest].concat());
+        assert!(out.status.success(), "{}", text(&out));
+        let logs = folder.path().join("run/logs");
+        let files = ["training.pkl", "training.jsonl"].map(|f| std::fs::read(logs.join(f)).expect("a log"));
+        let steps: Vec<u64> = read_training(folder.path().join("run"))
+            .expect("a log")
+            .iter()
+            .map(|r| r.steps)
+            .collect();
+        (files, steps)
+    };
+    let alone = log("train_alone", &[]);
+    assert_eq!(alone.1, [10, 10, 10, 10, 7]);
+    assert!(
+        log("train_one", &["--envs", "1"]) == alone,
+        "one environment in a vector"
+    );
+    let one = log("train_three", &["--envs", "3", "--threads", "1"]);
+    assert_eq!(one.1, [10, 10, 10, 6, 6, 5]);
+    assert!(
+        log("train_threads", &["--envs", "3", "--threads", "2"]) == one,
+        "two threads"
+    );
+    for compat in ["api", "reference"] {
+        let rest = ["--compat", compat];
+        let one = log("train_compat", &rest);
+        assert!(
+            log("train_compat", &[&rest[..], &["--envs", "1"]].concat()) == one,
+            "{compat}"
+        );
+    }
+}
+
+#[test]
 fn an_evaluation_alone_has_its_scene() {
     let folder = Folder::new("alone");
     let config = short_config(&folder);
@@ -272,8 +361,6 @@ fn scenes_are_kept_or_refused() {
 mod interrupts {
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};
-
-    use babybench::runs::read_training;
 
     use super::*;
 

@@ -9,7 +9,7 @@ use crate::env::snapshot::fingerprint;
 use crate::env::{Env, EnvError};
 use crate::mimo::{build_model, embedded, lock};
 use crate::model::Model;
-use crate::physics::{Engine, Params, RapierModel, RapierOptions, SoftEngine, SoftOptions};
+use crate::physics::{Engine, Params, RapierModel, RapierOptions, SoftModel, SoftOptions};
 use crate::render::{RenderError, Renderer, Visual};
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use crate::render::{SharedGpu, gpu::GpuRenderer};
@@ -239,7 +239,7 @@ impl Blueprint {
 /// A maker of engines of one kind for one model.
 #[derive(Clone, Debug)]
 enum Engines {
-    Soft(Arc<Model>, SoftOptions),
+    Soft(SoftModel),
     Rapier(RapierModel),
 }
 
@@ -252,7 +252,7 @@ impl Engines {
                     double_weld_torque,
                     ..SoftOptions::default()
                 };
-                Self::Soft(model, options)
+                Self::Soft(SoftModel::new(model, options))
             }
             EngineKind::Rapier => {
                 let options = RapierOptions {
@@ -266,7 +266,7 @@ impl Engines {
 
     fn make(&self) -> Box<dyn Engine> {
         match self {
-            Self::Soft(model, options) => Box::new(SoftEngine::new(model.clone(), *options)),
+            Self::Soft(shared) => Box::new(shared.engine()),
             Self::Rapier(shared) => Box::new(shared.engine()),
         }
     }

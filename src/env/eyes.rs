@@ -63,6 +63,11 @@ impl Env {
         self.senses.vision_deferred = deferred;
     }
 
+    /// Returns whether [`Env::draw_eyes`] draws the eyes' images, not each step.
+    pub fn vision_is_deferred(&self) -> bool {
+        self.senses.vision_deferred
+    }
+
     /// Draws what the eyes of many environments see into their observations. With `renderer: wgpu`, all environments of a
     /// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other.
     ///

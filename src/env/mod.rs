@@ -261,6 +261,16 @@ impl Env {
         self.physics.unlock(self.blueprint.model(), target.into())
     }
 
+    /// Returns whether a step may follow: there was a reset, and nothing diverged since.
+    pub fn ready(&self) -> bool {
+        self.episode.ready
+    }
+
+    /// Returns whether the episode has reached `max_episode_steps`.
+    pub fn truncated(&self) -> bool {
+        self.episode.steps >= self.blueprint.config().max_episode_steps
+    }
+
     /// Ends the episode and returns how many steps it had. The next step needs a reset.
     pub fn end_episode(&mut self) -> u64 {
         self.episode.ready = false;
@@ -304,13 +314,13 @@ impl Env {
         self.mark(Some(EnvStage::Senses));
         self.sense()?;
         self.tracker.update(&self.physics.state, &mut self.info);
-        let (steps, config) = (&mut self.episode.steps, self.blueprint.config());
-        self.info.steps = match config.compat {
+        let steps = &mut self.episode.steps;
+        self.info.steps = match self.blueprint.config().compat {
             Compat::Api => *steps + 1,
             Compat::Reference => *steps,
         };
         *steps += 1;
-        let truncated = *steps >= config.max_episode_steps;
+        let truncated = self.truncated();
         self.mark(None);
         Ok(Step {
             observation: self.observation(),
@@ -321,7 +331,8 @@ impl Env {
         })
     }
 
-    fn check_action(&self, action: &[f32]) -> Result<(), EnvError> {
+    /// Checks the length of an action, and that it is finite.
+    pub(crate) fn check_action(&self, action: &[f32]) -> Result<(), EnvError> {
         let expected = self.action_space().len();
         if action.len() != expected {
             return Err(EnvError::ActionLength {

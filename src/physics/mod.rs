@@ -23,6 +23,6 @@ pub use dynamics::{cameras, kinematics};
 pub use engine::{Engine, EngineError, Probe, Stage};
 pub use params::Params;
 pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions};
-pub use soft::{SoftEngine, SoftOptions};
+pub use soft::{SoftEngine, SoftModel, SoftOptions};
 pub use state::{Contact, State};
 pub use topology::Topology;

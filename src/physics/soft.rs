@@ -32,8 +32,8 @@ pub struct SoftOptions {
 pub struct SoftEngine {
     model: Arc<Model>,
     options: SoftOptions,
-    topology: Topology,
-    pairs: PairTable,
+    topology: Arc<Topology>,
+    pairs: Arc<PairTable>,
     sweep: Sweep,
     scene: RapierScene,
     rows: RowBuilder,
@@ -52,30 +52,55 @@ impl std::fmt::Debug for SoftEngine {
     }
 }
 
-impl SoftEngine {
-    /// Creates an engine for `model`.
+/// Holds what soft engines of one model share: the tree, and the pairs that may touch.
+#[derive(Clone, Debug)]
+pub struct SoftModel {
+    model: Arc<Model>,
+    options: SoftOptions,
+    topology: Arc<Topology>,
+    pairs: Arc<PairTable>,
+}
+
+impl SoftModel {
+    /// Derives it from `model`.
     pub fn new(model: Arc<Model>, options: SoftOptions) -> Self {
-        let pairs = PairTable::new(&model);
+        Self {
+            options,
+            topology: Arc::new(Topology::new(&model)),
+            pairs: Arc::new(PairTable::new(&model)),
+            model,
+        }
+    }
+
+    /// Returns a new engine.
+    pub fn engine(&self) -> SoftEngine {
+        let (model, topology, pairs) = (&self.model, &self.topology, &self.pairs);
         let contact = ContactOptions {
             ccd_tolerance: model.opt.ccd_tolerance,
             ccd_iterations: model.opt.ccd_iterations,
-            quirks: options.contact_quirks,
+            quirks: self.options.contact_quirks,
         };
-        let topology = Topology::new(&model);
-        Self {
-            options,
-            sweep: Sweep::new(&model, &pairs, contact),
-            scene: RapierScene::new(&model, &pairs, contact),
-            pairs,
-            rows: RowBuilder::new(&model, &topology),
-            newton: Newton::with_capacity(model.nv, RESERVED_CONTACTS),
+        SoftEngine {
+            options: self.options,
+            sweep: Sweep::new(model, pairs, contact),
+            scene: RapierScene::new(model, pairs, contact),
+            rows: RowBuilder::new(model, topology),
+            newton: Newton::with_capacity(topology, model.nv, RESERVED_CONTACTS),
             integrator: Integrator::default(),
             bias: BiasScratch::default(),
             bodies: Articulated::default(),
             probe: None,
-            topology,
-            model,
+            topology: topology.clone(),
+            pairs: pairs.clone(),
+            model: model.clone(),
         }
+    }
+}
+
+impl SoftEngine {
+    /// Makes an engine for `model`. Several engines of one model are cheaper from one [`SoftModel`].
+    pub fn new(model: Arc<Model>, options: SoftOptions) -> Self {
+        SoftModel::new(model, options).engine()
     }
 
     /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.

@@ -1,12 +1,14 @@
 //! Runs in folders: training with its log, the scene that belongs to the logs, recordings and their replay.
 
 pub mod logs;
+mod many;
 #[cfg(feature = "npz")]
 mod replay;
 mod scene_file;
 mod training;
 
 pub use logs::{EvaluationLog, LogError, TrainingLog, read_training};
+pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use replay::{Recording, Replay, ReplayError, TouchRows, replay, replay_with_images};
 pub use scene_file::{

@@ -11,6 +11,7 @@ use crate::assets::AssetSource;
 use crate::config::{Behavior, Compat, Config};
 use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step};
 use crate::mimo::embedded;
+use crate::vector::VectorError;
 
 /// An error that keeps a run from starting or continuing.
 #[derive(Debug, Error)]
@@ -19,6 +20,9 @@ pub enum RunError {
     /// The environment fails.
     #[error(transparent)]
     Env(#[from] EnvError),
+    /// The vector of environments fails.
+    #[error(transparent)]
+    Vector(#[from] VectorError),
     /// The log cannot be read or written.
     #[error(transparent)]
     Log(#[from] LogError),
@@ -170,8 +174,19 @@ pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<RunEnv, Run
 /// # Errors
 /// As [`start_training`], and assets that are missing.
 pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resume: bool) -> Result<RunEnv, RunError> {
-    let config = blueprint.config();
     let env = blueprint.env()?;
+    let log = open_training_log(blueprint, assets, resume)?;
+    Ok(RunEnv::new(env, Some(log)))
+}
+
+/// Starts the training log in the configuration's `save_dir`, or resumes the one that is there, and writes the scene
+/// beside it.
+pub(super) fn open_training_log(
+    blueprint: &Blueprint,
+    assets: &dyn AssetSource,
+    resume: bool,
+) -> Result<TrainingLog, RunError> {
+    let config = blueprint.config();
     let log = match resume {
         true => TrainingLog::resume(config)?,
         false => TrainingLog::create(config)?,
@@ -180,7 +195,7 @@ pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resu
         keep_scene(blueprint, assets)?;
     }
     write_scene_from(config, assets, Path::new(&config.save_dir))?;
-    Ok(RunEnv::new(env, Some(log)))
+    Ok(log)
 }
 
 /// Creates an environment that logs nothing; under `compat: reference`, information accumulates over episodes. The

@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 static CALLS: AtomicUsize = AtomicUsize::new(0);
 static BYTES: AtomicUsize = AtomicUsize::new(0);
+/// Bytes that have been freed, or grown out of.
+static FREED: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
     static OWN_CALLS: Cell<usize> = const { Cell::new(0) };
@@ -15,6 +17,11 @@ thread_local! {
 /// Calls and bytes so far, of all threads.
 pub fn of_all_threads() -> [usize; 2] {
     [CALLS.load(Relaxed), BYTES.load(Relaxed)]
+}
+
+/// Bytes that are in use, of all threads.
+pub fn live() -> usize {
+    BYTES.load(Relaxed).wrapping_sub(FREED.load(Relaxed))
 }
 
 /// Calls so far, of this thread.
@@ -47,11 +54,13 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         count(size);
+        FREED.fetch_add(layout.size(), Relaxed);
         // SAFETY: the caller keeps the contract of `realloc`.
         unsafe { System.realloc(pointer, layout, size) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        FREED.fetch_add(layout.size(), Relaxed);
         // SAFETY: the caller keeps the contract of `dealloc`.
         unsafe { System.dealloc(pointer, layout) }
     }

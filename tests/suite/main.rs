@@ -24,3 +24,4 @@ mod report;
 mod scene;
 mod snapshot;
 mod touch;
+mod vector;

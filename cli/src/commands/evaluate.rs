@@ -44,8 +44,8 @@ pub struct Evaluate {
     /// Frames per second of the videos; 200 / frame_skip plays them in real time
     #[arg(long, value_name = "N", default_value_t = DEFAULT_FPS, allow_negative_numbers = true, value_parser = fps)]
     fps: u32,
-    /// Number of episodes to run in parallel
-    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<usize>)]
+    /// Number of episodes to run in parallel, each in an environment of its own
+    #[arg(long, visible_alias = "envs", value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<usize>)]
     jobs: usize,
     /// Do not show a progress bar
     #[arg(long)]

@@ -2,6 +2,7 @@
 
 mod evaluate;
 mod inspect;
+mod many;
 mod render;
 mod replay;
 mod report;

@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 
 use babybench::config::Compat;
 use babybench::env::EnvStage;
-use babybench::{Env, EnvError};
+use babybench::{AutoresetMode, Blueprint, Env, EnvError, VectorEnv};
 use clap::Args;
 use indicatif::ProgressBar;
 
+use super::many::{Many, say_threads};
 use super::{Source, progress_bar};
 use crate::arguments::{count, number};
 use crate::print::say;
@@ -29,6 +30,8 @@ pub struct Run {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
+    #[command(flatten)]
+    many: Many,
     /// Do not show a progress bar
     #[arg(long)]
     quiet: bool,
@@ -73,21 +76,13 @@ impl Run {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let started = Instant::now();
         let blueprint = self.source.blueprint(Compat::Api)?;
+        if let Some(envs) = self.many.envs() {
+            return self.many_envs(&blueprint, envs, started);
+        }
         let mut env = blueprint.env()?;
         let construction = started.elapsed();
         let config = blueprint.config();
-        say!(
-            "{} in {}, {}: {} joints, {} actuators, {} numbers observed",
-            config.behavior,
-            config.scene,
-            config.actuation_model,
-            env.proprioception().joints().len(),
-            env.model().nu(),
-            env.observation_space()
-                .iter()
-                .map(|s| s.shape.iter().product::<usize>())
-                .sum::<usize>(),
-        )?;
+        say!("{}", description(&env))?;
         let clock = Arc::new(Mutex::new(Clock::new()));
         let probe = clock.clone();
         env.set_probe(Some(Arc::new(move |stage| lock(&probe).enter(stage))));
@@ -105,11 +100,86 @@ impl Run {
         say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
         let step = env.model().opt.timestep * f64::from(config.frame_skip);
         tally.print(step, &lock(&clock).spent)?;
-        if let Some(kib) = peak_memory() {
-            say!("peak memory of the process: {:.1} MiB", kib as f64 / 1024.0)?;
-        }
-        Ok(())
+        say_peak_memory()
     }
+
+    /// Runs the episodes in many environments at once; that number i is seeded with the seed plus i.
+    fn many_envs(&self, blueprint: &Blueprint, n: usize, started: Instant) -> Result<(), Box<dyn Error>> {
+        let mut envs = VectorEnv::new(blueprint, n, self.many.options(AutoresetMode::Disabled))?;
+        let construction = started.elapsed();
+        say_threads(&envs);
+        let config = blueprint.config();
+        say!("{}", description(envs.env(0)?))?;
+        let length = self
+            .steps
+            .unwrap_or(config.max_episode_steps)
+            .min(config.max_episode_steps);
+        let bar = progress_bar(
+            self.episodes.saturating_mul(length).saturating_mul(n as u64),
+            self.quiet,
+        )?;
+        envs.seed_action_spaces(self.seed.unwrap_or(config.seed))?;
+        let mut actions = Vec::new();
+        let (mut steps, mut stepping) = (0, Duration::ZERO);
+        for episode in 0..self.episodes {
+            envs.reset(None)?;
+            for k in 1..=length {
+                envs.sample_actions(&mut actions)?;
+                let before = Instant::now();
+                let batch = envs.step(&actions)?;
+                stepping += before.elapsed();
+                steps += n as u64;
+                if k % 16 == 0 {
+                    bar.set_position(steps);
+                }
+                if let Some(failure) = batch.failures.first() {
+                    return Err(format!("environment {}: {}", failure.env, failure.error).into());
+                }
+            }
+            for i in 0..n {
+                let info = envs.env(i)?.info().to_json();
+                bar.suspend(|| say!("episode {episode}, environment {i}: {info}"))?;
+            }
+        }
+        bar.finish_and_clear();
+        say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
+        let (seconds, step) = (
+            stepping.as_secs_f64(),
+            envs.env(0)?.model().opt.timestep * f64::from(config.frame_skip),
+        );
+        let per_second = steps as f64 / seconds;
+        say!(
+            "{steps} steps of {n} environments on {} threads in {seconds:.2} s: {:.0} us per step, {:.1} times real time",
+            envs.threads(),
+            1e6 / per_second,
+            per_second * step
+        )?;
+        say!("environment steps per second: {per_second:.0}")?;
+        say_peak_memory()
+    }
+}
+
+/// Describes an environment in a line.
+fn description(env: &Env) -> String {
+    let config = env.config();
+    let spaces = env.observation_space();
+    format!(
+        "{} in {}, {}: {} joints, {} actuators, {} numbers observed",
+        config.behavior,
+        config.scene,
+        config.actuation_model,
+        env.proprioception().joints().len(),
+        env.model().nu(),
+        spaces.iter().map(|s| s.shape.iter().product::<usize>()).sum::<usize>(),
+    )
+}
+
+/// Prints the peak memory, where the system tells.
+fn say_peak_memory() -> Result<(), Box<dyn Error>> {
+    if let Some(kib) = peak_memory() {
+        say!("peak memory of the process: {:.1} MiB", kib as f64 / 1024.0)?;
+    }
+    Ok(())
 }
 
 impl Tally {

@@ -3,13 +3,15 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use babybench::Config;
 use babybench::config::Compat;
 use babybench::eval::Score;
 use babybench::runs::logs::{read_records, training_path};
-use babybench::runs::{RunEnv, start_training_from};
+use babybench::runs::{RunVector, start_training_from};
+use babybench::{AutoresetMode, Config, Info};
 use clap::Args;
+use indicatif::ProgressBar;
 
+use super::many::{Many, say_threads};
 use super::{Source, progress_bar};
 use crate::arguments::{count, number, word};
 use crate::interrupt::{Interrupt, Interrupted};
@@ -32,6 +34,8 @@ pub struct Train {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
+    #[command(flatten)]
+    many: Many,
     /// Do not show a progress bar
     #[arg(long)]
     quiet: bool,
@@ -46,17 +50,13 @@ impl Train {
             look_at_old_log(config)?;
         }
         let assets = self.source.assets()?;
-        let mut env = start_training_from(&blueprint, &*assets, self.resume)?;
-        let before = env.log().map_or(&[][..], |log| log.records());
-        let (episodes, done) = (before.len() as u64, before.iter().map(|r| r.steps).sum::<u64>());
-        if self.resume && episodes > 0 {
-            say!("resuming after {episodes} episodes, {done} steps")?;
+        if let Some(n) = self.many.envs() {
+            let options = self.many.options(AutoresetMode::Disabled);
+            let envs = RunVector::start(&blueprint, n, options, &*assets, self.resume)?;
+            return self.many_envs(envs, config, &interrupt);
         }
-        let bar = progress_bar(self.train_for, self.quiet)?;
-        bar.set_position(done);
-        bar.reset_eta();
-        // a resumed run must not repeat the actions of the run before
-        let seed = self.seed.unwrap_or(config.seed).wrapping_add(episodes);
+        let mut env = start_training_from(&blueprint, &*assets, self.resume)?;
+        let (seed, done, bar) = self.begin(env.log().map_or(&[][..], |log| log.records()), config)?;
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
         let mut action = Vec::new();
@@ -81,13 +81,53 @@ impl Train {
             env.reset(None)?;
         }
         env.finish_training()?;
-        self.print_result(&env, steps)
+        self.print_result(env.log().map_or(&[][..], |log| log.records()), config, steps)
+    }
+
+    /// Trains in many environments at once; that number i has the seed plus i.
+    fn many_envs(&self, mut envs: RunVector, config: &Config, interrupt: &Interrupt) -> Result<(), Box<dyn Error>> {
+        say_threads(&envs);
+        let (seed, done, bar) = self.begin(envs.log().records(), config)?;
+        envs.vector_mut().seed_action_spaces(seed)?;
+        let (mut steps, mut saved) = (done, Instant::now());
+        let mut actions = Vec::new();
+        while steps < self.train_for && !interrupt.wanted() {
+            envs.start_episodes()?;
+            envs.vector_mut().sample_actions(&mut actions)?;
+            // the last steps are those of the first environments
+            let n = usize::try_from(self.train_for - steps).map_or(envs.len(), |rest| rest.min(envs.len()));
+            actions.truncate(n * envs.single_action_space().len());
+            for failure in envs.step(&actions)?.failures {
+                bar.suspend(|| note!("warning: environment {} starts anew: {}", failure.env, failure.error));
+            }
+            steps += n as u64;
+            bar.set_position(steps);
+            if config.compat == Compat::Api && saved.elapsed() >= SAVE_EVERY {
+                envs.log().save()?;
+                saved = Instant::now();
+            }
+        }
+        bar.finish_and_clear();
+        envs.finish_training()?;
+        self.print_result(envs.log().records(), config, steps)
+    }
+
+    /// Says what is resumed. Returns the seed of this run, the number of steps before it, and a progress bar.
+    fn begin(&self, before: &[Info], config: &Config) -> Result<(u64, u64, ProgressBar), Box<dyn Error>> {
+        let (episodes, done) = (before.len() as u64, before.iter().map(|r| r.steps).sum::<u64>());
+        if self.resume && episodes > 0 {
+            say!("resuming after {episodes} episodes, {done} steps")?;
+        }
+        let bar = progress_bar(self.train_for, self.quiet)?;
+        bar.set_position(done);
+        bar.reset_eta();
+        // a resumed run must not repeat the actions of the run before
+        let seed = self.seed.unwrap_or(config.seed).wrapping_add(episodes);
+        Ok((seed, done, bar))
     }
 
     /// Prints what the log holds now, and its score.
-    fn print_result(&self, env: &RunEnv, steps: u64) -> Result<(), Box<dyn Error>> {
-        let config = env.config();
-        let records = env.log().map_or(&[][..], |log| log.records());
+    fn print_result(&self, records: &[Info], config: &Config, steps: u64) -> Result<(), Box<dyn Error>> {
         let (n, dir) = (records.len(), word(&config.save_dir));
         if steps < self.train_for {
             let goal = self.train_for;

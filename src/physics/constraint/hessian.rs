@@ -49,8 +49,8 @@ const NONE: u32 = u32::MAX;
 impl Hessian {
     /// Reserves memory for `nv` degrees of freedom and `contacts` contacts.
     pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
-        // tiles are mostly full
-        let (rows, tiles) = (nv, nv * (nv + 1) / 16);
+        // tiles are mostly full, and few trees touch each other at a time
+        let (rows, tiles) = (nv, (nv * (nv + 1) / 16).min(4 * nv));
         Self {
             words: 0,
             bits: Vec::with_capacity(rows * rows.div_ceil(64)),
@@ -62,9 +62,9 @@ impl Hessian {
             h: Vec::with_capacity(tiles),
             factor: Vec::with_capacity(tiles),
             inv: Vec::with_capacity(rows),
-            update: Vec::with_capacity(4 * tiles),
+            update: Vec::with_capacity(tiles),
             changed: Vec::with_capacity(rows),
-            weight: Vec::with_capacity(3 * nv + contacts),
+            weight: Vec::with_capacity(nv + contacts),
             zone: Vec::with_capacity(contacts),
             weighted: Vec::with_capacity(6 * rows),
         }

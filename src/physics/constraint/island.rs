@@ -55,18 +55,18 @@ pub(super) struct Island {
 }
 
 impl Island {
-    /// Reserves memory for `nv` degrees of freedom and `contacts` contacts.
-    pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
+    /// Reserves memory for `nv` degrees of freedom, whose inertia has so many tiles, and `contacts` contacts.
+    pub(super) fn with_capacity(inertia: usize, nv: usize, contacts: usize) -> Self {
         let lanes = || Vec::with_capacity(nv);
         Self {
             trees: Vec::with_capacity(nv),
             shift: Vec::with_capacity(nv),
-            m: Vec::with_capacity(8 * nv),
-            m_pattern: Pattern::with_capacity(nv, 8 * nv),
+            m: Vec::with_capacity(inertia),
+            m_pattern: Pattern::with_capacity(nv, inertia),
             force_smooth: lanes(),
             acc_smooth: lanes(),
             friction_tiles: 0,
-            quads: Vec::with_capacity(3 * nv + contacts),
+            quads: Vec::with_capacity(nv + contacts),
             singles: Vec::with_capacity(4 * nv),
             several: Vec::with_capacity(nv + contacts),
             cones: Vec::with_capacity(contacts),

@@ -29,11 +29,11 @@ pub struct Newton {
 }
 
 impl Newton {
-    /// Reserves memory for `nv` degrees of freedom and `contacts` contacts, so that solving need not allocate.
-    pub fn with_capacity(nv: usize, contacts: usize) -> Self {
+    /// Reserves memory for the degrees of freedom of a model and `contacts` contacts, so that solving need not allocate.
+    pub fn with_capacity(topology: &Topology, nv: usize, contacts: usize) -> Self {
         let blocks = contacts + 4 * nv;
         Self {
-            island: Island::with_capacity(nv, contacts),
+            island: Island::with_capacity(topology.tiles.tiles(), nv, contacts),
             hessian: Hessian::with_capacity(nv, contacts),
             parent: Vec::with_capacity(nv),
             trees: Vec::with_capacity(nv),

@@ -169,6 +169,11 @@ impl Touch {
         })
     }
 
+    /// Returns the sensors that contacts have reached, in that order: all others have the value zero.
+    pub fn touched(&self) -> &[u32] {
+        &self.touched
+    }
+
     /// Returns the contacts with skin, with points and forces in the world and body frames: touch before it is spread
     /// over the sensors. A contact between two bodies with skin is listed from both sides.
     pub fn contacts(&self) -> &[TouchContact] {

@@ -16,6 +16,7 @@ const ROOMS: &[&[&str]] = &[
     &["actuation"],
     &["sensors"],
     &["env"],
+    &["vector"],
     &["runs"],
     &["policy"],
     &["eval"],
@@ -115,6 +116,7 @@ fn room_of(name: &str) -> &str {
         "Model" => "model",
         "Limits" => "limits",
         "Env" | "Blueprint" | "EnvError" | "Info" | "Observation" | "Step" => "env",
+        "AutoresetMode" | "VectorEnv" | "VectorOptions" => "vector",
         "make_env" => "runs",
         room => room,
     }

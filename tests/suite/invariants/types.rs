@@ -10,7 +10,8 @@ use babybench::render::{CpuRenderer, RenderError, Renderer, Visual};
 use babybench::runs::LogError;
 use babybench::sensors::{Proprioception, SkinLayout, Touch, Vestibular, Vision};
 use babybench::spaces::{BoxSpace, NumpyRng};
-use babybench::{Blueprint, Config, Env, Info, Model};
+use babybench::vector::VectorError;
+use babybench::{Blueprint, Config, Env, Info, Model, VectorEnv};
 
 fn moves<T: Send + 'static>() {}
 
@@ -22,6 +23,7 @@ fn is_error<T: std::error::Error + Send + Sync + 'static>() {}
 #[test]
 fn environments_move_between_threads() {
     moves::<Env>();
+    moves::<VectorEnv>();
     moves::<SoftEngine>();
     moves::<RapierEngine>();
 }
@@ -54,6 +56,7 @@ fn what_environments_share_is_shared_between_threads() {
 #[test]
 fn errors_fit_the_usual_boxes() {
     is_error::<EnvError>();
+    is_error::<VectorError>();
     is_error::<EngineError>();
     is_error::<LoadError>();
     is_error::<RenderError>();

@@ -1,0 +1,270 @@
+//! What many environments cost: `cargo bench --features parallel --bench vector [FILTER]`.
+//!
+//! - `threads`: two threads against one, and one against a plain loop over environments, in pairs that alternate: the same
+//!   environments, seeds and actions. Figures are medians of the ratios of pairs; the spread is between the quartiles.
+//!   Threads are compared by the clock, loops by the time that the processor spends on them.
+//! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps.
+
+#[path = "../tests/common/allocations.rs"]
+mod allocations;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use babybench::{AutoresetMode, Blueprint, Config, Env, Observation, VectorEnv, VectorOptions};
+
+const EXAMPLES: [(&str, &str); 3] = [
+    ("self_touch", include_str!("../configs/config_selftouch.yml")),
+    ("hand_regard", include_str!("../configs/config_handregard.yml")),
+    (
+        "test_installation",
+        include_str!("../configs/config_test_installation.yml"),
+    ),
+];
+
+/// Environments of a vector.
+const ENVS: usize = 64;
+/// Pairs of measurements, and steps of a vector in each half.
+const PAIRS: usize = 25;
+const STEPS: usize = 8;
+
+/// First quartile, median, third quartile.
+fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    [1, 2, 3].map(|q| values[(values.len() - 1) * q / 4])
+}
+
+fn vector(blueprint: &Blueprint, threads: usize) -> VectorEnv {
+    let options = VectorOptions {
+        threads,
+        autoreset: AutoresetMode::NextStep,
+        ..VectorOptions::default()
+    };
+    let mut envs = VectorEnv::new(blueprint, ENVS, options).expect("available");
+    envs.reset(0).expect("no divergence");
+    envs
+}
+
+/// Times two programs on the same actions in turn, and prints how many times faster the second is.
+fn pair(
+    name: &str,
+    clock: fn() -> f64,
+    actions: &[Vec<f32>],
+    mut one: impl FnMut(&[f32]),
+    mut other: impl FnMut(&[f32]),
+) {
+    let time = |program: &mut dyn FnMut(&[f32]), actions: &[Vec<f32>]| {
+        let start = clock();
+        actions.iter().for_each(|actions| program(actions));
+        clock() - start
+    };
+    let (mut ratios, mut us) = (Vec::new(), [Vec::new(), Vec::new()]);
+    for (k, actions) in actions.chunks_exact(STEPS).enumerate() {
+        // whoever is first changes from pair to pair
+        let times = if k % 2 == 0 {
+            [time(&mut one, actions), time(&mut other, actions)]
+        } else {
+            let second = time(&mut other, actions);
+            [time(&mut one, actions), second]
+        };
+        if k > 0 {
+            ratios.push(times[0] / times[1]);
+            us.iter_mut()
+                .zip(times)
+                .for_each(|(us, t)| us.push(t * 1e6 / (STEPS * ENVS) as f64));
+        }
+    }
+    let [low, median, high] = quartiles(ratios);
+    let [one, other] = us.map(|us| quartiles(us)[1]);
+    println!("{name:60} {median:.3} times ({low:.3} .. {high:.3}); {one:8.1} and {other:8.1} us per step");
+}
+
+/// Returns how long this thread has run, s, where the system tells (Linux), or else what time it is.
+fn cpu_time() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let ns = text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok());
+    ns.map_or_else(wall_time, |ns| ns * 1e-9)
+}
+
+/// Returns what time it is, s, since the first call.
+fn wall_time() -> f64 {
+    static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
+/// A plain loop over environments, as one writes it.
+fn plain(blueprint: &Blueprint) -> Vec<Env> {
+    let make = |seed: usize| {
+        let mut env = blueprint.env().expect("available");
+        env.reset(Some(seed as u64)).expect("no divergence");
+        env
+    };
+    (0..ENVS).map(make).collect()
+}
+
+/// Arrays in which a plain loop collects what environments observe.
+#[derive(Default)]
+struct Arrays {
+    proprioception: Vec<f64>,
+    touch: Vec<f32>,
+    eyes: [Vec<u8>; 2],
+    vestibular: Vec<f64>,
+}
+
+impl Arrays {
+    fn collect(&mut self, row: usize, o: &Observation<'_>) {
+        fn put<T: Copy + Default>(all: &mut Vec<T>, row: usize, values: Option<&[T]>) {
+            let values = values.unwrap_or_default();
+            all.resize(ENVS * values.len(), T::default());
+            all[row * values.len()..(row + 1) * values.len()].copy_from_slice(values);
+        }
+        put(&mut self.proprioception, row, Some(o.proprioception));
+        put(&mut self.touch, row, o.touch);
+        put(&mut self.eyes[0], row, o.eye_left);
+        put(&mut self.eyes[1], row, o.eye_right);
+        put(&mut self.vestibular, row, o.vestibular);
+    }
+}
+
+fn step_plain(envs: &mut [Env], actions: &[f32], over: &mut [bool], mut arrays: Option<&mut Arrays>) {
+    let len = actions.len() / ENVS;
+    for (k, (env, action)) in envs.iter_mut().zip(actions.chunks_exact(len)).enumerate() {
+        if over[k] {
+            black_box(env.reset(None).expect("no divergence"));
+            over[k] = false;
+        } else {
+            over[k] = black_box(env.step(action).expect("no divergence")).truncated;
+        }
+        if let Some(arrays) = &mut arrays {
+            arrays.collect(k, &env.observation());
+        }
+    }
+}
+
+fn threads(name: &str, blueprint: &Blueprint) {
+    let [mut one, mut two, mut alone] = [1, 2, 1].map(|threads| vector(blueprint, threads));
+    let actions: Vec<Vec<f32>> = (0..PAIRS * STEPS)
+        .map(|_| {
+            let mut actions = Vec::new();
+            one.sample_actions(&mut actions).expect("all are here");
+            actions
+        })
+        .collect();
+    let mut two_again = vector(blueprint, 2);
+    let (mut envs, mut over) = (plain(blueprint), vec![false; ENVS]);
+    let run = |envs: &mut VectorEnv, actions: &[f32]| {
+        black_box(envs.step(actions).expect("valid actions"));
+    };
+    pair(
+        &format!("threads/{name}/{} threads over 1", two.threads()),
+        wall_time,
+        &actions,
+        |a| run(&mut one, a),
+        |a| run(&mut two, a),
+    );
+    let mut arrays = Arrays::default();
+    pair(
+        &format!("threads/{name}/1 thread over a loop that collects"),
+        cpu_time,
+        &actions,
+        |a| step_plain(&mut envs, a, &mut over, Some(&mut arrays)),
+        |a| run(&mut alone, a),
+    );
+    pair(
+        &format!("threads/{name}/1 thread over a loop that does not collect"),
+        cpu_time,
+        &actions,
+        |a| step_plain(&mut envs, a, &mut over, None),
+        |a| run(&mut alone, a),
+    );
+    // send and recv, half of the environments at a time
+    let (ids, len) = ((0..ENVS).collect::<Vec<_>>(), two_again.single_action_space().len());
+    let mut one_again = vector(blueprint, 1);
+    let first = &actions[0];
+    two_again.send(first, &ids).expect("all are here");
+    one_again.send(first, &ids).expect("all are here");
+    let mut halves = halves_of(len);
+    let mut halves_too = halves_of(len);
+    pair(
+        &format!("threads/{name}/send and recv: {} threads over 1", two_again.threads()),
+        wall_time,
+        &actions,
+        |a| halves(&mut one_again, a),
+        |a| halves_too(&mut two_again, a),
+    );
+}
+
+/// Receives and sends half of the environments, twice.
+fn halves_of(len: usize) -> impl FnMut(&mut VectorEnv, &[f32]) {
+    let (mut next, mut turn) = (Vec::with_capacity(ENVS), Vec::with_capacity(ENVS * len));
+    move |envs, actions| {
+        for _ in 0..2 {
+            next.clear();
+            next.extend_from_slice(envs.recv(ENVS / 2).expect("enough are in flight").ids);
+            turn.clear();
+            for &env in &next {
+                turn.extend_from_slice(&actions[env * len..(env + 1) * len]);
+            }
+            envs.send(&turn, &next).expect("they are here");
+        }
+    }
+}
+
+/// Returns the resident memory of the process, MB, where the system tells (Linux).
+fn resident_memory() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = text.lines().find_map(|l| l.strip_prefix("VmRSS:"));
+    let kib = line
+        .and_then(|l| l.split_whitespace().next())
+        .and_then(|k| k.parse::<f64>().ok());
+    kib.map_or(f64::NAN, |kib| kib * 1024.0 / 1e6)
+}
+
+fn memory(name: &str, blueprint: &Blueprint) {
+    let (mut live, mut resident) = (Vec::new(), Vec::new());
+    let mut kept = Vec::new();
+    for n in [8, 40] {
+        let (before, resident_before) = (allocations::live(), resident_memory());
+        let options = VectorOptions {
+            threads: 1,
+            ..VectorOptions::default()
+        };
+        let mut envs = VectorEnv::new(blueprint, n, options).expect("available");
+        envs.reset(0).expect("no divergence");
+        let mut actions = Vec::new();
+        for _ in 0..50 {
+            envs.sample_actions(&mut actions).expect("all are here");
+            envs.step(&actions).expect("valid actions");
+        }
+        live.push((allocations::live() - before) as f64 / 1e6);
+        resident.push(resident_memory() - resident_before);
+        kept.push(envs);
+    }
+    println!(
+        "{:60} {:.3} MB, of which {:.3} MB are resident",
+        format!("memory/{name}/a further environment"),
+        (live[1] - live[0]) / 32.0,
+        (resident[1] - resident[0]) / 32.0
+    );
+}
+
+fn main() {
+    // cargo passes --bench
+    let filter = std::env::args().skip(1).find(|a| !a.starts_with('-'));
+    let wants = |name: &str| filter.as_ref().is_none_or(|f| name.contains(f.as_str()));
+    for (name, text) in EXAMPLES {
+        let config = Config::from_yaml(text, "example").expect("the examples are valid");
+        let eyes = if config.vision_active {
+            "with eyes"
+        } else {
+            "without eyes"
+        };
+        let blueprint = Blueprint::new(config).expect("available");
+        if wants(&format!("memory/{name}")) {
+            memory(&format!("{name}, {eyes}"), &blueprint);
+        }
+        if wants(&format!("threads/{name}")) {
+            threads(&format!("{name}, {eyes}"), &blueprint);
+        }
+    }
+}

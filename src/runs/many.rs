@@ -1,0 +1,161 @@
+//! Training in a vector of environments, with one log.
+
+use std::ops::Deref;
+
+use super::logs::TrainingLog;
+use super::training::{RunError, open_training_log};
+use crate::assets::AssetSource;
+use crate::config::{Behavior, Compat};
+use crate::env::{Blueprint, PartNames};
+use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions};
+
+/// A [`VectorEnv`] whose episodes are added to one training log as they end.
+///
+/// Episodes that end in one step are logged in the order of their environments, so that the log is the same whatever the
+/// number of threads.
+///
+/// ```
+/// use babybench::mimo::embedded;
+/// use babybench::runs::RunVector;
+/// use babybench::{Blueprint, Config, VectorOptions};
+///
+/// let save_dir = std::env::temp_dir().join("babybench_run_vector_example");
+/// let config = Config {
+///     save_dir: save_dir.display().to_string(),
+///     touch_active: false,
+///     vision_active: false,
+///     max_episode_steps: 5,
+///     ..Config::default()
+/// };
+/// let mut envs = RunVector::start(&Blueprint::new(config)?, 2, VectorOptions::default(), &embedded(), false)?;
+/// let mut actions = Vec::new();
+/// for _ in 0..15 {
+///     envs.start_episodes()?;
+///     envs.vector_mut().sample_actions(&mut actions)?;
+///     envs.step(&actions)?;
+/// }
+/// envs.finish_training()?;
+/// assert_eq!(babybench::runs::read_training(&save_dir)?.len(), 6);
+/// # std::fs::remove_dir_all(&save_dir)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct RunVector {
+    vector: VectorEnv,
+    log: TrainingLog,
+    compat: Compat,
+    /// Which environments start an episode.
+    mask: Vec<bool>,
+    ids: Vec<usize>,
+}
+
+impl Deref for RunVector {
+    type Target = VectorEnv;
+
+    fn deref(&self) -> &VectorEnv {
+        &self.vector
+    }
+}
+
+impl RunVector {
+    /// Makes `n` environments for training from the embedded assets or others: writes `scene.xml` and starts the training
+    /// log, or resumes the one that is there, as [`start_training_from`](super::start_training_from) does.
+    ///
+    /// # Errors
+    /// As [`VectorEnv::new`], [`start_training_from`](super::start_training_from).
+    pub fn start(
+        blueprint: &Blueprint,
+        n: usize,
+        options: VectorOptions,
+        assets: &dyn AssetSource,
+        resume: bool,
+    ) -> Result<Self, RunError> {
+        let options = VectorOptions {
+            autoreset: AutoresetMode::Disabled,
+            ..options
+        };
+        let vector = VectorEnv::new(blueprint, n, options)?;
+        let log = open_training_log(blueprint, assets, resume)?;
+        let config = blueprint.config();
+        let names = (config.behavior == Behavior::SelfTouch).then(|| PartNames::new(blueprint.model()));
+        Ok(Self {
+            log: log.with_names(names),
+            compat: config.compat,
+            mask: vec![true; n],
+            ids: (0..n).collect(),
+            vector,
+        })
+    }
+
+    /// Returns the log with the episodes so far.
+    pub fn log(&self) -> &TrainingLog {
+        &self.log
+    }
+
+    /// Returns the environments, for whatever else changes them. Episodes that are reset through them are not logged.
+    pub fn vector_mut(&mut self) -> &mut VectorEnv {
+        &mut self.vector
+    }
+
+    /// Logs the episodes that are over, in the order of their environments, and starts the next ones. What they begin with
+    /// is in [`VectorEnv::batch`].
+    ///
+    /// # Errors
+    /// As [`VectorEnv::reset`]; a log that cannot be written.
+    pub fn start_episodes(&mut self) -> Result<(), RunError> {
+        for env in 0..self.vector.len() {
+            self.mask[env] = self.over(env)?;
+            if self.mask[env] {
+                self.log_episode(env)?;
+            }
+        }
+        if self.mask.contains(&true) {
+            self.vector.reset_where(&self.mask, None)?;
+        }
+        Ok(())
+    }
+
+    /// Applies an action in each of the first environments, as many as there are actions ([n, len]).
+    ///
+    /// # Errors
+    /// As [`VectorEnv::step`]; a diverged environment that [`RunVector::start_episodes`] has not started anew.
+    pub fn step(&mut self, actions: &[f32]) -> Result<Batch<'_>, RunError> {
+        let len = self.vector.single_action_space().len().max(1);
+        let n = actions.len() / len;
+        if n == 0 || n >= self.vector.len() {
+            return Ok(self.vector.step(actions)?);
+        }
+        self.vector.send(actions, &self.ids[..n])?;
+        Ok(self.vector.recv(n)?)
+    }
+
+    fn over(&self, env: usize) -> Result<bool, VectorError> {
+        let env = self.vector.env(env)?;
+        Ok(env.truncated() || !env.ready())
+    }
+
+    fn log_episode(&mut self, env: usize) -> Result<(), RunError> {
+        let first = env == 0;
+        let env = self.vector.env_mut(env)?;
+        let steps = env.end_episode();
+        if steps > 0 || first {
+            // the empty record that the kit's first reset adds stands there once
+            self.log.end_episode(steps, &env.info().behavior)?;
+        }
+        Ok(())
+    }
+
+    /// Saves the training log, under `compat: api` with the running episodes, which end; under `compat: reference` with
+    /// those that are over.
+    ///
+    /// # Errors
+    /// What the file system says; environments in flight.
+    pub fn finish_training(&mut self) -> Result<(), RunError> {
+        for env in 0..self.vector.len() {
+            if self.compat == Compat::Api || self.vector.env(env)?.truncated() {
+                self.log_episode(env)?;
+            }
+        }
+        Ok(self.log.save()?)
+    }
+}

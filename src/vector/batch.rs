@@ -1,0 +1,79 @@
+//! What a step of a vector returns.
+
+use crate::env::{EnvError, Observation};
+use crate::vector::Infos;
+use crate::vector::rows::row_of;
+
+/// What a step, a reset or [`VectorEnv::recv`](super::VectorEnv::recv) returns: arrays with a row for each environment.
+/// They belong to the vector and change with the next call.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch<'a> {
+    /// The environment of each row, [rows].
+    pub ids: &'a [usize],
+    /// Observations: every sense is an array of rows, [rows, len].
+    pub observation: Observation<'a>,
+    /// Rewards, [rows]; always 0: there is no extrinsic reward.
+    pub rewards: &'a [f64],
+    /// Always false, [rows].
+    pub terminated: &'a [bool],
+    /// Whether the episode has reached `max_episode_steps`, or has diverged, [rows].
+    pub truncated: &'a [bool],
+    /// Information.
+    pub infos: Infos<'a>,
+    /// The ends of the episodes that have ended in this step, with [`AutoresetMode::SameStep`](super::AutoresetMode).
+    pub finals: Option<Finals<'a>>,
+    /// The environments that could not go on, most often because the simulation diverged, in ascending order. Their rows
+    /// hold the observation before, and `truncated`; the mode decides when they are reset.
+    pub failures: &'a [Failure],
+}
+
+impl<'a> Batch<'a> {
+    /// Returns the number of rows.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Returns whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Returns the observation of a row.
+    ///
+    /// # Panics
+    /// There is no such row.
+    pub fn row(&self, row: usize) -> Observation<'a> {
+        row_of(&self.observation, row, self.len())
+    }
+}
+
+/// The ends of episodes, in the rows of the environments whose episode has ended.
+#[derive(Clone, Copy, Debug)]
+pub struct Finals<'a> {
+    /// Which rows hold the end of an episode, [rows].
+    pub ended: &'a [bool],
+    /// The last observations; every sense is an array of rows, [rows, len].
+    pub observation: Observation<'a>,
+    /// The last information.
+    pub infos: Infos<'a>,
+}
+
+impl<'a> Finals<'a> {
+    /// Returns the last observation of a row's episode, if it has ended.
+    ///
+    /// # Panics
+    /// There is no such row.
+    pub fn row(&self, row: usize) -> Option<Observation<'a>> {
+        let n = self.ended.len();
+        self.ended[row].then(|| row_of(&self.observation, row, n))
+    }
+}
+
+/// An environment that could not go on.
+#[derive(Debug)]
+pub struct Failure {
+    /// The environment.
+    pub env: usize,
+    /// Why.
+    pub error: EnvError,
+}

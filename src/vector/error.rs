@@ -1,0 +1,157 @@
+//! What can go wrong with a vector of environments.
+
+use thiserror::Error;
+
+use crate::env::EnvError;
+
+/// An error of a vector of environments. Environments are counted from 0.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum VectorError {
+    /// A vector of nothing was asked for.
+    #[error("a vector needs at least one environment")]
+    NoEnvironments,
+    /// The environments would not fit into memory.
+    #[error(
+        "{envs} environments would take {} of memory ({} each), but {} may be used: use at most {fit}, or set max_memory",
+        human(*bytes), human(*each), human(*limit)
+    )]
+    Memory {
+        /// Number of environments.
+        envs: usize,
+        /// Estimated size of each, bytes.
+        each: u64,
+        /// Estimated size of all, bytes.
+        bytes: u64,
+        /// What may be used, bytes.
+        limit: u64,
+        /// Number of environments that fit.
+        fit: usize,
+    },
+    /// The environments cannot share arrays.
+    #[error("environment {env} differs from environment 0 in {what}: {found} instead of {expected}")]
+    Spaces {
+        /// The environment that differs.
+        env: usize,
+        /// The space that differs.
+        what: String,
+        /// The space of environment 0.
+        expected: String,
+        /// The space of the environment.
+        found: String,
+    },
+    /// An array has the wrong length.
+    #[error("{what}: expected {expected:?} ({} values), found {}", expected[0] * expected[1], shape(*found, *expected))]
+    Shape {
+        /// Name of the array.
+        what: &'static str,
+        /// Shape needed: environments, values of each.
+        expected: [usize; 2],
+        /// Number of values found.
+        found: usize,
+    },
+    /// An array that the vector would have to fill is of a sense that the environments do not have.
+    #[error("{what}: the environments have no such observation")]
+    NoSense {
+        /// Name of the array.
+        what: &'static str,
+    },
+    /// There is no such environment.
+    #[error("there is no environment {env}: the vector has {envs}, counted from 0")]
+    Unknown {
+        /// The number asked for.
+        env: usize,
+        /// Number of environments.
+        envs: usize,
+    },
+    /// The environment was sent and has not been received.
+    #[error("environment {env} is in flight: receive it first (recv)")]
+    InFlight {
+        /// The environment.
+        env: usize,
+    },
+    /// More environments are waited for than were sent.
+    #[error(
+        "recv({wanted}) waits for at least one environment and for no more than are in flight, which are {in_flight}: call send first"
+    )]
+    NotSent {
+        /// Number of environments waited for.
+        wanted: usize,
+        /// Number of environments in flight.
+        in_flight: usize,
+    },
+    /// The environment cannot be stepped before it is reset.
+    #[error("environment {env} needs a reset before it can be stepped")]
+    NotReset {
+        /// The environment.
+        env: usize,
+    },
+    /// An environment fails.
+    #[error("environment {env}: {source}")]
+    Env {
+        /// The environment.
+        env: usize,
+        /// The cause.
+        source: Box<EnvError>,
+    },
+    /// An environment panicked. The others are unharmed; the next reset makes it anew.
+    #[error("environment {env} panicked: {message}; reset it to make it anew")]
+    Panicked {
+        /// The environment.
+        env: usize,
+        /// What the panic said.
+        message: String,
+    },
+    /// The system gives no more threads.
+    #[error("cannot start a thread: {0}")]
+    Thread(#[from] std::io::Error),
+}
+
+/// Describes a number of values, as a shape where it is one.
+fn shape(found: usize, [n, len]: [usize; 2]) -> String {
+    match (len > 0 && found.is_multiple_of(len), n > 0 && found.is_multiple_of(n)) {
+        (true, _) => format!("[{}, {len}] ({found} values)", found / len),
+        (_, true) => format!("[{n}, {}] ({found} values)", found / n),
+        _ => format!("{found} values"),
+    }
+}
+
+/// Writes a number of bytes for people.
+fn human(bytes: u64) -> String {
+    const UNITS: [&str; 5] = ["KiB", "MiB", "GiB", "TiB", "PiB"];
+    let mut value = bytes as f64 / 1024.0;
+    let mut unit = 0;
+    while value >= 1024.0 && unit + 1 < UNITS.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    format!("{value:.1} {}", UNITS[unit])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_say_shapes_and_sizes() {
+        let wrong = |found| VectorError::Shape {
+            what: "actions",
+            expected: [4, 44],
+            found,
+        };
+        assert_eq!(
+            wrong(132).to_string(),
+            "actions: expected [4, 44] (176 values), found [3, 44] (132 values)"
+        );
+        assert_eq!(
+            wrong(4 * 43).to_string(),
+            "actions: expected [4, 44] (176 values), found [4, 43] (172 values)"
+        );
+        assert_eq!(
+            wrong(7).to_string(),
+            "actions: expected [4, 44] (176 values), found 7 values"
+        );
+        assert_eq!(human(3 << 39), "1.5 TiB");
+        assert_eq!(human(512), "0.5 KiB");
+    }
+}

@@ -1,0 +1,55 @@
+//! How much memory environments take, before they are made.
+
+use crate::env::Env;
+use crate::vector::rows::Layout;
+use crate::vector::{AutoresetMode, VectorError};
+
+/// Where the system does not tell how much memory it has.
+const DEFAULT_LIMIT: u64 = if cfg!(target_pointer_width = "32") {
+    2 << 30
+} else {
+    64 << 30
+};
+
+/// Estimates the memory of a further environment, bytes, from one that is built.
+///
+/// Sizes are linear in what there is of each thing. The factors were measured; a test holds the sum against the
+/// allocator.
+pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
+    let model = env.model();
+    // the array of the vector and the vector of the sense; with the ends of episodes, another of each
+    let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
+    let rows = copies * layout.row_bytes();
+    let renderer = if layout.eye.is_some() { 300_000 } else { 0 };
+    // engine and state: contacts, bodies and geoms in Rapier, the matrices of the solver
+    let physics = 400_000 + 3_100 * model.ngeom() + 9_500 * model.nv;
+    (rows + renderer + physics) as u64
+}
+
+/// Refuses more environments than fit.
+pub(super) fn check(envs: usize, each: u64, max_memory: Option<u64>) -> Result<(), VectorError> {
+    let limit = max_memory.or_else(available).unwrap_or(DEFAULT_LIMIT);
+    let bytes = each.saturating_mul(envs as u64);
+    if bytes <= limit {
+        return Ok(());
+    }
+    let fit = usize::try_from(limit / each.max(1)).unwrap_or(usize::MAX);
+    Err(VectorError::Memory {
+        envs,
+        each,
+        bytes,
+        limit,
+        fit,
+    })
+}
+
+/// Returns the memory that the system has available, bytes, where it tells.
+fn available() -> Option<u64> {
+    if !cfg!(target_os = "linux") {
+        return None;
+    }
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
+    let kib: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kib.saturating_mul(1024))
+}

@@ -1,0 +1,109 @@
+//! How a vector is built and reset.
+
+use std::fmt;
+
+/// Says when an environment whose episode has ended starts the next one, as Gymnasium's `AutoresetMode`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AutoresetMode {
+    /// The step after the last one resets: its action is ignored, and it returns the first observation of the next episode.
+    #[default]
+    NextStep,
+    /// The last step resets too: it returns the first observation of the next episode, and keeps the last one of the old
+    /// ([`Batch::finals`](super::Batch::finals)).
+    SameStep,
+    /// The caller resets ([`VectorEnv::reset_where`](super::VectorEnv::reset_where)).
+    Disabled,
+}
+
+/// Says how a vector is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct VectorOptions {
+    /// When an episode follows another.
+    pub autoreset: AutoresetMode,
+    /// Number of threads that step environments; 0 means one for each core. Without the feature `parallel`, and on
+    /// wasm32, it is one. Results do not depend on it.
+    pub threads: usize,
+    /// Memory that the environments may take, bytes. By default that which the system has available, where it tells
+    /// (Linux), and 64 GiB elsewhere (2 GiB where addresses have 32 bits).
+    pub max_memory: Option<u64>,
+}
+
+/// Threads beyond this many for each core only take turns.
+const THREADS_PER_CORE: usize = 4;
+
+/// Says that fewer threads were started than asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClippedThreads {
+    /// Number of threads asked for.
+    pub wanted: usize,
+    /// Number of threads there are.
+    pub given: usize,
+    /// What more would be no use for.
+    pub because: ThreadLimit,
+}
+
+/// Says what limits the number of threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThreadLimit {
+    /// A thread steps one environment at a time, and there are no more.
+    Environments,
+    /// There are only so many cores.
+    Cores,
+    /// The library was built without the feature `parallel`, or for wasm32.
+    Build,
+}
+
+impl fmt::Display for ClippedThreads {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { wanted, given, because } = self;
+        let because = match because {
+            ThreadLimit::Environments => "these environments can use",
+            ThreadLimit::Cores => "this machine can use",
+            ThreadLimit::Build => "this build has (feature parallel)",
+        };
+        write!(f, "{given} instead of {wanted} threads: that is all {because}")
+    }
+}
+
+/// Returns how many threads are of use, and whether that is fewer than wanted.
+pub(super) fn threads(wanted: usize, envs: usize) -> (usize, Option<ClippedThreads>) {
+    let cores = match PARALLEL {
+        true => std::thread::available_parallelism().map_or(1, usize::from),
+        false => 1,
+    };
+    let wanted_now = if wanted == 0 { cores } else { wanted };
+    let limits = [
+        (if PARALLEL { usize::MAX } else { 1 }, ThreadLimit::Build),
+        (cores.saturating_mul(THREADS_PER_CORE), ThreadLimit::Cores),
+        (envs, ThreadLimit::Environments),
+    ];
+    let mut given = wanted_now;
+    let mut clipped = None;
+    for (limit, because) in limits {
+        if given > limit {
+            given = limit;
+            clipped = (wanted > 0).then_some(ClippedThreads { wanted, given, because });
+        }
+    }
+    (given.max(1), clipped)
+}
+
+/// Whether this build has threads.
+pub(super) const PARALLEL: bool = cfg!(all(feature = "parallel", not(target_arch = "wasm32")));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_beyond_sense_are_clipped_and_said() {
+        assert_eq!(threads(1, 5), (1, None));
+        assert!(threads(0, 5).0 >= 1 && threads(0, 5).1.is_none());
+        let (given, clipped) = threads(1_000_000, 3);
+        let clipped = clipped.expect("that many are no use");
+        assert_eq!(clipped.given, given);
+        assert!(given <= 3, "{given}");
+        let said = clipped.to_string();
+        assert!(said.contains("instead of 1000000 threads"), "{said}");
+    }
+}

@@ -1,0 +1,331 @@
+//! Arrays over environments: a row for each.
+
+use crate::env::{BehaviorInfo, Env, Info, Observation};
+use crate::vector::VectorError;
+
+/// Lengths of the rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub action: usize,
+    pub proprioception: usize,
+    pub touch: Option<usize>,
+    pub sensors: usize,
+    pub eye: Option<usize>,
+    pub vestibular: Option<usize>,
+    /// Number of geoms of the largest scene, if any environment's behavior is `self_touch`.
+    pub geoms: Option<usize>,
+    /// Whether any environment's behavior is `hand_regard`.
+    pub regards: bool,
+}
+
+impl Layout {
+    /// Of environments whose spaces are the same.
+    pub fn new<'e>(envs: impl IntoIterator<Item = &'e Env>) -> Self {
+        let mut layout = Self::default();
+        for env in envs {
+            let observation = env.observation();
+            layout.action = env.action_space().len();
+            layout.proprioception = observation.proprioception.len();
+            layout.touch = observation.touch.map(<[f32]>::len);
+            layout.sensors = env.touch().map_or(0, |touch| touch.layout().len());
+            layout.eye = observation.eye_left.map(<[u8]>::len);
+            layout.vestibular = observation.vestibular.map(<[f64]>::len);
+            layout.regards |= env.info().behavior.regards().is_some();
+            if env.info().behavior.touches().is_some() {
+                layout.geoms = layout.geoms.max(Some(env.model().ngeom()));
+            }
+        }
+        layout
+    }
+
+    /// Returns the size of a row of everything, bytes.
+    pub fn row_bytes(&self) -> usize {
+        let [touch, eye, vestibular, geoms] =
+            [self.touch, self.eye, self.vestibular, self.geoms].map(Option::unwrap_or_default);
+        8 * (self.proprioception + vestibular) + 4 * touch + 4 * self.sensors + 2 * eye + 2 * geoms + 64
+    }
+}
+
+/// Memory of the caller's for what a step returns: arrays of N rows each, environment after environment.
+///
+/// Senses that are `None` are left out.
+#[derive(Debug, Default)]
+pub struct Buffers<'a> {
+    /// Proprioception, [N, len].
+    pub proprioception: Option<&'a mut [f64]>,
+    /// What the skins feel, [N, len], N.
+    pub touch: Option<&'a mut [f32]>,
+    /// What the left eyes see, [N, H W 3].
+    pub eye_left: Option<&'a mut [u8]>,
+    /// What the right eyes see, [N, H W 3].
+    pub eye_right: Option<&'a mut [u8]>,
+    /// Balance, [N, 6], m/s^2 and rad/s.
+    pub vestibular: Option<&'a mut [f64]>,
+    /// Rewards, [N].
+    pub rewards: Option<&'a mut [f64]>,
+    /// Whether episodes have ended in themselves, [N].
+    pub terminated: Option<&'a mut [bool]>,
+    /// Whether episodes were cut off, [N].
+    pub truncated: Option<&'a mut [bool]>,
+}
+
+impl Buffers<'_> {
+    /// Checks that there is room for exactly `n` rows.
+    pub(super) fn check(&self, n: usize, layout: &Layout) -> Result<(), VectorError> {
+        fn length<T>(buffer: &Option<&mut [T]>) -> Option<usize> {
+            buffer.as_ref().map(|b| b.len())
+        }
+        for (what, found, len) in [
+            (
+                "proprioception",
+                length(&self.proprioception),
+                Some(layout.proprioception),
+            ),
+            ("touch", length(&self.touch), layout.touch),
+            ("eye_left", length(&self.eye_left), layout.eye),
+            ("eye_right", length(&self.eye_right), layout.eye),
+            ("vestibular", length(&self.vestibular), layout.vestibular),
+            ("rewards", length(&self.rewards), Some(1)),
+            ("terminated", length(&self.terminated), Some(1)),
+            ("truncated", length(&self.truncated), Some(1)),
+        ] {
+            let Some(found) = found else { continue };
+            let Some(len) = len else {
+                return Err(VectorError::NoSense { what });
+            };
+            if found != n * len {
+                let expected = [n, len];
+                return Err(VectorError::Shape { what, expected, found });
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a row of everything. There is room, which was checked before.
+    fn write(&mut self, row: usize, observation: &Observation<'_>) {
+        write(&mut self.touch, row, observation.touch);
+        self.write_dense(row, observation);
+    }
+
+    /// Writes a row of everything but touch.
+    fn write_dense(&mut self, row: usize, observation: &Observation<'_>) {
+        write(&mut self.proprioception, row, Some(observation.proprioception));
+        write(&mut self.eye_left, row, observation.eye_left);
+        write(&mut self.eye_right, row, observation.eye_right);
+        write(&mut self.vestibular, row, observation.vestibular);
+    }
+}
+
+/// Where rows go: memory of the caller's, or arrays of the vector's own, of which it knows what stands in them.
+pub(super) struct Target<'a> {
+    buffers: Buffers<'a>,
+    /// For each row the touch sensors that are not zero there.
+    touched: Option<&'a mut [Vec<u32>]>,
+}
+
+impl<'a> From<Buffers<'a>> for Target<'a> {
+    fn from(buffers: Buffers<'a>) -> Self {
+        let touched = None;
+        Self { buffers, touched }
+    }
+}
+
+impl Target<'_> {
+    /// Writes what an environment observes. Of thousands of touch sensors only those that feel something are copied,
+    /// where that is enough.
+    pub fn write(&mut self, row: usize, env: &Env) {
+        let observation = env.observation();
+        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.buffers.touch, env.touch()) else {
+            return self.buffers.write(row, &observation);
+        };
+        let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());
+        let out = &mut out[row * values.len()..(row + 1) * values.len()];
+        let of = |sensor: u32| width * sensor as usize..width * (sensor as usize + 1);
+        for &sensor in &*touched {
+            out[of(sensor)].fill(0.0);
+        }
+        touched.clear();
+        touched.extend_from_slice(touch.touched());
+        for &sensor in &*touched {
+            out[of(sensor)].copy_from_slice(&values[of(sensor)]);
+        }
+        self.buffers.write_dense(row, &observation);
+    }
+
+    /// Writes a row from an observation that no environment holds any more. Do not mix it with [`Target::write`].
+    pub fn write_whole(&mut self, row: usize, observation: &Observation<'_>) {
+        self.buffers.write(row, observation);
+    }
+
+    pub fn write_flags(&mut self, row: usize, reward: f64, terminated: bool, truncated: bool) {
+        let out = &mut self.buffers;
+        write(&mut out.rewards, row, Some(&[reward]));
+        write(&mut out.terminated, row, Some(&[terminated]));
+        write(&mut out.truncated, row, Some(&[truncated]));
+    }
+}
+
+/// Writes a row, if it is there and wanted. The array has room, which was checked before.
+fn write<T: Copy>(out: &mut Option<&mut [T]>, row: usize, values: Option<&[T]>) {
+    if let (Some(out), Some(values)) = (out, values) {
+        let start = row * values.len();
+        out[start..start + values.len()].copy_from_slice(values);
+    }
+}
+
+/// Arrays of the vector's own.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    layout: Layout,
+    proprioception: Vec<f64>,
+    touch: Vec<f32>,
+    touched: Vec<Vec<u32>>,
+    eye_left: Vec<u8>,
+    eye_right: Vec<u8>,
+    vestibular: Vec<f64>,
+    rewards: Vec<f64>,
+    terminated: Vec<bool>,
+    truncated: Vec<bool>,
+}
+
+impl Rows {
+    pub fn new(n: usize, layout: Layout) -> Self {
+        let of = |len: Option<usize>| n * len.unwrap_or_default();
+        Self {
+            layout,
+            proprioception: vec![0.0; n * layout.proprioception],
+            touch: vec![0.0; of(layout.touch)],
+            touched: match layout.touch {
+                Some(_) => (0..n).map(|_| Vec::with_capacity(layout.sensors)).collect(),
+                None => Vec::new(),
+            },
+            eye_left: vec![0; of(layout.eye)],
+            eye_right: vec![0; of(layout.eye)],
+            vestibular: vec![0.0; of(layout.vestibular)],
+            rewards: vec![0.0; n],
+            terminated: vec![false; n],
+            truncated: vec![false; n],
+        }
+    }
+
+    /// Returns the arrays for writing, those of senses that are on.
+    pub fn target(&mut self) -> Target<'_> {
+        fn on<T>(values: &mut [T], len: Option<usize>) -> Option<&mut [T]> {
+            len.map(|_| values)
+        }
+        let layout = self.layout;
+        let buffers = Buffers {
+            proprioception: Some(&mut self.proprioception),
+            touch: on(&mut self.touch, layout.touch),
+            eye_left: on(&mut self.eye_left, layout.eye),
+            eye_right: on(&mut self.eye_right, layout.eye),
+            vestibular: on(&mut self.vestibular, layout.vestibular),
+            rewards: Some(&mut self.rewards),
+            terminated: Some(&mut self.terminated),
+            truncated: Some(&mut self.truncated),
+        };
+        let touched = layout.touch.map(|_| &mut self.touched[..]);
+        Target { buffers, touched }
+    }
+
+    /// Returns the observations of the first `n` rows.
+    pub fn observation(&self, n: usize) -> Observation<'_> {
+        fn on<T>(values: &[T], n: usize, len: Option<usize>) -> Option<&[T]> {
+            len.map(|len| &values[..n * len])
+        }
+        let layout = self.layout;
+        Observation {
+            proprioception: &self.proprioception[..n * layout.proprioception],
+            touch: on(&self.touch, n, layout.touch),
+            eye_left: on(&self.eye_left, n, layout.eye),
+            eye_right: on(&self.eye_right, n, layout.eye),
+            vestibular: on(&self.vestibular, n, layout.vestibular),
+        }
+    }
+
+    pub fn rewards(&self) -> &[f64] {
+        &self.rewards
+    }
+
+    pub fn terminated(&self) -> &[bool] {
+        &self.terminated
+    }
+
+    pub fn truncated(&self) -> &[bool] {
+        &self.truncated
+    }
+}
+
+/// Returns a row of arrays of `n` rows.
+pub(super) fn row_of<'a>(all: &Observation<'a>, row: usize, n: usize) -> Observation<'a> {
+    fn row_in<T>(values: &[T], row: usize, n: usize) -> &[T] {
+        let len = values.len() / n.max(1);
+        &values[row * len..(row + 1) * len]
+    }
+    Observation {
+        proprioception: row_in(all.proprioception, row, n),
+        touch: all.touch.map(|v| row_in(v, row, n)),
+        eye_left: all.eye_left.map(|v| row_in(v, row, n)),
+        eye_right: all.eye_right.map(|v| row_in(v, row, n)),
+        vestibular: all.vestibular.map(|v| row_in(v, row, n)),
+    }
+}
+
+/// Information of all environments, as arrays of rows. The lists in the order of first touch, and names, are in
+/// [`VectorEnv::env`](super::VectorEnv::env)`(i)?.info()`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Infos<'a> {
+    /// Number of steps of each episode, [N]: see [`Info::steps`].
+    pub steps: &'a [u64],
+    /// Which geoms the right and the left palm have touched, [N, 2, geoms], 1 or 0, if the behavior is `self_touch`.
+    pub touches: Option<&'a [u8]>,
+    /// How often hands were in view, [N, 4], in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
+    /// behavior is `hand_regard`.
+    pub regards: Option<&'a [u64]>,
+}
+
+/// Information as arrays.
+#[derive(Debug)]
+pub(super) struct InfoRows {
+    layout: Layout,
+    steps: Vec<u64>,
+    touches: Vec<u8>,
+    regards: Vec<u64>,
+}
+
+impl InfoRows {
+    pub fn new(n: usize, layout: Layout) -> Self {
+        Self {
+            layout,
+            steps: vec![0; n],
+            touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
+            regards: vec![0; 4 * n * usize::from(layout.regards)],
+        }
+    }
+
+    pub fn write(&mut self, row: usize, info: &Info) {
+        self.steps[row] = info.steps;
+        if let Some(geoms) = self.layout.geoms {
+            let out = &mut self.touches[2 * geoms * row..2 * geoms * (row + 1)];
+            out.fill(0);
+            if let BehaviorInfo::SelfTouch { touches } = &info.behavior {
+                for (out, touched) in out.chunks_exact_mut(geoms).zip(touches.each_ref()) {
+                    touched.iter().for_each(|&geom| out[geom] = 1);
+                }
+            }
+        }
+        if self.layout.regards {
+            let counts = info.behavior.regards().unwrap_or_default();
+            self.regards[4 * row..4 * (row + 1)].copy_from_slice(&counts);
+        }
+    }
+
+    /// Returns the first `n` rows.
+    pub fn infos(&self, n: usize) -> Infos<'_> {
+        Infos {
+            steps: &self.steps[..n],
+            touches: self.layout.geoms.map(|geoms| &self.touches[..2 * geoms * n]),
+            regards: self.layout.regards.then(|| &self.regards[..4 * n]),
+        }
+    }
+}

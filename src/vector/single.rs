@@ -1,0 +1,106 @@
+//! One environment of a vector.
+
+use crate::env::{Env, Info, Observation, Snapshot};
+use crate::mimo::{LockReport, LockTarget};
+use crate::spaces::{BoxSpace, ObservationSpace};
+use crate::vector::slot::Slot;
+use crate::vector::{VectorEnv, VectorError, of};
+
+impl VectorEnv {
+    /// Returns an environment.
+    ///
+    /// # Errors
+    /// [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn env(&self, env: usize) -> Result<&Env, VectorError> {
+        Ok(&self.slot(env)?.env)
+    }
+
+    /// Returns an environment, to change what it is in. What it returns by itself is not in the rows of the vector before
+    /// the next step.
+    ///
+    /// # Errors
+    /// [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn env_mut(&mut self, env: usize) -> Result<&mut Env, VectorError> {
+        Ok(&mut self.slot_mut(env)?.env)
+    }
+
+    /// Returns the information of the end of an environment's last episode, with names and lists in order, if it ended in
+    /// the last step and the mode is [`AutoresetMode::SameStep`](super::AutoresetMode).
+    ///
+    /// # Errors
+    /// [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn final_info(&self, env: usize) -> Result<Option<&Info>, VectorError> {
+        let slot = self.slot(env)?;
+        let last = slot.last.as_ref().filter(|_| slot.ended);
+        Ok(last.map(|last| &last.info))
+    }
+
+    /// Locks a joint, or all joints of a part, of one environment: see [`Env::lock`].
+    ///
+    /// # Errors
+    /// As [`Env::lock`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn lock<'a>(
+        &mut self,
+        env: usize,
+        target: impl Into<LockTarget<'a>>,
+        angle: f64,
+    ) -> Result<LockReport, VectorError> {
+        self.env_mut(env)?.lock(target, angle).map_err(of(env))
+    }
+
+    /// Takes the lock off a joint, or all joints of a part, of one environment: see [`Env::unlock`].
+    ///
+    /// # Errors
+    /// As [`Env::unlock`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn unlock<'a>(&mut self, env: usize, target: impl Into<LockTarget<'a>>) -> Result<LockReport, VectorError> {
+        self.env_mut(env)?.unlock(target).map_err(of(env))
+    }
+
+    /// Returns the present moment of one environment: see [`Env::snapshot`].
+    ///
+    /// # Errors
+    /// [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn snapshot(&self, env: usize) -> Result<Snapshot, VectorError> {
+        Ok(self.env(env)?.snapshot())
+    }
+
+    /// Takes one environment back to a snapshot, of itself or of another of the same configuration: see [`Env::restore`].
+    ///
+    /// # Errors
+    /// As [`Env::restore`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn restore(&mut self, env: usize, snapshot: &Snapshot) -> Result<(), VectorError> {
+        let restored = self.env_mut(env)?.restore(snapshot);
+        restored.map_err(|e| of(env)(e.into()))
+    }
+
+    /// Puts the scene of one environment at positions and velocities in the middle of an episode: see
+    /// [`Env::set_state`].
+    ///
+    /// # Errors
+    /// As [`Env::set_state`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn set_state(&mut self, env: usize, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, VectorError> {
+        self.env_mut(env)?.set_state(qpos, qvel).map_err(of(env))
+    }
+
+    /// Returns the bounds of the actions of one environment.
+    pub fn single_action_space(&self) -> &BoxSpace {
+        &self.action_space
+    }
+
+    /// Returns keys, shapes, types and bounds of the observation of one environment.
+    pub fn single_observation_space(&self) -> &[ObservationSpace] {
+        &self.observation_space
+    }
+
+    fn slot(&self, env: usize) -> Result<&Slot, VectorError> {
+        let envs = self.len();
+        let place = self.slots.get(env).ok_or(VectorError::Unknown { env, envs })?;
+        place.as_deref().ok_or(VectorError::InFlight { env })
+    }
+
+    fn slot_mut(&mut self, env: usize) -> Result<&mut Slot, VectorError> {
+        let envs = self.len();
+        let place = self.slots.get_mut(env).ok_or(VectorError::Unknown { env, envs })?;
+        place.as_deref_mut().ok_or(VectorError::InFlight { env })
+    }
+}

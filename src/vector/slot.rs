@@ -1,0 +1,222 @@
+//! A place of the vector: an environment, what it is to do next, and what came of it.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand};
+use crate::vector::AutoresetMode;
+
+/// What an environment is to do.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Task {
+    /// Apply [`Slot::action`], or start the next episode where the mode says so.
+    Step,
+    /// Start an episode, with a seed or without.
+    Reset(Option<u64>),
+}
+
+/// An environment on its way between the vector and the threads.
+pub(super) struct Slot {
+    pub index: usize,
+    pub env: Env,
+    pub task: Task,
+    pub action: Vec<f32>,
+    pub mode: AutoresetMode,
+    /// Whether there was a reset.
+    pub started: bool,
+    pub reward: f64,
+    pub terminated: bool,
+    pub truncated: bool,
+    /// Whether [`Slot::last`] is that of an episode that ended in the last step.
+    pub ended: bool,
+    pub last: Option<Last>,
+    /// Why the last step or reset failed.
+    pub failure: Option<EnvError>,
+    /// What the panic said that broke the environment.
+    pub panicked: Option<String>,
+}
+
+impl Slot {
+    pub fn new(index: usize, env: Env, mode: AutoresetMode) -> Self {
+        let action = Vec::with_capacity(env.action_space().len());
+        let last = (mode == AutoresetMode::SameStep).then(|| Last::new(&env));
+        Self {
+            index,
+            env,
+            task: Task::Reset(None),
+            action,
+            mode,
+            started: false,
+            reward: 0.0,
+            terminated: false,
+            truncated: false,
+            ended: false,
+            last,
+            failure: None,
+            panicked: None,
+        }
+    }
+
+    /// Returns whether the episode is over: a step now is a reset, or an error.
+    pub fn over(&self) -> bool {
+        !self.env.ready() || self.env.truncated()
+    }
+
+    /// Returns whether a step would mean something.
+    pub fn can_step(&self) -> bool {
+        let resets = self.started && self.mode != AutoresetMode::Disabled;
+        self.panicked.is_none() && (self.env.ready() || resets)
+    }
+
+    /// Does the task. A panic is kept for the caller.
+    pub fn run(&mut self) {
+        if let Err(payload) = catch_unwind(AssertUnwindSafe(|| self.perform())) {
+            self.panicked = Some(message(&*payload));
+        }
+    }
+
+    fn perform(&mut self) {
+        (self.reward, self.terminated, self.truncated) = (0.0, false, false);
+        (self.ended, self.failure) = (false, None);
+        match self.task {
+            Task::Reset(seed) => {
+                if let Err(e) = self.revive() {
+                    self.failure = Some(e);
+                } else {
+                    self.reset(seed);
+                }
+            }
+            Task::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
+            Task::Step => self.step(),
+        }
+    }
+
+    fn step(&mut self) {
+        match self.env.step(&self.action) {
+            Ok(step) => (self.reward, self.terminated, self.truncated) = (step.reward, step.terminated, step.truncated),
+            Err(e) => {
+                self.failure = Some(e);
+                self.truncated = true;
+            }
+        }
+        if self.mode == AutoresetMode::SameStep && (self.terminated || self.truncated) {
+            self.keep_last();
+            self.reset(None);
+        }
+    }
+
+    fn reset(&mut self, seed: Option<u64>) {
+        self.started = true;
+        if let Err(e) = self.env.reset(seed) {
+            self.failure.get_or_insert(e);
+        }
+    }
+
+    /// Makes an environment anew that panicked: nobody knows what it left half done.
+    fn revive(&mut self) -> Result<(), EnvError> {
+        if self.panicked.is_some() {
+            let deferred = self.env.vision_is_deferred();
+            self.env = self.env.blueprint().env()?;
+            self.env.defer_vision(deferred);
+            self.panicked = None;
+        }
+        Ok(())
+    }
+
+    fn keep_last(&mut self) {
+        if self.env.vision_is_deferred() && self.env.ready() {
+            // the others are still under way: this environment draws what it saw last by itself
+            if let Err(e) = Env::draw_eyes([&mut self.env]) {
+                self.failure.get_or_insert(e);
+            }
+        }
+        if let Some(last) = &mut self.last {
+            last.keep(&self.env);
+            self.ended = true;
+        }
+    }
+}
+
+/// The end of an episode.
+pub(super) struct Last {
+    pub info: Info,
+    proprioception: Vec<f64>,
+    touch: Vec<f32>,
+    eyes: [Vec<u8>; 2],
+    vestibular: Vec<f64>,
+}
+
+impl Last {
+    fn new(env: &Env) -> Self {
+        let observation = env.observation();
+        let image = |image: Option<&[u8]>| vec![0; image.map_or(0, <[u8]>::len)];
+        let mut last = Self {
+            info: Info::default(),
+            proprioception: vec![0.0; observation.proprioception.len()],
+            touch: vec![0.0; observation.touch.map_or(0, <[f32]>::len)],
+            eyes: [image(observation.eye_left), image(observation.eye_right)],
+            vestibular: vec![0.0; observation.vestibular.map_or(0, <[f64]>::len)],
+        };
+        last.keep(env);
+        last
+    }
+
+    fn keep(&mut self, env: &Env) {
+        let observation = env.observation();
+        self.proprioception.copy_from_slice(observation.proprioception);
+        self.touch.copy_from_slice(observation.touch.unwrap_or_default());
+        let [left, right] = &mut self.eyes;
+        left.copy_from_slice(observation.eye_left.unwrap_or_default());
+        right.copy_from_slice(observation.eye_right.unwrap_or_default());
+        self.vestibular
+            .copy_from_slice(observation.vestibular.unwrap_or_default());
+        copy_info(env.info(), &mut self.info);
+    }
+
+    /// Returns the last observation; of senses that are off, empty slices.
+    pub fn observation(&self) -> Observation<'_> {
+        Observation {
+            proprioception: &self.proprioception,
+            touch: Some(&self.touch),
+            eye_left: Some(&self.eyes[0]),
+            eye_right: Some(&self.eyes[1]),
+            vestibular: Some(&self.vestibular),
+        }
+    }
+}
+
+/// Copies information into memory that has room for all that the original has room for.
+fn copy_info(from: &Info, to: &mut Info) {
+    to.steps = from.steps;
+    match (&from.behavior, &mut to.behavior) {
+        (BehaviorInfo::SelfTouch { touches }, BehaviorInfo::SelfTouch { touches: copies }) => {
+            copy_lists(touches, copies);
+        }
+        (BehaviorInfo::SelfTouch { touches }, behavior) => {
+            let mut copies = PerHand::default();
+            copy_lists(touches, &mut copies);
+            *behavior = BehaviorInfo::SelfTouch { touches: copies };
+        }
+        (other, behavior) => *behavior = other.clone(),
+    }
+    to.details.gaze_angles = from.details.gaze_angles;
+    match &from.details.touched_parts {
+        Some(parts) => copy_lists(parts, to.details.touched_parts.get_or_insert_default()),
+        None => to.details.touched_parts = None,
+    }
+}
+
+fn copy_lists<T: Clone>(from: &PerHand<Vec<T>>, to: &mut PerHand<Vec<T>>) {
+    for (from, to) in from.each_ref().into_iter().zip(to.each_mut()) {
+        to.clear();
+        to.reserve(from.capacity());
+        to.extend_from_slice(from);
+    }
+}
+
+/// Returns what a panic said.
+fn message(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no message").to_string()
+}
