@@ -1,11 +1,14 @@
 //! The tessellations of MuJoCo's classic renderer: 28 slices, 16 stacks, 4 quads per box edge. Silhouettes and shading
-//! depend on them. Vertices lie on unit shapes; each [`MeshPart`] has a transform of its own.
+//! depend on them. Vertices lie on unit shapes; each [`MeshPart`] has a transform of its own. A mesh is cut into
+//! bands, so that those out of view need not be drawn.
 
 use std::f64::consts::PI;
 
 const SLICES: usize = 28;
 const STACKS: usize = 16;
 const QUADS: usize = 4;
+/// Number of stacks of a cylinder in a band.
+const BAND_STACKS: usize = 4;
 
 /// A part of a mesh with a transform of its own: the caps of a capsule stay at the ends of the scaled cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,13 +21,28 @@ pub enum MeshPart {
     Bottom,
 }
 
-/// Number of vertices of which the length of each part is a multiple.
+/// Number of vertices of which the length of each band is a multiple.
 pub const LANES: usize = 8;
+
+/// A part of a mesh, or a slice of one, that has its own vertices.
+#[derive(Clone, Debug)]
+pub struct Band {
+    /// Part that it belongs to.
+    pub part: MeshPart,
+    /// Vertices.
+    pub vertices: std::ops::Range<usize>,
+    /// Triangles.
+    pub triangles: std::ops::Range<usize>,
+    /// Least coordinates of its vertices.
+    pub low: [f32; 3],
+    /// Greatest coordinates of its vertices.
+    pub high: [f32; 3],
+}
 
 /// A triangle mesh of a unit shape, counterclockwise from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Coordinates x of the vertices. Vertices that only pad a part belong to no triangle.
+    /// Coordinates x of the vertices. Vertices that only pad a band belong to no triangle.
     pub x: Vec<f32>,
     /// Coordinates y of the vertices.
     pub y: Vec<f32>,
@@ -32,8 +50,10 @@ pub struct Mesh {
     pub z: Vec<f32>,
     /// Unit normals of the vertices.
     pub normal: Vec<[f32; 3]>,
-    /// Parts with the ends of their vertex ranges, in order.
-    pub parts: Vec<(MeshPart, usize)>,
+    /// Part that each vertex belongs to.
+    part: Vec<MeshPart>,
+    /// Bands, in the order of their vertices and triangles.
+    pub bands: Vec<Band>,
     /// Indices of the vertices of each triangle.
     pub triangles: Vec<[u16; 3]>,
 }
@@ -43,15 +63,12 @@ type Point = ([f32; 3], [f32; 3]);
 impl Mesh {
     /// Returns the part that a vertex belongs to.
     pub fn part_of(&self, vertex: usize) -> MeshPart {
-        self.parts
-            .iter()
-            .find(|(_, end)| vertex < *end)
-            .map_or(MeshPart::Body, |(part, _)| *part)
+        self.part[vertex]
     }
 
-    /// Returns the index of a vertex of the current part, after adding it if it is new.
+    /// Returns the index of a vertex of the current band, after adding it if it is new.
     fn vertex(&mut self, (p, n): Point) -> u16 {
-        let first = self.parts.len().checked_sub(2).map_or(0, |k| self.parts[k].1);
+        let first = self.bands.last().map_or(0, |band| band.vertices.start);
         let known = (first..self.x.len()).rev().find(|&i| {
             let same = |a: f32, b: f32| a.to_bits() == b.to_bits();
             same(self.x[i], p[0])
@@ -70,18 +87,38 @@ impl Mesh {
         self.y.push(y);
         self.z.push(z);
         self.normal.push(normal);
-        if let Some(last) = self.parts.last_mut() {
-            last.1 = self.x.len();
+        if let Some(band) = self.bands.last_mut() {
+            band.vertices.end = self.x.len();
+            self.part.push(band.part);
+            for (k, v) in [x, y, z].into_iter().enumerate() {
+                band.low[k] = band.low[k].min(v);
+                band.high[k] = band.high[k].max(v);
+            }
         }
     }
 
-    /// Begins a part.
-    fn part(&mut self, part: MeshPart) {
+    /// Begins a band.
+    fn band(&mut self, part: MeshPart) {
         self.fill();
-        self.parts.push((part, self.x.len()));
+        let (vertices, triangles) = (self.x.len(), self.triangles.len());
+        self.bands.push(Band {
+            part,
+            vertices: vertices..vertices,
+            triangles: triangles..triangles,
+            low: [f32::INFINITY; 3],
+            high: [f32::NEG_INFINITY; 3],
+        });
     }
 
-    /// Fills up the current part.
+    /// Adds a triangle of vertices of the current band.
+    fn add(&mut self, corners: [u16; 3]) {
+        self.triangles.push(corners);
+        if let Some(band) = self.bands.last_mut() {
+            band.triangles.end = self.triangles.len();
+        }
+    }
+
+    /// Fills up the current band.
     fn fill(&mut self) {
         while let Some(last) = self.x.len().checked_sub(1)
             && !self.x.len().is_multiple_of(LANES)
@@ -92,14 +129,14 @@ impl Mesh {
 
     fn triangle(&mut self, corners: [Point; 3]) {
         let t = corners.map(|p| self.vertex(p));
-        self.triangles.push(t);
+        self.add(t);
     }
 
     /// Adds a quadrilateral, split along the diagonal that Mesa chooses.
     fn quad(&mut self, corners: [Point; 4]) {
         let [a, b, c, d] = corners.map(|p| self.vertex(p));
-        self.triangles.push([a, b, d]);
-        self.triangles.push([b, c, d]);
+        self.add([a, b, d]);
+        self.add([b, c, d]);
     }
 
     fn oriented_quad(&mut self, outward: bool, [a, b, c, d]: [Point; 4]) {
@@ -139,6 +176,9 @@ impl Mesh {
             ([c, s, (2.0 * i as f64 / STACKS as f64 - 1.0) as f32], [c, s, 0.0])
         };
         for i in 0..STACKS {
+            if i.is_multiple_of(BAND_STACKS) {
+                self.band(MeshPart::Body);
+            }
             for j in 0..SLICES {
                 self.quad([at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1)]);
             }
@@ -193,8 +233,9 @@ impl Mesh {
     /// Creates a unit sphere, which scaling turns into an ellipsoid.
     pub fn sphere() -> Self {
         let mut m = Self::default();
-        m.part(MeshPart::Body);
+        m.band(MeshPart::Body);
         m.half_sphere(-1.0, 0.0);
+        m.band(MeshPart::Body);
         m.half_sphere(1.0, 0.0);
         m.fill();
         m
@@ -203,11 +244,10 @@ impl Mesh {
     /// Creates a capsule: a cylinder with two half spheres.
     pub fn capsule() -> Self {
         let mut m = Self::default();
-        m.part(MeshPart::Body);
         m.open_cylinder();
-        m.part(MeshPart::Top);
+        m.band(MeshPart::Top);
         m.half_sphere(1.0, 1.0);
-        m.part(MeshPart::Bottom);
+        m.band(MeshPart::Bottom);
         m.half_sphere(-1.0, -1.0);
         m.fill();
         m
@@ -216,9 +256,10 @@ impl Mesh {
     /// Creates a closed cylinder.
     pub fn cylinder() -> Self {
         let mut m = Self::default();
-        m.part(MeshPart::Body);
+        m.band(MeshPart::Body);
         m.disk(-1.0);
         m.open_cylinder();
+        m.band(MeshPart::Body);
         m.disk(1.0);
         m.fill();
         m
@@ -227,7 +268,7 @@ impl Mesh {
     /// Creates a box.
     pub fn cube() -> Self {
         let mut m = Self::default();
-        m.part(MeshPart::Body);
+        m.band(MeshPart::Body);
         for axis in 0..3 {
             m.face(axis, 1.0);
             m.face(axis, -1.0);
@@ -240,7 +281,7 @@ impl Mesh {
     /// highlights.
     pub fn plane() -> Self {
         let mut m = Self::default();
-        m.part(MeshPart::Body);
+        m.band(MeshPart::Body);
         let at = |x, y| ([x, y, 0.0], [0.0, 0.0, 1.0]);
         m.quad([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
         m.fill();
@@ -259,8 +300,20 @@ mod tests {
 
     fn check(mesh: &Mesh, triangles: usize) {
         assert_eq!(mesh.triangles.len(), triangles);
-        assert_eq!(mesh.parts.last().unwrap().1, mesh.x.len());
-        assert!(mesh.parts.iter().all(|p| p.1.is_multiple_of(LANES)));
+        let (mut vertices, mut faces) = (0, 0);
+        for band in &mesh.bands {
+            assert_eq!((band.vertices.start, band.triangles.start), (vertices, faces));
+            (vertices, faces) = (band.vertices.end, band.triangles.end);
+            assert!(vertices.is_multiple_of(LANES));
+            for t in mesh.triangles[band.triangles.clone()].as_flattened() {
+                let i = usize::from(*t);
+                assert!(band.vertices.contains(&i));
+                for (k, v) in [mesh.x[i], mesh.y[i], mesh.z[i]].into_iter().enumerate() {
+                    assert!(band.low[k] <= v && v <= band.high[k]);
+                }
+            }
+        }
+        assert_eq!((vertices, faces), (mesh.x.len(), triangles));
         for t in &mesh.triangles {
             let p = t.map(|i| [mesh.x[i as usize], mesh.y[i as usize], mesh.z[i as usize]]);
             let (a, b): (Vec<_>, Vec<_>) = (0..3).map(|k| (p[1][k] - p[0][k], p[2][k] - p[0][k])).unzip();

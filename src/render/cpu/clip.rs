@@ -1,6 +1,6 @@
 //! Clipping of triangles at the view volume, as Mesa's draw module does it.
 
-use super::camera::{Row, cross, dot};
+use super::camera::{Row, V3, cross, dot};
 use super::plane::Vertex;
 
 /// A vertex in clip coordinates: x, y, depth, w.
@@ -52,6 +52,32 @@ pub fn outside([x, y, z, w]: Clip) -> u32 {
         | u32::from(y + w < 0.0) << 3
         | u32::from(z < 0.0) << 4
         | u32::from(z > w) << 5
+}
+
+/// Returns whether all points of a box certainly lie beyond one clipping plane, however their projection by `rows` is
+/// rounded.
+pub fn is_box_outside(rows: &[Row; 4], low: V3, high: V3) -> bool {
+    const SAFE: f32 = 1e-5;
+    let [x, y, z, w] = rows;
+    // positive beyond the plane: a row with its sign, and whether w is subtracted
+    let planes = [
+        (x, 1.0, 1.0),
+        (x, -1.0, 1.0),
+        (y, 1.0, 1.0),
+        (y, -1.0, 1.0),
+        (z, -1.0, 0.0),
+        (z, 1.0, 1.0),
+    ];
+    planes.into_iter().any(|(row, sign, by)| {
+        let mut least = sign * row[3] - by * w[3];
+        let mut size = row[3].abs() + w[3].abs();
+        for k in 0..3 {
+            let slope = sign * row[k] - by * w[k];
+            least += (slope * low[k]).min(slope * high[k]);
+            size += (row[k].abs() + w[k].abs()) * low[k].abs().max(high[k].abs());
+        }
+        least > SAFE * size
+    })
 }
 
 /// Returns the signed distance from a clipping plane; planes are numbered as the bits of [`outside`].
@@ -214,6 +240,19 @@ mod tests {
         let beyond = triangle.map(|[x, y, z, w]| [x + 9.0, y, z, w]);
         assert!(cut(beyond, 1).parts().0.is_empty());
         assert!(cut([[f32::NAN; 4]; 3], 63).parts().0.is_empty());
+    }
+
+    #[test]
+    fn boxes_are_outside_if_all_their_corners_are() {
+        let rows = [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.5],
+            [0.0, 0.0, 1.0, 3.0],
+        ];
+        let at = |x: f32| is_box_outside(&rows, [x, -1.0, -1.0], [x + 2.0, 1.0, 1.0]);
+        assert!(!at(-1.0) && !at(3.9) && at(4.1) && !at(-5.9) && at(-6.1));
+        assert!(!is_box_outside(&[[f32::NAN; 4]; 4], [0.0; 3], [1.0; 3]));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The geometry of an image: what is in view, projected, clipped and rasterised.
 
+use std::ops::Range;
+
 use super::camera::{Eye, Row, V3, dot, fused, part_rows, single};
 use super::clip::{self, Clip, EdgePoint, Origin, Polygon};
 use super::plane::{Basis, Vertex};
@@ -21,6 +23,8 @@ pub struct Frame {
     fixed: Vec<Fixed>,
     /// For each vertex, one bit for every clipping plane that it lies beyond.
     sides: Vec<u8>,
+    /// For each band of the drawable being drawn, the sides on which any of its vertices is, and on which all are.
+    bands: Vec<(u8, u8)>,
     /// Points made by clipping.
     pub points: Vec<ClipPoint>,
     /// Everything that is drawn, indexed like the drawables of the visual.
@@ -30,7 +34,7 @@ pub struct Frame {
     /// Distance and index of the transparent drawables in view.
     transparent: Vec<(f32, u32)>,
     /// Range of fragments of each transparent drawable, the nearest drawable first.
-    pub layers: Vec<std::ops::Range<usize>>,
+    pub layers: Vec<Range<usize>>,
 }
 
 /// A drawable with its pose in the world.
@@ -228,21 +232,36 @@ impl Frame {
         let mesh = &visual.meshes[drawable.shape as usize];
         let draw = self.draws[index];
         let half = [self.target.width as f32 * 0.5, self.target.height as f32 * 0.5];
-        let (mut start, mut any, mut all) = (0, 0, u8::MAX);
-        for &(part, end) in &mesh.parts {
-            let rows = eye.project(part_rows(part, draw.rows, drawable.size));
-            let (some, every) = self.project(mesh, start..end, &rows, half);
-            (any, all) = (any | some, all & every);
-            start = end;
+        self.bands.clear();
+        for band in &mesh.bands {
+            let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
+            let sides = if clip::is_box_outside(&rows, band.low, band.high) {
+                let end = self.vertices.len() + band.vertices.len();
+                self.vertices.resize(end, Vertex::default());
+                self.fixed.resize(end, [0; 2]);
+                self.sides.resize(end, u8::MAX);
+                (u8::MAX, u8::MAX)
+            } else {
+                self.project(mesh, band.vertices.clone(), &rows, half)
+            };
+            self.bands.push(sides);
         }
-        if all != 0 {
-            return;
+        for (k, band) in mesh.bands.iter().enumerate() {
+            match self.bands[k] {
+                (0, _) if !draw.flip => self.inside::<S>(mesh, index, band.triangles.clone()),
+                (_, 0) => {
+                    let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
+                    self.across::<S>(mesh, &rows, index, band.triangles.clone());
+                }
+                _ => {}
+            }
         }
-        if any == 0 && !draw.flip {
-            self.inside::<S>(mesh, index);
-            return;
-        }
-        for &[a, b, c] in &mesh.triangles {
+    }
+
+    /// Draws triangles of which some are not wholly in view.
+    fn across<S: Sampling>(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, range: Range<usize>) {
+        let draw = self.draws[index];
+        for &[a, b, c] in &mesh.triangles[range] {
             let t = if draw.flip { [a, c, b] } else { [a, b, c] };
             let own = t.map(|i| draw.base + usize::from(i));
             let [p, q, r] = own.map(|i| self.sides[i]);
@@ -250,25 +269,21 @@ impl Frame {
                 continue;
             }
             if p | q | r != 0 {
-                self.clipped::<S>(visual, eye, index, t, p | q | r);
-            } else {
+                self.clipped::<S>(mesh, rows, index, t, p | q | r);
+            } else if is_seen::<S>(&own.map(|i| self.fixed[i])) {
                 self.triangle::<S>(index, own);
             }
         }
     }
 
-    /// Draws a mesh that is wholly in view.
-    fn inside<S: Sampling>(&mut self, mesh: &Mesh, index: usize) {
+    /// Draws triangles that are wholly in view.
+    fn inside<S: Sampling>(&mut self, mesh: &Mesh, index: usize, range: Range<usize>) {
         let base = self.draws[index].base;
-        let mut k = 0;
-        let all = &mesh.triangles[..];
+        let mut k = range.start;
+        let all = &mesh.triangles[..range.end];
         while k < all.len() {
-            // skips what shows its back or lies between the samples
             let fixed = &self.fixed[base..base + mesh.x.len()];
-            let seen = |t: &[u16; 3]| {
-                let fixed = t.map(|i| fixed[usize::from(i)]);
-                is_counterclockwise(&fixed) && !Extent::new(&fixed).misses::<S>()
-            };
+            let seen = |t: &[u16; 3]| is_seen::<S>(&t.map(|i| fixed[usize::from(i)]));
             let Some(next) = all[k..].iter().position(seen) else {
                 return;
             };
@@ -298,7 +313,7 @@ impl Frame {
     }
 
     /// Projects vertices of a mesh. Gives the outer sides on which any of them is, and on which all are.
-    fn project(&mut self, mesh: &Mesh, range: std::ops::Range<usize>, rows: &[Row; 4], half: [f32; 2]) -> (u8, u8) {
+    fn project(&mut self, mesh: &Mesh, range: Range<usize>, rows: &[Row; 4], half: [f32; 2]) -> (u8, u8) {
         let (mut any, mut all) = (0, u8::MAX);
         let coordinates = |v: &[f32], at: usize| -> [f32; LANES] {
             let mut out = [0.0; LANES];
@@ -342,16 +357,14 @@ impl Frame {
 
     /// Draws what is left of a triangle that reaches beyond some sides of what is seen.
     #[cold]
-    fn clipped<S: Sampling>(&mut self, visual: &Visual, eye: &Eye, index: usize, t: [u16; 3], sides: u8) {
-        let drawable = &visual.drawables[index];
-        let mesh = &visual.meshes[drawable.shape as usize];
+    fn clipped<S: Sampling>(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, t: [u16; 3], sides: u8) {
         let draw = self.draws[index];
         let half = [self.target.width, self.target.height].map(|n| n as f32 * 0.5);
-        let rows = eye.project(part_rows(mesh.part_of(usize::from(t[0])), draw.rows, drawable.size));
-        let triangle: [Clip; 3] = t.map(|i| {
+        let corner = |i: u16| {
             let i = usize::from(i);
-            clip::apply(&rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
-        });
+            clip::apply(rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
+        };
+        let triangle: [Clip; 3] = [corner(t[0]), corner(t[1]), corner(t[2])];
         if clip::faces_away(&triangle) {
             return;
         }
@@ -382,6 +395,12 @@ impl Frame {
             self.triangle::<S>(index, [a, b, c]);
         }
     }
+}
+
+/// Returns whether a triangle shows its front and does not lie between the samples.
+#[inline(always)]
+fn is_seen<S: Sampling>(fixed: &[Fixed; 3]) -> bool {
+    is_counterclockwise(fixed) && !Extent::new(fixed).misses::<S>()
 }
 
 /// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.

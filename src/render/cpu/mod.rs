@@ -2,6 +2,7 @@
 
 mod camera;
 mod clip;
+mod flat;
 mod frame;
 mod light;
 mod plane;

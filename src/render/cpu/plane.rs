@@ -1,7 +1,7 @@
 //! Linear functions over a triangle, set up and evaluated as in llvmpipe: from the lower left corner of the image.
 //! For triangles seen edge-on they are steep and the rounding errors large; they are the reference's.
 
-use wide::f32x4;
+use wide::{f32x4, f64x4};
 
 use super::camera::fused;
 
@@ -102,18 +102,30 @@ impl Planes {
             let first = self.at + (self.dx * f32x4::splat(x) + self.dy * f32x4::splat(y));
             [first, first + self.dx, first + self.dy, first + (self.dx + self.dy)]
         } else {
-            [(x, y), (x + 1.0, y), (x, y + 1.0), (x + 1.0, y + 1.0)].map(|(x, y)| self.exact(x, y))
+            self.exact(x, y)
         }
     }
 
-    fn exact(&self, x: f32, y: f32) -> f32x4 {
-        let (at, dx, dy) = (self.at.to_array(), self.dx.to_array(), self.dy.to_array());
-        let mut out = [0.0; 4];
-        for k in 0..4 {
-            out[k] = fused(dy[k], y, fused(dx[k], x, at[k]));
-        }
-        f32x4::new(out)
+    /// Evaluates like [`Planes::block`], rounded as in llvmpipe: see [`fused`].
+    #[inline(always)]
+    fn exact(&self, x: f32, y: f32) -> [f32x4; 4] {
+        let [at, dx, dy] = [self.at, self.dx, self.dy].map(double);
+        let along = |slope: f64x4, place: f32, from: f64x4| single(slope * f64x4::splat(f64::from(place)) + from);
+        let columns = [double(along(dx, x, at)), double(along(dx, x + 1.0, at))];
+        let row = |y: f32| columns.map(|from| along(dy, y, from));
+        let ([a, b], [c, d]) = (row(y), row(y + 1.0));
+        [a, b, c, d]
     }
+}
+
+#[inline(always)]
+fn double(v: f32x4) -> f64x4 {
+    f64x4::new(v.to_array().map(f64::from))
+}
+
+#[inline(always)]
+fn single(v: f64x4) -> f32x4 {
+    f32x4::new(v.to_array().map(|v| v as f32))
 }
 
 impl Plane {

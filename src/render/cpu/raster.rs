@@ -3,17 +3,16 @@
 use wide::{f32x4, i32x4};
 
 use super::plane::{Basis, Plane, Vertex};
-use super::sampling::{GRAIN, GRAIN_BITS, Rows, Sampling};
+use super::sampling::{GRAIN, GRAIN_BITS, Sampling};
 
 /// Bound on coordinates, 1/256 pixels.
 pub const LIMIT: f32 = (1 << 21) as f32;
 
 /// Side of the blocks in which large triangles are tested, pixels.
 const BLOCK: i32 = 8;
-/// Triangles up to this extent are tested sample by sample, 1/256 pixels.
-const TINY: i32 = 1 << 8;
-/// Triangles up to this extent are drawn without blocks, 1/256 pixels.
-const SMALL: i32 = 12 << 8;
+/// Triangles up to this extent are drawn without blocks, 1/256 pixels: single precision holds their edge functions
+/// without rounding.
+const SMALL: i32 = 8 << 8;
 
 /// A projected vertex, 1/256 pixels from the lower left.
 pub type Fixed = [i32; 2];
@@ -65,20 +64,6 @@ impl Edge {
     fn at(&self, x: i32, y: i32) -> i64 {
         let up = i64::from(self.dx) * i64::from(y * 256 - self.from[1]);
         up - i64::from(self.dy) * i64::from(x * 256 - self.from[0]) + self.bias
-    }
-
-    /// Evaluates the edge function at the lower left corner of a pixel near a small triangle, in 32 bits.
-    #[inline(always)]
-    fn near(&self, x: i32, y: i32) -> i64 {
-        let up = self.dx.wrapping_mul(y * 256 - self.from[1]);
-        i64::from(up.wrapping_sub(self.dy.wrapping_mul(x * 256 - self.from[0]))) + self.bias
-    }
-
-    /// Returns a negative number at points outside the edge of a tiny triangle; the point, in 1/256 pixels, lies within
-    /// the triangle's extent.
-    #[inline(always)]
-    fn sign(&self, [x, y]: [i32; 2]) -> i32 {
-        self.dx * (y - self.from[1]) - self.dy * (x - self.from[0]) + self.bias as i32
     }
 
     /// Returns the edge function around a pixel at whose corner its value is `at`. Dropping the low bits changes no
@@ -161,15 +146,15 @@ impl Extent {
         self.x[1] - self.x[0] < limit && self.y[1] - self.y[0] < limit
     }
 
-    /// Returns whether the triangle is tiny and lies between the samples.
+    /// Returns whether the triangle certainly lies between the samples: none is within its extent.
     #[inline(always)]
     pub fn misses<S: Sampling>(&self) -> bool {
-        let rows = Rows::<S>::within(self.y);
-        self.below(TINY)
-            && (rows.first..=rows.last).all(|row| {
-                let place = Rows::<S>::place(row);
-                self.x[1] < place + ((self.x[0] - place + 255) & !255)
-            })
+        let within = |[low, high]: [i32; 2], places: [i32; 4]| {
+            let places = i32x4::new(places);
+            let below = |v: i32| -> i32x4 { (i32x4::splat(v) - places) >> 8 };
+            below(high).simd_gt(below(low - 1))
+        };
+        (within(self.x, S::PLACES[0]) & within(self.y, S::PLACES[1])).to_bitmask() == 0
     }
 
     /// Returns the first and the last pixel in each direction that the triangle may cover; `None` if it covers none.
@@ -186,57 +171,83 @@ impl Extent {
     }
 }
 
-/// Passes the samples that a counterclockwise triangle covers to `sink`. Most small triangles lie between the samples and need
-/// neither edges nor depth.
-#[inline(always)]
-pub fn scan<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
-    let extent = Extent::new(fixed);
-    if extent.below(TINY) {
-        tiny::<S>(sink, size, fixed, &extent, depth);
-        return;
-    }
-    let Some([x, y]) = extent.pixels(size) else {
-        return;
-    };
-    let edges = Edge::around(fixed);
-    if extent.below(SMALL) {
-        let local = |e: &Edge| e.local::<S>(e.near(x[0], y[0]));
-        let local = [local(&edges[0]), local(&edges[1]), local(&edges[2])];
-        patch::<S>(sink, size[0], local, (x, y), depth);
-    } else {
-        blocks::<S>(sink, size[0], &edges, (x, y), &depth());
+/// The edge functions of a small triangle at the samples of a pixel, and their changes to the next pixels.
+struct SmallEdges {
+    samples: [f32x4; 3],
+    right: [f32x4; 3],
+    up: [f32x4; 3],
+}
+
+impl SmallEdges {
+    /// Sets the edges up at the pixel `x`, `y`.
+    #[inline(always)]
+    fn new<S: Sampling>(&[a, b, c]: &[Fixed; 3], x: i32, y: i32) -> Self {
+        let from =
+            |k: usize, corner: i32| f32x4::from_i32x4(i32x4::new([b[k] - corner, c[k] - corner, a[k] - corner, 0]));
+        let next = |v: f32x4| {
+            let [a, b, c, _] = v.to_array();
+            f32x4::new([b, c, a, 0.0])
+        };
+        let (x, y) = (from(0, 256 * x), from(1, 256 * y));
+        let (dx, dy) = (next(x) - x, next(y) - y);
+        // zero belongs to one of the two triangles that share an edge, as in `Edge`
+        let ours = dy.simd_lt(f32x4::ZERO) | (dy.simd_eq(f32x4::ZERO) & dx.simd_lt(f32x4::ZERO));
+        let corner = dy * x - dx * y + ours.select(f32x4::ZERO, -f32x4::ONE);
+        let (dx, dy, corner) = (dx.to_array(), dy.to_array(), corner.to_array());
+        let (across, upward) = (f32x4::new(S::X) * 256.0, f32x4::new(S::Y) * 256.0);
+        Self {
+            samples: [0, 1, 2].map(|k| upward * dx[k] - across * dy[k] + corner[k]),
+            right: [0, 1, 2].map(|k| f32x4::splat(-256.0 * dy[k])),
+            up: [0, 1, 2].map(|k| f32x4::splat(256.0 * dx[k])),
+        }
     }
 }
 
-/// Goes through the samples within the extent of a triangle one by one.
+/// Passes the samples that a counterclockwise triangle covers to `sink`.
 #[inline(always)]
-fn tiny<S: Sampling>(
+pub fn scan<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
+    let extent = Extent::new(fixed);
+    let Some([x, y]) = extent.pixels(size) else {
+        return;
+    };
+    if extent.below(SMALL) {
+        small::<S>(sink, size[0], fixed, (x, y), depth);
+    } else {
+        blocks::<S>(sink, size[0], &Edge::around(fixed), (x, y), &depth());
+    }
+}
+
+/// Tests the samples of the pixels around a small triangle.
+#[inline(always)]
+fn small<S: Sampling>(
     sink: &mut impl Sink,
-    size: [usize; 2],
+    width: usize,
     fixed: &[Fixed; 3],
-    extent: &Extent,
+    (x, y): ([i32; 2], [i32; 2]),
     new_depth: impl Fn() -> Depth,
 ) {
-    let rows = Rows::<S>::within(extent.y);
-    let (mut edges, mut depth) = (None, None);
-    for row in rows.first.max(0)..=rows.last.min((size[1] * S::ROWS) as i32 - 1) {
-        let place = Rows::<S>::place(row);
-        let from = ((extent.x[0] - place + 255) >> 8).max(0);
-        let to = ((extent.x[1] - place) >> 8).min(size[0] as i32 - 1);
-        for px in from..=to {
-            let edges = edges.get_or_insert_with(|| Edge::around(fixed));
-            let at = [px * 256 + place, Rows::<S>::height(row)];
-            if edges.iter().any(|e| e.sign(at) < 0) {
-                continue;
+    let SmallEdges { mut samples, right, up } = SmallEdges::new::<S>(fixed, x[0], y[0]);
+    let mut depth = None;
+    let mut py = y[0];
+    while py <= y[1] {
+        let [mut a, mut b, mut c] = samples;
+        let mut px = x[0];
+        while px <= x[1] {
+            let outside = a.fast_min(b).fast_min(c).simd_lt(f32x4::ZERO).to_bitmask();
+            if outside != 15 {
+                let depth = depth.get_or_insert_with(&new_depth);
+                let at = py as usize * width + px as usize;
+                sink.pixel(at, !outside & 15, depth.at::<S>(px, py));
             }
-            let depth = depth.get_or_insert_with(&new_depth);
-            let py = row / S::ROWS as i32;
-            sink.pixel(
-                py as usize * size[0] + px as usize,
-                Rows::<S>::samples(row),
-                depth.at::<S>(px, py),
-            );
+            a += right[0];
+            b += right[1];
+            c += right[2];
+            px += 1;
         }
+        for k in 0..3 {
+            samples[k] += up[k];
+        }
+        py += 1;
     }
 }
 
@@ -277,7 +288,7 @@ fn blocks<S: Sampling>(
                     }
                 }
             } else {
-                patch::<S>(sink, width, local, (x, y), || *depth);
+                patch::<S>(sink, width, local, (x, y), depth);
             }
         }
     }
@@ -290,24 +301,26 @@ fn patch<S: Sampling>(
     width: usize,
     mut local: [Local; 3],
     (x, y): ([i32; 2], [i32; 2]),
-    new_depth: impl Fn() -> Depth,
+    depth: &Depth,
 ) {
-    let mut depth = None;
-    for py in y[0]..=y[1] {
+    let mut py = y[0];
+    while py <= y[1] {
         let row = py as usize * width;
         let [mut a, mut b, mut c] = [local[0].samples, local[1].samples, local[2].samples];
-        for px in x[0]..=x[1] {
+        let mut px = x[0];
+        while px <= x[1] {
             let inside = !(a | b | c).to_bitmask() & 15;
             if inside != 0 {
-                let depth = depth.get_or_insert_with(&new_depth);
                 sink.pixel(row + px as usize, inside, depth.at::<S>(px, py));
             }
             a += local[0].right;
             b += local[1].right;
             c += local[2].right;
+            px += 1;
         }
         for l in &mut local {
             l.samples += l.up;
         }
+        py += 1;
     }
 }

@@ -2,31 +2,38 @@
 
 use std::ops::Neg;
 
-use wide::f32x4;
+use wide::bytemuck::cast;
+use wide::{f32x4, i32x4};
 
+use super::flat;
 use crate::render::texture::{Face, Level, Texture};
 
 /// The mip levels to blend at each pixel of a block, and their blend weights.
 #[derive(Clone, Copy, Debug)]
-struct MipLevels {
-    level: [usize; 4],
-    blend: [f32; 4],
+pub struct MipLevels {
+    pub level: [usize; 4],
+    pub blend: [f32; 4],
+    /// Whether the whole block has one level.
+    same: bool,
 }
 
 impl MipLevels {
     /// Finds the mip levels from the squared number of texels per pixel. The logarithm is linear between powers of two,
     /// as in llvmpipe; magnified textures use the first level.
-    fn new(squared: f32x4, levels: usize) -> Self {
-        let bits = squared.to_array().map(f32::to_bits);
-        let exponent = f32x4::new(bits.map(|b| ((b >> 23 & 255) as i32 - 127) as f32));
-        let mantissa = f32x4::new(bits.map(|b| f32::from_bits(b & 0x007f_ffff | 0x3f80_0000)));
+    #[inline(always)]
+    pub fn new(squared: f32x4, levels: usize) -> Self {
+        let bits: i32x4 = cast(squared);
+        let exponent = f32x4::from_i32x4((bits >> 23 & i32x4::splat(255)) - i32x4::splat(127));
+        let mantissa: f32x4 = cast(bits & i32x4::splat(0x007f_ffff) | i32x4::splat(0x3f80_0000));
         let level = 0.5 * (exponent + mantissa - f32x4::ONE);
         // never NaN
         let level = level.fast_max(f32x4::ZERO).fast_min(f32x4::splat(levels as f32 - 1.0));
         let whole = level.fast_trunc_int();
+        let first = whole.to_array()[0];
         Self {
             level: whole.to_array().map(|l| l as usize),
             blend: (level - f32x4::from_i32x4(whole)).to_array(),
+            same: whole.simd_eq(i32x4::splat(first)).to_bitmask() == 15,
         }
     }
 
@@ -43,7 +50,7 @@ impl Texture {
     /// textures have one level of detail for the whole block, cube maps one for each pixel.
     pub fn sample(&self, at: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
         let colours = match self {
-            Texture::Flat(face) => flat(face, at, wanted),
+            Texture::Flat(face) => flat::colours(face, at, wanted),
             Texture::Cube(faces) => CubePoints::new(faces, at).colours(faces, wanted),
         };
         colours.map(|c| c * f32x4::splat(1.0 / 255.0))
@@ -52,18 +59,16 @@ impl Texture {
 
 /// Returns the differences between the columns of a block, at each pixel.
 #[inline(always)]
-fn across(v: f32x4) -> f32x4 {
+pub fn across(v: f32x4) -> f32x4 {
     let v = v.to_array();
-    let (low, high) = (v[1] - v[0], v[3] - v[2]);
-    f32x4::new([low, low, high, high])
+    f32x4::new([v[1], v[1], v[3], v[3]]) - f32x4::new([v[0], v[0], v[2], v[2]])
 }
 
 /// Returns the differences between the rows of a block, at each pixel.
 #[inline(always)]
-fn upward(v: f32x4) -> f32x4 {
+pub fn upward(v: f32x4) -> f32x4 {
     let v = v.to_array();
-    let (left, right) = (v[2] - v[0], v[3] - v[1]);
-    f32x4::new([left, right, left, right])
+    f32x4::new([v[2], v[3], v[2], v[3]]) - f32x4::new([v[0], v[1], v[0], v[1]])
 }
 
 /// The points of a cube map at which the pixels of a block look.
@@ -77,11 +82,10 @@ struct CubePoints {
 impl CubePoints {
     #[inline(always)]
     fn new(faces: &[Face; 6], at: &Coordinates) -> Self {
-        let side = sides_of(at);
-        if side == [side[0]; 4] {
-            Self::on(faces, side[0], at)
-        } else {
-            Self::apart(faces, side, at)
+        let axes = Axes::new(at);
+        match axes.common() {
+            Some(side) => Self::on(faces, side, at),
+            None => Self::apart(faces, axes.sides(), at),
         }
     }
 
@@ -107,6 +111,7 @@ impl CubePoints {
             detail: MipLevels {
                 level,
                 blend: each(&|p| p.detail.blend),
+                same: false,
             },
         }
     }
@@ -137,57 +142,82 @@ impl CubePoints {
 
     #[inline(always)]
     fn colours(&self, faces: &[Face; 6], wanted: [bool; 4]) -> [f32x4; 4] {
-        let mut colours = self.at_level(faces, self.detail.level, wanted);
+        if !self.detail.same {
+            return self.mixed(faces, wanted);
+        }
+        let face = &faces[usize::from(self.side[0])];
+        let level = self.detail.level[0];
+        let mut colours = self.at_level(faces, [&face[level]; 4], [level; 4], wanted);
         if self.detail.blends() {
-            let last = faces[0].len() - 1;
-            let next = self.at_level(faces, self.detail.level.map(|l| (l + 1).min(last)), wanted);
-            for k in 0..4 {
-                colours[k] += f32x4::splat(self.detail.blend[k]) * (next[k] - colours[k]);
-            }
+            let level = (level + 1).min(face.len() - 1);
+            let next = self.at_level(faces, [&face[level]; 4], [level; 4], wanted);
+            self.blend(&mut colours, &next);
         }
         colours
     }
 
+    /// Looks up pixels that lie on several sides or in several levels.
+    #[inline(never)]
+    fn mixed(&self, faces: &[Face; 6], wanted: [bool; 4]) -> [f32x4; 4] {
+        let last = faces[0].len() - 1;
+        let at = |level: [usize; 4]| {
+            let images = [0, 1, 2, 3].map(|k| &faces[usize::from(self.side[k])][level[k]]);
+            self.at_level(faces, images, level, wanted)
+        };
+        let mut colours = at(self.detail.level);
+        if self.detail.blends() {
+            let next = at(self.detail.level.map(|l| (l + 1).min(last)));
+            self.blend(&mut colours, &next);
+        }
+        colours
+    }
+
+    /// Blends in the colours of the next level.
+    #[inline(always)]
+    fn blend(&self, colours: &mut [f32x4; 4], next: &[f32x4; 4]) {
+        for k in 0..4 {
+            colours[k] += f32x4::splat(self.detail.blend[k]) * (next[k] - colours[k]);
+        }
+    }
+
     /// Looks up bilinearly in one mip level for each pixel, across the edges of the cube where needed; 0..255.
     #[inline(always)]
-    fn at_level(&self, faces: &[Face; 6], level: [usize; 4], wanted: [bool; 4]) -> [f32x4; 4] {
-        let mut size = [0.0; 4];
-        for k in 0..4 {
-            size[k] = faces[usize::from(self.side[k])][level[k]].width as f32;
-        }
-        let size = f32x4::new(size);
+    fn at_level(&self, faces: &[Face; 6], images: [&Level; 4], level: [usize; 4], wanted: [bool; 4]) -> [f32x4; 4] {
+        let size = f32x4::new(images.map(|image| image.width as f32));
         let (x, y) = (self.u * size - 0.5, self.v * size - 0.5);
         let (left, top) = (whole(x), whole(y));
         let (wx, wy) = ((x - left).to_array(), (y - top).to_array());
-        let index = |v: f32x4| {
-            let v = v.max(f32x4::splat(-1.0)).fast_min(size - 1.0);
-            v.fast_trunc_int().to_array()
-        };
-        let (left, top) = (index(left), index(top));
-        let mut out = [f32x4::ZERO; 4];
-        for k in (0..4).filter(|&k| wanted[k]) {
-            let image = &faces[usize::from(self.side[k])][level[k]];
-            let n = image.width;
-            let last = n as u32 - 1;
-            let [a, b, c, d] = if (left[k] as u32) < last && (top[k] as u32) < last {
-                let i = top[k] as usize * n + left[k] as usize;
-                let block = &image.pixels[i..i + n + 2];
-                [block[0], block[1], block[n], block[n + 1]]
+        let last = size - 1.0;
+        let within = |v: f32x4| v.max(f32x4::splat(-1.0)).fast_min(last);
+        let (left, top) = (within(left), within(top));
+        let least = left.fast_min(top).simd_ge(f32x4::ZERO);
+        let inside = (least & left.fast_max(top).simd_lt(last)).to_bitmask();
+        // textures are small enough for exact indices
+        let first = (top * size + left).fast_trunc_int().to_array();
+        let (left, top) = (left.to_array(), top.to_array());
+        let pixel = |k: usize| {
+            if !wanted[k] {
+                return f32x4::ZERO;
+            }
+            let [a, b, c, d] = if inside >> k & 1 == 1 {
+                let (pixels, i, n) = (&images[k].pixels, first[k] as usize, images[k].width);
+                let (upper, lower) = (&pixels[i..i + 2], &pixels[i + n..i + n + 2]);
+                [upper[0], upper[1], lower[0], lower[1]]
             } else {
-                across_edges(faces, self.side[k], level[k], left[k], top[k])
+                across_edges(faces, self.side[k], level[k], left[k] as i32, top[k] as i32)
             };
             let [a, b, c, d] = [numbers(a), numbers(b), numbers(c), numbers(d)];
             let wx = f32x4::splat(wx[k]);
             let (upper, lower) = (a + wx * (b - a), c + wx * (d - c));
-            out[k] = upper + f32x4::splat(wy[k]) * (lower - upper);
-        }
-        out
+            upper + f32x4::splat(wy[k]) * (lower - upper)
+        };
+        [pixel(0), pixel(1), pixel(2), pixel(3)]
     }
 }
 
 /// Converts bytes to numbers.
 #[inline(always)]
-fn numbers(v: [u8; 4]) -> f32x4 {
+pub fn numbers(v: [u8; 4]) -> f32x4 {
     let mut out = [0.0; 4];
     for k in 0..4 {
         out[k] = f32::from(v[k]);
@@ -197,83 +227,10 @@ fn numbers(v: [u8; 4]) -> f32x4 {
 
 /// Rounds down to integers, for numbers within +-2^22.
 #[inline(always)]
-fn whole(x: f32x4) -> f32x4 {
+pub fn whole(x: f32x4) -> f32x4 {
     // adding 1.5 * 2^23 rounds to the nearest integer
     let nearest = (x + 12_582_912.0) - 12_582_912.0;
     nearest - (nearest.simd_gt(x) & f32x4::ONE)
-}
-
-/// Blends bytes with a weight of 0..256, in integers.
-#[inline(always)]
-fn blend(a: f32x4, b: f32x4, weight: f32) -> f32x4 {
-    let sum = a * (256.0 - weight) + b * weight + 128.0;
-    f32x4::from_i32x4((sum * (1.0 / 256.0)).fast_trunc_int())
-}
-
-/// Looks up in a two-dimensional texture, in 8-bit arithmetic.
-fn flat(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
-    let length = |change: fn(f32x4) -> f32x4| {
-        let s = change(*s) * f32x4::splat(face[0].width as f32);
-        let t = change(*t) * f32x4::splat(face[0].height as f32);
-        (s * s + t * t).to_array()[0]
-    };
-    let squared = length(across).max(length(upward));
-    let detail = MipLevels::new(f32x4::splat(squared), face.len());
-    let (level, share) = (detail.level[0], detail.blend[0]);
-    let mut out = flat_level(&face[level], *s, *t, wanted);
-    if share > 0.0 {
-        let weight = (share * 256.0).trunc();
-        let next = flat_level(&face[level + 1], *s, *t, wanted);
-        for k in 0..4 {
-            out[k] = blend(out[k], next[k], weight);
-        }
-    }
-    out
-}
-
-/// Coordinates along one axis of an image that repeats.
-struct RepeatedAxis {
-    /// Indices of the texels before and after.
-    texels: [[usize; 4]; 2],
-    /// Weights of the texels after, 0..256.
-    weight: [f32; 4],
-}
-
-impl RepeatedAxis {
-    #[inline(always)]
-    fn new(at: f32x4, size: usize) -> Self {
-        let n = f32x4::splat(size as f32);
-        let at = (at - whole(at)) * n - 0.5;
-        let low = whole(at);
-        // NaN coordinates give an arbitrary texel
-        let index = |v: f32x4| {
-            let v = v.max(f32x4::ZERO).fast_min(n - 1.0);
-            v.fast_trunc_int().to_array().map(|i| i as usize)
-        };
-        let (before, after) = (low, low + 1.0);
-        Self {
-            texels: [
-                index(before.simd_lt(f32x4::ZERO).select(n - 1.0, before)),
-                index(after.simd_ge(n).select(f32x4::ZERO, after)),
-            ],
-            weight: whole((at - low) * 256.0 + 0.5).max(f32x4::ZERO).to_array(),
-        }
-    }
-}
-
-#[inline(always)]
-fn flat_level(level: &Level, s: f32x4, t: f32x4, wanted: [bool; 4]) -> [f32x4; 4] {
-    let (x, y) = (RepeatedAxis::new(s, level.width), RepeatedAxis::new(t, level.height));
-    let mut out = [f32x4::ZERO; 4];
-    for k in (0..4).filter(|&k| wanted[k]) {
-        let row = |y: &[usize; 4]| {
-            let row = &level.pixels[y[k] * level.width..][..level.width];
-            let (left, right) = (row[x.texels[0][k]], row[x.texels[1][k]]);
-            blend(numbers(left), numbers(right), x.weight[k])
-        };
-        out[k] = blend(row(&y.texels[0]), row(&y.texels[1]), y.weight[k]);
-    }
-    out
 }
 
 /// Returns the components of directions on a side of the cube: right, down, outward.
@@ -301,22 +258,55 @@ fn direction(side: u8, right: f32, down: f32) -> [f32; 3] {
     }
 }
 
-/// Returns the sides of the cube that directions point through.
-#[inline(always)]
-fn sides_of([x, y, z]: &Coordinates) -> [u8; 4] {
-    let (along_x, along_y) = (x.abs(), y.abs());
-    let longer = along_x.simd_gt(along_y);
-    let upright = z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask();
-    let longer = longer.to_bitmask();
-    let negative = [x, y, z].map(|v| v.is_sign_negative().to_bitmask());
-    [0, 1, 2, 3].map(|k| {
-        let axis = if upright >> k & 1 == 1 {
-            2
-        } else {
-            1 - (longer >> k & 1)
+/// The axes of the cube along which directions are longest: one bit for each pixel.
+struct Axes {
+    /// Whether x is longer than y.
+    longer: u32,
+    /// Whether z is the longest.
+    upright: u32,
+    /// Whether x, y and z are negative.
+    negative: [u32; 3],
+}
+
+impl Axes {
+    #[inline(always)]
+    fn new([x, y, z]: &Coordinates) -> Self {
+        let (along_x, along_y) = (x.abs(), y.abs());
+        let longer = along_x.simd_gt(along_y);
+        Self {
+            longer: longer.to_bitmask(),
+            upright: z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask(),
+            negative: [x, y, z].map(|v| v.is_sign_negative().to_bitmask()),
+        }
+    }
+
+    /// Returns the side through which all directions point; `None` if they point through several.
+    #[inline(always)]
+    fn common(&self) -> Option<u8> {
+        let axis = match (self.upright, self.longer) {
+            (15, _) => 2,
+            (0, 15) => 0,
+            (0, 0) => 1,
+            _ => return None,
         };
-        (2 * axis + (negative[axis as usize] >> k & 1)) as u8
-    })
+        match self.negative[axis] {
+            0 => Some(2 * axis as u8),
+            15 => Some(2 * axis as u8 + 1),
+            _ => None,
+        }
+    }
+
+    /// Returns the side through which each direction points.
+    fn sides(&self) -> [u8; 4] {
+        [0, 1, 2, 3].map(|k| {
+            let axis = if self.upright >> k & 1 == 1 {
+                2
+            } else {
+                1 - (self.longer >> k & 1)
+            };
+            (2 * axis + (self.negative[axis as usize] >> k & 1)) as u8
+        })
+    }
 }
 
 /// Returns a block of four texels, some of which lie beyond an edge of the side.
@@ -345,7 +335,7 @@ fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u
         _ => {
             let place = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;
             let at = direction(side, place(x), place(y));
-            let side = sides_of(&at.map(f32x4::splat))[0];
+            let side = Axes::new(&at.map(f32x4::splat)).sides()[0];
             let (right, down, out) = components(side, at);
             let index = |v: f32| (((v / out + 1.0) * 0.5 * n as f32) as usize).min(n - 1);
             Some(image(side).pixels[index(down) * n + index(right)])
@@ -361,7 +351,7 @@ mod tests {
     fn sides_and_directions_are_inverse() {
         for side in 0..6 {
             let at = direction(side, 0.3, -0.7);
-            assert_eq!(sides_of(&at.map(f32x4::splat)), [side; 4]);
+            assert_eq!(Axes::new(&at.map(f32x4::splat)).sides(), [side; 4]);
             assert_eq!(components(side, at), (0.3, -0.7, 1.0));
         }
     }

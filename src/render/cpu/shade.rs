@@ -22,6 +22,11 @@ pub struct Shader {
     samples: Vec<[f32x4; 4]>,
 }
 
+/// Number of samples by their bits.
+const COUNT: [f32; 16] = [
+    0.0, 1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 3.0, 1.0, 2.0, 2.0, 3.0, 2.0, 3.0, 3.0, 4.0,
+];
+
 /// The pixels of an image that are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pixels {
@@ -106,19 +111,30 @@ impl Shader {
             return;
         }
         let part = pixels.of_block(h);
+        let wanted = [0, 1, 2, 3].map(|k| part >> (4 * k) & 15 != 0);
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
-                let mut sums = [f32x4::ZERO; 4];
-                self.block(frame, &inputs, [x, y], part, |k, samples, colour| {
-                    sums[k] += f32x4::splat(samples.count_ones() as f32) * colour;
-                });
-                for (k, &sum) in sums.iter().enumerate() {
+                let mut write = |k: usize, colour: [u8; 3]| {
                     let (x, y) = (x + k % 2, y + k / 2);
                     if x < w
                         && y < h
                         && let Some(at) = pixels.place(x, h - 1 - y, w)
                     {
-                        out[3 * at..3 * at + 3].copy_from_slice(&average(sum));
+                        out[3 * at..3 * at + 3].copy_from_slice(&colour);
+                    }
+                };
+                if let Some(id) = frame.target.only(x, y) {
+                    let colours = self.colours(frame, &inputs, [x, y], id, wanted);
+                    for k in 0..4 {
+                        write(k, truncated(bytes(colours[k])));
+                    }
+                } else {
+                    let mut sums = [f32x4::ZERO; 4];
+                    self.block(frame, &inputs, [x, y], part, |k, samples, colour| {
+                        sums[k] += f32x4::splat(COUNT[samples as usize]) * colour;
+                    });
+                    for k in 0..4 {
+                        write(k, average(sums[k]));
                     }
                 }
             }
@@ -153,7 +169,9 @@ impl Shader {
             let samples = [mine & 15, mine >> 4 & 15, mine >> 8 & 15, mine >> 12 & 15];
             let colours = self.colours(frame, inputs, at, id, samples.map(|s| s != 0));
             for k in 0..4 {
-                emit(k, samples[k], bytes(colours[k]));
+                if samples[k] != 0 {
+                    emit(k, samples[k], bytes(colours[k]));
+                }
             }
         }
     }
@@ -303,7 +321,13 @@ fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
 /// Returns the average of four colours in bytes, from their sum.
 #[inline(always)]
 fn average(sum: f32x4) -> [u8; 3] {
-    let [r, g, b, _] = ((sum + 2.0) * 0.25).fast_trunc_int().to_array();
+    truncated((sum + 2.0) * 0.25)
+}
+
+/// Returns a colour in bytes, rounded down.
+#[inline(always)]
+fn truncated(colour: f32x4) -> [u8; 3] {
+    let [r, g, b, _] = colour.fast_trunc_int().to_array();
     [r as u8, g as u8, b as u8]
 }
 

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use wide::f32x4;
+use wide::{f32x4, u32x4};
 
 use super::plane::Vertex;
 use super::raster::{Depth, Fixed, Sink, scan};
@@ -65,6 +65,21 @@ impl Target {
             row.iter()
                 .all(|&d| f32x4::new(d).simd_gt(f32x4::splat(z)).to_bitmask() == 15)
         })
+    }
+
+    /// Returns the record that all samples of a block of 2 x 2 pixels show; `None` if they show several or the block
+    /// reaches beyond the image.
+    #[inline(always)]
+    pub fn only(&self, x: usize, y: usize) -> Option<u32> {
+        if x + 1 >= self.width || y + 1 >= self.height {
+            return None;
+        }
+        let first = y * self.width + x;
+        let (low, high) = (&self.ids[first..first + 2], &self.ids[first + self.width..][..2]);
+        let id = low[0][0];
+        let same = |ids: [u32; 4]| u32x4::new(ids).simd_eq(u32x4::splat(id));
+        let all = (same(low[0]) & same(low[1])) & (same(high[0]) & same(high[1]));
+        (all.to_bitmask() == 15).then_some(id)
     }
 
     /// Draws a counterclockwise triangle as `K` says: [`Opaque`] or [`Transparent`]. `record` has the indices of its corners
