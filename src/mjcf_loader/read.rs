@@ -65,7 +65,7 @@ impl<'t> Classes<'t> {
             .try_for_each(|nested| self.read(nested, Some(&name)))
     }
 
-    /// Adds the class of one section. Apart from `read`, whose frames pile up: a class is large.
+    /// Adds the class of one section. It is kept out of `read`, which recurses: a class is large, and the stack is not.
     #[inline(never)]
     fn declare(&mut self, section: &Element, parent: Option<&str>) -> Result<String, LoadError> {
         let given = section.text("class").unwrap_or_default();
@@ -206,13 +206,13 @@ fn content(
             let id = child(e, body, inner, classes, bodies)?;
             content(e, id, inner, classes, bodies)?;
         } else {
-            hang(e, body, around, classes, bodies)?;
+            attach(e, body, around, classes, bodies)?;
         }
     }
     Ok(())
 }
 
-/// Adds a child body. Apart from `content`, whose frames pile up.
+/// Adds a child body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
 fn child(
     e: &Element,
@@ -232,9 +232,9 @@ fn child(
     Ok(bodies.len() - 1)
 }
 
-/// Adds anything else to a body. Apart from `content`, whose frames pile up.
+/// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn hang(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
+fn attach(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
     let body = &mut bodies[body];
     match e.name {
         "inertial" => body.inertial = Some(Inertial::read(e)),

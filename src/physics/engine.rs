@@ -177,7 +177,7 @@ pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
         ("params.dof_damping", &p.dof_damping, m.nv),
         ("params.actuator_gear", &p.actuator_gear, m.nu()),
     ];
-    // the solver does without a warm start that is no use
+    // the solver ignores a warm start that it cannot use
     let lengths = [
         ("qacc_warmstart", s.qacc_warmstart.len(), m.nv),
         ("params.eq_active", p.eq_active.len(), m.neq()),

@@ -81,16 +81,21 @@ impl Hessian {
     fn find_changes(&mut self, island: &Island) {
         let first = self.weight.is_empty() && self.zone.is_empty();
         if first {
-            self.weight.extend(island.quads.iter().map(|q| q.weight));
+            self.weight.extend(island.scalar_rows.iter().map(|q| q.weight));
             self.zone.extend(island.cones.iter().map(|c| c.0.zone));
             return;
         }
-        for (i, (q, w)) in island.quads.iter().zip(&self.weight).enumerate() {
+        for (i, (q, w)) in island.scalar_rows.iter().zip(&self.weight).enumerate() {
             if i < island.friction_tiles && q.weight != *w {
                 self.changed[i] = true;
             }
         }
-        let weight = |row: usize| (island.quads[row / 4].weight[row % 4], self.weight[row / 4][row % 4]);
+        let weight = |row: usize| {
+            (
+                island.scalar_rows[row / 4].weight[row % 4],
+                self.weight[row / 4][row % 4],
+            )
+        };
         for s in &island.singles {
             let (now, before) = weight(s.row);
             if now != before {
@@ -108,7 +113,7 @@ impl Hessian {
                 island.cols(j).iter().for_each(|&c| self.changed[c as usize] = true);
             }
         }
-        for (w, q) in self.weight.iter_mut().zip(&island.quads) {
+        for (w, q) in self.weight.iter_mut().zip(&island.scalar_rows) {
             *w = q.weight;
         }
         for (z, c) in self.zone.iter_mut().zip(&island.cones) {
@@ -135,7 +140,7 @@ impl Hessian {
                     row[self.place[i * n + c as usize] as usize - start] = *m;
                 }
             }
-            if let (Some(q), Some(diagonal)) = (island.quads[..island.friction_tiles].get(i), row.last_mut()) {
+            if let (Some(q), Some(diagonal)) = (island.scalar_rows[..island.friction_tiles].get(i), row.last_mut()) {
                 for k in 0..4 {
                     diagonal[k][k] += q.weight[k];
                 }
@@ -144,14 +149,14 @@ impl Hessian {
         for s in &island.singles {
             let (i, k) = (s.slot / 4, s.slot % 4);
             if self.changed[i] {
-                let weight = island.quads[s.row / 4].weight[s.row % 4];
+                let weight = island.scalar_rows[s.row / 4].weight[s.row % 4];
                 self.h[self.pattern.start(i + 1) - 1][k][k] += weight * s.value * s.value;
             }
         }
         for (row, j) in &island.several {
             let mut weight = [0.0; 6];
             for (k, w) in weight.iter_mut().enumerate().take(j.dim) {
-                *w = island.quads[(row + k) / 4].weight[(row + k) % 4];
+                *w = island.scalar_rows[(row + k) / 4].weight[(row + k) % 4];
             }
             if weight[0] != 0.0 && self.touches_changed(island, j) {
                 self.weigh_diagonal(j.values(efc), &weight, j.dim);

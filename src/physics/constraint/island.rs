@@ -2,7 +2,7 @@
 
 use crate::physics::constraint::cone::{Cone, Zone};
 use crate::physics::constraint::jacobian::{Jacobian, Single, add_transposed_product, product};
-use crate::physics::constraint::quad::{NO_ROWS, NONE, Quad};
+use crate::physics::constraint::scalar_rows::{NO_ROWS, NONE, ScalarRows};
 use crate::physics::constraint::{Block, ConstraintType, Efc};
 use crate::physics::state::State;
 use crate::physics::tiles::{Lanes, Pattern, Tile, mul, total};
@@ -32,12 +32,12 @@ pub(super) struct Island {
     pub(super) m_pattern: Pattern,
     force_smooth: Vec<Lanes>,
     acc_smooth: Vec<Lanes>,
-    /// Number of quads that are the dry friction of a tile; none or all of them.
+    /// Number of scalar_rows that are the dry friction of a tile; none or all of them.
     pub(super) friction_tiles: usize,
-    pub(super) quads: Vec<Quad>,
+    pub(super) scalar_rows: Vec<ScalarRows>,
     /// Rows on one degree of freedom, which stand after dry friction.
     pub(super) singles: Vec<Single>,
-    /// Rows on several: first row in the quads, Jacobian.
+    /// Rows on several: first row in the scalar_rows, Jacobian.
     pub(super) several: Vec<(usize, Jacobian)>,
     /// Contacts with friction.
     pub(super) cones: Vec<(Cone, Jacobian)>,
@@ -66,7 +66,7 @@ impl Island {
             force_smooth: lanes(),
             acc_smooth: lanes(),
             friction_tiles: 0,
-            quads: Vec::with_capacity(nv + contacts),
+            scalar_rows: Vec::with_capacity(nv + contacts),
             singles: Vec::with_capacity(4 * nv),
             several: Vec::with_capacity(nv + contacts),
             cones: Vec::with_capacity(contacts),
@@ -139,7 +139,7 @@ impl Island {
     }
 
     fn load_rows(&mut self, topology: &Topology, blocks: &[u32], efc: &Efc) {
-        self.quads.clear();
+        self.scalar_rows.clear();
         self.singles.clear();
         self.several.clear();
         self.cones.clear();
@@ -151,21 +151,21 @@ impl Island {
         } else {
             0
         };
-        self.quads.resize(self.friction_tiles, NO_ROWS);
+        self.scalar_rows.resize(self.friction_tiles, NO_ROWS);
         let mut row = 4 * self.friction_tiles;
         for b in blocks.iter().map(block) {
             if friction(b) {
                 let slot = self.slot(topology, b.id);
-                self.quads[slot / 4].set(slot % 4, efc, b.row, b);
+                self.scalar_rows[slot / 4].set(slot % 4, efc, b.row, b);
             } else if b.kind == ConstraintType::ContactElliptic {
                 let jacobian = self.load_jacobian(topology, b, efc);
                 self.cones.push((Cone::new(b, efc), jacobian));
             } else {
                 for k in 0..b.dim {
                     if (row + k).is_multiple_of(4) {
-                        self.quads.push(NO_ROWS);
+                        self.scalar_rows.push(NO_ROWS);
                     }
-                    self.quads[(row + k) / 4].set((row + k) % 4, efc, b.row + k, b);
+                    self.scalar_rows[(row + k) / 4].set((row + k) % 4, efc, b.row + k, b);
                 }
                 if let Some(dof) = b.dof {
                     let slot = self.slot(topology, dof);
@@ -224,7 +224,7 @@ impl Island {
         let x = std::mem::take(&mut self.acc);
         self.rates(&x, efc);
         self.acc = x;
-        for q in &mut self.quads {
+        for q in &mut self.scalar_rows {
             for k in 0..4 {
                 q.jar[k] = q.jv[k] - q.aref[k];
             }
@@ -246,16 +246,16 @@ impl Island {
 
     /// Computes `jv = J x`.
     fn rates(&mut self, x: &[Lanes], efc: &Efc) {
-        for (q, x) in self.quads[..self.friction_tiles].iter_mut().zip(x) {
+        for (q, x) in self.scalar_rows[..self.friction_tiles].iter_mut().zip(x) {
             q.jv = *x;
         }
         for s in &self.singles {
-            self.quads[s.row / 4].jv[s.row % 4] = s.value * x[s.slot / 4][s.slot % 4];
+            self.scalar_rows[s.row / 4].jv[s.row % 4] = s.value * x[s.slot / 4][s.slot % 4];
         }
         for &(row, j) in &self.several {
             let v = product(&self.cols, &efc.jac, &j, x);
             for (k, v) in v.iter().enumerate().take(j.dim) {
-                self.quads[(row + k) / 4].jv[(row + k) % 4] = *v;
+                self.scalar_rows[(row + k) / 4].jv[(row + k) % 4] = *v;
             }
         }
         for (c, j) in &mut self.cones {
@@ -272,7 +272,7 @@ impl Island {
         };
         self.acc.iter_mut().zip(&self.search).for_each(|(x, v)| axpy(x, v));
         self.ma.iter_mut().zip(&self.m_search).for_each(|(x, v)| axpy(x, v));
-        for q in &mut self.quads {
+        for q in &mut self.scalar_rows {
             axpy(&mut q.jar, &q.jv);
         }
         for (c, _) in &mut self.cones {
@@ -296,7 +296,7 @@ impl Island {
                 cost[k] += 0.5 * (ma[k] - f[k]) * (a[k] - b[k]);
             }
         }
-        for q in &mut self.quads {
+        for q in &mut self.scalar_rows {
             let c = q.evaluate();
             for k in 0..4 {
                 cost[k] += c[k];
@@ -315,19 +315,19 @@ impl Island {
     pub(super) fn differentiate(&mut self, efc: &Efc) -> f64 {
         let out = &mut self.constraint_force;
         if self.friction_tiles > 0 {
-            for (o, q) in out.iter_mut().zip(&self.quads) {
+            for (o, q) in out.iter_mut().zip(&self.scalar_rows) {
                 *o = q.force;
             }
         } else {
             out.fill([0.0; 4]);
         }
         for s in &self.singles {
-            out[s.slot / 4][s.slot % 4] += s.value * self.quads[s.row / 4].force[s.row % 4];
+            out[s.slot / 4][s.slot % 4] += s.value * self.scalar_rows[s.row / 4].force[s.row % 4];
         }
         for (row, j) in &self.several {
             let mut force = [0.0; 6];
             for (k, f) in force.iter_mut().enumerate().take(j.dim) {
-                *f = self.quads[(row + k) / 4].force[(row + k) % 4];
+                *f = self.scalar_rows[(row + k) / 4].force[(row + k) % 4];
             }
             add_transposed_product(&self.cols, &efc.jac, j, &force, out);
         }
@@ -381,7 +381,7 @@ impl Island {
                 s.qfrc_constraint[d] = self.constraint_force[slot / 4][slot % 4];
             }
         }
-        for q in &self.quads {
+        for q in &self.scalar_rows {
             for (&row, &f) in q.row.iter().zip(&q.force) {
                 if row != NONE {
                     efc.force[row as usize] = f;

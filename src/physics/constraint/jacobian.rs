@@ -6,7 +6,7 @@ use crate::physics::tiles::{Lanes, total};
 /// A row on one degree of freedom.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Single {
-    /// Its place in the quads.
+    /// Its place in the scalar_rows.
     pub(super) row: usize,
     /// Lane of the degree of freedom.
     pub(super) slot: usize,

@@ -16,7 +16,7 @@ impl LineSearch<'_> {
     /// Computes the first and second derivative of the cost at `alpha`.
     fn derivatives(&self, alpha: f64) -> (f64, f64) {
         let (mut first, mut second) = ([0.0; 4], [0.0; 4]);
-        for q in &self.island.quads {
+        for q in &self.island.scalar_rows {
             q.add_slopes(alpha, &mut first, &mut second);
         }
         let mut g = self.slope + alpha * self.curvature + total(&first);

@@ -14,8 +14,8 @@ mod island;
 mod jacobian;
 mod line_search;
 mod newton;
-mod quad;
 mod rows;
+mod scalar_rows;
 mod view;
 mod weld;
 

@@ -408,7 +408,7 @@ fn is_seen<S: Sampling>(fixed: &[Fixed; 3]) -> bool {
 fn fixed(pixels: f32) -> i32 {
     // adding 1.5 * 2^23 leaves the integer in the low bits
     const SHIFT: f32 = 12_582_912.0;
-    #[allow(clippy::manual_clamp)] // unlike `clamp`, this makes a number of what is none
+    #[allow(clippy::manual_clamp)] // unlike `clamp`, this turns NaN into a number
     let v = (pixels * 256.0).max(-LIMIT).min(LIMIT);
     (v + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }

@@ -9,7 +9,7 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Four rows whose force is `-d jar`, clamped: by nothing (equalities), to the dry friction, to one sign (limits and
 /// contacts without friction). Rows that are not there are zero.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quad {
+pub(super) struct ScalarRows {
     /// Inverse of the regularisation.
     pub(super) d: Lanes,
     /// Regularisation.
@@ -30,7 +30,7 @@ pub(super) struct Quad {
 }
 
 /// Four rows that are not there.
-pub(super) const NO_ROWS: Quad = Quad {
+pub(super) const NO_ROWS: ScalarRows = ScalarRows {
     d: [0.0; 4],
     r: [0.0; 4],
     low: [0.0; 4],
@@ -43,7 +43,7 @@ pub(super) const NO_ROWS: Quad = Quad {
     row: [NONE; 4],
 };
 
-impl Quad {
+impl ScalarRows {
     pub(super) fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
         let (low, high) = match b.kind {
             ConstraintType::FrictionDof => (-b.frictionloss, b.frictionloss),
