@@ -52,7 +52,7 @@ impl std::fmt::Debug for SoftEngine {
     }
 }
 
-/// Holds what soft engines of one model share: the tree, and the pairs that may touch.
+/// What soft engines of one model share: the tree, and the pairs that may touch.
 #[derive(Clone, Debug)]
 pub struct SoftModel {
     model: Arc<Model>,

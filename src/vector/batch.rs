@@ -8,15 +8,15 @@ use crate::vector::rows::row_of;
 /// They belong to the vector and change with the next call.
 #[derive(Clone, Copy, Debug)]
 pub struct Batch<'a> {
-    /// The environment of each row, [rows].
+    /// The environment of each row (rows).
     pub ids: &'a [usize],
-    /// Observations: every sense is an array of rows, [rows, len].
+    /// Observations: every sense is an array of rows, (rows, len).
     pub observation: Observation<'a>,
-    /// Rewards, [rows]; always 0: there is no extrinsic reward.
+    /// Rewards (rows); always 0: there is no extrinsic reward.
     pub rewards: &'a [f64],
-    /// Always false, [rows].
+    /// Always false (rows).
     pub terminated: &'a [bool],
-    /// Whether the episode has reached `max_episode_steps`, or has diverged, [rows].
+    /// Whether the episode has reached `max_episode_steps`, or has diverged (rows).
     pub truncated: &'a [bool],
     /// Information.
     pub infos: Infos<'a>,
@@ -50,9 +50,9 @@ impl<'a> Batch<'a> {
 /// The ends of episodes, in the rows of the environments whose episode has ended.
 #[derive(Clone, Copy, Debug)]
 pub struct Finals<'a> {
-    /// Which rows hold the end of an episode, [rows].
+    /// Which rows hold the end of an episode (rows).
     pub ended: &'a [bool],
-    /// The last observations; every sense is an array of rows, [rows, len].
+    /// The last observations; every sense is an array of rows, (rows, len).
     pub observation: Observation<'a>,
     /// The last information.
     pub infos: Infos<'a>,

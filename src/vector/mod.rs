@@ -245,7 +245,7 @@ impl VectorEnv {
         }
     }
 
-    /// Applies an action in each environment ([N, len], environment after environment) and waits for all of them.
+    /// Applies an action in each environment ((N, len), environment after environment) and waits for all of them.
     ///
     /// # Errors
     /// Actions of wrong shape or with numbers that are not finite, environments in flight or without a reset, which leave
@@ -361,7 +361,7 @@ impl VectorEnv {
         Ok(())
     }
 
-    /// Fills `actions` with a random action of each environment, [N, len], from their own generators.
+    /// Fills `actions` with a random action of each environment, (N, len), from their own generators.
     ///
     /// # Errors
     /// Environments in flight.

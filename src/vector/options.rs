@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Says when an environment whose episode has ended starts the next one, as Gymnasium's `AutoresetMode`.
+/// When an environment whose episode has ended starts the next one, as in Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AutoresetMode {
     /// The step after the last one resets: its action is ignored, and it returns the first observation of the next episode.
@@ -15,7 +15,7 @@ pub enum AutoresetMode {
     Disabled,
 }
 
-/// Says how a vector is built.
+/// The options of a vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VectorOptions {
     /// When an episode follows another.
@@ -31,7 +31,7 @@ pub struct VectorOptions {
 /// Threads beyond this many for each core only take turns.
 const THREADS_PER_CORE: usize = 4;
 
-/// Says that fewer threads were started than asked for.
+/// A notice that fewer threads were started than asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClippedThreads {
     /// Number of threads asked for.
@@ -42,7 +42,7 @@ pub struct ClippedThreads {
     pub because: ThreadLimit,
 }
 
-/// Says what limits the number of threads.
+/// The reason why the number of threads is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThreadLimit {
     /// A thread steps one environment at a time, and there are no more.

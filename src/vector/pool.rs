@@ -155,7 +155,7 @@ impl Drop for Pool {
     }
 }
 
-/// The life of a thread.
+/// Runs a thread of the pool until there is no more work.
 fn work(shared: &Shared, index: usize) {
     let mut queues = shared.lock();
     while !queues.stop {

@@ -19,7 +19,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Of environments whose spaces are the same.
+    /// Computes the layout of environments whose spaces are the same.
     pub fn new<'e>(envs: impl IntoIterator<Item = &'e Env>) -> Self {
         let mut layout = Self::default();
         for env in envs {
@@ -51,21 +51,21 @@ impl Layout {
 /// Senses that are `None` are left out.
 #[derive(Debug, Default)]
 pub struct Buffers<'a> {
-    /// Proprioception, [N, len].
+    /// Proprioception, (N, len).
     pub proprioception: Option<&'a mut [f64]>,
-    /// What the skins feel, [N, len], N.
+    /// What the skins feel, (N, len), N.
     pub touch: Option<&'a mut [f32]>,
     /// What the left eyes see, [N, H W 3].
     pub eye_left: Option<&'a mut [u8]>,
     /// What the right eyes see, [N, H W 3].
     pub eye_right: Option<&'a mut [u8]>,
-    /// Balance, [N, 6], m/s^2 and rad/s.
+    /// Balance, (N, 6), m/s^2 and rad/s.
     pub vestibular: Option<&'a mut [f64]>,
-    /// Rewards, [N].
+    /// Rewards (N).
     pub rewards: Option<&'a mut [f64]>,
-    /// Whether episodes have ended in themselves, [N].
+    /// Whether episodes have ended in themselves (N).
     pub terminated: Option<&'a mut [bool]>,
-    /// Whether episodes were cut off, [N].
+    /// Whether episodes were cut off (N).
     pub truncated: Option<&'a mut [bool]>,
 }
 
@@ -116,7 +116,7 @@ impl Buffers<'_> {
     }
 }
 
-/// Where rows go: memory of the caller's, or arrays of the vector's own, of which it knows what stands in them.
+/// The destination of rows: memory of the caller's, or arrays of the vector's own, of which it knows what stands in them.
 pub(super) struct Target<'a> {
     buffers: Buffers<'a>,
     /// For each row the touch sensors that are not zero there.
@@ -275,11 +275,11 @@ pub(super) fn row_of<'a>(all: &Observation<'a>, row: usize, n: usize) -> Observa
 /// [`VectorEnv::env`](super::VectorEnv::env)`(i)?.info()`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Infos<'a> {
-    /// Number of steps of each episode, [N]: see [`Info::steps`].
+    /// Number of steps of each episode (N): see [`Info::steps`].
     pub steps: &'a [u64],
     /// Which geoms the right and the left palm have touched, [N, 2, geoms], 1 or 0, if the behavior is `self_touch`.
     pub touches: Option<&'a [u8]>,
-    /// How often hands were in view, [N, 4], in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
+    /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
     /// behavior is `hand_regard`.
     pub regards: Option<&'a [u64]>,
 }

@@ -8,7 +8,7 @@ pub enum Seeds<'a> {
     Keep,
     /// One seed: environment i gets the seed plus i.
     From(u64),
-    /// A seed, or none, for each environment, [N].
+    /// A seed, or none, for each environment (N).
     Each(&'a [Option<u64>]),
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use crate::arguments::count;
 use crate::print::note;
 
-/// How many environments, and on how many threads.
+/// The number of environments and of threads.
 #[derive(Args)]
 pub struct Many {
     /// Number of environments to run at once; the seed of each is one more than that of the one before
