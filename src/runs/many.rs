@@ -115,7 +115,7 @@ impl RunVector {
         Ok(())
     }
 
-    /// Applies an action in each of the first environments, as many as there are actions ([n, len]).
+    /// Applies an action in each of the first environments, as many as there are actions , (n, len).
     ///
     /// # Errors
     /// As [`VectorEnv::step`]; a diverged environment that [`RunVector::start_episodes`] has not started anew.

@@ -55,9 +55,9 @@ pub struct Buffers<'a> {
     pub proprioception: Option<&'a mut [f64]>,
     /// What the skins feel, (N, len), N.
     pub touch: Option<&'a mut [f32]>,
-    /// What the left eyes see, [N, H W 3].
+    /// What the left eyes see, (N, H W 3).
     pub eye_left: Option<&'a mut [u8]>,
-    /// What the right eyes see, [N, H W 3].
+    /// What the right eyes see, (N, H W 3).
     pub eye_right: Option<&'a mut [u8]>,
     /// Balance, (N, 6), m/s^2 and rad/s.
     pub vestibular: Option<&'a mut [f64]>,
@@ -277,7 +277,7 @@ pub(super) fn row_of<'a>(all: &Observation<'a>, row: usize, n: usize) -> Observa
 pub struct Infos<'a> {
     /// Number of steps of each episode (N): see [`Info::steps`].
     pub steps: &'a [u64],
-    /// Which geoms the right and the left palm have touched, [N, 2, geoms], 1 or 0, if the behavior is `self_touch`.
+    /// Which geoms the right and the left palm have touched, (N, 2, geoms), 1 or 0, if the behavior is `self_touch`.
     pub touches: Option<&'a [u8]>,
     /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
     /// behavior is `hand_regard`.

@@ -1,0 +1,310 @@
+//! Resets and steps: environments go to the pool with their tasks, and come back with their rows.
+
+use super::rows::Target;
+use super::slot::{Slot, Task};
+use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
+use crate::env::Env;
+
+impl VectorEnv {
+    /// Starts an episode in all environments. With one seed, environment i gets `seed + i`.
+    ///
+    /// # Errors
+    /// Environments in flight; a list of seeds of another length; a scene that diverges at once, after all have been
+    /// reset.
+    pub fn reset<'s>(&mut self, seeds: impl Into<Seeds<'s>>) -> Result<Batch<'_>, VectorError> {
+        self.reset_some(None, seeds.into())?;
+        Ok(self.batch())
+    }
+
+    /// Starts an episode in the environments that the mask marks. Returns the rows of all; those of the others stay.
+    ///
+    /// # Errors
+    /// As [`VectorEnv::reset`]; a mask of another length.
+    pub fn reset_where<'s>(&mut self, mask: &[bool], seeds: impl Into<Seeds<'s>>) -> Result<Batch<'_>, VectorError> {
+        self.reset_some(Some(mask), seeds.into())?;
+        Ok(self.batch())
+    }
+
+    fn reset_some(&mut self, mask: Option<&[bool]>, seeds: Seeds<'_>) -> Result<(), VectorError> {
+        self.check_home()?;
+        let n = self.len();
+        if let Some(mask) = mask {
+            check_length("mask", mask.len(), [n, 1])?;
+        }
+        if let Seeds::Each(list) = seeds {
+            check_length("seeds", list.len(), [n, 1])?;
+        }
+        let marked = |env: usize| mask.is_none_or(|mask| mask[env]);
+        let slots = self.slots.iter_mut().enumerate().filter(|(env, _)| marked(*env));
+        let slots = slots.filter_map(|(env, place)| {
+            let mut slot = place.take()?;
+            slot.task = Task::Reset(seeds.of(env));
+            Some(slot)
+        });
+        self.pool.submit(slots, true);
+        self.in_flight = (0..n).filter(|env| marked(*env)).count();
+        self.collect_into_rows()?;
+        match self.failures.is_empty() {
+            true => Ok(()),
+            false => {
+                let Failure { env, error } = self.failures.remove(0);
+                Err(of(env)(error))
+            }
+        }
+    }
+
+    /// Applies an action in each environment ((N, len), environment after environment) and waits for all of them.
+    ///
+    /// # Errors
+    /// Actions of wrong shape or with numbers that are not finite, environments in flight or without a reset, which leave
+    /// everything untouched; an environment that panicked, after all have been stepped. One that diverges is not an error
+    /// but among [`Batch::failures`].
+    pub fn step(&mut self, actions: &[f32]) -> Result<Batch<'_>, VectorError> {
+        self.submit_all(actions)?;
+        self.collect_into_rows()?;
+        Ok(self.batch())
+    }
+
+    /// Applies an action in each environment and writes what it returns into memory of the caller's; what
+    /// [`VectorEnv::infos`], [`VectorEnv::finals`] and [`VectorEnv::failures`] return belongs to the same step.
+    ///
+    /// ```
+    /// use babybench::vector::Buffers;
+    /// use babybench::{Blueprint, Config, VectorEnv, VectorOptions};
+    ///
+    /// let config = Config { vision_active: false, touch_active: false, ..Config::default() };
+    /// let mut envs = VectorEnv::new(&Blueprint::new(config)?, 2, VectorOptions::default())?;
+    /// envs.reset(0)?;
+    /// let mut balance = vec![0.0; 2 * 6];
+    /// envs.step_into(&[0.1; 2 * 44], Buffers { vestibular: Some(&mut balance), ..Buffers::default() })?;
+    /// assert!(balance.iter().any(|v| *v != 0.0) && envs.infos().steps == [1, 1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`VectorEnv::step`]; memory of another shape.
+    pub fn step_into(&mut self, actions: &[f32], buffers: Buffers<'_>) -> Result<(), VectorError> {
+        buffers.check(self.len(), &self.layout)?;
+        self.submit_all(actions)?;
+        self.collect(&mut Target::from(buffers))
+    }
+
+    fn submit_all(&mut self, actions: &[f32]) -> Result<(), VectorError> {
+        self.check_home()?;
+        self.set_actions(actions, None)?;
+        self.in_flight = self.slots.len();
+        self.pool.submit(self.slots.iter_mut().filter_map(Option::take), true);
+        Ok(())
+    }
+
+    /// Hands environments an action each ([ids, len]) and returns at once. Without threads they are stepped by
+    /// [`VectorEnv::recv`].
+    ///
+    /// # Errors
+    /// As [`VectorEnv::step`]; an environment that does not exist or is in flight. Nothing is sent then.
+    pub fn send(&mut self, actions: &[f32], ids: &[usize]) -> Result<(), VectorError> {
+        let envs = self.len();
+        if let Some(&env) = ids.iter().find(|&&env| env >= envs) {
+            return Err(VectorError::Unknown { env, envs });
+        }
+        self.set_actions(actions, Some(ids))?;
+        let slots = ids.iter().filter_map(|&env| self.slots[env].take());
+        self.pool.submit(slots, false);
+        self.in_flight += ids.len();
+        Ok(())
+    }
+
+    /// Waits for `n` environments that were sent, whichever are ready first, and returns a row for each.
+    ///
+    /// # Errors
+    /// More environments than are in flight, or none; an environment that panicked, which is not in flight any more.
+    pub fn recv(&mut self, n: usize) -> Result<Batch<'_>, VectorError> {
+        let mut rows = std::mem::take(&mut self.rows);
+        let received = self.receive(n, &mut rows.target());
+        self.rows = rows;
+        received?;
+        Ok(self.batch())
+    }
+
+    fn receive(&mut self, n: usize, out: &mut Target<'_>) -> Result<(), VectorError> {
+        if n == 0 || n > self.in_flight {
+            let (wanted, in_flight) = (n, self.in_flight);
+            return Err(VectorError::NotSent { wanted, in_flight });
+        }
+        self.pool.wait_for(n);
+        if let Some(slot) = self.pool.take_panicked() {
+            self.in_flight -= 1;
+            let env = slot.index;
+            let error = panicked(&slot);
+            self.slots[env] = Some(slot);
+            return error.map_or(Ok(()), Err);
+        }
+        self.begin_batch();
+        for _ in 0..n {
+            if let Some(slot) = self.pool.take() {
+                self.in_flight -= 1;
+                let env = slot.index;
+                self.ids.push(env);
+                self.slots[env] = Some(slot);
+            }
+        }
+        self.draw_eyes()?;
+        for row in 0..self.ids.len() {
+            self.write(row, self.ids[row], out);
+        }
+        self.failures.sort_by_key(|f| f.env);
+        Ok(())
+    }
+
+    /// Seeds the generators of [`VectorEnv::sample_actions`] and of start actions: environment i gets `seed + i`. Under
+    /// `compat: reference` no reset does, as with [`Env::reset`].
+    ///
+    /// # Errors
+    /// Environments in flight.
+    pub fn seed_action_spaces(&mut self, seed: u64) -> Result<(), VectorError> {
+        self.check_home()?;
+        for (env, slot) in (0..).zip(self.slots.iter_mut().flatten()) {
+            slot.env.seed_action_space(seed.wrapping_add(env));
+        }
+        Ok(())
+    }
+
+    /// Fills `actions` with a random action of each environment, (N, len), from their own generators.
+    ///
+    /// # Errors
+    /// Environments in flight.
+    pub fn sample_actions(&mut self, actions: &mut Vec<f32>) -> Result<(), VectorError> {
+        self.check_home()?;
+        actions.clear();
+        for slot in self.slots.iter_mut().flatten() {
+            let Slot { env, action, .. } = &mut **slot;
+            env.sample_action(action);
+            actions.extend_from_slice(action);
+        }
+        Ok(())
+    }
+
+    /// Checks actions and hands them out: to the environments `ids`, or to all.
+    fn set_actions(&mut self, actions: &[f32], ids: Option<&[usize]>) -> Result<(), VectorError> {
+        let (n, len) = (ids.map_or(self.len(), <[usize]>::len), self.layout.action);
+        check_length("actions", actions.len(), [n, len])?;
+        let env_of = |row: usize| ids.map_or(row, |ids| ids[row]);
+        let rows = || actions.chunks_exact(len.max(1)).enumerate();
+        for (row, action) in rows() {
+            let env = env_of(row);
+            let slot = self.slots[env].as_ref().ok_or(VectorError::InFlight { env })?;
+            if !slot.can_step() {
+                return Err(VectorError::NotReset { env });
+            }
+            if !action.iter().all(|v| v.is_finite()) {
+                slot.env.check_action(action).map_err(of(env))?;
+            }
+        }
+        if let Some(ids) = ids {
+            // an environment that is named twice would be in flight the second time
+            let twice = (1..ids.len()).find(|&k| ids[..k].contains(&ids[k]));
+            if let Some(k) = twice {
+                return Err(VectorError::InFlight { env: ids[k] });
+            }
+        }
+        for (row, action) in rows() {
+            if let Some(slot) = &mut self.slots[env_of(row)] {
+                slot.task = Task::Step;
+                slot.action.clear();
+                slot.action.extend_from_slice(action);
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that no environment is in flight.
+    fn check_home(&self) -> Result<(), VectorError> {
+        if self.in_flight == 0 {
+            return Ok(());
+        }
+        let env = self.slots.iter().position(Option::is_none).unwrap_or(0);
+        Err(VectorError::InFlight { env })
+    }
+
+    fn collect_into_rows(&mut self) -> Result<(), VectorError> {
+        let mut rows = std::mem::take(&mut self.rows);
+        let collected = self.collect(&mut rows.target());
+        self.rows = rows;
+        collected
+    }
+
+    /// Waits for all environments in flight, helping to run them, and writes a row for each environment.
+    fn collect(&mut self, out: &mut Target<'_>) -> Result<(), VectorError> {
+        self.begin_batch();
+        let n = self.len();
+        self.ids.extend(0..n);
+        let all = self.in_flight == n;
+        while let Some(slot) = self.pool.next(self.in_flight) {
+            let env = slot.index;
+            self.in_flight -= 1;
+            self.slots[env] = Some(slot);
+            if all && !self.deferred {
+                // while its numbers are still near
+                self.write(env, env, out);
+            }
+        }
+        self.draw_eyes()?;
+        if !all || self.deferred {
+            for env in 0..n {
+                self.write(env, env, out);
+            }
+        }
+        self.failures.sort_by_key(|f| f.env);
+        let error = self.slots.iter().flatten().find_map(|slot| panicked(slot));
+        error.map_or(Ok(()), Err)
+    }
+
+    fn begin_batch(&mut self) {
+        self.ids.clear();
+        self.failures.clear();
+    }
+
+    /// Draws the eyes of all environments of the batch together, if each does not draw its own.
+    fn draw_eyes(&mut self) -> Result<(), VectorError> {
+        if !self.deferred {
+            return Ok(());
+        }
+        let ids = &self.ids;
+        let slots = self.slots.iter_mut().flatten();
+        let envs = slots.filter(|slot| slot.env.ready() && ids.contains(&slot.index));
+        let first = ids.first().copied().unwrap_or_default();
+        Env::draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
+    }
+
+    /// Writes what came of an environment.
+    fn write(&mut self, row: usize, env: usize, out: &mut Target<'_>) {
+        let Some(slot) = &mut self.slots[env] else { return };
+        out.write(row, &slot.env);
+        out.write_flags(row, slot.reward, slot.terminated, slot.truncated);
+        self.infos.write(row, slot.env.info());
+        if let (Some(ends), Some(last)) = (&mut self.finals, &slot.last) {
+            ends.ended[row] = slot.ended;
+            if slot.ended {
+                ends.rows.target().write_whole(row, &last.observation());
+                ends.infos.write(row, &last.info);
+            }
+        }
+        if let Some(error) = slot.failure.take() {
+            self.failures.push(Failure { env, error });
+        }
+    }
+}
+
+fn panicked(slot: &Slot) -> Option<VectorError> {
+    slot.panicked.as_ref().map(|message| VectorError::Panicked {
+        env: slot.index,
+        message: message.clone(),
+    })
+}
+
+fn check_length(what: &'static str, found: usize, expected: [usize; 2]) -> Result<(), VectorError> {
+    match found == expected[0] * expected[1] {
+        true => Ok(()),
+        false => Err(VectorError::Shape { what, expected, found }),
+    }
+}
