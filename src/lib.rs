@@ -128,6 +128,7 @@ pub mod report;
 pub mod runs;
 pub mod sensors;
 pub mod spaces;
+mod text;
 pub mod vector;
 
 pub use config::Config;

@@ -33,10 +33,30 @@ pub struct Limits {
     pub classes: usize,
     /// MJCF: user values of an actuator or a camera; 64 by default. Default classes copy them.
     pub user: usize,
+    /// MJCF: bodies, the world among them; 20,000 by default.
+    pub bodies: usize,
+    /// MJCF: geoms; 20,000 by default.
+    pub geoms: usize,
+    /// MJCF: degrees of freedom; 20,000 by default.
+    pub dofs: usize,
+    /// MJCF: explicit contact pairs; 20,000 by default.
+    pub pairs: usize,
     /// MJCF: the largest magnitude of a number; 1e30 by default, with which products of a few numbers stay finite.
     pub real: f64,
+    /// Physics: pairs of geoms in large scenes whose boxes overlap; 4,194,304 by default.
+    pub near_pairs: usize,
+    /// Physics: contacts in a step of a large scene; 50,000 by default.
+    pub contacts: usize,
     /// Assets: bytes of a file that is read from a directory; 64 MiB by default.
     pub asset_bytes: u64,
+    /// Pictures: pixels of a side; 8192 by default.
+    pub picture_side: u32,
+    /// Pictures: bytes of memory for decoding one; 160 MiB by default.
+    pub picture_bytes: u64,
+    /// Policies: bytes of an answer of a program; 1 MiB by default.
+    pub answer_bytes: usize,
+    /// Policies: bytes of an ONNX model; 1 GiB by default.
+    pub model_bytes: u64,
     /// Configurations: bytes of a YAML text; 1 MiB by default.
     pub config_bytes: usize,
     /// NumPy archives: bytes of a file; 4 GiB by default.
@@ -57,6 +77,8 @@ pub struct Limits {
     pub pickle_depth: usize,
     /// Pickles: dimensions of an array; 8 by default.
     pub pickle_dimensions: usize,
+    /// Logs: records of a log; 2,000,000 by default.
+    pub records: usize,
     /// Logs: touched parts in one list of a record; 4096 by default.
     pub record_touches: usize,
 }
@@ -72,8 +94,18 @@ impl Limits {
         text_bytes: 256,
         classes: 1000,
         user: 64,
+        bodies: 20_000,
+        geoms: 20_000,
+        dofs: 20_000,
+        pairs: 20_000,
         real: 1e30,
+        near_pairs: 1 << 22,
+        contacts: 50_000,
         asset_bytes: 64 << 20,
+        picture_side: 8192,
+        picture_bytes: 160 << 20,
+        answer_bytes: 1 << 20,
+        model_bytes: 1 << 30,
         config_bytes: 1 << 20,
         npz_bytes: 1 << 32,
         npz_arrays: 1 << 16,
@@ -84,6 +116,7 @@ impl Limits {
         pickle_objects: 1 << 23,
         pickle_depth: 32,
         pickle_dimensions: 8,
+        records: 2_000_000,
         record_touches: 4096,
     };
 }

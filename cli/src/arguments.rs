@@ -33,9 +33,14 @@ pub fn png() -> impl TypedValueParser<Value = PathBuf> {
 
 /// Quotes a path so that it is one word of a command line.
 pub fn word(path: impl Display) -> String {
-    let path = path.to_string();
+    let mut path = path.to_string();
+    if path.starts_with('-') {
+        // not an option
+        path.insert_str(0, "./");
+    }
     let plain = |c: char| c.is_alphanumeric() || "/\\.:_-+,~@%=".contains(c);
-    match path.chars().all(plain) && !path.is_empty() {
+    // a shell would put a home folder for ~
+    match path.chars().all(plain) && !path.is_empty() && !path.starts_with('~') {
         true => path,
         false if cfg!(windows) => format!("\"{path}\""),
         false => shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into),
@@ -62,5 +67,7 @@ mod tests {
         assert_eq!(word("results/self_touch"), "results/self_touch");
         assert_eq!(word("my results/é"), "'my results/é'");
         assert_eq!(word(""), "''");
+        assert_eq!(word("-dash"), "./-dash");
+        assert_eq!(word("~/x"), "'~/x'");
     }
 }

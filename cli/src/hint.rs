@@ -18,7 +18,7 @@ pub fn hint(error: &(dyn Error + 'static)) -> Option<String> {
             "you have no permission to read or write this; change its permissions, or choose another place (save_dir in \
              the configuration, or the option that names the file)"
         }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "the disk is full; free some space, or choose another place. Files that were there before are unchanged"
         }
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {

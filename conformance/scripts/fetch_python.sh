@@ -1,22 +1,42 @@
 #!/usr/bin/env bash
-# Makes a Python environment for the tests in target/python: NumPy and, where there is a wheel for this Python, MuJoCo 3.3.0.
-# Needs python3 with its module venv, and pip in either of them. What is there already is not made again.
+# Makes a Python environment under target/. What is there already is not made again.
+#   conformance/scripts/fetch_python.sh        target/python, for the tests: NumPy and, where there is a wheel for this
+#                                              Python, MuJoCo 3.3.0
+#   conformance/scripts/fetch_python.sh kit    target/python-kit, for BabyBench's Python kit: kit_requirements.txt
+# Needs a Python with its module venv, and pip in either of them; for the kit one from 3.9 to 3.12.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-environment=target/python
+
+kind=${1:-tests}
+case $kind in
+  tests) environment=target/python candidates=(python3) newest=99 ;;
+  kit) environment=target/python-kit candidates=(python3 python3.12 python3.11 python3.10 python3.9) newest=12 ;;
+  *) echo "$kind: nothing, or kit" >&2; exit 1 ;;
+esac
 if [ -f "$environment/ready" ]; then
   echo "$environment is there"
   exit
 fi
-command -v python3 >/dev/null || { echo 'there is no python3' >&2; exit 1; }
+
+python=''
+for candidate in "${candidates[@]}"; do
+  if "$candidate" -c "import sys; sys.exit(not (3, 9) <= sys.version_info[:2] <= (3, $newest))" 2>/dev/null; then
+    python=$candidate
+    break
+  fi
+done
+if [ -z "$python" ]; then
+  echo "there is no Python that fits: looked for ${candidates[*]}, from 3.9$([ $newest = 99 ] || echo " to 3.$newest")" >&2
+  exit 1
+fi
 
 rm -rf "$environment"
-if python3 -m venv "$environment" >/dev/null 2>&1; then
+if "$python" -m venv "$environment" >/dev/null 2>&1; then
   pip() { "$environment/bin/python" -m pip "$@"; }
   into=()
-elif python3 -m venv --without-pip "$environment" && python3 -m pip --version >/dev/null 2>&1; then
+elif "$python" -m venv --without-pip "$environment" && "$python" -m pip --version >/dev/null 2>&1; then
   # Python as some systems split it up: the environment has no pip of its own, but there is one beside it
-  pip() { python3 -m pip "$@"; }
+  pip() { "$python" -m pip "$@"; }
   into=(--target "$("$environment/bin/python" -c 'import site; print(site.getsitepackages()[0])')")
 else
   rm -rf "$environment"
@@ -24,9 +44,14 @@ else
   exit 1
 fi
 
-install() { # REQUIREMENT
-  pip install --quiet --disable-pip-version-check --retries 1 --only-binary=:all: ${into[@]+"${into[@]}"} "$1"
+install() { # REQUIREMENTS
+  pip install --quiet --disable-pip-version-check --retries 1 --only-binary=:all: ${into[@]+"${into[@]}"} "$@"
 }
-install numpy || { echo 'pip cannot install numpy: is the network there?' >&2; exit 1; }
-install mujoco==3.3.0 || echo 'there is no MuJoCo 3.3.0 for this Python'
+if [ "$kind" = kit ]; then
+  install --requirement conformance/scripts/kit_requirements.txt ||
+    { echo 'pip cannot install conformance/scripts/kit_requirements.txt: is the network there?' >&2; exit 1; }
+else
+  install numpy || { echo 'pip cannot install numpy: is the network there?' >&2; exit 1; }
+  install mujoco==3.3.0 || echo 'there is no MuJoCo 3.3.0 for this Python'
+fi
 touch "$environment/ready"

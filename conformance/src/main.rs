@@ -1,15 +1,23 @@
 //! Prints how far babybench is from MuJoCo 3.3.0.
 
+mod kit_speed;
 mod picture_speed;
 mod plot;
+mod python;
 mod report;
 mod speed;
 
 use std::path::Path;
 use std::process::ExitCode;
 
+use testkit::yardsticks::check_kit;
+
 const USAGE: &str = "usage: conformance report [--out FILE] [--plots FOLDER] [--states N]
-       conformance speed [--filter TEXT] [--batches N] [--pictures yes]";
+       conformance speed [--filter TEXT] [--batches N]
+       conformance speed --pictures yes
+       conformance speed --kit FOLDER [--pictures no] [--filter TEXT] [--batches N]
+With --kit everything is measured: physics steps, pictures, and whole steps beside the Python kit in FOLDER; with a filter
+only the physics steps and whole steps whose name has that text.";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -37,19 +45,46 @@ fn run(args: &[String]) -> Result<(), String> {
             }
         }
         "speed" => {
-            let [filter, batches, pictures] = values(options, ["--filter", "--batches", "--pictures"])?;
-            match pictures.as_deref() {
-                None | Some("no") => {
-                    speed::print(filter.as_deref().unwrap_or(""), number("--batches", batches, 60)?)?;
-                }
-                Some("yes") => picture_speed::print()?,
+            let [filter, batches, pictures, kit] = values(options, ["--filter", "--batches", "--pictures", "--kit"])?;
+            let batches = number("--batches", batches, 60)?;
+            let pictures = match pictures.as_deref() {
+                None => None,
+                Some("yes") => Some(true),
+                Some("no") => Some(false),
                 Some(other) => return Err(format!("--pictures {other}: yes or no")),
-            }
+            };
+            speeds(
+                &filter.unwrap_or_default(),
+                batches,
+                pictures,
+                kit.as_ref().map(Path::new),
+            )?;
         }
         "-h" | "--help" => println!("{USAGE}"),
         _ => return Err(USAGE.to_string()),
     }
     Ok(())
+}
+
+/// Prints the tables of speeds: without a kit the physics or the pictures, with a kit all of them.
+fn speeds(filter: &str, batches: usize, pictures: Option<bool>, kit: Option<&Path>) -> Result<(), String> {
+    let Some(kit) = kit else {
+        return match pictures {
+            Some(true) => picture_speed::print(&python::find()?),
+            _ => speed::print(filter, batches),
+        };
+    };
+    check_kit(kit).map_err(|e| format!("--kit: {e}"))?;
+    let python = python::find()?;
+    speed::print(filter, batches)?;
+    if pictures.unwrap_or(filter.is_empty()) {
+        picture_speed::print(&python)?;
+        println!();
+    }
+    let kit = kit
+        .canonicalize()
+        .map_err(|e| format!("--kit {}: {e}", kit.display()))?;
+    kit_speed::print(&kit, &python, filter)
 }
 
 /// Parses a number; when it is left out, returns the default.

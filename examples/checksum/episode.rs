@@ -1,6 +1,10 @@
 //! Checksums of episodes: the same bits on every target.
 
-use babybench::{Config, Env};
+use babybench::{Blueprint, Config, Env, VectorEnv, VectorOptions};
+use fold::Hash;
+
+#[path = "fold.rs"]
+mod fold;
 
 /// The example configurations.
 pub const CONFIGURATIONS: [(&str, &str); 3] = [
@@ -16,8 +20,12 @@ pub const CONFIGURATIONS: [(&str, &str); 3] = [
 #[allow(dead_code)] // the caller of the WebAssembly module chooses
 pub const STEPS: [usize; 4] = [0, 10, 100, 1000];
 
+/// Steps of a vector.
+#[allow(dead_code)] // as above
+pub const VECTOR_STEPS: usize = 20;
+
 /// Runs configuration `index` for `steps` random steps from seed 0 and folds the bits of positions, velocities and
-/// all senses into a number (FNV-1a on 64-bit words). 0 when something fails.
+/// all senses into a number. 0 when something fails.
 pub fn checksum(index: usize, steps: usize) -> u64 {
     run(index, steps).unwrap_or(0)
 }
@@ -31,23 +39,54 @@ fn run(index: usize, steps: usize) -> Option<u64> {
         env.sample_action(&mut action);
         env.step(&action).ok()?;
     }
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut fold = |word: u64| hash = (hash ^ word).wrapping_mul(0x0100_0000_01b3);
-    let (state, seen) = (env.state(), env.observation());
-    for values in [
-        &state.qpos[..],
-        &state.qvel[..],
-        seen.proprioception,
-        seen.vestibular.unwrap_or_default(),
-    ] {
-        values.iter().for_each(|v| fold(v.to_bits()));
+    Some(fold::bits(&env))
+}
+
+/// Environments of a vector.
+const ENVS: usize = 5;
+
+/// Runs a vector with configuration `index` for `steps` random steps from seed 0, every other one in two halves, and folds
+/// all that it returns into a number, environment after environment. 0 when something fails.
+pub fn vector_checksum(index: usize, steps: usize, threads: usize) -> u64 {
+    run_vector(index, steps, threads).unwrap_or(0)
+}
+
+fn run_vector(index: usize, steps: usize, threads: usize) -> Option<u64> {
+    let (name, text) = CONFIGURATIONS.get(index)?;
+    let config = Config {
+        max_episode_steps: 7,
+        ..Config::from_yaml(text, name).ok()?
+    };
+    let options = VectorOptions {
+        threads,
+        ..VectorOptions::default()
+    };
+    let mut envs = VectorEnv::new(&Blueprint::new(config).ok()?, ENVS, options).ok()?;
+    let mut hashes: [Hash; ENVS] = std::array::from_fn(|_| Hash::new());
+    let mut actions = Vec::new();
+    envs.reset(0).ok()?;
+    for step in 0..steps {
+        envs.sample_actions(&mut actions).ok()?;
+        let sizes: &[usize] = match step % 2 {
+            0 => &[ENVS],
+            _ => {
+                envs.send(&actions, &std::array::from_fn::<_, ENVS, _>(|env| env))
+                    .ok()?;
+                &[2, ENVS - 2]
+            }
+        };
+        for &size in sizes {
+            let batch = match size {
+                ENVS => envs.step(&actions).ok()?,
+                _ => envs.recv(size).ok()?,
+            };
+            for (row, &env) in batch.ids.iter().enumerate() {
+                hashes[env].observation(&batch.row(row)?);
+                hashes[env].fold(u64::from(batch.truncated[row]) + batch.infos.steps[row]);
+            }
+        }
     }
-    seen.touch
-        .unwrap_or_default()
-        .iter()
-        .for_each(|v| fold(u64::from(v.to_bits())));
-    for image in [seen.eye_left, seen.eye_right] {
-        image.unwrap_or_default().iter().for_each(|&v| fold(u64::from(v)));
-    }
-    Some(hash)
+    let mut all = Hash::new();
+    hashes.iter().for_each(|hash| all.fold(hash.0));
+    Some(all.0)
 }

@@ -2,8 +2,9 @@
 //!
 //! ```sh
 //! cargo run --release --example checksum               # optionally the number of threads
+//! cargo run --release --example checksum vector 2      # vectors of environments, stepped by two threads
 //! cargo build --release --example checksum_wasm --target wasm32-unknown-unknown
-//! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/examples/checksum_wasm.wasm
+//! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/examples/checksum_wasm.wasm   # or: ... vector
 //! ```
 
 use std::sync::Mutex;
@@ -12,7 +13,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 mod episode;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let threads: usize = std::env::args().nth(1).map_or(Ok(1), |n| n.parse())?;
+    let mut arguments = std::env::args().skip(1).peekable();
+    let vector = arguments.next_if(|a| a == "vector").is_some();
+    let threads: usize = arguments.next().map_or(Ok(1), |n| n.parse())?;
+    if vector {
+        for (index, (name, _)) in episode::CONFIGURATIONS.iter().enumerate() {
+            let (steps, threads) = (episode::VECTOR_STEPS, threads.max(1));
+            println!(
+                "{name} {steps} {:016x}",
+                episode::vector_checksum(index, steps, threads)
+            );
+        }
+        return Ok(());
+    }
     let jobs = |job: usize| (job / episode::STEPS.len(), episode::STEPS[job % episode::STEPS.len()]);
     let total = episode::CONFIGURATIONS.len() * episode::STEPS.len();
     let (next, sums) = (AtomicUsize::new(0), Mutex::new(vec![0; total]));

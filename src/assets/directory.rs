@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::{AssetError, AssetSource, resolve};
+use crate::files;
 use crate::limits::Limits;
 
 /// Reads files from a directory of the file system. Nothing outside it can be read, not even through links.
@@ -44,15 +45,17 @@ impl DirAssets {
 
     /// Returns the real path of a file, once it is known to lie inside the root.
     fn locate(&self, path: &str) -> Result<PathBuf, AssetError> {
-        let inside = resolve("", path)?;
-        let real = self.root.join(&inside).canonicalize().map_err(|e| io_error(path, &e))?;
+        let real = self
+            .root
+            .join(resolve("", path)?)
+            .canonicalize()
+            .map_err(|e| io_error(path, &e))?;
         if !real.starts_with(&self.root) {
             return Err(AssetError::BadPath(path.to_owned()));
         }
-        if real.is_file() {
-            Ok(real)
-        } else {
-            Err(AssetError::NotFound(inside))
+        match real.is_dir() {
+            true => Err(AssetError::NotFound(path.to_owned())),
+            false => Ok(real),
         }
     }
 }
@@ -69,23 +72,17 @@ fn io_error(path: &str, error: &std::io::Error) -> AssetError {
 
 impl AssetSource for DirAssets {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
-        use std::io::Read;
-        let file = std::fs::File::open(self.locate(path)?).map_err(|e| io_error(path, &e))?;
-        // One byte more than allowed tells a file that is too large from one that just fits, whatever its metadata say.
-        let mut bytes = Vec::new();
-        file.take(self.limit.saturating_add(1))
-            .read_to_end(&mut bytes)
-            .map_err(|e| io_error(path, &e))?;
-        if bytes.len() as u64 > self.limit {
-            return Err(AssetError::TooLarge {
+        match files::read(&self.locate(path)?, self.limit) {
+            Ok(bytes) => Ok(Cow::Owned(bytes)),
+            Err(e) if e.kind() == std::io::ErrorKind::FileTooLarge => Err(AssetError::TooLarge {
                 path: path.to_owned(),
                 limit: self.limit,
-            });
+            }),
+            Err(e) => Err(io_error(path, &e)),
         }
-        Ok(Cow::Owned(bytes))
     }
 
     fn contains(&self, path: &str) -> bool {
-        self.locate(path).is_ok()
+        self.locate(path).is_ok_and(|real| real.is_file())
     }
 }

@@ -76,6 +76,21 @@ choices! {
 }
 
 choices! {
+    /// An image that an eye sees (`vision_outputs`).
+    VisionOutput {
+        /// Red, green and blue.
+        #[default]
+        Rgb = "rgb",
+        /// Brightness.
+        Gray = "gray",
+        /// Distance from the camera's plane.
+        Depth = "depth",
+        /// Ids of geoms.
+        Segmentation = "segmentation",
+    }
+}
+
+choices! {
     /// The model that turns actions into joint torques (`actuation_model`).
     ActuationModel {
         /// Torque motors with linear, instant response.
@@ -142,7 +157,7 @@ choices! {
         /// Joint-space dynamics with MuJoCo's soft constraints; Rapier holds the scene.
         #[default]
         Soft = "soft",
-        /// Rapier's own pipeline with multibody joints.
+        /// Rapier's own pipeline with multibody joints. Needs the cargo feature `rapier`, a default one.
         Rapier = "rapier",
     }
 }

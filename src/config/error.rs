@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::text::quoted;
+
 /// A position in a file; lines and columns count from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
@@ -47,7 +49,7 @@ pub enum ConfigError {
         limit: usize,
     },
     /// The text is not YAML.
-    #[error("{location}: {message}")]
+    #[error("{location}: {}", quoted(.message))]
     Syntax {
         /// Position at which parsing stopped.
         location: Location,
@@ -63,7 +65,7 @@ pub enum ConfigError {
         what: String,
     },
     /// The key is unknown.
-    #[error("{location}: unknown key `{key}`{}", hint(.nearest))]
+    #[error("{location}: unknown key `{}`{}", quoted(.key), hint(.nearest))]
     UnknownKey {
         /// Position of the key.
         location: Location,
@@ -93,7 +95,7 @@ pub enum ConfigError {
         expected: String,
     },
     /// The value has the wrong type.
-    #[error("{location}: `{key}` is {value}, expected {expected}")]
+    #[error("{location}: `{key}` is {}, expected {expected}", quoted(.value))]
     WrongType {
         /// Position of the value.
         location: Location,
@@ -105,7 +107,7 @@ pub enum ConfigError {
         expected: String,
     },
     /// The value has the right type but is not allowed.
-    #[error("{location}: `{key}` is {value}, expected {expected}{}", hint(.nearest))]
+    #[error("{location}: `{key}` is {}, expected {expected}{}", quoted(.value), hint(.nearest))]
     OutOfRange {
         /// Position of the value.
         location: Location,
@@ -119,7 +121,7 @@ pub enum ConfigError {
         nearest: Option<&'static str>,
     },
     /// The value contradicts that of another key.
-    #[error("{location}: `{key}` is {value}, but {reason}")]
+    #[error("{location}: `{key}` is {}, but {reason}", quoted(.value))]
     Conflict {
         /// Position of the value.
         location: Location,

@@ -1,7 +1,10 @@
 //! The table of keys, from which reading, writing, defaults, ranges and documentation all follow.
 
-use super::choices::{ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse};
-use super::{Config, error};
+use super::choices::{
+    ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse, VisionOutput,
+};
+use super::outputs::VisionOutputs;
+use super::{Config, MAX_AGE, error};
 use crate::spaces::MAX_IMAGE_SIZE;
 
 /// The value of a key.
@@ -15,8 +18,12 @@ pub enum KeyValue {
     Number(f64),
     /// One of a few names.
     Choice(&'static str),
+    /// Some of a few names.
+    List(Vec<&'static str>),
     /// Any text.
     Text(String),
+    /// No value: the key is not used.
+    None,
 }
 
 impl KeyValue {
@@ -27,10 +34,17 @@ impl KeyValue {
             Self::Whole(number) => number.to_string(),
             Self::Number(number) => format!("{number:?}"),
             Self::Choice(name) => (*name).to_string(),
+            Self::List(names) => format!("[{}]", names.join(", ")),
             Self::Text(text) => quoted(text),
+            Self::None => NONE.to_string(),
         }
     }
 }
+
+/// The word for a key that is not used.
+const NONE: &str = "none";
+/// YAML's words for no value.
+const NULL: [&str; 5] = ["", "~", "null", "Null", "NULL"];
 
 /// The values that a key accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,8 +60,17 @@ pub enum KeyKind {
     },
     /// A finite number: 0, or at least the given one.
     ZeroOrAtLeast(f64),
+    /// A number in a closed range, or none.
+    NoneOr {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
     /// One of the given names.
     Choice(&'static [&'static str]),
+    /// A list of one or more of the given names, each once.
+    List(&'static [&'static str]),
     /// Text of at least one character, without control characters.
     Text,
 }
@@ -69,7 +92,9 @@ impl KeyKind {
             Self::Bool => "true or false".to_string(),
             Self::Whole { min, max } => format!("a whole number from {min} to {max}"),
             Self::ZeroOrAtLeast(least) => format!("0 or a finite number of at least {least}"),
+            Self::NoneOr { min, max } => format!("none or a number from {min} to {max}"),
             Self::Choice(names) => format!("one of {}", names.join(", ")),
+            Self::List(names) => format!("a list in brackets of one or more of {}, each once", names.join(", ")),
             Self::Text => {
                 "text, at least one character and no control characters (in quotes if it looks like a number, a \
                            boolean or null)"
@@ -80,28 +105,39 @@ impl KeyKind {
 
     /// Parses a YAML scalar: `plain` is false for text in quotes, which is text whatever it looks like.
     pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, Misfit> {
-        if plain && matches!(text, "" | "~" | "null" | "Null" | "NULL") {
+        if matches!(self, Self::NoneOr { .. }) && (text == NONE || plain && NULL.contains(&text)) {
+            return Ok(KeyValue::None);
+        }
+        if plain && NULL.contains(&text) {
             return Err(Misfit::Missing);
         }
         let value = match self {
             Self::Bool if plain => KeyValue::Bool(boolean(text).ok_or(Misfit::WrongType)?),
             Self::Whole { .. } if plain => KeyValue::Whole(whole(text)?),
-            Self::ZeroOrAtLeast(_) if plain => KeyValue::Number(number(text)?),
-            Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) => return Err(Misfit::WrongType),
-            Self::Choice(names) => match names.iter().find(|name| **name == text) {
-                Some(name) => KeyValue::Choice(name),
-                None => {
-                    return Err(Misfit::OutOfRange {
-                        nearest: error::nearest(text, names.iter().copied()),
-                    });
-                }
-            },
+            Self::ZeroOrAtLeast(_) | Self::NoneOr { .. } if plain => KeyValue::Number(number(text)?),
+            Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) | Self::NoneOr { .. } | Self::List(_) => {
+                return Err(Misfit::WrongType);
+            }
+            Self::Choice(names) => KeyValue::Choice(named(text, names)?),
             Self::Text if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) => {
                 return Err(Misfit::WrongType);
             }
             Self::Text => KeyValue::Text(text.to_string()),
         };
         self.check(&value).map(|()| value)
+    }
+
+    /// Parses the next name of a list, after those in `list`.
+    pub(super) fn parse_item(&self, text: &str, list: &mut Vec<&'static str>) -> Result<(), Misfit> {
+        let Self::List(names) = self else {
+            return Err(Misfit::WrongType);
+        };
+        let name = named(text, names)?;
+        if list.contains(&name) {
+            return Err(OUT_OF_RANGE);
+        }
+        list.push(name);
+        Ok(())
     }
 
     /// Checks that a value of the right type is allowed.
@@ -112,12 +148,25 @@ impl KeyKind {
             (Self::ZeroOrAtLeast(least), KeyValue::Number(number)) => {
                 number.is_finite() && (*number == 0.0 || number >= least)
             }
+            (Self::NoneOr { .. }, KeyValue::None) => true,
+            (Self::NoneOr { min, max }, KeyValue::Number(number)) => (min..=max).contains(&number),
             (Self::Choice(names), KeyValue::Choice(name)) => names.contains(name),
+            (Self::List(names), KeyValue::List(list)) => {
+                let once = |(at, name): (usize, &&str)| names.contains(name) && !list[..at].contains(name);
+                !list.is_empty() && list.iter().enumerate().all(once)
+            }
             (Self::Text, KeyValue::Text(text)) => !text.is_empty() && !text.chars().any(char::is_control),
             _ => return Err(Misfit::WrongType),
         };
         if fits { Ok(()) } else { Err(OUT_OF_RANGE) }
     }
+}
+
+/// Finds one of some names.
+fn named(text: &str, names: &[&'static str]) -> Result<&'static str, Misfit> {
+    let nearest = || error::nearest(text, names.iter().copied());
+    let found = names.iter().find(|name| **name == text).copied();
+    found.ok_or_else(|| Misfit::OutOfRange { nearest: nearest() })
 }
 
 /// Parses YAML 1.1's words for true and false, which PyYAML reads; `y` and `n` are text to it and so here.
@@ -215,6 +264,20 @@ field! {
     Compat, Choice, v => Self::from_name(v), |f| f.name();
     EngineKind, Choice, v => Self::from_name(v), |f| f.name();
     RendererKind, Choice, v => Self::from_name(v), |f| f.name();
+    VisionOutputs, List, v => Self::from_names(v), |f| f.iter().map(VisionOutput::name).collect();
+}
+
+impl Field for Option<f64> {
+    fn to_value(&self) -> KeyValue {
+        self.map_or(KeyValue::None, KeyValue::Number)
+    }
+    fn from_value(value: &KeyValue) -> Option<Self> {
+        match value {
+            KeyValue::None => Some(None),
+            KeyValue::Number(number) => Some(Some(*number)),
+            _ => None,
+        }
+    }
 }
 
 /// One key of the configuration.
@@ -256,7 +319,7 @@ impl Key {
 
 /// Defines the table: per section, the key, its field, what it accepts and what it means.
 macro_rules! keys {
-    ($($section:literal { $($name:ident = $($field:ident).+, $kind:expr, $doc:literal;)* })*) => {
+    ($($section:tt { $($name:ident = $($field:ident).+, $kind:expr, $doc:literal;)* })*) => {
         &[$($(Key {
             name: stringify!($name),
             section: $section,
@@ -273,12 +336,19 @@ const fn whole_from_1_to(max: u64) -> KeyKind {
 }
 
 const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
-const FRAMES: KeyKind = whole_from_1_to(u32::MAX as u64);
+const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
 const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
 const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
 const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
 
-use KeyKind::{Bool, Choice, Text};
+const AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: MAX_AGE };
+const CENTIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
+const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
+
+use KeyKind::{Bool, Choice, List, Text};
+
+/// The section of the keys that change MIMo's body.
+pub(super) const GROWTH: &str = "Growth";
 
 /// Every key, in the order of the API page, with this implementation's own after its general ones.
 pub(super) static KEYS: &[Key] = keys! {
@@ -297,6 +367,29 @@ pub(super) static KEYS: &[Key] = keys! {
         renderer = renderer, Choice(RendererKind::NAMES), "The renderer of images.";
         seed = seed, SEED, "The seed of all random choices until a reset is given another.";
     }
+    GROWTH {
+        age = age, AGE, "The age of MIMo's body, months; none for the proportions of the original.";
+        strength_age = strength_age, AGE, "The age of MIMo's strength, months; none for that of his body.";
+        touch_grows = touch_grows, Bool, "Touch sensors keep their number and grow with the body, instead of keeping their distances.";
+        ankle_circumference = measurements.ankle_circumference, CENTIMETRES, "The circumference of the ankle, cm; none for that of the age.";
+        calf_circumference = measurements.calf_circumference, CENTIMETRES, "The circumference of the calf, cm; none for that of the age.";
+        elbow_hand_length = measurements.elbow_hand_length, CENTIMETRES, "The length from the elbow to the fingertips, cm; none for that of the age.";
+        fist_breadth = measurements.fist_breadth, CENTIMETRES, "The breadth of the fist, cm; none for that of the age.";
+        foot_breadth = measurements.foot_breadth, CENTIMETRES, "The breadth of the foot, cm; none for that of the age.";
+        foot_length = measurements.foot_length, CENTIMETRES, "The length of the foot, cm; none for that of the age.";
+        forearm_circumference = measurements.forearm_circumference, CENTIMETRES, "The circumference of the forearm, cm; none for that of the age.";
+        hand_breadth = measurements.hand_breadth, CENTIMETRES, "The breadth of the hand, cm; none for that of the age.";
+        hand_length = measurements.hand_length, CENTIMETRES, "The length of the hand, cm; none for that of the age.";
+        head_circumference = measurements.head_circumference, CENTIMETRES, "The circumference of the head, cm; none for that of the age.";
+        hip_breadth = measurements.hip_breadth, CENTIMETRES, "The breadth of the hip, cm; none for that of the age.";
+        knee_sole_length = measurements.knee_sole_length, CENTIMETRES, "The length from the knee to the sole, cm; none for that of the age.";
+        middle_finger_diameter = measurements.middle_finger_diameter, MILLIMETRES, "The diameter of the middle finger, mm; none for that of the age.";
+        rump_knee_length = measurements.rump_knee_length, CENTIMETRES, "The length from the rump to the knee, cm; none for that of the age.";
+        shoulder_elbow_length = measurements.shoulder_elbow_length, CENTIMETRES, "The length from the shoulder to the elbow, cm; none for that of the age.";
+        thigh_circumference = measurements.thigh_circumference, CENTIMETRES, "The circumference of the thigh, half way, cm; none for that of the age.";
+        thumb_diameter = measurements.thumb_diameter, MILLIMETRES, "The diameter of the thumb, mm; none for that of the age.";
+        upper_arm_circumference = measurements.upper_arm_circumference, CENTIMETRES, "The circumference of the upper arm, cm; none for that of the age.";
+    }
     "Proprioception" {
         proprio_velocity = proprio_velocity, Bool, "Joint velocities are observed.";
         proprio_torque = proprio_torque, Bool, "Joint torques are observed.";
@@ -309,6 +402,7 @@ pub(super) static KEYS: &[Key] = keys! {
     "Vision" {
         vision_active = vision_active, Bool, "The images of both eyes are observed.";
         vision_resolution = vision_resolution, PIXELS, "Width and height of an eye's image, pixels.";
+        vision_outputs = vision_outputs, List(VisionOutput::NAMES), "The images of each eye that are observed.";
     }
     "Touch" {
         touch_active = touch_active, Bool, "Touch is observed.";

@@ -1,6 +1,6 @@
 //! The configuration of an environment: every key of the API page with its default and its errors.
 //!
-//! A configuration file is a flat YAML mapping. Keys left out have their documented default; a key that does not exist,
+//! A configuration file is a flat YAML mapping; one key has a list of names. Keys left out have their documented default; a key that does not exist,
 //! stands twice or has a value that is not allowed is an error that names location, key, value and what is allowed.
 //! YAML 1.1's booleans (`True`, `yes`, `on` ...) are accepted as PyYAML accepts them; anchors, aliases and tags are not.
 //!
@@ -23,6 +23,8 @@ mod choices;
 mod error;
 mod examples;
 mod keys;
+mod measurements;
+mod outputs;
 mod parts;
 #[cfg(feature = "serde")]
 mod serial;
@@ -31,16 +33,23 @@ mod yaml;
 #[cfg(test)]
 mod tests;
 
-pub use choices::{ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse};
+pub use choices::{
+    ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse, VisionOutput,
+};
 pub use error::{ConfigError, Location};
 pub use examples::Example;
 pub use keys::{Key, KeyKind, KeyValue};
+pub use measurements::Measurements;
+pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
 
-use std::io::Read as _;
 use std::path::Path;
 
+use crate::files;
 use crate::limits::Limits;
+
+/// Greatest age that MIMo can have, months.
+pub const MAX_AGE: f64 = 24.0;
 
 /// The configuration of an environment.
 ///
@@ -70,6 +79,14 @@ pub struct Config {
     pub renderer: RendererKind,
     /// Seed of every random choice, until a reset is given another.
     pub seed: u64,
+    /// Age of MIMo's body, months, 0 to [`MAX_AGE`]; `None` for the proportions of the original, an 18-month-old.
+    pub age: Option<f64>,
+    /// Age of MIMo's strength, months, where it differs from [`Config::age`].
+    pub strength_age: Option<f64>,
+    /// Whether touch sensors keep their number at every age and grow with the body, instead of keeping their distances.
+    pub touch_grows: bool,
+    /// Measurements that replace those of the age.
+    pub measurements: Measurements,
     /// Whether joint velocities are observed.
     pub proprio_velocity: bool,
     /// Whether joint torques are observed.
@@ -84,6 +101,8 @@ pub struct Config {
     pub vision_active: bool,
     /// Width and height of an eye's image, 1 to 4096 pixels.
     pub vision_resolution: u32,
+    /// Images of each eye that are observed.
+    pub vision_outputs: VisionOutputs,
     /// Whether touch is observed; see [`Config::touch_enabled`].
     pub touch_active: bool,
     /// Factor on the distance between touch sensors, 0 (touch is off) or >= 0.01.
@@ -116,6 +135,10 @@ impl Default for Config {
             engine: EngineKind::Soft,
             renderer: RendererKind::Cpu,
             seed: 0,
+            age: None,
+            strength_age: None,
+            touch_grows: false,
+            measurements: Measurements::default(),
             proprio_velocity: true,
             proprio_torque: true,
             proprio_limits: true,
@@ -123,6 +146,7 @@ impl Default for Config {
             vestibular_active: true,
             vision_active: true,
             vision_resolution: 64,
+            vision_outputs: VisionOutputs::default(),
             touch_active: true,
             touch_scale: 1.0,
             touch_function: TouchFunction::Normal,
@@ -208,17 +232,15 @@ impl Config {
     /// As [`Config::from_file`].
     pub fn overlay_file_with(self, path: impl AsRef<Path>, limits: &Limits) -> Result<Self, ConfigError> {
         let file = path.as_ref().display().to_string();
-        let mut bytes = Vec::new();
         let limit = limits.config_bytes;
-        let most = (limit as u64).saturating_add(1);
-        match std::fs::File::open(path).and_then(|open| open.take(most).read_to_end(&mut bytes)) {
-            Ok(_) => {}
+        let bytes = match files::read(path.as_ref(), limit as u64) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == std::io::ErrorKind::FileTooLarge => {
+                let location = Location { file, position: None };
+                return Err(ConfigError::TooLarge { location, limit });
+            }
             Err(source) => return Err(ConfigError::Read { file, source }),
-        }
-        if bytes.len() > limit {
-            let location = Location { file, position: None };
-            return Err(ConfigError::TooLarge { location, limit });
-        }
+        };
         match std::str::from_utf8(&bytes) {
             Ok(text) => self.overlay_yaml_with(text, &file, limits),
             Err(error) => {
@@ -249,7 +271,7 @@ impl Config {
                 out.push_str(&format!("\n# --- {section} ---\n"));
             }
             let options = match key.kind {
-                KeyKind::Choice(names) => format!(" Options: {}.", names.join(", ")),
+                KeyKind::Choice(names) | KeyKind::List(names) => format!(" Options: {}.", names.join(", ")),
                 _ => String::new(),
             };
             let (doc, default) = (key.doc, key.default_value().to_yaml());
@@ -313,6 +335,16 @@ impl Config {
     fn conflict(&self) -> Option<(&'static str, String, &'static str)> {
         let touch = self.touch_enabled();
         let function = self.touch_function;
+        if self.age.is_none() {
+            let unused = Self::keys().iter().filter(|key| key.section == keys::GROWTH);
+            let unused = unused
+                .map(|key| (key, key.value(self)))
+                .find(|(key, value)| *value != key.default_value());
+            if let Some((key, value)) = unused {
+                let reason = "it changes MIMo at an age, and `age` is none; set `age`, 0 to 24 months";
+                return Some((key.name, value.to_yaml(), reason));
+            }
+        }
         match self.compat {
             Compat::Api if function == TouchFunction::NormalForce => Some((
                 "touch_function",

@@ -14,13 +14,15 @@ use super::{Config, ConfigError, yaml};
 const NAME: &str = "configuration";
 
 impl Serialize for KeyValue {
-    /// Serializes a boolean, a number or a text.
+    /// Serializes a boolean, a number, a text or a list of texts.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
+            Self::None => serializer.serialize_none(),
             Self::Bool(on) => serializer.serialize_bool(*on),
             Self::Whole(number) => serializer.serialize_u64(*number),
             Self::Number(number) => serializer.serialize_f64(*number),
             Self::Choice(name) => serializer.serialize_str(name),
+            Self::List(names) => names.serialize(serializer),
             Self::Text(text) => serializer.serialize_str(text),
         }
     }
@@ -140,7 +142,9 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
             KeyKind::Bool => deserializer.deserialize_bool(self),
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
             KeyKind::ZeroOrAtLeast(_) => deserializer.deserialize_f64(self),
+            KeyKind::NoneOr { .. } => deserializer.deserialize_option(self),
             KeyKind::Choice(_) | KeyKind::Text => deserializer.deserialize_str(self),
+            KeyKind::List(_) => deserializer.deserialize_seq(self),
         }
     }
 }
@@ -158,7 +162,7 @@ impl<'de> Visitor<'de> for ValueSeed {
 
     fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<KeyValue, E> {
         self.checked(match self.key.kind {
-            KeyKind::ZeroOrAtLeast(_) => KeyValue::Number(number as f64),
+            KeyKind::ZeroOrAtLeast(_) | KeyKind::NoneOr { .. } => KeyValue::Number(number as f64),
             _ => KeyValue::Whole(number),
         })
     }
@@ -179,6 +183,7 @@ impl<'de> Visitor<'de> for ValueSeed {
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<KeyValue, E> {
         match self.key.kind {
+            KeyKind::NoneOr { .. } if text == KeyValue::None.to_yaml() => Ok(KeyValue::None),
             KeyKind::Choice(_) | KeyKind::Text => match self.key.kind.parse(text, false) {
                 Ok(value) => Ok(value),
                 Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
@@ -188,6 +193,9 @@ impl<'de> Visitor<'de> for ValueSeed {
     }
 
     fn visit_unit<E: serde::de::Error>(self) -> Result<KeyValue, E> {
+        if matches!(self.key.kind, KeyKind::NoneOr { .. }) {
+            return Ok(KeyValue::None);
+        }
         Err(self.refusal(Misfit::Missing, "null".to_string()))
     }
 
@@ -195,8 +203,21 @@ impl<'de> Visitor<'de> for ValueSeed {
         self.visit_unit()
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, _: A) -> Result<KeyValue, A::Error> {
-        Err(self.refusal(Misfit::WrongType, "a list".to_string()))
+    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<KeyValue, D::Error> {
+        deserializer.deserialize_f64(self)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<KeyValue, A::Error> {
+        if !matches!(self.key.kind, KeyKind::List(_)) {
+            return Err(self.refusal(Misfit::WrongType, "a list".to_string()));
+        }
+        let mut names = Vec::new();
+        while let Some(name) = list.next_element::<String>()? {
+            if let Err(misfit) = self.key.kind.parse_item(&name, &mut names) {
+                return Err(self.refusal(misfit, error::shown(&name)));
+            }
+        }
+        self.checked(KeyValue::List(names))
     }
 
     fn visit_map<A: MapAccess<'de>>(self, _: A) -> Result<KeyValue, A::Error> {

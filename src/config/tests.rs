@@ -45,19 +45,24 @@ fn check_error(input: &str, expect: &str) {
 #[test]
 fn defaults_are_those_of_the_api_page() {
     let page = "save_dir=\"results/test_installation\" behavior=none scene=base max_episode_steps=1000 frame_skip=1 \
-                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu seed=0 proprio_velocity=true \
+                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu seed=0 GROWTH proprio_velocity=true \
                 proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
-                vision_active=true vision_resolution=64 touch_active=true touch_scale=1.0 touch_function=normal \
+                vision_active=true vision_resolution=64 vision_outputs=[rgb] touch_active=true touch_scale=1.0 touch_function=normal \
                 touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
                 touch_legs=true touch_body=true touch_head=true touch_eyes=false actuation_model=spring_damper \
                 act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \
                 act_eyes=true lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
                 lock_body=false lock_head=false lock_eyes=false";
+    let growth = "age=none strength_age=none touch_grows=false ankle_circumference=none calf_circumference=none \
+                  elbow_hand_length=none fist_breadth=none foot_breadth=none foot_length=none \
+                  forearm_circumference=none hand_breadth=none hand_length=none head_circumference=none \
+                  hip_breadth=none knee_sole_length=none middle_finger_diameter=none rump_knee_length=none \
+                  shoulder_elbow_length=none thigh_circumference=none thumb_diameter=none upper_arm_circumference=none";
     let ours: Vec<String> = Config::keys()
         .iter()
         .map(|key| format!("{}={}", key.name, key.default_value().to_yaml()))
         .collect();
-    assert_eq!(ours.join(" "), page);
+    assert_eq!(ours.join(" "), page.replace("GROWTH", growth));
     check("{}", "");
     assert!(Config::default().validate().is_ok());
 }
@@ -114,7 +119,7 @@ fn errors_name_place_key_value_and_what_is_allowed() {
     );
     check_error(
         "frame_skip: 0",
-        ":1:13: `frame_skip` is 0, expected a whole number from 1 to 4294967295",
+        ":1:13: `frame_skip` is 0, expected a whole number from 1 to 10000",
     );
     check_error(
         "seed: -1",
@@ -131,6 +136,16 @@ fn errors_name_place_key_value_and_what_is_allowed() {
     check_error(
         "touch_active: 'True'",
         ":1:15: `touch_active` is 'True' in quotes, expected true or false",
+    );
+    let list = "expected a list in brackets of one or more of rgb, gray, depth, segmentation, each once";
+    check_error("vision_outputs: []", &format!(":1:17: `vision_outputs` is [], {list}"));
+    check_error(
+        "vision_outputs: [rgb, rgb]",
+        &format!(":1:23: `vision_outputs` is rgb, {list}"),
+    );
+    check_error(
+        "vision_outputs: [depht]",
+        &format!(":1:18: `vision_outputs` is depht, {list}; did you mean `depth`?"),
     );
     check_error("act_eyes: [1]", ":1:11: `act_eyes` is a list, expected true or false");
     check_error(

@@ -1,10 +1,10 @@
 //! The way from YAML text to a [`Config`], through the table of keys.
 //!
-//! The parser hands over one event at a time and anything but a flat mapping of scalars ends the reading at once, so
-//! neither nesting nor aliases can grow.
+//! The parser hands over one event at a time and anything but a flat mapping of scalars, and of short lists of them, ends the
+//! reading at once, so neither nesting nor aliases can grow.
 
 use super::error::{self, Location};
-use super::keys::{KEYS, Key, Misfit};
+use super::keys::{KEYS, Key, KeyKind, KeyValue, Misfit};
 use super::{Config, ConfigError};
 use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 
@@ -19,24 +19,13 @@ pub(super) fn read(text: &str, file: &str, config: &mut Config) -> Result<Vec<Op
     };
     reader.start()?;
     let mut positions = vec![None; KEYS.len()];
-    while let Some((index, value)) = reader.entry(&positions)? {
+    while let Some((index, value, position)) = reader.entry(&positions)? {
         let key = &KEYS[index];
-        let parsed = key.kind.parse(&value.text, value.plain);
-        let misfit = match parsed {
-            Ok(new) if key.assign(config, &new) => None,
-            Ok(_) => Some(Misfit::WrongType),
-            Err(misfit) => Some(misfit),
-        };
-        if let Some(misfit) = misfit {
-            let written = error::shown(&value.text);
-            let written = if value.plain {
-                written
-            } else {
-                format!("'{written}' in quotes")
-            };
-            return Err(refusal(key, misfit, written, reader.location(value.position)));
+        if !key.assign(config, &value) {
+            let location = reader.location(position);
+            return Err(refusal(key, Misfit::WrongType, value.to_yaml(), location));
         }
-        positions[index] = Some(value.position);
+        positions[index] = Some(position);
     }
     reader.end()?;
     Ok(positions)
@@ -65,12 +54,6 @@ pub(super) fn refusal(key: &'static Key, misfit: Misfit, value: String, location
             nearest,
         },
     }
-}
-
-struct Scalar {
-    text: String,
-    plain: bool,
-    position: Position,
 }
 
 type Events<'t> = Parser<'t, granit_parser::StrInput<'t>>;
@@ -131,61 +114,88 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Reads the next key, as an index into [`KEYS`], and its value; `None` after the last.
-    fn entry(&mut self, seen: &[Option<Position>]) -> Result<Option<(usize, Scalar)>, ConfigError> {
-        let name = match self.next()? {
+    /// Reads the next key, as an index into [`KEYS`], its value and where that stands; `None` after the last.
+    fn entry(&mut self, seen: &[Option<Position>]) -> Result<Option<(usize, KeyValue, Position)>, ConfigError> {
+        let (name, at) = match self.next()? {
             (Event::MappingEnd, _) => return Ok(None),
             (Event::Scalar(name, _, anchor, tag), at) => {
                 self.bare(anchor, tag.is_some(), at)?;
-                Scalar {
-                    text: name.into_owned(),
-                    plain: true,
-                    position: at,
-                }
+                (name, at)
             }
             (Event::Alias(_), at) => return self.unsupported(at, "an alias"),
             (_, at) => return self.unsupported(at, "a key that is itself a list or mapping"),
         };
-        let Some(index) = KEYS.iter().position(|key| key.name == name.text) else {
-            let nearest = error::nearest(&name.text, KEYS.iter().map(|key| key.name));
-            let location = self.location(name.position);
+        let Some(index) = KEYS.iter().position(|key| key.name == name) else {
+            let nearest = error::nearest(&name, KEYS.iter().map(|key| key.name));
+            let location = self.location(at);
             return Err(ConfigError::UnknownKey {
                 location,
-                key: error::shown(&name.text),
+                key: error::shown(&name),
                 nearest,
             });
         };
         if let Some((first_line, _)) = seen[index] {
-            let location = self.location(name.position);
+            let location = self.location(at);
             return Err(ConfigError::DuplicateKey {
                 location,
                 key: KEYS[index].name,
                 first_line,
             });
         }
-        let nested = match self.next()? {
-            (Event::Scalar(text, style, anchor, tag), at) => {
+        let (value, at) = self.value(&KEYS[index])?;
+        Ok(Some((index, value, at)))
+    }
+
+    /// Reads the value of a key, and where it stands.
+    fn value(&mut self, key: &'static Key) -> Result<(KeyValue, Position), ConfigError> {
+        let (event, at) = self.next()?;
+        let nested = match event {
+            Event::Scalar(text, style, anchor, tag) => {
                 self.bare(anchor, tag.is_some(), at)?;
                 let plain = style == ScalarStyle::Plain;
-                return Ok(Some((
-                    index,
-                    Scalar {
-                        text: text.into_owned(),
-                        plain,
-                        position: at,
-                    },
-                )));
+                let parsed = key.kind.parse(&text, plain);
+                return match parsed {
+                    Ok(value) => Ok((value, at)),
+                    Err(misfit) => Err(refusal(key, misfit, written(&text, plain), self.location(at))),
+                };
             }
-            (Event::Alias(_), at) => return self.unsupported(at, "an alias"),
-            (Event::SequenceStart(..), at) => ("a list", at),
-            (_, at) => ("a mapping", at),
+            Event::SequenceStart(_, anchor, tag) if matches!(key.kind, KeyKind::List(_)) => {
+                self.bare(anchor, tag.is_some(), at)?;
+                return Ok((self.list(key, at)?, at));
+            }
+            Event::Alias(_) => return self.unsupported(at, "an alias"),
+            Event::SequenceStart(..) => "a list",
+            _ => "a mapping",
         };
-        Err(refusal(
-            &KEYS[index],
-            Misfit::WrongType,
-            nested.0.to_string(),
-            self.location(nested.1),
-        ))
+        Err(refusal(key, Misfit::WrongType, nested.to_string(), self.location(at)))
+    }
+
+    /// Reads the names of a list that begins at `start`.
+    fn list(&mut self, key: &'static Key, start: Position) -> Result<KeyValue, ConfigError> {
+        let mut names = Vec::new();
+        loop {
+            let (event, at) = self.next()?;
+            let nested = match event {
+                Event::Scalar(text, style, anchor, tag) => {
+                    self.bare(anchor, tag.is_some(), at)?;
+                    if let Err(misfit) = key.kind.parse_item(&text, &mut names) {
+                        let written = written(&text, style == ScalarStyle::Plain);
+                        return Err(refusal(key, misfit, written, self.location(at)));
+                    }
+                    continue;
+                }
+                Event::SequenceEnd => break,
+                Event::Alias(_) => return self.unsupported(at, "an alias"),
+                Event::SequenceStart(..) => "a list in a list",
+                _ => "a mapping in a list",
+            };
+            return Err(refusal(key, Misfit::WrongType, nested.to_string(), self.location(at)));
+        }
+        let value = KeyValue::List(names);
+        match key.kind.check(&value) {
+            Ok(()) => Ok(value),
+            Err(misfit) => Err(refusal(key, misfit, value.to_yaml(), self.location(start))),
+        }
     }
 
     /// Makes sure that nothing follows the mapping.
@@ -207,6 +217,12 @@ impl<'t> Reader<'t> {
             _ => self.unsupported(at, "an anchor (`&`)"),
         }
     }
+}
+
+/// Returns a value as errors show it.
+fn written(text: &str, plain: bool) -> String {
+    let text = error::shown(text);
+    if plain { text } else { format!("'{text}' in quotes") }
 }
 
 fn position(mark: &Marker) -> Position {

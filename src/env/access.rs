@@ -8,7 +8,7 @@ use crate::env::{Blueprint, Env, Info, PerEyeAndHand};
 use crate::model::Model;
 use crate::physics::{Engine, State};
 use crate::render::RenderRequest;
-use crate::sensors::{Proprioception, Touch, Vestibular, Vision};
+use crate::sensors::{EyeImages, Proprioception, Touch, Vestibular, Vision};
 use crate::spaces::{BoxSpace, ObservationSpace};
 
 impl Env {
@@ -78,6 +78,11 @@ impl Env {
     /// Returns the sense of touch, if it is active: sensor positions, active sensors, contacts and sums of forces.
     pub fn touch(&self) -> Option<&Touch> {
         self.senses.touch.as_ref()
+    }
+
+    /// Returns the images of both eyes, left and right.
+    pub(crate) fn eye_images(&self) -> &[EyeImages; 2] {
+        &self.senses.eyes
     }
 
     /// Returns the sense of vision, if it is active.

@@ -9,7 +9,9 @@ use crate::env::snapshot::fingerprint;
 use crate::env::{Env, EnvError};
 use crate::mimo::{build_model, embedded, lock};
 use crate::model::Model;
-use crate::physics::{Engine, Params, RapierModel, RapierOptions, SoftModel, SoftOptions};
+use crate::physics::{Engine, Params, SoftModel, SoftOptions};
+#[cfg(feature = "rapier")]
+use crate::physics::{RapierModel, RapierOptions};
 use crate::render::{RenderError, Renderer, Visual};
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use crate::render::{SharedGpu, gpu::GpuRenderer};
@@ -38,15 +40,26 @@ pub struct Blueprint {
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
-    embedded: bool,
+    /// The assets, if they stay at hand.
+    assets: Option<Assets>,
     /// What a snapshot must fit.
     fingerprint: u64,
     skin: Option<Arc<SkinLayout>>,
-    /// The look of the scene; of embedded assets it is made when it is first needed.
+    /// The look of the scene; where the assets stay at hand it is made when it is first needed.
     visual: Arc<OnceLock<Arc<Visual>>>,
     /// The renderer on a GPU, opened when it is first needed.
     #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     gpu: Arc<OnceLock<SharedGpu>>,
+}
+
+/// Assets that stay at hand.
+#[derive(Clone)]
+struct Assets(Arc<dyn AssetSource + Send + Sync>);
+
+impl std::fmt::Debug for Assets {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Assets")
+    }
 }
 
 impl Blueprint {
@@ -55,8 +68,17 @@ impl Blueprint {
     /// # Errors
     /// As [`Blueprint::with_assets`].
     pub fn new(config: Config) -> Result<Self, EnvError> {
-        let mut blueprint = Self::build(config, &embedded(), true)?;
-        blueprint.embedded = true;
+        Self::with_kept_assets(config, Arc::new(embedded()))
+    }
+
+    /// Builds the scene from other assets, as [`Blueprint::with_assets`] does, and keeps them: textures are decoded when something
+    /// is first drawn, and [`Blueprint::with_actuation`] reads what it needs.
+    ///
+    /// # Errors
+    /// As [`Blueprint::with_assets`]; textures that cannot be read are an error when something is drawn.
+    pub fn with_kept_assets(config: Config, assets: Arc<dyn AssetSource + Send + Sync>) -> Result<Self, EnvError> {
+        let mut blueprint = Self::build(config, &*assets, true)?;
+        blueprint.assets = Some(Assets(assets));
         Ok(blueprint)
     }
 
@@ -76,9 +98,12 @@ impl Blueprint {
         if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
             return Err(RenderError::NoWgpu.into());
         }
+        if config.engine == EngineKind::Rapier && cfg!(not(feature = "rapier")) {
+            return Err(EnvError::NoRapier);
+        }
         let model = Arc::new(build_model(&config, assets)?);
         let skin = match config.touch_enabled() {
-            true => Some(Arc::new(SkinLayout::new(&model, &config)?)),
+            true => Some(Arc::new(make_skin(&model, &config, assets)?)),
             false => None,
         };
         let engines = Engines::new(&config, &model)?;
@@ -95,7 +120,7 @@ impl Blueprint {
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
             params: Arc::new(settled.params),
-            embedded: false,
+            assets: None,
             skin,
             visual: Arc::new(visual),
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
@@ -106,10 +131,10 @@ impl Blueprint {
     /// Returns the same blueprint with another actuation model: settled anew, on the same compiled scene where the actuators are the same.
     ///
     /// `spring_damper` and `muscle` share the scene's motors. To and from `positional`, whose actuators are servos, a scene
-    /// of the embedded assets is compiled again; all that is not an actuator keeps its number.
+    /// whose assets are at hand is compiled again; all that is not an actuator keeps its number.
     ///
     /// # Errors
-    /// As [`Blueprint::new`]; other actuators are needed and the scene is not from the embedded assets.
+    /// As [`Blueprint::new`]; other actuators are needed and the assets of the scene were lent ([`Blueprint::with_assets`]).
     pub fn with_actuation(&self, actuation_model: ActuationModel) -> Result<Self, EnvError> {
         let present = self.config.actuation_model;
         let config = Config {
@@ -119,8 +144,8 @@ impl Blueprint {
         let servos = |a| a == ActuationModel::Positional;
         let model = if servos(present) == servos(actuation_model) {
             self.model.clone()
-        } else if self.embedded {
-            Arc::new(build_model(&config, &embedded())?)
+        } else if let Some(Assets(assets)) = &self.assets {
+            Arc::new(build_model(&config, &**assets)?)
         } else {
             let wanted = actuation_model;
             return Err(EnvError::OtherActuators { present, wanted });
@@ -137,6 +162,22 @@ impl Blueprint {
             params: Arc::new(settled.params),
             ..self.clone()
         })
+    }
+
+    /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
+    ///
+    /// Names and ids stay. So do the spaces, but for the length of touch, which follows the size of the body unless
+    /// [`Config::touch_grows`].
+    ///
+    /// # Errors
+    /// As [`Blueprint::new`]; the assets of the scene were lent ([`Blueprint::with_assets`]).
+    pub fn with_age(&self, age: Option<f64>) -> Result<Self, EnvError> {
+        let Some(Assets(assets)) = &self.assets else {
+            return Err(EnvError::OtherBody);
+        };
+        let mut config = Config::clone(&self.config);
+        config.age = age;
+        Self::with_kept_assets(config, assets.clone())
     }
 
     /// Creates an environment.
@@ -200,7 +241,10 @@ impl Blueprint {
         if let Some(visual) = self.visual.get() {
             return Ok(visual.clone());
         }
-        let made = Arc::new(Visual::new(&self.model, &embedded())?);
+        let made = Arc::new(match &self.assets {
+            Some(Assets(assets)) => Visual::new(&self.model, &**assets)?,
+            None => Visual::new(&self.model, &embedded())?,
+        });
         Ok(self.visual.get_or_init(|| made).clone())
     }
 
@@ -236,10 +280,22 @@ impl Blueprint {
     }
 }
 
+/// Places the sensors of the skin.
+fn make_skin(model: &Model, config: &Config, assets: &dyn AssetSource) -> Result<SkinLayout, EnvError> {
+    if !config.touch_grows {
+        return Ok(SkinLayout::new(model, config)?);
+    }
+    let mut original = config.clone();
+    original.age = None;
+    let original_model = build_model(&original, assets)?;
+    Ok(SkinLayout::new(&original_model, config)?.scaled(&original_model, model))
+}
+
 /// A maker of engines of one kind for one model.
 #[derive(Clone, Debug)]
 enum Engines {
     Soft(SoftModel),
+    #[cfg(feature = "rapier")]
     Rapier(RapierModel),
 }
 
@@ -254,6 +310,7 @@ impl Engines {
                 };
                 Self::Soft(SoftModel::new(model, options))
             }
+            #[cfg(feature = "rapier")]
             EngineKind::Rapier => {
                 let options = RapierOptions {
                     double_weld_torque,
@@ -261,12 +318,15 @@ impl Engines {
                 };
                 Self::Rapier(RapierModel::new(model, options)?)
             }
+            #[cfg(not(feature = "rapier"))]
+            EngineKind::Rapier => return Err(EnvError::NoRapier),
         })
     }
 
     fn make(&self) -> Box<dyn Engine> {
         match self {
             Self::Soft(shared) => Box::new(shared.engine()),
+            #[cfg(feature = "rapier")]
             Self::Rapier(shared) => Box::new(shared.engine()),
         }
     }

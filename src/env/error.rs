@@ -5,9 +5,11 @@ use thiserror::Error;
 use crate::actuation::ActuationError;
 use crate::config::{ActuationModel, ConfigError};
 use crate::env::SnapshotError;
-use crate::mimo::LockError;
+use crate::mimo::{GrowthError, LockError, SceneError};
 use crate::mjcf_loader::LoadError;
-use crate::physics::{EngineError, RapierError};
+use crate::physics::EngineError;
+#[cfg(feature = "rapier")]
+use crate::physics::RapierError;
 use crate::render::RenderError;
 use crate::sensors::touch::SkinError;
 
@@ -21,6 +23,9 @@ pub enum EnvError {
     /// The assets cannot be loaded.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
+    /// MIMo cannot grow to the age of the configuration.
+    #[error(transparent)]
+    Growth(#[from] GrowthError),
     /// The touch sensors cannot be placed.
     #[error(transparent)]
     Skin(#[from] SkinError),
@@ -44,13 +49,22 @@ pub enum EnvError {
         /// Actuation model asked for.
         wanted: ActuationModel,
     },
+    /// Another body is asked for, and the assets of the scene are not at hand.
+    #[error(
+        "the assets of the scene are not at hand, so MIMo cannot change his age; build it with Blueprint::with_kept_assets"
+    )]
+    OtherBody,
     /// Something cannot be locked or unlocked.
     #[error(transparent)]
     Lock(#[from] LockError),
     /// A snapshot cannot be restored.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
+    /// The configuration asks for the engine `rapier`, which this build leaves out.
+    #[error("engine: rapier needs the cargo feature rapier: build with `--features rapier`, or use engine: soft")]
+    NoRapier,
     /// The engine that the configuration asks for cannot simulate the scene.
+    #[cfg(feature = "rapier")]
     #[error(transparent)]
     Rapier(#[from] RapierError),
     /// The scene lacks something the environment needs.
@@ -97,4 +111,14 @@ pub enum EnvError {
     /// The engine cannot go on.
     #[error(transparent)]
     Engine(#[from] EngineError),
+}
+
+impl From<SceneError> for EnvError {
+    fn from(error: SceneError) -> Self {
+        match error {
+            SceneError::Load(error) => error.into(),
+            SceneError::Growth(error) => error.into(),
+            SceneError::Engine(error) => error.into(),
+        }
+    }
 }

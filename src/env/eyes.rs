@@ -2,13 +2,13 @@
 
 use crate::env::{Env, EnvError};
 use crate::physics::State;
-use crate::sensors::Vision;
+use crate::render::ImageBuffers;
+use crate::sensors::{EyeImages, Vision};
 
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use {
-    crate::render::gpu::Rgb,
-    crate::render::{RenderError, RenderRequest, SharedGpu},
-    std::sync::{Arc, PoisonError},
+    crate::render::{RenderRequest, SharedGpu, draw_on},
+    std::sync::Arc,
 };
 
 impl Env {
@@ -51,6 +51,33 @@ impl Env {
     pub fn eye_segmentation(&mut self, eyes: [&mut [i32]; 2]) -> Result<(), EnvError> {
         let (vision, state) = self.sight()?;
         Ok(vision.segmentation(state, eyes)?)
+    }
+
+    /// Draws several images of what both eyes see, left and right, those for which there are buffers. On the CPU all images
+    /// of an eye come from one pass, each with the bytes that it has alone.
+    ///
+    /// ```
+    /// use babybench::render::ImageBuffers;
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let (mut depth, mut geoms) = ([vec![0.0; 64 * 64], vec![0.0; 64 * 64]], [vec![0; 64 * 64], vec![0; 64 * 64]]);
+    /// let [left, right] = &mut depth;
+    /// let [left_geoms, right_geoms] = &mut geoms;
+    /// env.eye_buffers([
+    ///     ImageBuffers { depth: Some(left), segmentation: Some(left_geoms), ..ImageBuffers::default() },
+    ///     ImageBuffers { depth: Some(right), segmentation: Some(right_geoms), ..ImageBuffers::default() },
+    /// ])?;
+    /// assert!(depth[0].iter().zip(&geoms[0]).all(|(distance, &geom)| distance.is_finite() || geom == -1));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; images of another size.
+    pub fn eye_buffers(&mut self, eyes: [ImageBuffers<'_>; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.draw(state, eyes)?)
     }
 
     fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
@@ -96,7 +123,7 @@ impl Env {
         for env in environments {
             let state = &env.physics.state;
             let Some(vision) = &mut env.senses.vision else { continue };
-            let [left, right] = &mut env.senses.eye_values;
+            let eyes = env.senses.eyes.each_mut().map(EyeImages::buffers);
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             if let Some(gpu) = vision.renderer().shared_gpu() {
                 let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
@@ -105,14 +132,14 @@ impl Env {
                     batches.push(Batch::new(gpu.clone()));
                 }
                 batches[index].requests.extend(vision.requests(state));
-                batches[index].outs.extend([&mut left[..], &mut right[..]]);
+                batches[index].images.extend(eyes);
                 continue;
             }
-            vision.observe(state, [left, right])?;
+            vision.draw(state, eyes)?;
         }
         #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
         for batch in batches {
-            batch.draw()?;
+            draw_on(&batch.gpu, &batch.requests, batch.images)?;
         }
         Ok(())
     }
@@ -123,7 +150,7 @@ impl Env {
 struct Batch<'e> {
     gpu: SharedGpu,
     requests: Vec<RenderRequest<'e>>,
-    outs: Vec<&'e mut [u8]>,
+    images: Vec<ImageBuffers<'e>>,
 }
 
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
@@ -132,14 +159,7 @@ impl Batch<'_> {
         Self {
             gpu,
             requests: Vec::new(),
-            outs: Vec::new(),
+            images: Vec::new(),
         }
-    }
-
-    fn draw(self) -> Result<(), RenderError> {
-        let mut gpu = self.gpu.lock().unwrap_or_else(PoisonError::into_inner);
-        let pending = gpu.begin::<Rgb>(&self.requests)?;
-        drop(gpu);
-        pending.wait_into(self.outs)
     }
 }

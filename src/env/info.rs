@@ -89,6 +89,9 @@ impl<T> From<[T; 4]> for PerEyeAndHand<T> {
     }
 }
 
+/// Parts in the denominator of the score for each hand: MIMo v1's 36 geoms without the two of the palm itself.
+pub(crate) const SCORED_PARTS: usize = 34;
+
 /// The information that comes with each step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Info {
@@ -133,6 +136,25 @@ impl BehaviorInfo {
         match self {
             Self::SelfTouch { touches } => Some([&touches.right_hand, &touches.left_hand]),
             _ => None,
+        }
+    }
+
+    /// Returns the score that an episode of `steps` steps would have alone, 0 to 1, for `self_touch` at most 62/68; `None`
+    /// without steps or behavior.
+    pub fn score(&self, steps: u64) -> Option<f64> {
+        if steps == 0 {
+            return None;
+        }
+        match self {
+            Self::None => None,
+            Self::SelfTouch { touches } => {
+                let touched: usize = touches.each_ref().map(Vec::len).iter().sum();
+                Some(touched as f64 / (2 * SCORED_PARTS) as f64)
+            }
+            Self::HandRegard { counts } => {
+                let seen: f64 = counts.to_array().iter().map(|&c| c as f64).sum();
+                Some(seen / (4.0 * steps as f64))
+            }
         }
     }
 

@@ -6,6 +6,7 @@ mod details;
 mod error;
 mod eyes;
 mod info;
+mod parts;
 mod physics;
 mod senses;
 #[cfg(feature = "serde")]
@@ -18,17 +19,20 @@ mod viewer;
 pub use blueprint::Blueprint;
 pub use details::{InfoDetails, PartNames};
 pub use error::EnvError;
+#[cfg(feature = "eval")]
+pub(crate) use info::SCORED_PARTS;
 pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand};
 #[cfg(feature = "serde")]
 pub use serial::Detailed;
 pub use snapshot::{Snapshot, SnapshotError, SnapshotInfo};
 pub use stage::{EnvProbe, EnvStage};
-pub use viewer::Viewer;
+pub use viewer::{ViewFrom, Viewer};
 
 use crate::actuation::{self, Actuation};
 use crate::config::{Behavior, Compat, Config};
 use crate::mimo::{LockReport, LockTarget};
 use crate::physics::EngineError;
+use crate::sensors::EyeImages;
 use crate::spaces::NumpyRng;
 use physics::Physics;
 use senses::Senses;
@@ -44,12 +48,39 @@ pub struct Observation<'a> {
     pub proprioception: &'a [f64],
     /// What the skin feels, N, if `touch_active`; [`Env::touch`] tells what stands where.
     pub touch: Option<&'a [f32]>,
-    /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active`.
+    /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active` and `vision_outputs` has `rgb`.
     pub eye_left: Option<&'a [u8]>,
     /// What the right eye sees.
     pub eye_right: Option<&'a [u8]>,
+    /// What both eyes see in grey, left and right, (H, W) bytes, if `vision_outputs` has `gray`: see [`Env::eye_gray`].
+    pub eye_gray: Option<[&'a [u8]; 2]>,
+    /// How far away it is, left and right, (H, W), m, if `vision_outputs` has `depth`: see [`Env::eye_depth`].
+    pub eye_depth: Option<[&'a [f32]; 2]>,
+    /// Which geoms they are, left and right, (H, W), if `vision_outputs` has `segmentation`: see
+    /// [`Env::eye_segmentation`].
+    pub eye_segmentation: Option<[&'a [i32]; 2]>,
     /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
     pub vestibular: Option<&'a [f64]>,
+}
+
+impl<'a> Observation<'a> {
+    /// Returns what the eyes see, left and right, and nothing else.
+    pub(crate) fn of_eyes([left, right]: &'a [EyeImages; 2]) -> Self {
+        fn pair<'a, T>(left: &'a [T], right: &'a [T]) -> Option<[&'a [T]; 2]> {
+            (!left.is_empty()).then_some([left, right])
+        }
+        let [eye_left, eye_right] = [left, right].map(|eye| (!eye.rgb.is_empty()).then_some(&eye.rgb[..]));
+        Self {
+            proprioception: &[],
+            touch: None,
+            eye_left,
+            eye_right,
+            eye_gray: pair(&left.gray, &right.gray),
+            eye_depth: pair(&left.depth, &right.depth),
+            eye_segmentation: pair(&left.segmentation, &right.segmentation),
+            vestibular: None,
+        }
+    }
 }
 
 /// The result of a step, in Gymnasium's order.
@@ -174,6 +205,63 @@ impl Env {
         Ok(self.observation())
     }
 
+    /// Starts an episode as [`Env::reset`] does, with start actions of the caller's, (any number, len), instead of random
+    /// ones: each is applied for one physics step, whatever the behavior.
+    ///
+    /// ```
+    /// use babybench::config::Behavior;
+    /// use babybench::{Config, Env};
+    ///
+    /// let behavior = Behavior::SelfTouch;
+    /// let config = Config { behavior, vision_active: false, ..Config::default() };
+    /// let (mut one, mut other) = (Env::new(config.clone())?, Env::new(config)?);
+    /// let (mut actions, mut action) = (Vec::new(), Vec::new());
+    /// other.seed_action_space(7);
+    /// for _ in 0..10 {
+    ///     other.sample_action(&mut action);
+    ///     actions.extend_from_slice(&action);
+    /// }
+    /// assert_eq!(one.reset(Some(7))?, other.reset_with(&actions)?);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Actions of wrong length or with numbers that are not finite, which change nothing; the simulation diverged.
+    pub fn reset_with(&mut self, start_actions: &[f32]) -> Result<Observation<'_>, EnvError> {
+        let len = self.action_space().len();
+        let (actions, rest) = start_actions.split_at(start_actions.len() - start_actions.len() % len.max(1));
+        if !rest.is_empty() {
+            self.check_action(rest)?;
+        }
+        let actions = actions.chunks_exact(len.max(1));
+        actions.clone().try_for_each(|action| self.check_action(action))?;
+        let (qpos, qvel) = self.blueprint.settled();
+        self.place(&qpos, &qvel)?;
+        for action in actions {
+            let model = self.blueprint.model();
+            self.physics.step(model, &*self.actuation, action, 1)?;
+        }
+        self.begin_episode()?;
+        Ok(self.observation())
+    }
+
+    /// Lets MIMo grow, between two episodes, to an age in months; `None` gives him the original proportions. The next call is
+    /// a reset. Locks, the generator of random choices and the probe stay; names and ids are the same at every age.
+    ///
+    /// # Errors
+    /// As [`Blueprint::with_age`]; nothing is changed then.
+    pub fn set_age(&mut self, age: Option<f64>) -> Result<(), EnvError> {
+        let mut grown = self.blueprint.with_age(age)?.env()?;
+        let (old, new) = (&self.physics.base, &mut grown.physics.base);
+        new.eq_active.clone_from(&old.eq_active);
+        new.eq_offset.clone_from(&old.eq_offset);
+        std::mem::swap(&mut grown.rng, &mut self.rng);
+        grown.probe = self.probe.take();
+        grown.episode.accumulate = self.episode.accumulate;
+        *self = grown;
+        Ok(())
+    }
+
     /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions.
     ///
     /// # Errors
@@ -204,13 +292,8 @@ impl Env {
     /// # Errors
     /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
-        let model = self.blueprint.model();
-        check_vector("qpos", qpos, model.nq)?;
-        check_vector("qvel", qvel, model.nv)?;
-        let Physics { engine, state, .. } = &mut self.physics;
-        state.qpos.copy_from_slice(qpos);
-        state.qvel.copy_from_slice(qvel);
-        if let Err(e) = engine.forward(state) {
+        self.set_position(qpos, qvel)?;
+        if let Err(e) = self.physics.engine.forward(&mut self.physics.state) {
             self.episode.ready = false;
             return Err(e.into());
         }

@@ -28,6 +28,20 @@ impl Physics {
         }
     }
 
+    /// Forgets the past: `qpos0` at rest, of which nothing is computed.
+    pub fn reset(&mut self, model: &Model) {
+        let s = &mut self.state;
+        s.time = 0.0;
+        s.step = 0;
+        s.ctrl.fill(0.0);
+        s.qfrc_applied.fill(0.0);
+        s.release_forces();
+        s.qacc_warmstart.fill(0.0);
+        s.params.clone_from(&self.base);
+        s.qpos.copy_from_slice(&model.qpos0);
+        s.qvel.fill(0.0);
+    }
+
     /// Forgets the past and computes everything at the given positions and velocities.
     pub fn place(
         &mut self,
@@ -37,17 +51,10 @@ impl Physics {
         qpos: &[f64],
         qvel: &[f64],
     ) -> Result<(), EngineError> {
+        self.reset(model);
         let s = &mut self.state;
-        s.time = 0.0;
-        s.step = 0;
-        s.ctrl.fill(0.0);
-        s.qfrc_applied.fill(0.0);
-        s.qacc_warmstart.fill(0.0);
-        s.params.clone_from(&self.base);
         if compat == Compat::Reference {
             // the reference resets its actuators before it sets the state
-            s.qpos.copy_from_slice(&model.qpos0);
-            s.qvel.fill(0.0);
             actuation.reset(model, s);
         }
         s.qpos.copy_from_slice(qpos);

@@ -1,10 +1,13 @@
 //! The senses of an environment and what they observe.
 
 use crate::actuation::Actuation;
+use crate::config::{VisionOutput, VisionOutputs};
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
 use crate::model::Model;
 use crate::physics::State;
-use crate::sensors::{EYES, Proprioception, Touch, Vestibular, Vision};
+use crate::sensors::{
+    EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Proprioception, Touch, Vestibular, Vision,
+};
 use crate::spaces::{Dtype, ObservationSpace};
 
 /// The senses that the configuration turns on, with the vectors of the present observation.
@@ -15,7 +18,8 @@ pub(super) struct Senses {
     pub vestibular: Option<Vestibular>,
     pub proprioception_values: Vec<f64>,
     pub vestibular_values: Vec<f64>,
-    pub eye_values: [Vec<u8>; 2],
+    pub eyes: [EyeImages; 2],
+    outputs: VisionOutputs,
     /// Whether [`super::Env::draw_eyes`] draws what the eyes see, instead of each step.
     pub vision_deferred: bool,
 }
@@ -31,12 +35,14 @@ impl Senses {
         } else {
             None
         };
-        let pixels = vision.as_ref().map_or(0, Vision::len);
+        let pixels = vision.as_ref().map_or(0, |v| v.shape()[0] * v.shape()[1]);
+        let images = || EyeImages::new(config.vision_outputs, pixels);
         Ok(Self {
             proprioception_values: vec![0.0; proprioception.len()],
             vestibular_values: vec![0.0; vestibular.as_ref().map_or(0, Vestibular::len)],
-            eye_values: [vec![0; pixels], vec![0; pixels]],
+            eyes: [images(), images()],
             touch: blueprint.skin().map(|skin| Touch::configured(skin.clone(), config)),
+            outputs: config.vision_outputs,
             vision_deferred: false,
             proprioception,
             vision,
@@ -55,8 +61,7 @@ impl Senses {
             v.observe(state, &mut self.vestibular_values);
         }
         if let (Some(v), false) = (&mut self.vision, self.vision_deferred) {
-            let [left, right] = &mut self.eye_values;
-            v.observe(state, [left, right])?;
+            v.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
         }
         Ok(())
     }
@@ -66,9 +71,8 @@ impl Senses {
         Observation {
             proprioception: &self.proprioception_values,
             touch: self.touch.as_ref().map(Touch::values),
-            eye_left: self.vision.as_ref().map(|_| &self.eye_values[0][..]),
-            eye_right: self.vision.as_ref().map(|_| &self.eye_values[1][..]),
             vestibular: self.vestibular.as_ref().map(|_| &self.vestibular_values[..]),
+            ..Observation::of_eyes(&self.eyes)
         }
     }
 
@@ -90,17 +94,31 @@ impl Senses {
             });
         }
         if let Some(v) = &self.vision {
-            spaces.extend(EYES.map(|key| ObservationSpace {
-                key,
-                shape: v.shape().to_vec(),
-                dtype: Dtype::U8,
-                low: 0.0,
-                high: 255.0,
-            }));
+            for output in self.outputs.iter() {
+                spaces.extend((0..EYES.len()).map(|eye| image(output, eye, v.shape())));
+            }
         }
         if let Some(v) = &self.vestibular {
             spaces.push(vector("vestibular", v.len()));
         }
         spaces
+    }
+}
+
+/// Returns the space of an image of an eye.
+fn image(output: VisionOutput, eye: usize, [height, width, colours]: [usize; 3]) -> ObservationSpace {
+    let shape = vec![height, width];
+    let (keys, shape, dtype, low, high) = match output {
+        VisionOutput::Rgb => (EYES, vec![height, width, colours], Dtype::U8, 0.0, 255.0),
+        VisionOutput::Gray => (EYES_GRAY, shape, Dtype::U8, 0.0, 255.0),
+        VisionOutput::Depth => (EYES_DEPTH, shape, Dtype::F32, 0.0, f64::INFINITY),
+        VisionOutput::Segmentation => (EYES_SEGMENTATION, shape, Dtype::I32, -1.0, f64::from(i32::MAX)),
+    };
+    ObservationSpace {
+        key: keys[eye],
+        shape,
+        dtype,
+        low,
+        high,
     }
 }

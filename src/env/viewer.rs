@@ -1,7 +1,28 @@
 //! Pictures of environments for people.
 
 use crate::env::{Blueprint, Env, EnvError, missing_camera};
-use crate::render::{Poses, RenderRequest, Renderer, View};
+use crate::render::{FreeCamera, Poses, RenderRequest, Renderer, View};
+
+/// The camera of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewFrom<'a> {
+    /// A camera of the scene, by name: `corner`, `top`, `side1`, `side2`, `closeup`, `eye_left` or `eye_right`.
+    Camera(&'a str),
+    /// A camera anywhere.
+    Free(FreeCamera),
+}
+
+impl<'a> From<&'a str> for ViewFrom<'a> {
+    fn from(name: &'a str) -> Self {
+        Self::Camera(name)
+    }
+}
+
+impl From<FreeCamera> for ViewFrom<'_> {
+    fn from(camera: FreeCamera) -> Self {
+        Self::Free(camera)
+    }
+}
 
 /// A renderer of environments of one blueprint from the cameras of their scene, for people to look at.
 ///
@@ -20,6 +41,7 @@ use crate::render::{Poses, RenderRequest, Renderer, View};
 pub struct Viewer {
     renderer: Renderer,
     rgb: Vec<u8>,
+    rgba: Vec<u8>,
 }
 
 impl Viewer {
@@ -31,6 +53,7 @@ impl Viewer {
         Ok(Self {
             renderer: blueprint.renderer()?,
             rgb: Vec::new(),
+            rgba: Vec::new(),
         })
     }
 
@@ -43,23 +66,52 @@ impl Viewer {
         self.draw(env, "corner", size, size)
     }
 
-    /// Draws an environment from a camera of its scene: `corner`, `top`, `side1`, `side2`, `closeup`, `eye_left` or
-    /// `eye_right`. Returns red, green and blue of each pixel, rows from the top. Like the eyes, the picture shows the
-    /// start of the last physics step.
+    /// Draws an environment from a camera of its scene, by name, or from a [`FreeCamera`]. Returns red, green and blue of
+    /// each pixel, rows from the top. Like the eyes, the picture shows the start of the last physics step.
     ///
     /// # Errors
-    /// A camera that does not exist, a size that is not allowed, a GPU that fails.
-    pub fn draw(&mut self, env: &Env, camera: &str, width: usize, height: usize) -> Result<&[u8], EnvError> {
-        let camera = env
-            .model()
-            .camera(camera)
-            .ok_or_else(|| missing_camera(camera, "rendering"))?;
+    /// A camera that does not exist or is nowhere, a size that is not allowed, a GPU that fails.
+    pub fn draw<'c>(
+        &mut self,
+        env: &Env,
+        from: impl Into<ViewFrom<'c>>,
+        width: usize,
+        height: usize,
+    ) -> Result<&[u8], EnvError> {
+        let mut poses = Poses::from(env.state());
+        let camera = match from.into() {
+            ViewFrom::Camera(name) => {
+                let camera = env.model().camera(name);
+                camera.ok_or_else(|| missing_camera(name, "rendering"))?
+            }
+            ViewFrom::Free(camera) => {
+                poses.free = Some(camera.pose()?);
+                View::FREE
+            }
+        };
         let view = View { camera, width, height };
         view.check()?;
         self.rgb.resize(view.rgb_len(), 0);
-        let poses = Poses::from(env.state());
         self.renderer
             .rgb(&[RenderRequest { poses, view }], [&mut self.rgb[..]])?;
         Ok(&self.rgb)
+    }
+
+    /// Draws like [`Viewer::draw`]. Returns red, green, blue and 255 of each pixel, as canvases take them.
+    ///
+    /// # Errors
+    /// As [`Viewer::draw`].
+    pub fn draw_rgba<'c>(
+        &mut self,
+        env: &Env,
+        from: impl Into<ViewFrom<'c>>,
+        width: usize,
+        height: usize,
+    ) -> Result<&[u8], EnvError> {
+        self.draw(env, from, width, height)?;
+        self.rgba.clear();
+        let pixels = self.rgb.as_chunks::<3>().0;
+        self.rgba.extend(pixels.iter().flat_map(|&[r, g, b]| [r, g, b, 255]));
+        Ok(&self.rgba)
     }
 }

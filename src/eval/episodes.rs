@@ -23,8 +23,17 @@ pub struct Plan {
     pub render: bool,
     /// Frames per second of the videos.
     pub fps: u32,
-    /// Number of episodes run in parallel; results do not depend on it.
+    /// Number of episodes run in parallel, of which more than the cores are no use; results do not depend on it.
     pub jobs: usize,
+}
+
+impl Plan {
+    /// Returns how many episodes run in parallel: as many as asked for, but no more than there are episodes and cores.
+    pub fn parallel(&self) -> usize {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let episodes = usize::try_from(self.episodes).unwrap_or(usize::MAX);
+        self.jobs.min(cores).min(episodes).max(1)
+    }
 }
 
 /// An error that ends evaluation episodes.
@@ -72,10 +81,8 @@ pub fn run_episodes(
     policy: &(dyn Fn() -> Result<Box<dyn Policy>, PolicyError> + Sync),
     progress: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Info>, EpisodeError> {
-    let jobs = plan
-        .jobs
-        .clamp(1, usize::try_from(plan.episodes.max(1)).unwrap_or(usize::MAX));
-    if jobs > 1 && blueprint.config().compat == Compat::Reference {
+    let jobs = plan.parallel();
+    if plan.jobs > 1 && plan.episodes > 1 && blueprint.config().compat == Compat::Reference {
         return Err(EpisodeError::Jobs);
     }
     let (next, failed) = (AtomicU64::new(0), AtomicBool::new(false));

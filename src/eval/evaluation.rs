@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::film::{Film, FilmError, RoomFilm};
-use super::scores::{Score, ScoreError};
+use super::scores::{MAX_EPISODES, Score, ScoreError};
 use crate::config::Behavior;
 use crate::env::Env;
 use crate::formats::avi::DEFAULT_FPS;
-use crate::runs::logs::{EvaluationLog, LogError, read_training, training_path};
+use crate::runs::logs::{EvaluationLog, LogError, read_recent, training_path};
 
 /// An error of an evaluation.
 #[derive(Debug, Error)]
@@ -60,9 +60,20 @@ pub enum EvaluationError {
 /// # Errors
 /// No log, a damaged one, one without score.
 pub fn eval_logs(save_dir: impl AsRef<Path>) -> Result<Score, EvaluationError> {
-    let records = read_training(&save_dir)?;
-    let path = training_path(save_dir);
-    Score::new(&records).map_err(|source| EvaluationError::Score { path, source })
+    score(training_path(save_dir), None)
+}
+
+/// Returns the score of a training log, which must be of a behavior, if one is given.
+fn score(path: PathBuf, behavior: Option<Behavior>) -> Result<Score, EvaluationError> {
+    // the oldest never counts
+    let records = read_recent(&path, MAX_EPISODES + 1)?.records;
+    let found = records.first().map(|r| r.behavior.name());
+    match (found, behavior) {
+        (Some(found), Some(expected)) if found != expected.name() => {
+            Err(EvaluationError::Behavior { path, found, expected })
+        }
+        _ => Score::new(&records).map_err(|source| EvaluationError::Score { path, source }),
+    }
 }
 
 /// Evaluates a behavior: the training log, and episodes with a learned policy.
@@ -163,15 +174,7 @@ impl<'f> Evaluation<'f> {
     /// # Errors
     /// No log, a damaged one, one of another behavior, one without score.
     pub fn eval_logs(&self) -> Result<Score, EvaluationError> {
-        let records = read_training(&self.save_dir)?;
-        let path = training_path(&self.save_dir);
-        match records.first().map(|r| r.behavior.name()) {
-            Some(found) if found != self.behavior.name() => {
-                let expected = self.behavior;
-                Err(EvaluationError::Behavior { path, found, expected })
-            }
-            _ => Score::new(&records).map_err(|source| EvaluationError::Score { path, source }),
-        }
+        score(training_path(&self.save_dir), Some(self.behavior))
     }
 
     /// Discards the steps since the last end.

@@ -8,4 +8,4 @@ mod scores;
 pub use episodes::{EpisodeError, Plan, run_episodes};
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
 pub use film::{Film, FilmError, RoomFilm};
-pub use scores::{MAX_EPISODES, Score, ScoreError, ScoreParts, Touchables};
+pub use scores::{MAX_EPISODES, Score, ScoreError, ScoreParts, Touchables, steps};

@@ -5,20 +5,19 @@
 
 mod serial;
 
+use std::collections::BTreeSet;
 use std::fmt::{self, Write as _};
 use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames, PerEyeAndHand, PerHand};
+use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames, PerEyeAndHand, PerHand, SCORED_PARTS as PARTS};
 use crate::json;
 use crate::model::Model;
-use crate::physics::world::PairTable;
+use crate::physics::world::ContactRules;
 
 /// Maximum number of records that count.
 pub const MAX_EPISODES: usize = 10_000;
-/// Parts in the denominator for each hand: MIMo v1's 36 geoms without the two of the palm itself.
-const PARTS: usize = 34;
 
 /// An error that leaves a log without a score.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -79,19 +78,16 @@ impl Score {
     pub fn new(records: &[Info]) -> Result<Self, ScoreError> {
         let first = records.first().ok_or(ScoreError::Empty)?;
         let chosen = Self::counted(records);
-        let (episodes, steps) = (chosen.len(), chosen.iter().map(|r| r.steps).sum());
+        let (episodes, steps) = (chosen.len(), steps(chosen));
         let (value, parts) = match first.behavior {
             BehaviorInfo::None => return Err(ScoreError::NoBehavior),
             BehaviorInfo::SelfTouch { .. } => {
                 let touched = PerHand::from_fn(|hand| {
                     let lists = chosen.iter().filter_map(|r| r.behavior.touches());
-                    let mut all: Vec<usize> = lists.flat_map(|t| t[hand].iter().copied()).collect();
-                    all.sort_unstable();
-                    all.dedup();
-                    all
+                    let all: BTreeSet<usize> = lists.flat_map(|t| t[hand].iter().copied()).collect();
+                    all.into_iter().collect::<Vec<usize>>()
                 });
-                let number: usize = touched.each_ref().map(Vec::len).iter().sum();
-                (number as f64 / (2 * PARTS) as f64, ScoreParts::SelfTouch { touched })
+                (of_touched(&touched), ScoreParts::SelfTouch { touched })
             }
             BehaviorInfo::HandRegard { .. } => {
                 if steps == 0 {
@@ -115,6 +111,19 @@ impl Score {
         })
     }
 
+    /// Leaves out the geoms that no hand can reach in the scene of `skin`, which the log must be of.
+    #[must_use]
+    pub fn within_reach(mut self, skin: &Touchables) -> Self {
+        if let ScoreParts::SelfTouch { touched } = &mut self.parts {
+            let hands = [&mut touched.right_hand, &mut touched.left_hand];
+            for (hand, geoms) in hands.into_iter().enumerate() {
+                geoms.retain(|g| skin.reachable(hand).binary_search(g).is_ok());
+            }
+            self.value = of_touched(touched);
+        }
+        self
+    }
+
     /// Returns the records that count.
     pub fn counted(records: &[Info]) -> &[Info] {
         let first = records.len().saturating_sub(MAX_EPISODES).max(1);
@@ -129,13 +138,7 @@ impl Score {
 
     /// Returns the score that one episode would have alone; `None` without steps or behavior.
     pub fn of_episode(record: &Info, steps: u64) -> Option<f64> {
-        if steps == 0 {
-            return None;
-        }
-        let touches = record.behavior.touches();
-        let regards = record.behavior.regards();
-        let touched = touches.map(|[right, left]| (right.len() + left.len()) as f64 / (2 * PARTS) as f64);
-        touched.or_else(|| regards.map(|counts| counts.iter().map(|&c| c as f64).sum::<f64>() / (4.0 * steps as f64)))
+        record.behavior.score(steps)
     }
 
     /// Returns the shares of the steps in which each eye had each hand in view, if the behavior is `hand_regard`.
@@ -192,6 +195,17 @@ impl Score {
     }
 }
 
+/// Returns the score of the geoms that each hand has touched; a hand has no more than its parts.
+fn of_touched(touched: &PerHand<Vec<usize>>) -> f64 {
+    let number: usize = touched.each_ref().iter().map(|t| t.len().min(PARTS)).sum();
+    number as f64 / (2 * PARTS) as f64
+}
+
+/// Returns the number of steps in records.
+pub fn steps(records: &[Info]) -> u64 {
+    records.iter().fold(0, |sum, r| sum.saturating_add(r.steps))
+}
+
 impl fmt::Display for Score {
     /// Formats the line that the kit prints.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -216,10 +230,10 @@ impl Touchables {
         let own: Vec<usize> = (0..model.ngeom())
             .filter(|&g| model.in_subtree(model.geom_bodyid[g], hip))
             .collect();
-        let pairs = PairTable::new(model);
+        let rules = ContactRules::new(model);
         let reachable = hands.map(|hand| {
             let palm = || own.iter().filter(|&&g| model.geom_bodyid[g] == hand);
-            let by = |g: usize| palm().any(|&p| pairs.find(p, g).is_some());
+            let by = |g: usize| palm().any(|&p| rules.allow(p, g));
             own.iter()
                 .copied()
                 .filter(|&g| model.geom_bodyid[g] != hand && by(g))

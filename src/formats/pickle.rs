@@ -19,6 +19,7 @@ mod construct;
 mod machine;
 mod numbers;
 mod objects;
+mod records;
 mod stack;
 #[cfg(test)]
 mod tests;
@@ -28,6 +29,7 @@ mod writer;
 use std::sync::Arc;
 
 pub use machine::{from_bytes, from_bytes_with};
+pub(crate) use records::{Node, Root, visit_records};
 use thiserror::Error;
 pub use writer::to_bytes;
 

@@ -1,5 +1,7 @@
 //! Pictures in files.
 
+mod read;
+
 use std::path::{Path, PathBuf};
 
 use image::codecs::png::PngEncoder;
@@ -7,6 +9,8 @@ use image::{ExtendedColorType, ImageEncoder as _, ImageError};
 use thiserror::Error;
 
 use crate::files::replace_file;
+
+pub(crate) use read::decode_png;
 
 /// An error in writing a picture.
 #[derive(Debug, Error)]

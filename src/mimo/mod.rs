@@ -2,12 +2,15 @@
 
 mod anatomy;
 mod assets;
+mod growth;
 mod locks;
 mod parts;
+mod placement;
 mod scene;
 
 pub use anatomy::{BodyKind, body_kind};
 pub use assets::embedded;
+pub use growth::{Growth, GrowthError};
 pub use locks::{LockError, LockReport, LockTarget, held_by, lock, lock_of, unlock};
 pub use parts::{MimoJoints, joint_part};
-pub use scene::{DOCUMENT, Version, build_model, scene_xml};
+pub use scene::{DOCUMENT, SceneError, Version, build_model, scene_xml};

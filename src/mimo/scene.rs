@@ -2,14 +2,21 @@
 
 use std::fmt::Write as _;
 
+use thiserror::Error;
+
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Behavior, Config, Part, Scene};
-use crate::mjcf_loader::{LoadError, load_str};
+use crate::mimo::placement::lowest_point;
+use crate::mimo::{Growth, GrowthError};
+use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
-use crate::physics::compile;
+use crate::physics::{EngineError, compile};
 
 /// Gives the path of the top document in the assets; includes and textures are found relative to it.
 pub const DOCUMENT: &str = "babybench/scene.xml";
+
+/// Name of the body that places MIMo in the world, and of its free joint.
+const MIMO: &str = "mimo_location";
 
 /// A version of MIMo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -59,9 +66,13 @@ pub fn scene_xml(config: &Config) -> String {
         Scene::Crib => r#"pos="0 0 0.3" euler="0 -90 0""#,
         Scene::Cubes => r#"pos="0 0 0.0467196" quat="0.885453 -0.000184209 -0.464728 -0.000527509""#,
     };
+    let name = match config.age {
+        None => "MIMo".to_string(),
+        Some(age) => format!("MIMo at {age} months"),
+    };
     let mut xml = format!(
-        "<mujoco model=\"MIMo\">\n  <worldbody>\n    <body name=\"mimo_location\" {pose}>\n      \
-         <freejoint name=\"mimo_location\"/>\n      <include file=\"mimo_{version}.xml\"/>\n    </body>\n  \
+        "<mujoco model=\"{name}\">\n  <worldbody>\n    <body name=\"{MIMO}\" {pose}>\n      \
+         <freejoint name=\"{MIMO}\"/>\n      <include file=\"mimo_{version}.xml\"/>\n    </body>\n  \
          </worldbody>\n"
     );
     let mut include = |file: &str| {
@@ -92,10 +103,42 @@ pub fn scene_xml(config: &Config) -> String {
     xml
 }
 
-/// Loads and compiles the scene of a configuration from `assets`.
+/// An error in making a scene.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The assets cannot be read or compiled.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// MIMo cannot grow to the age of the configuration.
+    #[error(transparent)]
+    Growth(#[from] GrowthError),
+    /// MIMo of that age has no pose that can be simulated.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+}
+
+/// Loads and compiles the scene of a configuration from `assets`, with MIMo at his age.
+///
+/// A MIMo of another size than the original's is moved up or down until his lowest point is where the original's is.
 ///
 /// # Errors
-/// Fails if the assets cannot be read or compiled; the error names file, line and element.
-pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, LoadError> {
-    compile(load_str(&scene_xml(config), DOCUMENT, assets)?)
+/// Fails if the assets cannot be read or compiled, and then names file, line and element; if MIMo cannot grow to the age.
+pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, SceneError> {
+    let document = scene_xml(config);
+    let original = || Draft::read_str(&document, DOCUMENT, assets);
+    let Some(growth) = Growth::of(config)? else {
+        return Ok(compile(original()?.compile(assets)?)?);
+    };
+    let grown = |up: f64| -> Result<Model, SceneError> {
+        let mut draft = original()?;
+        growth.apply(&mut draft)?;
+        if let Some(pos) = draft.body_pos(MIMO) {
+            pos[2] += up;
+        }
+        Ok(compile(draft.compile(assets)?)?)
+    };
+    let before = lowest_point(&compile(original()?.compile(assets)?)?.into())?;
+    let after = lowest_point(&grown(0.0)?.into())?;
+    grown(before - after)
 }

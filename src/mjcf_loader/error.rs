@@ -1,5 +1,6 @@
 //! Errors with their place.
 
+use crate::text::quoted;
 use std::fmt;
 
 use crate::assets::AssetError;
@@ -66,7 +67,7 @@ pub enum ErrorKind {
     #[error("not UTF-8 text")]
     NotUtf8,
     /// The text breaks the rules of XML.
-    #[error("malformed XML: {0}")]
+    #[error("malformed XML: {}", quoted(.0))]
     Xml(String),
     /// XML that is legal but has no place in MJCF: document types, text, CDATA, processing instructions.
     #[error("{0} is not allowed; remove it")]
@@ -80,22 +81,22 @@ pub enum ErrorKind {
         limit: usize,
     },
     /// The root of the main document is not `mujoco`.
-    #[error("the root element is \"{0}\", not \"mujoco\"")]
+    #[error("the root element is \"{}\", not \"mujoco\"", quoted(.0))]
     WrongRoot(String),
     /// A file is included twice, or includes itself.
-    #[error("file \"{0}\" is already included")]
+    #[error("file \"{}\" is already included", quoted(.0))]
     RepeatedInclude(String),
     /// An element that is unknown, unsupported or in the wrong place.
-    #[error("unknown element \"{0}\"")]
+    #[error("unknown element \"{}\"", quoted(.0))]
     UnknownElement(String),
     /// An element that may stand here once only.
-    #[error("element \"{0}\" is given twice")]
+    #[error("element \"{}\" is given twice", quoted(.0))]
     RepeatedElement(&'static str),
     /// An attribute that is unknown or unsupported.
-    #[error("unknown attribute \"{0}\"")]
+    #[error("unknown attribute \"{}\"", quoted(.0))]
     UnknownAttribute(String),
     /// An attribute given twice.
-    #[error("attribute \"{0}\" is given twice")]
+    #[error("attribute \"{}\" is given twice", quoted(.0))]
     DuplicateAttribute(String),
     /// A required attribute is missing.
     #[error("attribute \"{0}\" is required")]
@@ -104,7 +105,7 @@ pub enum ErrorKind {
     #[error("attributes \"{0}\" and \"{1}\" are mutually exclusive")]
     Conflict(&'static str, &'static str),
     /// A word that is not one of those allowed here.
-    #[error("{attribute}=\"{text}\": not one of {}", .allowed.join(", "))]
+    #[error("{attribute}=\"{}\": not one of {}", quoted(.text), .allowed.join(", "))]
     BadWord {
         /// The attribute.
         attribute: &'static str,
@@ -114,7 +115,7 @@ pub enum ErrorKind {
         allowed: &'static [&'static str],
     },
     /// A value that is not a finite number.
-    #[error("{attribute}: \"{text}\" is not a finite number")]
+    #[error("{attribute}: \"{}\" is not a finite number", quoted(.text))]
     BadNumber {
         /// The attribute.
         attribute: &'static str,
@@ -122,7 +123,7 @@ pub enum ErrorKind {
         text: String,
     },
     /// A number that is not zero but too near it for its digits to be kept.
-    #[error("{attribute}: \"{text}\" is too small to represent; write 0")]
+    #[error("{attribute}: \"{}\" is too small to represent; write 0", quoted(.text))]
     TooSmall {
         /// The attribute.
         attribute: &'static str,
@@ -162,13 +163,13 @@ pub enum ErrorKind {
         max: usize,
     },
     /// A default class that was not declared.
-    #[error("unknown default class \"{0}\"")]
+    #[error("unknown default class \"{}\"", quoted(.0))]
     UnknownClass(String),
     /// A default class declared twice.
-    #[error("default class \"{0}\" is declared twice")]
+    #[error("default class \"{}\" is declared twice", quoted(.0))]
     DuplicateClass(String),
     /// Two elements of a kind with the same name.
-    #[error("{kind} name \"{name}\" is used twice")]
+    #[error("{kind} name \"{}\" is used twice", quoted(.name))]
     DuplicateName {
         /// Kind of element.
         kind: &'static str,
@@ -176,7 +177,7 @@ pub enum ErrorKind {
         name: String,
     },
     /// A name that no element has.
-    #[error("{attribute}: there is no {kind} \"{name}\"")]
+    #[error("{attribute}: there is no {kind} \"{}\"", quoted(.name))]
     UnknownName {
         /// The attribute that refers.
         attribute: &'static str,

@@ -47,7 +47,13 @@ fn limits_are_the_callers() {
         load_str_with(text, "m.xml", &other, limits).map_or_else(|error| error.kind.to_string(), |_| String::new())
     };
     type Case = (&'static str, fn(&mut Limits), &'static str);
-    let cases: [Case; 10] = [
+    let two = "<worldbody><body><freejoint/><geom name='a' size='1'/></body><geom name='b' size='1'/></worldbody>\
+               <contact><pair geom1='a' geom2='b'/></contact>";
+    let cases: [Case; 14] = [
+        (two, |l| l.bodies = 1, "more than 1 bodies"),
+        (two, |l| l.geoms = 1, "more than 1 geoms"),
+        (two, |l| l.dofs = 5, "more than 5 degrees of freedom"),
+        (two, |l| l.pairs = 0, "more than 0 contact pairs"),
         ("", |l| l.document_bytes = 16, "more than 16 bytes of XML in total"),
         ("<option/>", |l| l.elements = 1, "more than 1 elements"),
         ("<option/>", |l| l.depth = 1, "more than 1 nested elements"),

@@ -28,6 +28,7 @@
 mod attribute;
 mod compile;
 mod document;
+mod draft;
 mod elements;
 mod error;
 #[cfg(test)]
@@ -45,13 +46,16 @@ mod tests;
 mod words;
 mod xml;
 
+use compile::volume as geom_volume;
+pub use draft::{Draft, DraftActuator, DraftGeom};
 pub use error::{ErrorKind, LoadError, Place};
 pub use listing::{AttributeInfo, ElementInfo, elements};
 pub(crate) use spec::Places;
 pub use spec::Spec;
+#[cfg(feature = "eval")]
 pub(crate) use xml::Tree;
 
-use crate::assets::{AssetSource, directory, resolve};
+use crate::assets::{AssetSource, resolve};
 use crate::limits::Limits;
 
 /// Loads the document at `path` in `source`.
@@ -93,19 +97,5 @@ pub fn load_str_with(
     source: &dyn AssetSource,
     limits: &Limits,
 ) -> Result<Spec, LoadError> {
-    let path = resolve("", virtual_path).map_err(|e| LoadError::in_file(virtual_path, e))?;
-    let (tree, root) = Tree::read(xml, &path, source, limits)?;
-    let name = &tree.nodes[root].name;
-    if name != "mujoco" {
-        return Err(tree.error(root, ErrorKind::WrongRoot(name.clone())));
-    }
-    let checked = schema::check(&tree, root, &elements::MUJOCO)?;
-    let document = read::read(&tree, &checked)?;
-    let arrays = compile::compile(&tree, &document, source, directory(&path))?;
-    let places = spec::Places {
-        bodies: document.bodies.iter().map(|body| body.at).collect(),
-        tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),
-        tree,
-    };
-    Ok(Spec { arrays, places })
+    Draft::read_str_with(xml, virtual_path, source, limits)?.compile(source)
 }

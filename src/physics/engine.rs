@@ -35,18 +35,17 @@ pub trait Engine: Send + Sync {
         State::new(self.model(), self.topology())
     }
 
-    /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`.
-    ///
-    /// # Panics
-    /// The state is of another model.
+    /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`. It is empty
+    /// if the state is of another model.
     fn full_m(&self, state: &State) -> Vec<f64> {
-        self.topology().full(&state.qm)
+        match state.qm.len() == self.topology().tiles.tiles() {
+            true => self.topology().full(&state.qm),
+            false => Vec::new(),
+        }
     }
 
-    /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows.
-    ///
-    /// # Panics
-    /// The state is of another model.
+    /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows, or the state
+    /// is of another model.
     fn efc_j(&self, state: &State, row: usize) -> Option<Vec<f64>> {
         state.efc.jacobian_row(self.topology(), row)
     }
@@ -144,6 +143,34 @@ pub enum EngineError {
         /// The number.
         value: f64,
     },
+    /// A force is applied to a body that does not exist.
+    #[error("there is no body {body}; the model has {count}, numbered from 0")]
+    NoBody {
+        /// Body asked for, by id.
+        body: usize,
+        /// Number of bodies.
+        count: usize,
+    },
+    /// A force applied to a body is not finite.
+    #[error("{what}[{index}] is {value}: only finite forces, torques and points can be applied")]
+    Applied {
+        /// Vector at fault.
+        what: &'static str,
+        /// Position in it.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// More at once than a step may take.
+    #[error("more than {limit} {what} in step {step}: place the bodies apart, or let fewer of them touch")]
+    TooMany {
+        /// Steps done before.
+        step: u64,
+        /// What there is too much of.
+        what: &'static str,
+        /// The limit, of [`crate::Limits`].
+        limit: usize,
+    },
     /// The simulation diverged.
     #[error(
         "the simulation diverged in step {step} at joint {joint:?} ({what} = {value:e}): reset the environment, and use \
@@ -166,12 +193,13 @@ pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
     let p = &s.params;
     // empty without muscles
     let muscles = if s.muscle_torque.is_empty() { 0 } else { m.nu() };
-    let fields: [(&'static str, &[f64], usize); 9] = [
+    let fields: [(&'static str, &[f64], usize); 10] = [
         ("qpos", &s.qpos, m.nq),
         ("qvel", &s.qvel, m.nv),
         ("ctrl", &s.ctrl, m.nu()),
         ("muscle_torque", &s.muscle_torque, muscles),
         ("qfrc_applied", &s.qfrc_applied, m.nv),
+        ("xfrc_applied", s.xfrc_applied.as_flattened(), 6 * m.nbody()),
         ("params.eq_offset", &p.eq_offset, m.neq()),
         ("params.jnt_stiffness", &p.jnt_stiffness, m.njnt()),
         ("params.dof_damping", &p.dof_damping, m.nv),
@@ -214,6 +242,7 @@ pub(super) fn check_output(model: &Model, s: &State) -> Result<(), EngineError> 
 }
 
 /// Checks positions and velocities alone; see [`check_output`].
+#[cfg(feature = "rapier")]
 pub(super) fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel)])
 }

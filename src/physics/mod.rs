@@ -1,7 +1,7 @@
 //! `Model` + `State` -> next `State`.
 //!
 //! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space, on a scene that lives in Rapier.
-//! [`RapierEngine`] lets Rapier's own pipeline solve the same model, as multibodies.
+//! With the feature `rapier`, `RapierEngine` lets Rapier's own pipeline solve the same model, as multibodies.
 
 mod compile;
 mod constraint;
@@ -9,12 +9,14 @@ pub mod contact;
 mod dynamics;
 mod engine;
 mod params;
+#[cfg(feature = "rapier")]
 pub mod rapier;
 mod soft;
 mod spatial;
 mod state;
 mod tiles;
 mod topology;
+mod vectorize;
 pub mod world;
 
 pub use compile::compile;
@@ -22,6 +24,7 @@ pub use constraint::{ConstraintType, EfcRow};
 pub use dynamics::{cameras, kinematics};
 pub use engine::{Engine, EngineError, Probe, Stage};
 pub use params::Params;
+#[cfg(feature = "rapier")]
 pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions};
 pub use soft::{SoftEngine, SoftModel, SoftOptions};
 pub use state::{Contact, State};

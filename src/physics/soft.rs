@@ -9,6 +9,7 @@ use crate::physics::dynamics::*;
 use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_input, check_output};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
+use crate::physics::vectorize::vectorize;
 use crate::physics::world::{PairTable, RapierScene, Sweep};
 
 /// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
@@ -112,37 +113,74 @@ impl SoftEngine {
     }
 
     /// Computes the position stage: poses, inertia, contacts, constraint rows.
-    fn fwd_position(&mut self, s: &mut State) {
+    fn fwd_position(&mut self, s: &mut State) -> Result<(), EngineError> {
         self.mark(Some(Stage::Kinematics));
-        let model = &*self.model;
-        kinematics(model, s);
-        cameras(model, s);
-        com_pos(model, s);
-        crb(model, &self.topology, s);
-        self.bodies.update(model, s);
+        let (model, topology, bodies) = (&*self.model, &*self.topology, &mut self.bodies);
+        vectorize(
+            #[inline(always)]
+            || {
+                kinematics(model, s);
+                cameras(model, s);
+                com_pos(model, s);
+            },
+        );
+        vectorize(
+            #[inline(always)]
+            || crb(model, topology, s),
+        );
+        vectorize(
+            #[inline(always)]
+            || bodies.update(model, s),
+        );
         self.mark(Some(Stage::Scene));
         self.scene.sync(s);
         self.mark(Some(Stage::Collision));
         if self.options.disable_contacts {
             s.contact.clear();
         } else {
-            self.sweep.contacts(&self.model, &self.pairs, s);
+            let (sweep, model, pairs) = (&mut self.sweep, &*self.model, &*self.pairs);
+            vectorize(
+                #[inline(always)]
+                || sweep.contacts(model, pairs, s),
+            )?;
         }
         self.mark(Some(Stage::Constraints));
-        self.rows.build(&self.model, &self.topology, s);
+        let (rows, model, topology) = (&mut self.rows, &*self.model, &*self.topology);
+        vectorize(
+            #[inline(always)]
+            || rows.build(model, topology, s),
+        );
+        Ok(())
     }
 
     fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
         check_input(&self.model, s)?;
-        self.fwd_position(s);
+        self.fwd_position(s)?;
         self.mark(Some(Stage::Forces));
-        fwd_velocity(&self.model, s, &mut self.bias);
-        fwd_actuation(&self.model, &mut self.bodies, s);
+        let (model, bias, bodies) = (&*self.model, &mut self.bias, &mut self.bodies);
+        vectorize(
+            #[inline(always)]
+            || fwd_velocity(model, s, bias),
+        );
+        vectorize(
+            #[inline(always)]
+            || fwd_actuation(model, bodies, s),
+        );
         self.mark(Some(Stage::Solver));
-        self.newton.solve(&self.model, &self.topology, s);
+        let (newton, model, topology) = (&mut self.newton, &*self.model, &*self.topology);
+        vectorize(
+            #[inline(always)]
+            || newton.solve(model, topology, s),
+        );
         self.mark(Some(Stage::Wrenches));
-        rne_post_constraint(&self.model, s, self.options.double_weld_torque);
-        sensors(&self.model, s);
+        let (model, double_weld_torque) = (&*self.model, self.options.double_weld_torque);
+        vectorize(
+            #[inline(always)]
+            || {
+                rne_post_constraint(model, s, double_weld_torque);
+                sensors(model, s);
+            },
+        );
         check_output(&self.model, s)
     }
 }
@@ -177,7 +215,11 @@ impl Engine for SoftEngine {
     fn step(&mut self, state: &mut State) -> Result<(), EngineError> {
         self.compute(state)?;
         self.mark(Some(Stage::Integration));
-        self.integrator.advance(&self.model, &mut self.bodies, state);
+        let (integrator, model, bodies) = (&mut self.integrator, &*self.model, &mut self.bodies);
+        vectorize(
+            #[inline(always)]
+            || integrator.advance(model, bodies, state),
+        );
         self.mark(None);
         check_output(&self.model, state)
     }

@@ -1,8 +1,9 @@
 //! Everything about a scene that changes while it runs.
 
-use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3};
+use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, sub};
 use crate::model::Arrays;
 use crate::physics::constraint::{Efc, EfcRow};
+use crate::physics::engine::EngineError;
 use crate::physics::params::Params;
 use crate::physics::spatial::{Inertia, Spatial};
 use crate::physics::tiles::{Lanes, Tile};
@@ -73,6 +74,9 @@ pub struct State {
     pub muscle_torque: Vec<f64>,
     /// Generalised force applied from outside (nv), N and N m.
     pub qfrc_applied: Vec<f64>,
+    /// Force and torque applied from outside to each body (nbody) at its centre of mass `xipos`, world: force, N, torque,
+    /// N m. They act in every step until they are changed; [`State::apply_force`] adds to them.
+    pub xfrc_applied: Vec<[f64; 6]>,
     /// Start of the solver (nv): the last acceleration.
     pub qacc_warmstart: Vec<f64>,
     /// Parameters that may change.
@@ -151,7 +155,7 @@ pub struct State {
     // after constraints
     /// Body accelerations (nbody), gravity as upward acceleration of the world: rotation, rad/s^2, translation, m/s^2.
     pub cacc: Vec<[f64; 6]>,
-    /// External wrench on each body (nbody), of contacts and welds: torque, N m, force, N.
+    /// External wrench on each body (nbody), of contacts, welds and `xfrc_applied`: torque, N m, force, N.
     pub cfrc_ext: Vec<[f64; 6]>,
     /// Wrench that the parent exerts on each body (nbody): torque, N m, force, N.
     pub cfrc_int: Vec<[f64; 6]>,
@@ -175,6 +179,7 @@ impl State {
             muscle_force: Vec::new(),
             muscle_torque: Vec::new(),
             qfrc_applied: vec![0.0; nv],
+            xfrc_applied: vec![[0.0; 6]; nb],
             qacc_warmstart: vec![0.0; nv],
             params: Params::new(model),
             xpos: vec![[0.0; 3]; nb],
@@ -230,8 +235,56 @@ impl State {
         self.muscle_force.clone_from(&other.muscle_force);
         self.muscle_torque.clone_from(&other.muscle_torque);
         self.qfrc_applied.clone_from(&other.qfrc_applied);
+        self.xfrc_applied.clone_from(&other.xfrc_applied);
         self.qacc_warmstart.clone_from(&other.qacc_warmstart);
         self.params.clone_from(&other.params);
+    }
+
+    /// Adds a force (N) at a point (m) and a torque (N m) to what acts on a body, all in the world frame: MuJoCo's
+    /// `mj_applyFT` into [`State::xfrc_applied`]. The point is taken with the body's present pose, that of the start of the
+    /// last step. The force acts in every step until [`State::release_forces`] or the next reset.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let hand = env.model().body("right_hand").ok_or("MIMo has hands")?;
+    /// let action = vec![0.0; env.action_space().len()];
+    /// let before = env.state().xpos[hand];
+    /// for _ in 0..20 {
+    ///     let state = env.state_mut();
+    ///     state.release_forces();
+    ///     state.apply_force(hand, [0.0, 0.0, 5.0], [0.0; 3], state.xpos[hand])?;
+    ///     env.step(&action)?;
+    /// }
+    /// assert!(env.state().xpos[hand][2] > before[2] + 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A body that does not exist, numbers that are not finite; nothing is changed then.
+    pub fn apply_force(&mut self, body: usize, force: Vec3, torque: Vec3, point: Vec3) -> Result<(), EngineError> {
+        let count = self.xfrc_applied.len().min(self.xipos.len());
+        if body >= count {
+            return Err(EngineError::NoBody { body, count });
+        }
+        for (what, values) in [("force", force), ("torque", torque), ("point", point)] {
+            if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+                let value = values[index];
+                return Err(EngineError::Applied { what, index, value });
+            }
+        }
+        let moment = add(torque, cross(sub(point, self.xipos[body]), force));
+        for (sum, v) in self.xfrc_applied[body].iter_mut().zip(force.into_iter().chain(moment)) {
+            *sum += v;
+        }
+        Ok(())
+    }
+
+    /// Takes off all forces on bodies: sets [`State::xfrc_applied`] to zero.
+    pub fn release_forces(&mut self) {
+        self.xfrc_applied.fill([0.0; 6]);
     }
 
     /// Returns the gears (nu) that the reference shows: its muscles act through the gears of the actuators, so with

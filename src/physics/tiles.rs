@@ -200,6 +200,7 @@ pub(super) fn add_outer_products(c: &mut Tile, a: &[Lanes], b: &[Lanes]) {
 
 /// Solves `H x = b` in place, for `H = L' D L`: the diagonal tiles hold `L` below their diagonal, the others `D L`;
 /// `inv` is the inverse of `D`.
+#[inline(always)]
 pub(super) fn solve(pattern: &Pattern, h: &[Tile], inv: &[Lanes], x: &mut [Lanes]) {
     let n = pattern.rows();
     for i in (0..n).rev() {
@@ -238,6 +239,7 @@ pub(super) fn solve(pattern: &Pattern, h: &[Tile], inv: &[Lanes], x: &mut [Lanes
 }
 
 /// Computes `out = H x`; the diagonal tiles must hold both triangles.
+#[inline(always)]
 pub fn mul(pattern: &Pattern, h: &[Tile], x: &[Lanes], out: &mut [Lanes]) {
     for i in 0..pattern.rows() {
         let (head, tail) = out.split_at_mut(i);

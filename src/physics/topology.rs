@@ -190,6 +190,7 @@ impl Topology {
     }
 
     /// Copies the values of the degrees of freedom from `lanes` to the vector `x`.
+    #[cfg(any(test, feature = "rapier"))]
     #[inline]
     pub(crate) fn read_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
         for (&slot, v) in self.slot.iter().zip(x) {

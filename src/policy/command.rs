@@ -1,21 +1,24 @@
 //! Policies that are other programs.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
 use super::protocol::{Line, parse};
 use super::{Moment, Policy, PolicyError};
 use crate::env::Env;
 use crate::json;
+use crate::limits::Limits;
+use crate::text::quoted;
 
-/// Longest answer of a command, bytes.
-const MAX_LINE: u64 = 1 << 20;
 /// The default time limit of a command for an action.
 pub const DEFAULT_LIMIT: Duration = Duration::from_secs(60);
 /// The time a command has to exit after the end of its input.
 const FAREWELL: Duration = Duration::from_secs(1);
+
+/// What is wrong with an answer that comes without a question.
+const EARLY: &str = "it wrote this without being asked, so that its answers no longer belong to the observations";
 
 /// A policy in another program, in any language: a line of JSON with the observation goes to its standard input, a line
 /// with a JSON list of numbers, the action, comes back from its standard output. Its standard error is passed through.
@@ -23,7 +26,8 @@ const FAREWELL: Duration = Duration::from_secs(1);
 /// The line is an object with the number of the `episode` and of the `step` in it (both from 0), and the keys of the
 /// active senses: `observation`, `touch` and `vestibular` are lists of numbers, `eye_left` and `eye_right` are objects
 /// `{"shape": [height, width, 3], "data": "..."}` with the bytes of the image in base64 (red, green, blue of each
-/// pixel, rows from the top). At step 0 of an episode there is also `action_space`, an object with the lists `low` and
+/// pixel, rows from the top), and what else `vision_outputs` asks for, such as `eye_left_depth`, are objects `{"shape":
+/// [height, width], "dtype": "float32", "data": "..."}`, the lowest byte of a number first. At step 0 of an episode there is also `action_space`, an object with the lists `low` and
 /// `high`. Numbers that are not finite, which JSON cannot say, are `null`. The input ends when there are no more
 /// episodes. In Python:
 /// ```python
@@ -34,10 +38,10 @@ const FAREWELL: Duration = Duration::from_secs(1);
 ///     obs = json.loads(line)
 ///     if obs["step"] == 0:
 ///         low, high = obs["action_space"]["low"], obs["action_space"]["high"]
-///     for eye in ("eye_left", "eye_right"):
-///         if eye in obs:
-///             image = np.frombuffer(base64.b64decode(obs[eye]["data"]), np.uint8)
-///             obs[eye] = image.reshape(obs[eye]["shape"])
+///     for key, image in obs.items():
+///         if key.startswith("eye_"):
+///             data = np.frombuffer(base64.b64decode(image["data"]), image.get("dtype", "uint8"))
+///             obs[key] = data.reshape(image["shape"])
 ///     action = [0.0] * len(low)  # here goes the policy
 ///     print(json.dumps(action), flush=True)
 /// ```
@@ -45,11 +49,19 @@ pub struct CommandPolicy {
     command: String,
     child: Child,
     /// Lines for the thread that writes: a program that reads nothing would block it.
-    observations: Option<Sender<Vec<u8>>>,
-    /// Answers from the thread that reads.
-    answers: Receiver<std::io::Result<Vec<u8>>>,
+    observations: Option<SyncSender<Vec<u8>>>,
+    /// Answers from the thread that reads, which waits until one is taken.
+    answers: Receiver<std::io::Result<Answer>>,
     limit: Duration,
     now: Moment,
+}
+
+/// A line that a command wrote.
+#[derive(Debug)]
+struct Answer {
+    line: Vec<u8>,
+    /// What is wrong with it, whatever it says.
+    fault: Option<String>,
 }
 
 impl std::fmt::Debug for CommandPolicy {
@@ -69,6 +81,14 @@ impl CommandPolicy {
     /// # Errors
     /// A quote that is not closed; a program that cannot be started.
     pub fn start(command: &str) -> Result<Self, PolicyError> {
+        Self::start_with(command, &Limits::DEFAULT)
+    }
+
+    /// Starts a command as [`CommandPolicy::start`] does, whose answers have at most [`Limits::answer_bytes`].
+    ///
+    /// # Errors
+    /// As [`CommandPolicy::start`].
+    pub fn start_with(command: &str, limits: &Limits) -> Result<Self, PolicyError> {
         let malformed = |reason| PolicyError::Words {
             command: command.to_string(),
             reason,
@@ -84,14 +104,22 @@ impl CommandPolicy {
         })?;
         let mut program = Command::new(name);
         program.args(arguments);
-        Self::spawn(program, command)
+        Self::spawn_with(program, command, limits)
     }
 
     /// Starts a program, which errors call `name`.
     ///
     /// # Errors
     /// It cannot be started.
-    pub fn spawn(mut program: Command, name: &str) -> Result<Self, PolicyError> {
+    pub fn spawn(program: Command, name: &str) -> Result<Self, PolicyError> {
+        Self::spawn_with(program, name, &Limits::DEFAULT)
+    }
+
+    /// Starts a program as [`CommandPolicy::spawn`] does, whose answers have at most [`Limits::answer_bytes`].
+    ///
+    /// # Errors
+    /// As [`CommandPolicy::spawn`].
+    pub fn spawn_with(mut program: Command, name: &str, limits: &Limits) -> Result<Self, PolicyError> {
         let failed = |source| PolicyError::Start {
             command: name.to_string(),
             source,
@@ -101,10 +129,12 @@ impl CommandPolicy {
         let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(failed(std::io::Error::other("no pipe")));
         };
-        let (observations, lines) = channel();
-        let (sender, answers) = channel();
+        // a program that writes without being asked fills the pipe, not the memory
+        let (observations, lines) = sync_channel(1);
+        let (sender, answers) = sync_channel(1);
+        let longest = limits.answer_bytes;
         std::thread::spawn(move || write_lines(input, &lines));
-        std::thread::spawn(move || read_lines(output, &sender));
+        std::thread::spawn(move || read_lines(output, longest, &sender));
         Ok(Self {
             command: name.to_string(),
             child,
@@ -123,33 +153,49 @@ impl CommandPolicy {
     }
 
     /// Sends a line to the command and returns its answer.
-    fn ask(&mut self, line: Vec<u8>) -> Result<Vec<u8>, PolicyError> {
-        let when = self.now;
-        if let Some(observations) = &self.observations {
-            // if the command takes no more, it has ended, and so has its output
-            let _ = observations.send(line);
+    fn ask(&mut self, line: Vec<u8>) -> Result<Answer, PolicyError> {
+        match self.answers.try_recv() {
+            Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
+            Ok(Err(e)) => return Err(self.ended(e.to_string())),
+            Ok(Ok(early)) => {
+                let fault = Some(EARLY.to_string());
+                return Ok(Answer { fault, ..early });
+            }
         }
-        let command = self.command.clone();
+        match self
+            .observations
+            .as_ref()
+            .map(|observations| observations.try_send(line))
+        {
+            Some(Err(TrySendError::Full(_))) => return Err(self.timeout()),
+            // if the command takes no more, it has ended, and so has its output
+            Some(Ok(()) | Err(TrySendError::Disconnected(_))) | None => {}
+        }
         match self.answers.recv_timeout(self.limit) {
             Ok(Ok(answer)) => Ok(answer),
-            Ok(Err(e)) => Err(PolicyError::Ended {
-                command,
-                status: e.to_string(),
-                when,
-            }),
-            Err(RecvTimeoutError::Timeout) => Err(PolicyError::Timeout {
-                command,
-                seconds: self.limit.as_secs_f64(),
-                when,
-            }),
+            Ok(Err(e)) => Err(self.ended(e.to_string())),
+            Err(RecvTimeoutError::Timeout) => Err(self.timeout()),
             Err(RecvTimeoutError::Disconnected) => {
                 self.observations = None;
                 let status = match wait(&mut self.child, FAREWELL) {
                     Some(status) => status.to_string(),
                     None => "it closed its output".to_string(),
                 };
-                Err(PolicyError::Ended { command, status, when })
+                Err(self.ended(status))
             }
+        }
+    }
+
+    fn ended(&self, status: String) -> PolicyError {
+        let (command, when) = (self.command.clone(), self.now);
+        PolicyError::Ended { command, status, when }
+    }
+
+    fn timeout(&self) -> PolicyError {
+        PolicyError::Timeout {
+            command: self.command.clone(),
+            seconds: self.limit.as_secs_f64(),
+            when: self.now,
         }
     }
 }
@@ -171,14 +217,20 @@ fn write_lines(mut input: ChildStdin, lines: &Receiver<Vec<u8>>) {
     }
 }
 
-/// Passes lines on until the output ends.
-fn read_lines(output: ChildStdout, lines: &Sender<std::io::Result<Vec<u8>>>) {
+/// Passes lines on, each as soon as the one before is taken, until the output ends.
+fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Result<Answer>>) {
     let mut output = BufReader::new(output);
     loop {
         let mut line = Vec::new();
-        let read = (&mut output).take(MAX_LINE).read_until(b'\n', &mut line);
+        let most = (longest as u64).saturating_add(1);
+        let read = (&mut output).take(most).read_until(b'\n', &mut line);
         let last = matches!(read, Ok(0) | Err(_));
-        if matches!(read, Ok(0)) || lines.send(read.map(|_| line)).is_err() || last {
+        let fault = match line.len() > longest {
+            true => Some(format!("it has more than {longest} bytes")),
+            false if output.buffer().is_empty() => None,
+            false => Some("more than one line came for one observation".to_string()),
+        };
+        if matches!(read, Ok(0)) || lines.send(read.map(|_| Answer { line, fault })).is_err() || last {
             return;
         }
     }
@@ -213,13 +265,14 @@ impl Policy for CommandPolicy {
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
         let mut line = json::text(&Line::new(env, self.now)).into_bytes();
         line.push(b'\n');
-        let answer = self.ask(line)?;
-        let answer = String::from_utf8_lossy(&answer);
+        let Answer { line, fault } = self.ask(line)?;
+        let answer = String::from_utf8_lossy(&line);
         let expected = env.action_space().len();
-        parse(answer.trim(), expected, action).map_err(|reason| PolicyError::Answer {
+        let parsed = fault.map_or_else(|| parse(answer.trim(), expected, action), Err);
+        parsed.map_err(|reason| PolicyError::Answer {
             command: self.command.clone(),
             answer: start(answer.trim()),
-            reason,
+            reason: quoted(&reason),
             expected,
             when: self.now,
         })?;
@@ -242,6 +295,32 @@ impl Drop for CommandPolicy {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What a program gives that writes this in one piece.
+    fn read(text: &[u8], longest: usize) -> Vec<Answer> {
+        let (sender, answers) = sync_channel(100);
+        read_lines(text, longest, &sender);
+        drop(sender);
+        answers.iter().map(|a| a.expect("no error")).collect()
+    }
+
+    #[test]
+    fn more_than_one_line_at_a_time_is_a_fault() {
+        let alone = read(b"[1]\n", 10);
+        assert!(
+            matches!(&alone[..], [Answer { line, fault: None }] if line == b"[1]\n"),
+            "{alone:?}"
+        );
+        let twice = read(b"[1]\n[1]\n", 10);
+        assert_eq!(twice.len(), 2);
+        assert_eq!(
+            twice[0].fault.as_deref(),
+            Some("more than one line came for one observation")
+        );
+        let long = read(&[b'1'; 100], 10);
+        assert_eq!(long[0].fault.as_deref(), Some("it has more than 10 bytes"));
+        assert_eq!(long[0].line.len(), 11);
+    }
 
     #[test]
     fn quotes_keep_words_together() {

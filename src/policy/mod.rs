@@ -95,6 +95,9 @@ pub enum PolicyError {
         /// The file.
         path: PathBuf,
     },
+    /// A policy of the caller's own fails.
+    #[error(transparent)]
+    Other(Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// A moment of an evaluation.

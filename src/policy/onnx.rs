@@ -1,5 +1,8 @@
 //! Policies that are ONNX models.
 
+mod bounds;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,8 +10,12 @@ use rten::{DataType, Dimension, Model, ModelOptions, NodeId, RunOptions, ThreadP
 use thiserror::Error;
 
 use super::{Policy, PolicyError};
-use crate::env::Env;
-use crate::spaces::{Dtype, ObservationSpace};
+use crate::env::{Env, Observation};
+use crate::files;
+use crate::limits::Limits;
+use crate::sensors::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION};
+use crate::spaces::{BoxSpace, Dtype, ObservationSpace};
+use crate::text::quoted;
 
 /// Names of outputs that hold the action; without one of them, the first output does.
 const OUTPUTS: [&str; 2] = ["action", "actions"];
@@ -82,7 +89,7 @@ pub enum OnnxError {
 /// A policy that is an ONNX model, such as one exported from Stable-Baselines3 or PyTorch.
 ///
 /// Inputs: one for each sense that the model uses, named after its key (`observation`, `touch`, `vestibular`,
-/// `eye_left`, `eye_right`), or a single one of any other name for all active senses, flattened and in the
+/// `eye_left`, `eye_right`, and those with `_gray`, `_depth` or `_segmentation` behind), or a single one of any other name for all active senses, flattened and in the
 /// alphabetical order of their keys, as Gymnasium's `FlattenObservation` makes it. Vectors have shape `[n]` or `[1,
 /// n]`; images `[height, width, 3]` or `[3, height, width]`, with or without a 1 in front, and values of 0 to 255
 /// (Stable-Baselines3 scales them in the model). The size of the batch, or of anything else, may be left open. Numbers
@@ -90,6 +97,9 @@ pub enum OnnxError {
 ///
 /// Output: the action, `float32`, named `action` or `actions`, or the first output. It is clipped to the action space,
 /// as Stable-Baselines3 does. A policy with squashed outputs has to bring them to the range of the action space itself.
+///
+/// A model need be trusted not to take all memory or time: sizes that stand in it are checked before it runs, but not those
+/// that it computes. It can read no file and start no program.
 ///
 /// A policy that was trained in the Python kit needs `compat: reference`, which has its order of proprioception and its
 /// action space. The last bits of the numbers may differ between machines: the runtime uses the vector instructions at
@@ -128,9 +138,22 @@ impl OnnxPolicy {
     /// A file that is missing or no model, operators that are not known.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, PolicyError> {
         let path = path.as_ref().to_path_buf();
-        let loaded = std::fs::read(&path).map_err(|e| OnnxError::Load(e.to_string()));
-        let loaded = loaded.and_then(Self::load);
-        match loaded {
+        match files::read(&path, Limits::DEFAULT.model_bytes) {
+            Ok(bytes) => Self::from_bytes(bytes, path),
+            Err(e) => {
+                let source = OnnxError::Load(e.to_string());
+                Err(PolicyError::Onnx { path, source })
+            }
+        }
+    }
+
+    /// Reads a model from memory; `name` stands for its file in errors.
+    ///
+    /// # Errors
+    /// Bytes that are no model, operators that are not known.
+    pub fn from_bytes(bytes: Vec<u8>, name: impl Into<PathBuf>) -> Result<Self, PolicyError> {
+        let path = name.into();
+        match Self::load(bytes) {
             Ok((model, output, output_name)) => Ok(Self {
                 path,
                 model,
@@ -150,8 +173,11 @@ impl OnnxPolicy {
     }
 
     fn load(bytes: Vec<u8>) -> Result<(Model, NodeId, String), OnnxError> {
-        let model = ModelOptions::with_all_ops().load(bytes);
-        let model = model.map_err(|e| OnnxError::Load(e.to_string()))?;
+        bounds::check(&bytes).map_err(|reason| OnnxError::Load(quoted(&reason)))?;
+        // the runtime panics on some models that are none
+        let model = catch_unwind(|| ModelOptions::with_all_ops().load(bytes));
+        let model = model.map_err(|_| OnnxError::Load("the runtime gave up on it".to_string()))?;
+        let model = model.map_err(|e| OnnxError::Load(quoted(&e.to_string())))?;
         if model.input_ids().is_empty() {
             return Err(OnnxError::Nothing("input"));
         }
@@ -161,9 +187,31 @@ impl OnnxPolicy {
         Ok((model, output, output_name))
     }
 
-    /// Matches the model's inputs with the senses of the environment.
-    fn connect(&self, env: &Env) -> Result<Vec<Input>, OnnxError> {
-        let spaces = env.observation_space();
+    /// Matches the model's inputs with senses, before [`OnnxPolicy::decide`]; with an environment,
+    /// [`Policy::begin`] does it.
+    ///
+    /// # Errors
+    /// An input that is no sense, or of another shape or type.
+    pub fn connect(&mut self, spaces: &[ObservationSpace]) -> Result<(), PolicyError> {
+        self.inputs = self.match_inputs(spaces).map_err(|e| self.error(e))?;
+        Ok(())
+    }
+
+    /// Writes the action for an observation into `action`, clipped to `space`: what [`Policy::act`] does, without an
+    /// environment.
+    ///
+    /// # Errors
+    /// The model fails, or its output is no action.
+    pub fn decide(
+        &self,
+        observation: &Observation,
+        space: &BoxSpace,
+        action: &mut Vec<f32>,
+    ) -> Result<(), PolicyError> {
+        self.run(observation, space, action).map_err(|e| self.error(e))
+    }
+
+    fn match_inputs(&self, spaces: &[ObservationSpace]) -> Result<Vec<Input>, OnnxError> {
         let ids = self.model.input_ids();
         let names: Vec<String> = ids.iter().map(|&id| name(&self.model, id)).collect();
         let find = |name: &str| spaces.iter().find(|s| s.key == name);
@@ -171,7 +219,7 @@ impl OnnxPolicy {
         for (&node, name) in ids.iter().zip(&names) {
             let input = match find(name) {
                 Some(space) => self.sense(node, name, space)?,
-                None if ids.len() == 1 => self.flat(node, name, &spaces)?,
+                None if ids.len() == 1 => self.flat(node, name, spaces)?,
                 None => {
                     let expected: Vec<_> = spaces.iter().map(|s| format!("{:?}", s.key)).collect();
                     return Err(OnnxError::Name {
@@ -277,19 +325,19 @@ impl OnnxPolicy {
         })
     }
 
-    fn run(&self, env: &Env, action: &mut Vec<f32>) -> Result<(), OnnxError> {
+    fn run(&self, seen: &Observation, space: &BoxSpace, action: &mut Vec<f32>) -> Result<(), OnnxError> {
         let failed = |e: &dyn std::fmt::Display| OnnxError::Run(e.to_string());
         let mut values: Vec<(NodeId, ValueOrView)> = Vec::with_capacity(self.inputs.len());
         for input in &self.inputs {
             let value = match input.bytes {
-                true => Value::from_shape(&input.shape, input.pixels(env)).map_err(|e| failed(&e))?,
-                false => Value::from_shape(&input.shape, input.numbers(env)).map_err(|e| failed(&e))?,
+                true => Value::from_shape(&input.shape, input.pixels(seen)).map_err(|e| failed(&e))?,
+                false => Value::from_shape(&input.shape, input.numbers(seen)).map_err(|e| failed(&e))?,
             };
             values.push((input.node, value.into()));
         }
-        let outputs = self.model.run(values, &[self.output], Some(self.options.clone()));
+        let run = || self.model.run(values, &[self.output], Some(self.options.clone()));
+        let outputs = catch_unwind(AssertUnwindSafe(run)).map_err(|_| failed(&"the runtime gave up"))?;
         let output = outputs.map_err(|e| failed(&e))?.pop();
-        let space = env.action_space();
         let misfit = |found: String| OnnxError::Output {
             name: self.output_name.clone(),
             found,
@@ -316,27 +364,26 @@ impl OnnxPolicy {
 }
 
 impl Input {
-    /// Returns the image of an eye.
-    fn pixels(&self, env: &Env) -> Vec<u8> {
-        let o = env.observation();
-        let image = match self.senses.first() {
-            Some(&"eye_left") => o.eye_left,
-            _ => o.eye_right,
-        };
-        self.ordered(image.unwrap_or_default())
+    /// Returns an image in bytes of an eye.
+    fn pixels(&self, o: &Observation) -> Vec<u8> {
+        let key = self.senses.first().copied().unwrap_or_default();
+        self.ordered(bytes_of(o, key))
     }
 
     /// Returns all senses as numbers.
-    fn numbers(&self, env: &Env) -> Vec<f32> {
-        let o = env.observation();
+    fn numbers(&self, o: &Observation) -> Vec<f32> {
         let single = |v: &[f64]| v.iter().map(|&x| x as f32).collect::<Vec<f32>>();
-        let image = |v: Option<&[u8]>| self.ordered(v.unwrap_or_default()).into_iter().map(f32::from).collect();
+        let eye = |key: &str| usize::from(key.starts_with(EYES[1]));
         let values = |sense: &&str| match *sense {
             "observation" => single(o.proprioception),
             "touch" => o.touch.unwrap_or_default().to_vec(),
             "vestibular" => single(o.vestibular.unwrap_or_default()),
-            "eye_left" => image(o.eye_left),
-            _ => image(o.eye_right),
+            key if EYES_DEPTH.contains(&key) => o.eye_depth.unwrap_or_default()[eye(key)].to_vec(),
+            key if EYES_SEGMENTATION.contains(&key) => {
+                let ids = o.eye_segmentation.unwrap_or_default()[eye(key)];
+                ids.iter().map(|&id| id as f32).collect()
+            }
+            key => self.ordered(bytes_of(o, key)).into_iter().map(f32::from).collect(),
         };
         self.senses.iter().flat_map(values).collect()
     }
@@ -350,6 +397,17 @@ impl Input {
     }
 }
 
+/// Returns an image in bytes by its key.
+fn bytes_of<'o>(o: &Observation<'o>, key: &str) -> &'o [u8] {
+    let [left, right] = o.eye_gray.unwrap_or_default();
+    match key {
+        key if key == EYES[0] => o.eye_left.unwrap_or_default(),
+        key if key == EYES[1] => o.eye_right.unwrap_or_default(),
+        key if key == EYES_GRAY[0] => left,
+        _ => right,
+    }
+}
+
 /// Returns the name of a node.
 fn name(model: &Model, id: NodeId) -> String {
     let info = model.node_info(id);
@@ -358,14 +416,13 @@ fn name(model: &Model, id: NodeId) -> String {
 
 impl Policy for OnnxPolicy {
     fn begin(&mut self, env: &mut Env) -> Result<(), PolicyError> {
-        self.inputs = self.connect(env).map_err(|e| self.error(e))?;
-        Ok(())
+        self.connect(&env.observation_space())
     }
 
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
         if self.inputs.is_empty() {
             self.begin(env)?;
         }
-        self.run(env, action).map_err(|e| self.error(e))
+        self.decide(&env.observation(), env.action_space(), action)
     }
 }

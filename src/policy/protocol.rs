@@ -1,5 +1,6 @@
 //! The lines of JSON between an evaluation and a policy in another program.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use base64::display::Base64Display;
@@ -8,7 +9,7 @@ use serde::Serializer;
 use serde::de::{DeserializeSeed, SeqAccess, Visitor};
 
 use super::Moment;
-use crate::env::Env;
+use crate::env::{Env, Observation};
 
 /// What a policy is told before each action. Senses that are not active are left out.
 #[derive(serde::Serialize)]
@@ -24,6 +25,8 @@ pub(super) struct Line<'a> {
     eye_left: Option<Image<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     eye_right: Option<Image<'a>>,
+    #[serde(flatten)]
+    eyes: Eyes<'a>,
     #[serde(skip_serializing_if = "Option::is_none")]
     vestibular: Option<&'a [f64]>,
 }
@@ -35,7 +38,7 @@ struct Bounds<'a> {
     high: &'a [f32],
 }
 
-/// An image: its shape, and its bytes in base64.
+/// An image in bytes: its shape, and its data in base64.
 #[derive(serde::Serialize)]
 struct Image<'a> {
     shape: [usize; 3],
@@ -43,7 +46,58 @@ struct Image<'a> {
     data: &'a [u8],
 }
 
-fn base64<S: Serializer>(data: &&[u8], serializer: S) -> Result<S::Ok, S::Error> {
+/// What the eyes see besides colours.
+#[derive(Default, serde::Serialize)]
+struct Eyes<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_left_gray: Option<Map<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_right_gray: Option<Map<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_left_depth: Option<Map<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_right_depth: Option<Map<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_left_segmentation: Option<Map<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eye_right_segmentation: Option<Map<'a>>,
+}
+
+/// An image of one number for each pixel: its shape, NumPy's name of its type, and its data, the lowest byte first, in
+/// base64.
+#[derive(serde::Serialize)]
+struct Map<'a> {
+    shape: [usize; 2],
+    dtype: &'static str,
+    #[serde(serialize_with = "base64")]
+    data: Cow<'a, [u8]>,
+}
+
+impl<'a> Eyes<'a> {
+    fn new(observation: &Observation<'a>, shape: [usize; 2]) -> Self {
+        fn pair<'a, T>(values: Option<[&'a [T]; 2]>, map: impl Fn(&'a [T]) -> Map<'a>) -> [Option<Map<'a>>; 2] {
+            values.map_or([None, None], |pair| pair.map(|v| Some(map(v))))
+        }
+        let map = |dtype, data| Map { shape, dtype, data };
+        let bytes = |v| map("uint8", Cow::Borrowed(v));
+        let floats = |v: &'a [f32]| map("float32", v.iter().flat_map(|x| x.to_le_bytes()).collect());
+        let ids = |v: &'a [i32]| map("int32", v.iter().flat_map(|x| x.to_le_bytes()).collect());
+        let [eye_left_gray, eye_right_gray] = pair(observation.eye_gray, bytes);
+        let [eye_left_depth, eye_right_depth] = pair(observation.eye_depth, floats);
+        let [eye_left_segmentation, eye_right_segmentation] = pair(observation.eye_segmentation, ids);
+        Self {
+            eye_left_gray,
+            eye_right_gray,
+            eye_left_depth,
+            eye_right_depth,
+            eye_left_segmentation,
+            eye_right_segmentation,
+        }
+    }
+}
+
+fn base64<S: Serializer>(data: &impl AsRef<[u8]>, serializer: S) -> Result<S::Ok, S::Error> {
+    let data = data.as_ref();
     serializer.collect_str(&Base64Display::new(data, &STANDARD))
 }
 
@@ -64,6 +118,7 @@ impl<'a> Line<'a> {
             touch: observation.touch,
             eye_left: observation.eye_left.map(image),
             eye_right: observation.eye_right.map(image),
+            eyes: Eyes::new(&observation, [shape[0], shape[1]]),
             vestibular: observation.vestibular,
         }
     }
@@ -192,13 +247,22 @@ mod tests {
                 data: &[255, 254, 0],
             }),
             eye_right: None,
+            eyes: Eyes {
+                eye_right_depth: Some(Map {
+                    shape: [1, 1],
+                    dtype: "float32",
+                    data: 1.5f32.to_le_bytes().to_vec().into(),
+                }),
+                ..Eyes::default()
+            },
             vestibular: None,
         };
         assert_eq!(
             json::text(&line),
             "{\"episode\": 0, \"step\": 0, \"action_space\": {\"low\": [null], \"high\": [1.5]}, \
              \"observation\": [null, 1e-300, -0.0], \"touch\": [], \
-             \"eye_left\": {\"shape\": [1, 1, 3], \"data\": \"//4A\"}}"
+             \"eye_left\": {\"shape\": [1, 1, 3], \"data\": \"//4A\"}, \
+             \"eye_right_depth\": {\"shape\": [1, 1], \"dtype\": \"float32\", \"data\": \"AADAPw==\"}}"
         );
     }
 }

@@ -4,6 +4,8 @@
 
 use std::f64::consts::PI;
 
+use super::strip::{STRIP_LANES, Strip};
+
 const SLICES: usize = 28;
 const STACKS: usize = 16;
 const QUADS: usize = 4;
@@ -33,6 +35,10 @@ pub struct Band {
     pub vertices: std::ops::Range<usize>,
     /// Triangles.
     pub triangles: std::ops::Range<usize>,
+    /// Number of its triangles that belong to no strip; they come first.
+    pub loose: usize,
+    /// Strips of the other triangles, in order.
+    pub strips: Vec<Strip>,
     /// Least coordinates of its vertices.
     pub low: [f32; 3],
     /// Greatest coordinates of its vertices.
@@ -57,6 +63,11 @@ pub struct Mesh {
     /// Indices of the vertices of each triangle.
     pub triangles: Vec<[u16; 3]>,
 }
+
+/// Corners of the first of a row of quadrilaterals: along the lower row and back along the upper one.
+const ALONG: [(usize, u16); 4] = [(0, 0), (0, 1), (1, 1), (1, 0)];
+/// The same, from the lower row to the upper one and back.
+const ACROSS: [(usize, u16); 4] = [(0, 0), (1, 0), (1, 1), (0, 1)];
 
 type Point = ([f32; 3], [f32; 3]);
 
@@ -105,17 +116,73 @@ impl Mesh {
             part,
             vertices: vertices..vertices,
             triangles: triangles..triangles,
+            loose: 0,
+            strips: Vec::new(),
             low: [f32::INFINITY; 3],
             high: [f32::NEG_INFINITY; 3],
         });
     }
 
-    /// Adds a triangle of vertices of the current band.
-    fn add(&mut self, corners: [u16; 3]) {
-        self.triangles.push(corners);
+    /// Adds a strip of vertices of the current band, with its triangles.
+    fn add(&mut self, strip: Strip) {
+        for j in 0..strip.count {
+            let [a, b, c, d] = strip.corners(j);
+            self.triangles.push([a, b, d]);
+            if !strip.fan {
+                self.triangles.push([b, c, d]);
+            }
+        }
         if let Some(band) = self.bands.last_mut() {
             band.triangles.end = self.triangles.len();
+            if strip.count.is_multiple_of(STRIP_LANES) {
+                band.strips.push(strip);
+            } else {
+                band.loose = band.triangles.len();
+            }
         }
+    }
+
+    /// Adds the vertices of a row that are new; returns the first. They stand one after the other.
+    fn row(&mut self, count: usize, at: impl Fn(usize) -> Point) -> u16 {
+        let first = self.vertex(at(0));
+        for j in 1..=count {
+            self.vertex(at(j));
+        }
+        first
+    }
+
+    /// Adds quadrilaterals between two rows of vertices, `at(column, row)`, split along the diagonal that Mesa chooses.
+    /// `corners` are the rows and columns of those of the first; they are in the opposite order if it does not face
+    /// outward.
+    fn strip(&mut self, count: usize, outward: bool, corners: [(usize, u16); 4], at: impl Fn(usize, usize) -> Point) {
+        let rows = [0, 1].map(|k| self.row(count, |j| at(j, k)));
+        let mut first = corners.map(|(row, column)| rows[row] + column);
+        if !outward {
+            first.reverse();
+        }
+        self.add(Strip {
+            first,
+            step: [1; 4],
+            count,
+            fan: false,
+        });
+    }
+
+    /// Adds triangles between a row of vertices and a point.
+    fn fan(&mut self, count: usize, outward: bool, at: impl Fn(usize) -> Point, point: Point) {
+        let row = self.row(count, at);
+        let point = self.vertex(point);
+        let (first, step) = if outward {
+            ([row, row + 1, point, point], [1, 1, 0, 0])
+        } else {
+            ([point, row + 1, row, row], [0, 1, 1, 1])
+        };
+        self.add(Strip {
+            first,
+            step,
+            count,
+            fan: true,
+        });
     }
 
     /// Fills up the current band.
@@ -125,26 +192,6 @@ impl Mesh {
         {
             self.push(([self.x[last], self.y[last], self.z[last]], self.normal[last]));
         }
-    }
-
-    fn triangle(&mut self, corners: [Point; 3]) {
-        let t = corners.map(|p| self.vertex(p));
-        self.add(t);
-    }
-
-    /// Adds a quadrilateral, split along the diagonal that Mesa chooses.
-    fn quad(&mut self, corners: [Point; 4]) {
-        let [a, b, c, d] = corners.map(|p| self.vertex(p));
-        self.add([a, b, d]);
-        self.add([b, c, d]);
-    }
-
-    fn oriented_quad(&mut self, outward: bool, [a, b, c, d]: [Point; 4]) {
-        self.quad(if outward { [a, b, c, d] } else { [d, c, b, a] });
-    }
-
-    fn oriented_triangle(&mut self, outward: bool, [a, b, c]: [Point; 3]) {
-        self.triangle(if outward { [a, b, c] } else { [c, b, a] });
     }
 
     /// Adds one half of a sphere, shifted along z by `shift`.
@@ -159,13 +206,9 @@ impl Mesh {
             ([n[0] as f32, n[1] as f32, (n[2] + shift) as f32], n.map(|v| v as f32))
         };
         let pole = ([0.0, 0.0, (sign + shift) as f32], [0.0, 0.0, sign as f32]);
-        for j in 0..SLICES {
-            self.oriented_triangle(up, [at(j, stacks - 1), at(j + 1, stacks - 1), pole]);
-        }
+        self.fan(SLICES, up, |j| at(j, stacks - 1), pole);
         for i in 0..stacks - 1 {
-            for j in 0..SLICES {
-                self.oriented_quad(up, [at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1)]);
-            }
+            self.strip(SLICES, up, ALONG, |j, k| at(j, i + k));
         }
     }
 
@@ -179,9 +222,7 @@ impl Mesh {
             if i.is_multiple_of(BAND_STACKS) {
                 self.band(MeshPart::Body);
             }
-            for j in 0..SLICES {
-                self.quad([at(j, i), at(j + 1, i), at(j + 1, i + 1), at(j, i + 1)]);
-            }
+            self.strip(SLICES, true, ALONG, |j, k| at(j, i + k));
         }
     }
 
@@ -194,13 +235,9 @@ impl Mesh {
             ([(c * r) as f32, (s * r) as f32, sign], [0.0, 0.0, sign])
         };
         let centre = ([0.0, 0.0, sign], [0.0, 0.0, sign]);
-        for j in 0..SLICES {
-            self.oriented_triangle(up, [at(j, 1), at(j + 1, 1), centre]);
-        }
+        self.fan(SLICES, up, |j| at(j, 1), centre);
         for k in 1..rings {
-            for j in 0..SLICES {
-                self.oriented_quad(up, [at(j, k + 1), at(j + 1, k + 1), at(j + 1, k), at(j, k)]);
-            }
+            self.strip(SLICES, up, ALONG, |j, inner| at(j, k + 1 - inner));
         }
     }
 
@@ -216,17 +253,13 @@ impl Mesh {
         let mut n = [0.0; 3];
         n[axis] = sign;
         for i in 0..QUADS {
-            for j in 0..QUADS {
-                let at = |a: usize, b: usize| {
-                    let mut p = [sign; 3];
-                    p[u] = step * a as f32 - 1.0;
-                    p[v] = step * b as f32 - 1.0;
-                    (p, n)
-                };
-                let lower = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                let [a, b, c, d] = lower;
-                self.quad(if outward { [a, b, c, d] } else { [d, c, b, a] });
-            }
+            let at = |b: usize, a: usize| {
+                let mut p = [sign; 3];
+                p[u] = step * (i + a) as f32 - 1.0;
+                p[v] = step * b as f32 - 1.0;
+                (p, n)
+            };
+            self.strip(QUADS, outward, ACROSS, at);
         }
     }
 
@@ -283,7 +316,7 @@ impl Mesh {
         let mut m = Self::default();
         m.band(MeshPart::Body);
         let at = |x, y| ([x, y, 0.0], [0.0, 0.0, 1.0]);
-        m.quad([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+        m.strip(1, true, ALONG, |j, k| at(2.0 * j as f32 - 1.0, 2.0 * k as f32 - 1.0));
         m.fill();
         m
     }
@@ -305,6 +338,15 @@ mod tests {
             assert_eq!((band.vertices.start, band.triangles.start), (vertices, faces));
             (vertices, faces) = (band.vertices.end, band.triangles.end);
             assert!(vertices.is_multiple_of(LANES));
+            let mut of_strips = mesh.triangles[band.triangles.clone()][band.loose..].iter();
+            for strip in &band.strips {
+                assert!(strip.count.is_multiple_of(STRIP_LANES));
+                for [a, b, c, d] in (0..strip.count).map(|j| strip.corners(j)) {
+                    assert_eq!(of_strips.next(), Some(&[a, b, d]));
+                    assert!(strip.fan || of_strips.next() == Some(&[b, c, d]));
+                }
+            }
+            assert!(of_strips.next().is_none());
             for t in mesh.triangles[band.triangles.clone()].as_flattened() {
                 let i = usize::from(*t);
                 assert!(band.vertices.contains(&i));

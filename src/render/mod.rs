@@ -30,6 +30,7 @@ mod cpu;
 pub mod gpu;
 mod mesh;
 mod renderer;
+mod strip;
 mod texture;
 mod view;
 mod visual;
@@ -41,8 +42,10 @@ pub use mesh::{Mesh, MeshPart};
 pub use renderer::Renderer;
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 pub use renderer::SharedGpu;
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+pub(crate) use renderer::draw_on;
 pub use texture::{Face, Level, MAX_TEXTURE, Texture};
-pub use view::{Poses, RenderRequest, View};
+pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
 pub use visual::{Aim, Camera, Drawable, Element, Light, Shape, Visual};
 
 use crate::assets::AssetError;
@@ -80,6 +83,9 @@ pub enum RenderError {
         /// Number of cameras.
         count: usize,
     },
+    /// The free camera has no pose.
+    #[error("the free camera has no finite pose: give Poses::free finite numbers")]
+    FreeCamera,
     /// The image is empty or too large.
     #[error("an image cannot have {width} x {height} pixels; a side has 1 to {MAX_SIZE}")]
     Size {

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use super::gpu::{Channel, Depth, GpuRenderer, Gray, Rgb, Segmentation};
-use super::{CpuRenderer, RenderError, RenderRequest, Visual};
+use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Visual};
 
 /// A renderer on a GPU that several environments share.
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
@@ -18,8 +18,6 @@ pub type SharedGpu = Arc<Mutex<GpuRenderer>>;
 pub struct Renderer {
     visual: Arc<Visual>,
     backend: Backend,
-    /// Working memory for grey images.
-    colours: Vec<u8>,
 }
 
 #[derive(Debug)]
@@ -35,7 +33,6 @@ impl Renderer {
         Self {
             visual,
             backend: Backend::Cpu(Box::default()),
-            colours: Vec::new(),
         }
     }
 
@@ -46,13 +43,21 @@ impl Renderer {
         Self {
             visual,
             backend: Backend::Gpu(gpu),
-            colours: Vec::new(),
         }
     }
 
     /// Returns the scene that is drawn.
     pub fn visual(&self) -> &Arc<Visual> {
         &self.visual
+    }
+
+    /// Returns how often the renderer on the CPU went through the geometry; 0 if images are drawn on a GPU.
+    pub fn passes(&self) -> u64 {
+        match &self.backend {
+            Backend::Cpu(renderer) => renderer.passes(),
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            Backend::Gpu(_) => 0,
+        }
     }
 
     /// Returns the renderer on the GPU; `None` if images are drawn on the CPU.
@@ -64,103 +69,138 @@ impl Renderer {
         }
     }
 
-    /// Draws images, each into its own memory: red, green, blue of each pixel, rows from the top. A GPU draws them in one
-    /// submission.
+    /// Draws images of each request, those for which there are buffers, with rows from the top. On the CPU, all images of a
+    /// request come from one pass. A GPU draws all requests in one submission for each kind of image.
     ///
     /// # Errors
-    /// Fails like the renderer, or if there are fewer buffers than requests.
+    /// Fails like the renderer, or if there are fewer sets of buffers than requests.
+    pub fn draw<'o>(
+        &mut self,
+        requests: &[RenderRequest],
+        images: impl IntoIterator<Item = ImageBuffers<'o>>,
+    ) -> Result<(), RenderError> {
+        match &mut self.backend {
+            Backend::Cpu(renderer) => pairs(requests, images)
+                .try_for_each(|(request, images)| renderer.draw(&self.visual, &request.poses, &request.view, images)),
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            Backend::Gpu(gpu) => draw_on(gpu, requests, images),
+        }
+    }
+
+    /// Draws images, each into its own memory: red, green, blue of each pixel, rows from the top.
+    ///
+    /// # Errors
+    /// Fails like [`Renderer::draw`].
     pub fn rgb<'o>(
         &mut self,
         requests: &[RenderRequest],
         outs: impl IntoIterator<Item = &'o mut [u8]>,
     ) -> Result<(), RenderError> {
-        match &mut self.backend {
-            Backend::Cpu(renderer) => each(requests, outs, |request, out| {
-                renderer.rgb(&self.visual, &request.poses, &request.view, out)
-            }),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            Backend::Gpu(gpu) => submit::<Rgb>(gpu, requests, outs),
-        }
+        self.draw(requests, outs.into_iter().map(ImageBuffers::rgb))
     }
 
     /// Draws images in grey, one byte of brightness for each pixel: see [`CpuRenderer::gray`].
     ///
     /// # Errors
-    /// Fails like [`Renderer::rgb`].
+    /// Fails like [`Renderer::draw`].
     pub fn gray<'o>(
         &mut self,
         requests: &[RenderRequest],
         outs: impl IntoIterator<Item = &'o mut [u8]>,
     ) -> Result<(), RenderError> {
-        match &mut self.backend {
-            Backend::Cpu(renderer) => each(requests, outs, |request, out| {
-                self.colours.resize(request.view.rgb_len(), 0);
-                renderer.gray(&self.visual, &request.poses, &request.view, &mut self.colours, out)
-            }),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            Backend::Gpu(gpu) => submit::<Gray>(gpu, requests, outs),
-        }
+        self.draw(requests, outs.into_iter().map(ImageBuffers::gray))
     }
 
     /// Draws depth, the distance (m) of what each pixel shows: see [`CpuRenderer::depth`].
     ///
     /// # Errors
-    /// Fails like [`Renderer::rgb`].
+    /// Fails like [`Renderer::draw`].
     pub fn depth<'o>(
         &mut self,
         requests: &[RenderRequest],
         outs: impl IntoIterator<Item = &'o mut [f32]>,
     ) -> Result<(), RenderError> {
-        match &mut self.backend {
-            Backend::Cpu(renderer) => each(requests, outs, |request, out| {
-                renderer.depth(&self.visual, &request.poses, &request.view, out)
-            }),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            Backend::Gpu(gpu) => submit::<Depth>(gpu, requests, outs),
-        }
+        self.draw(requests, outs.into_iter().map(ImageBuffers::depth))
     }
 
     /// Draws geom ids, the geom that each pixel shows: see [`CpuRenderer::segmentation`].
     ///
     /// # Errors
-    /// Fails like [`Renderer::rgb`].
+    /// Fails like [`Renderer::draw`].
     pub fn segmentation<'o>(
         &mut self,
         requests: &[RenderRequest],
         outs: impl IntoIterator<Item = &'o mut [i32]>,
     ) -> Result<(), RenderError> {
-        match &mut self.backend {
-            Backend::Cpu(renderer) => each(requests, outs, |request, out| {
-                renderer.segmentation(&self.visual, &request.poses, &request.view, out)
-            }),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            Backend::Gpu(gpu) => submit::<Segmentation>(gpu, requests, outs),
+        self.draw(requests, outs.into_iter().map(ImageBuffers::segmentation))
+    }
+}
+
+/// Pairs requests with their buffers. For a request without any there is one that is too short.
+fn pairs<'r, 's, 'o>(
+    requests: &'r [RenderRequest<'s>],
+    images: impl IntoIterator<Item = ImageBuffers<'o>>,
+) -> impl Iterator<Item = (&'r RenderRequest<'s>, ImageBuffers<'o>)> {
+    let mut images = images.into_iter();
+    requests
+        .iter()
+        .map(move |request| (request, images.next().unwrap_or_else(|| ImageBuffers::rgb(&mut []))))
+}
+
+/// Draws images on a GPU, in one submission for each kind.
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+pub(crate) fn draw_on<'o>(
+    gpu: &SharedGpu,
+    requests: &[RenderRequest],
+    images: impl IntoIterator<Item = ImageBuffers<'o>>,
+) -> Result<(), RenderError> {
+    let (mut rgb, mut gray) = (Batch::<Rgb>::default(), Batch::<Gray>::default());
+    let (mut depth, mut segmentation) = (Batch::<Depth>::default(), Batch::<Segmentation>::default());
+    for (request, images) in pairs(requests, images) {
+        rgb.add(request, images.rgb);
+        gray.add(request, images.gray);
+        depth.add(request, images.depth);
+        segmentation.add(request, images.segmentation);
+    }
+    rgb.draw(gpu)?;
+    gray.draw(gpu)?;
+    depth.draw(gpu)?;
+    segmentation.draw(gpu)
+}
+
+/// The images of one kind that a GPU draws together.
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+struct Batch<'r, 'o, C: Channel> {
+    requests: Vec<RenderRequest<'r>>,
+    outs: Vec<&'o mut [C::Value]>,
+}
+
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+impl<C: Channel> Default for Batch<'_, '_, C> {
+    fn default() -> Self {
+        Self {
+            requests: Vec::new(),
+            outs: Vec::new(),
         }
     }
 }
 
-/// Draws one image after the other.
-fn each<'o, T: 'o>(
-    requests: &[RenderRequest],
-    outs: impl IntoIterator<Item = &'o mut [T]>,
-    mut draw: impl FnMut(&RenderRequest, &mut [T]) -> Result<(), RenderError>,
-) -> Result<(), RenderError> {
-    let mut outs = outs.into_iter();
-    requests
-        .iter()
-        .try_for_each(|request| draw(request, outs.next().unwrap_or_default()))
-}
-
-/// Draws all images on a GPU.
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-fn submit<'o, C: Channel>(
-    gpu: &SharedGpu,
-    requests: &[RenderRequest],
-    outs: impl IntoIterator<Item = &'o mut [C::Value]>,
-) -> Result<(), RenderError> {
-    let pending = gpu
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .begin::<C>(requests)?;
-    pending.wait_into(outs)
+impl<'r, 'o, C: Channel> Batch<'r, 'o, C> {
+    fn add(&mut self, request: &RenderRequest<'r>, out: Option<&'o mut [C::Value]>) {
+        if let Some(out) = out {
+            self.requests.push(*request);
+            self.outs.push(out);
+        }
+    }
+
+    fn draw(self, gpu: &SharedGpu) -> Result<(), RenderError> {
+        if self.requests.is_empty() {
+            return Ok(());
+        }
+        let mut renderer = gpu.lock().unwrap_or_else(PoisonError::into_inner);
+        let pending = renderer.begin::<C>(&self.requests)?;
+        drop(renderer);
+        pending.wait_into(self.outs)
+    }
 }

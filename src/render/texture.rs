@@ -1,22 +1,19 @@
 //! Textures: decoded or computed, with the mip levels that Mesa generates.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use image::{DynamicImage, ImageDecoder};
-
 use crate::assets::AssetSource;
+use crate::formats::png::decode_png;
+use crate::limits::Limits;
 use crate::model::{Builtin, Mark, Texture as Recipe, TextureType};
 use crate::render::RenderError;
 
 /// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
 /// of 2500 and 5000 pixels stay small.
 pub const MAX_TEXTURE: usize = 1024;
-/// Largest side of an image that is decoded, pixels.
-const MAX_DECODED: u32 = 8192;
-/// Limit on the memory for decoding one image.
-const MAX_DECODED_BYTES: u64 = 160 << 20;
+/// Largest side of a builtin pattern, pixels.
+const MAX_PATTERN: usize = Limits::DEFAULT.picture_side as usize;
 
 /// One mip level of an image: red, green, blue and an unused byte for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -131,10 +128,10 @@ impl<'a> Loader<'a> {
             message,
         };
         let size = |n: usize| {
-            if (1..=MAX_DECODED as usize).contains(&n) {
+            if (1..=MAX_PATTERN).contains(&n) {
                 Ok(n)
             } else {
-                Err(wrong(format!("its size is {n} pixels; a side has 1 to {MAX_DECODED}")))
+                Err(wrong(format!("its size is {n} pixels; a side has 1 to {MAX_PATTERN}")))
             }
         };
         let flat = recipe.kind == TextureType::Flat2d;
@@ -190,31 +187,18 @@ impl<'a> Loader<'a> {
             return Ok(face.clone());
         }
         let bytes = self.assets.read(path)?;
-        let face = decode(path, bytes)?.face();
+        let face = decode(path, &bytes)?.face();
         self.faces.insert(path.to_string(), face.clone());
         Ok(face)
     }
 }
 
-fn decode(path: &str, bytes: Cow<'_, [u8]>) -> Result<Level, RenderError> {
-    let broken = |source: image::ImageError| RenderError::Image {
+fn decode(path: &str, bytes: &[u8]) -> Result<Level, RenderError> {
+    let rgb = decode_png(bytes, &Limits::DEFAULT).map_err(|message| RenderError::Image {
         path: path.to_string(),
-        message: source.to_string(),
-    };
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(MAX_DECODED);
-    limits.max_image_height = Some(MAX_DECODED);
-    limits.max_alloc = Some(MAX_DECODED_BYTES);
-    let reader = std::io::Cursor::new(&*bytes);
-    let mut decoder = image::codecs::png::PngDecoder::with_limits(reader, limits.clone()).map_err(broken)?;
-    let (width, height) = decoder.dimensions();
-    limits.check_dimensions(width, height).map_err(broken)?;
-    limits.reserve(decoder.total_bytes()).map_err(broken)?;
-    decoder.set_limits(limits).map_err(broken)?;
-    let image = DynamicImage::from_decoder(decoder).map_err(broken)?;
-    drop(bytes);
-    let (width, height) = (width as usize, height as usize);
-    let rgb = image.into_rgb8();
+        message,
+    })?;
+    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
     let pixels = rgb.pixels().map(|p| [p[0], p[1], p[2], 255]).collect();
     Ok(Level { width, height, pixels })
 }

@@ -1,12 +1,12 @@
 //! Requests for images: camera, size, poses.
 
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, add_scaled, cross};
 use crate::render::{MAX_SIZE, RenderError};
 
 /// A camera and the size of an image from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
-    /// Camera of the model, by id.
+    /// Camera of the model, by id, or [`View::FREE`].
     pub camera: usize,
     /// Width in pixels.
     pub width: usize,
@@ -15,6 +15,9 @@ pub struct View {
 }
 
 impl View {
+    /// The camera that [`Poses::free`] places, with the field of view of [`Visual::fovy`](crate::render::Visual::fovy).
+    pub const FREE: usize = usize::MAX;
+
     /// Returns the number of pixels; it saturates for sizes that [`View::check`] refuses.
     pub fn pixels(&self) -> usize {
         self.width.saturating_mul(self.height)
@@ -42,6 +45,57 @@ impl View {
     }
 }
 
+/// A camera that looks at a point from anywhere, as MuJoCo's `mjvCamera`: the one that people steer.
+///
+/// ```
+/// use babybench::env::Viewer;
+/// use babybench::render::FreeCamera;
+/// use babybench::{Config, Env};
+///
+/// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+/// env.reset(Some(0))?;
+/// let camera = FreeCamera { lookat: [0.0, 0.0, 0.3], distance: 1.5, azimuth: 135.0, elevation: -20.0 };
+/// let mut viewer = Viewer::new(env.blueprint())?;
+/// assert_eq!(viewer.draw(&env, camera, 32, 24)?.len(), 3 * 32 * 24);
+/// # Ok::<(), babybench::EnvError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeCamera {
+    /// Point in the middle of the image, world, m.
+    pub lookat: Vec3,
+    /// Distance from it, m.
+    pub distance: f64,
+    /// Direction of view about the vertical axis, degrees: 0 looks along x, 90 along y.
+    pub azimuth: f64,
+    /// Direction of view above the horizon, degrees: -90 looks straight down.
+    pub elevation: f64,
+}
+
+impl FreeCamera {
+    /// Returns position (m) and orientation in the world.
+    ///
+    /// # Errors
+    /// Numbers that are not finite.
+    pub fn pose(&self) -> Result<(Vec3, Mat3), RenderError> {
+        let [x, y, z] = self.lookat;
+        if ![x, y, z, self.distance, self.azimuth, self.elevation]
+            .iter()
+            .all(|v| v.is_finite())
+        {
+            return Err(RenderError::FreeCamera);
+        }
+        let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
+        let (ca, sa) = (pxfm::f_cos(azimuth), pxfm::f_sin(azimuth));
+        let (ce, se) = (pxfm::f_cos(elevation), pxfm::f_sin(elevation));
+        let forward = [ce * ca, ce * sa, se];
+        let up = [-se * ca, -se * sa, ce];
+        let right = cross(forward, up);
+        let [r, u, f] = [right, up, forward];
+        let mat = [r[0], u[0], -f[0], r[1], u[1], -f[1], r[2], u[2], -f[2]];
+        Ok((add_scaled(self.lookat, forward, -self.distance), mat))
+    }
+}
+
 /// Poses of everything in the world, indexed as in the model: positions in m, row-major matrices with the local axes as
 /// columns. Cameras look along their -z.
 #[derive(Clone, Copy, Debug)]
@@ -58,12 +112,97 @@ pub struct Poses<'a> {
     pub cam_xpos: &'a [Vec3],
     /// Orientations of the cameras.
     pub cam_xmat: &'a [Mat3],
+    /// Position and orientation of the free camera, if there is one: [`FreeCamera::pose`].
+    pub free: Option<(Vec3, Mat3)>,
     /// Positions of the bodies, which carry the lights.
     pub xpos: &'a [Vec3],
     /// Orientations of the bodies.
     pub xmat: &'a [Mat3],
     /// Centres of mass of the bodies with those below them, which some lights follow.
     pub subtree_com: &'a [Vec3],
+}
+
+/// Memory for images of one view, each with rows from the top; those that are `None` are not drawn.
+#[derive(Debug, Default)]
+pub struct ImageBuffers<'a> {
+    /// Red, green and blue, (H, W, 3).
+    pub rgb: Option<&'a mut [u8]>,
+    /// Brightness by the weights 0.2989, 0.5870, 0.1140, (H, W).
+    pub gray: Option<&'a mut [u8]>,
+    /// Distance (m) from the camera's plane to what the middle of each pixel shows, (H, W); infinite where it shows
+    /// nothing. Transparent things are not drawn.
+    pub depth: Option<&'a mut [f32]>,
+    /// The geom that the middle of each pixel shows, by id, (H, W); -1 where it shows none. Sites hide what is behind
+    /// them, and so do transparent geoms.
+    pub segmentation: Option<&'a mut [i32]>,
+}
+
+impl<'a> ImageBuffers<'a> {
+    /// Asks for an image in colour alone.
+    pub fn rgb(out: &'a mut [u8]) -> Self {
+        let rgb = Some(out);
+        Self { rgb, ..Self::default() }
+    }
+
+    /// Asks for an image in grey alone.
+    pub fn gray(out: &'a mut [u8]) -> Self {
+        let gray = Some(out);
+        Self {
+            gray,
+            ..Self::default()
+        }
+    }
+
+    /// Asks for depth alone.
+    pub fn depth(out: &'a mut [f32]) -> Self {
+        let depth = Some(out);
+        Self {
+            depth,
+            ..Self::default()
+        }
+    }
+
+    /// Asks for geom ids alone.
+    pub fn segmentation(out: &'a mut [i32]) -> Self {
+        let segmentation = Some(out);
+        Self {
+            segmentation,
+            ..Self::default()
+        }
+    }
+
+    /// Checks the lengths.
+    pub(super) fn check(&self, view: &View) -> Result<(), RenderError> {
+        let lengths = [
+            (self.rgb.as_ref().map(|v| v.len()), view.rgb_len()),
+            (self.gray.as_ref().map(|v| v.len()), view.pixels()),
+            (self.depth.as_ref().map(|v| v.len()), view.pixels()),
+            (self.segmentation.as_ref().map(|v| v.len()), view.pixels()),
+        ];
+        for (found, expected) in lengths {
+            fits(found.unwrap_or(expected), expected)?;
+        }
+        Ok(())
+    }
+}
+
+/// Checks the length of a buffer.
+pub(super) fn fits(found: usize, expected: usize) -> Result<(), RenderError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(RenderError::Buffer { found, expected })
+    }
+}
+
+impl Poses<'_> {
+    /// Returns position and orientation of a camera.
+    pub(super) fn camera(&self, camera: usize) -> Option<(Vec3, Mat3)> {
+        match camera {
+            View::FREE => self.free,
+            id => self.cam_xpos.get(id).copied().zip(self.cam_xmat.get(id).copied()),
+        }
+    }
 }
 
 /// A request for an image: poses of an environment, and the view.

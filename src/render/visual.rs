@@ -153,6 +153,8 @@ pub struct Visual {
     pub lights: Vec<Light>,
     /// Ambient, diffuse and specular colour of the headlight, which shines along every camera; `None` if it is off.
     pub headlight: Option<[[f32; 3]; 3]>,
+    /// Vertical field of view of the free camera, degrees.
+    pub fovy: f64,
     /// Cameras of the model.
     pub cameras: Vec<Camera>,
     /// Distance of the near plane, m.
@@ -232,11 +234,17 @@ impl Visual {
             sky,
             lights: model.lights.iter().take(room).map(Light::new).collect(),
             headlight,
+            fovy: vis.fovy,
             cameras: model.cam_fovy.iter().map(|&fovy| Camera { fovy }).collect(),
             near: vis.znear * model.stat.extent,
             far,
             sizes: [model.ngeom(), model.nsite(), model.nbody()],
         })
+    }
+
+    /// Returns the vertical field of view of a camera, degrees.
+    pub(super) fn fovy_of(&self, camera: usize) -> f64 {
+        self.cameras.get(camera).map_or(self.fovy, |c| c.fovy)
     }
 
     /// Returns the memory used by all textures, bytes.
@@ -257,7 +265,9 @@ impl Visual {
     /// Checks that a view of these poses can be drawn.
     pub(super) fn check(&self, poses: &Poses, view: &View) -> Result<(), RenderError> {
         let camera = view.camera;
-        if camera >= self.cameras.len() {
+        if camera == View::FREE {
+            poses.free.ok_or(RenderError::FreeCamera)?;
+        } else if camera >= self.cameras.len() {
             return Err(RenderError::Camera {
                 camera,
                 count: self.cameras.len(),

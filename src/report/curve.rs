@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
+use super::run::Baseline;
 use crate::env::Info;
 use crate::eval::Score;
 
@@ -16,7 +17,7 @@ const MAX_POINTS: usize = 500;
 /// A line of the chart.
 struct Line {
     class: &'static str,
-    label: &'static str,
+    label: String,
     values: Vec<f64>,
 }
 
@@ -33,16 +34,39 @@ struct Chart {
 
 /// Draws the learning curve of the records that count, if there are any and they have a score.
 ///
-/// `reachable` is the number of parts that a hand can touch.
-pub(super) fn curve(records: &[Info], reachable: usize) -> Option<Markup> {
+/// `reachable` is the number of parts that a hand can touch; `baseline` is another training to compare with.
+pub(super) fn curve(records: &[Info], baseline: Option<&Baseline>, reachable: usize) -> Option<Markup> {
     let touch = records.first()?.behavior.touches().is_some();
     let regard = records.first()?.behavior.regards().is_some();
-    let chart = match (touch, regard) {
+    let mut chart = match (touch, regard) {
         (true, _) => touches(records, reachable),
         (_, true) => regards(records),
         _ => return None,
     };
+    if let Some(Baseline { name, records: other }) = baseline {
+        let other = &other[..other.len().min(records.len())];
+        let values: Vec<f64> = other
+            .iter()
+            .map(if touch { touched_alone } else { seen_alone })
+            .collect();
+        let values = smooth(&values);
+        chart.top = values.iter().fold(chart.top, |top, v| top.max(1.1 * v));
+        chart
+            .lines
+            .push(line("base", format!("{name}: moving mean of single episodes"), values));
+    }
     Some(draw(&chart, records.len()))
+}
+
+/// Returns the number of parts touched in an episode, mean of both hands.
+fn touched_alone(record: &Info) -> f64 {
+    let touches = record.behavior.touches();
+    touches.map_or(0.0, |t| 0.5 * (t[0].len() + t[1].len()) as f64)
+}
+
+/// Returns the share of the steps of an episode with a hand in view, %, mean of both hands.
+fn seen_alone(record: &Info) -> f64 {
+    100.0 * Score::of_episode(record, record.steps).unwrap_or(0.0)
 }
 
 /// Charts the different parts touched so far by each hand, and in each episode alone by both.
@@ -58,18 +82,15 @@ fn touches(records: &[Info], reachable: usize) -> Chart {
         });
         each.collect::<Vec<f64>>()
     };
-    let alone = |r: &Info| {
-        r.behavior
-            .touches()
-            .map_or(0.0, |t| 0.5 * (t[0].len() + t[1].len()) as f64)
-    };
+    let dots: Vec<f64> = records.iter().map(touched_alone).collect();
     Chart {
         unit: "parts",
         lines: vec![
             line("right", "right hand, so far", so_far(0)),
             line("left", "left hand, so far", so_far(1)),
+            line("both", "moving mean of single episodes", smooth(&dots)),
         ],
-        dots: records.iter().map(alone).collect(),
+        dots,
         goal: Some((reachable as f64, format!("{reachable} can be reached"))),
         top: reachable as f64 * 1.05,
     }
@@ -83,10 +104,7 @@ fn regards(records: &[Info]) -> Chart {
         100.0 * seen / (2.0 * r.steps.max(1) as f64)
     };
     let of = |pairs: [usize; 2]| smooth(&records.iter().map(|r| share(r, pairs)).collect::<Vec<f64>>());
-    let dots: Vec<f64> = records
-        .iter()
-        .map(|r| 100.0 * Score::of_episode(r, r.steps).unwrap_or(0.0))
-        .collect();
+    let dots: Vec<f64> = records.iter().map(seen_alone).collect();
     let lines = vec![
         line("right", "right hand", of([0, 2])),
         line("left", "left hand", of([1, 3])),
@@ -106,7 +124,8 @@ fn regards(records: &[Info]) -> Chart {
     }
 }
 
-fn line(class: &'static str, label: &'static str, values: Vec<f64>) -> Line {
+fn line(class: &'static str, label: impl Into<String>, values: Vec<f64>) -> Line {
+    let label = label.into();
     Line { class, label, values }
 }
 
@@ -153,7 +172,7 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
     let chosen = || (0..episodes).filter(move |k| k % stride == 0 || k + 1 == episodes);
     let path = |line: &Line| {
         let mut d = String::new();
-        for (n, k) in chosen().enumerate() {
+        for (n, k) in chosen().filter(|&k| k < line.values.len()).enumerate() {
             let letter = if n == 0 { 'M' } else { 'L' };
             // writing to a string cannot fail
             let _ = write!(d, "{letter}{:.1} {:.1}", x(k as f64 + 1.0), y(line.values[k]));
@@ -175,7 +194,7 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
             @if let Some((height, text)) = &chart.goal {
                 line class="goal" x1=(left) x2=(SIZE[0] - right) y1=(format!("{:.1}", y(*height)))
                     y2=(format!("{:.1}", y(*height))) {}
-                text class="tick" x=(SIZE[0] - right - 4.0) y=(format!("{:.1}", y(*height) + 14.0)) text-anchor="end" { (text) }
+                text class="tick" x=(SIZE[0] - right - 4.0) y=(format!("{:.1}", y(*height) - 5.0)) text-anchor="end" { (text) }
             }
             @for k in chosen() {
                 circle class="dot" cx=(format!("{:.1}", x(k as f64 + 1.0))) cy=(format!("{:.1}", y(chart.dots[k]))) r="2" {}

@@ -44,6 +44,14 @@ pub enum ReportError {
         /// What is wrong with each.
         reasons: String,
     },
+    /// The run to compare with is of no use.
+    #[error("{}: {reason}; a baseline is the save_dir of a training of the same behavior", path.display())]
+    Baseline {
+        /// The folder.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// The file system refuses.
     #[error("{}: {source}", path.display())]
     Io {
@@ -78,12 +86,25 @@ impl Report {
     /// # Errors
     /// A folder that is missing or is not that of a run; logs of which none can be read.
     pub fn new(save_dir: impl AsRef<Path>) -> Result<Self, ReportError> {
+        Ok(Self::of(Run::read(save_dir.as_ref())?))
+    }
+
+    /// Builds the report of the folder of a run with the learning curve of another training, such as one with random
+    /// actions, beside its own.
+    ///
+    /// # Errors
+    /// As [`Report::new`]; a baseline without a training log of the same behavior.
+    pub fn with_baseline(save_dir: impl AsRef<Path>, baseline: impl AsRef<Path>) -> Result<Self, ReportError> {
         let mut run = Run::read(save_dir.as_ref())?;
-        let html = page::page(&mut run);
-        Ok(Self {
-            html,
+        run.compare(baseline.as_ref())?;
+        Ok(Self::of(run))
+    }
+
+    fn of(mut run: Run) -> Self {
+        Self {
+            html: page::page(&mut run),
             notices: run.notices,
-        })
+        }
     }
 
     /// Writes the page to a file, which is replaced as a whole.

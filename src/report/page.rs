@@ -89,6 +89,9 @@ pub(super) fn page(run: &mut Run) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                // whatever a log says, the page runs nothing and fetches nothing
+                meta http-equiv="Content-Security-Policy"
+                    content="default-src 'none'; img-src data:; style-src 'unsafe-inline'";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (title(run)) " – BabyBench report" }
@@ -190,11 +193,11 @@ fn fractions_table(fractions: &[f64; 4]) -> Markup {
 
 fn curve_section(run: &Run) -> Markup {
     let reachable = run.touchables.as_ref().map_or(31, |t| t.reachable(0).len());
-    let Some(chart) = curve(run.counted(), reachable) else {
+    let Some(chart) = curve(run.counted(), run.baseline.as_ref(), reachable) else {
         return html! {};
     };
     let what = match run.behavior {
-        Behavior::SelfTouch => "Different parts of the body that each palm has touched so far.",
+        Behavior::SelfTouch => "Different parts of the body that each palm has touched so far, and in single episodes.",
         _ => "Share of the steps with the hand in the central field of view, mean over the last episodes.",
     };
     html! {

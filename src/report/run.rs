@@ -1,5 +1,6 @@
 //! What the folder of a run holds.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::ReportError;
@@ -9,7 +10,7 @@ use crate::eval::{Score, Touchables};
 use crate::mimo::{build_model, embedded};
 use crate::model::Model;
 use crate::runs::logs::{EvaluationLog, evaluation_path, read_training, training_path};
-use crate::runs::{read_config, read_scene};
+use crate::runs::{read_scene, scene_config};
 
 /// Maximum number of evaluation episodes that are read.
 const MAX_EVALUATIONS: usize = 100;
@@ -20,6 +21,14 @@ pub(super) struct Evaluated {
     pub log: EvaluationLog,
     /// The video, if there is one.
     pub video: Option<PathBuf>,
+}
+
+/// A training to compare with.
+pub(super) struct Baseline {
+    /// What its folder is called.
+    pub name: String,
+    /// The records that count.
+    pub records: Vec<Info>,
 }
 
 /// A run.
@@ -34,6 +43,7 @@ pub(super) struct Run {
     pub score: Option<Score>,
     pub evaluations: Vec<Evaluated>,
     pub notices: Vec<String>,
+    pub baseline: Option<Baseline>,
 }
 
 impl Run {
@@ -70,28 +80,52 @@ impl Run {
             return Err(ReportError::Unreadable { path: path(), reasons });
         }
         notices.splice(0..0, failures);
-        let config = std::fs::read_to_string(dir.join("scene.xml"))
-            .ok()
-            .and_then(|xml| read_config(&xml).ok());
+        let config = scene_config(dir);
         let of_config = config.as_ref().map(|c| c.behavior);
         let behavior = found.and_then(Behavior::from_name).or(of_config).unwrap_or_default();
+        let nq = evaluations.first().map(|e| e.log.nq);
+        let (model, own) = scene(dir, behavior, nq, &mut notices);
+        let touchables = model.as_ref().and_then(Touchables::new);
+        // the parts of a likely scene need not be those of the run
+        let skin = touchables.as_ref().filter(|_| own);
         let score = match training.is_empty() {
             true => None,
             false => Score::new(&training).map_err(|e| notices.push(e.to_string())).ok(),
         };
-        let nq = evaluations.first().map(|e| e.log.nq);
-        let model = scene(dir, behavior, nq, &mut notices);
+        let score = score.map(|score| skin.map_or(score.clone(), |skin| score.within_reach(skin)));
         Ok(Self {
             dir: dir.to_path_buf(),
             behavior,
-            touchables: model.as_ref().and_then(Touchables::new),
+            touchables,
             config,
             model,
             training,
             score,
             evaluations,
             notices,
+            baseline: None,
         })
+    }
+
+    /// Reads the training to compare with from its folder.
+    pub fn compare(&mut self, dir: &Path) -> Result<(), ReportError> {
+        let refused = |reason: String| ReportError::Baseline {
+            path: dir.to_path_buf(),
+            reason,
+        };
+        let records = read_training(dir).map_err(|e| refused(e.to_string()))?;
+        let other = records.first().map(|r| r.behavior.name());
+        if let Some(other) = other.filter(|&other| other != self.behavior.name()) {
+            return Err(refused(format!("its behavior is {other}")));
+        }
+        let records = Score::counted(&records).to_vec();
+        if records.is_empty() {
+            return Err(refused("its training log has no episodes".to_string()));
+        }
+        let name = dir.file_name().unwrap_or(dir.as_os_str());
+        let name = name.to_string_lossy().into_owned();
+        self.baseline = Some(Baseline { name, records });
+        Ok(())
     }
 
     /// Returns the records that count for the score.
@@ -107,14 +141,12 @@ impl Run {
             records => records.iter().collect(),
         };
         [0, 1].map(|hand| {
-            let mut parts: Vec<(usize, f64)> = Vec::new();
+            let mut number: BTreeMap<usize, f64> = BTreeMap::new();
             for &geom in last.iter().filter_map(|r| r.behavior.touches()).flat_map(|t| t[hand]) {
-                match parts.iter_mut().find(|(g, _)| *g == geom) {
-                    Some((_, n)) => *n += 1.0,
-                    None => parts.push((geom, 1.0)),
-                }
+                *number.entry(geom).or_default() += 1.0;
             }
-            parts.iter_mut().for_each(|(_, n)| *n /= last.len() as f64);
+            let share = |(geom, n)| (geom, n / last.len() as f64);
+            let mut parts: Vec<(usize, f64)> = number.into_iter().map(share).collect();
             parts.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
             parts
         })
@@ -141,16 +173,16 @@ fn training(dir: &Path, failures: &mut Vec<String>, notices: &mut Vec<String>) -
     }
 }
 
-/// Reads the scene of the run, or builds a likely one if that does not load here.
-fn scene(dir: &Path, behavior: Behavior, nq: Option<usize>, notices: &mut Vec<String>) -> Option<Model> {
+/// Reads the scene of the run, or builds a likely one if that does not load here; tells whether it is the run's own.
+fn scene(dir: &Path, behavior: Behavior, nq: Option<usize>, notices: &mut Vec<String>) -> (Option<Model>, bool) {
     match read_scene(dir) {
-        Ok(model) => Some(model),
+        Ok(model) => (Some(model), true),
         Err(e) => {
             if dir.join("scene.xml").exists() {
                 let why = format!("Names come from a built-in scene, because the run's cannot be loaded: {e}");
                 notices.push(why);
             }
-            likely_scene(behavior, nq)
+            (likely_scene(behavior, nq), false)
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Key frames of an evaluation video: the moments at which something happened.
 
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames};
+use crate::files;
 use crate::runs::logs::EvaluationLog;
 
 /// Frames in the page.
@@ -109,7 +109,7 @@ fn looks(info: &[Info]) -> Vec<Moment> {
 /// The file cannot be read, is no `.avi` file or has another coding.
 pub(super) fn frames(path: &Path, numbers: &[usize]) -> io::Result<Vec<(usize, Vec<u8>)>> {
     let broken = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_string());
-    let mut file = io::BufReader::new(File::open(path)?);
+    let mut file = io::BufReader::new(files::open(path)?);
     let mut head = [0; 12];
     let whole = file.read_exact(&mut head).is_ok();
     if !whole || &head[..4] != b"RIFF" || &head[8..] != b"AVI " {
@@ -164,6 +164,7 @@ pub(super) fn frames(path: &Path, numbers: &[usize]) -> io::Result<Vec<(usize, V
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
 
     fn touch(right: &[usize], left: &[usize]) -> Info {
@@ -227,8 +228,8 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("babybench_strip_{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
         let path = folder.join("a.avi");
-        let mut avi =
-            crate::formats::avi::AviWriter::new(File::create(&path).expect("a file"), 16, 16, 60).expect("a video");
+        let mut avi = crate::formats::avi::AviWriter::new(std::fs::File::create(&path).expect("a file"), 16, 16, 60)
+            .expect("a video");
         for k in 0..6_u8 {
             avi.frame(&[40 * k; 3 * 256]).expect("a frame");
         }

@@ -4,16 +4,19 @@
 //! Every file is replaced as a whole: a run that is killed leaves the last complete log.
 
 mod episode;
+mod read;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 pub use episode::EvaluationLog;
+use read::records;
+pub use read::{RecentRecords, read_recent, read_records, read_records_with, read_training};
 use thiserror::Error;
 
 use crate::config::{Compat, Config};
-use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, InfoDetails, PartNames, PerHand};
-use crate::files::replace_file;
+use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, InfoDetails, PartNames};
+use crate::files::{self, replace_file};
 use crate::formats::pickle::{self, PickleError, Value};
 use crate::json;
 use crate::limits::Limits;
@@ -90,7 +93,7 @@ fn write_pickle(path: PathBuf, value: &Value) -> Result<(), LogError> {
     write(path, &bytes)
 }
 
-fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
+fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, LogError> {
     let io = |source: io::Error| {
         let path = path.to_path_buf();
         match source.kind() {
@@ -98,13 +101,11 @@ fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
             _ => LogError::Io { path, source },
         }
     };
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(io)?;
-    io::Read::read_to_end(
-        &mut io::Read::take(file, (limits.pickle_bytes as u64).saturating_add(1)),
-        &mut bytes,
-    )
-    .map_err(io)?;
+    files::read(path, limits.pickle_bytes as u64).map_err(io)
+}
+
+fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
+    let bytes = read_bytes(path, limits)?;
     pickle::from_bytes_with(&bytes, limits).map_err(|source| {
         let path = path.to_path_buf();
         LogError::Pickle { path, source }
@@ -137,99 +138,6 @@ fn record(steps: u64, behavior: BehaviorInfo) -> Info {
         behavior,
         ..Info::default()
     }
-}
-
-/// Converts a dictionary to a record; unknown keys are ignored.
-fn from_value(value: &Value, limits: &Limits) -> Result<Info, String> {
-    if !matches!(value, Value::Dict(_)) {
-        return Err("it is not a dictionary".to_string());
-    }
-    let count = |key: &str| {
-        let number = value.get(key).and_then(Value::count);
-        number.ok_or_else(|| format!("`{key}` is not a whole number"))
-    };
-    let geoms = |key: &str| {
-        let items = value.get(key).and_then(Value::items);
-        let items = items.filter(|l| l.len() <= limits.record_touches);
-        let numbers: Option<Vec<usize>> = items.and_then(|l| l.iter().map(|v| v.count().map(|n| n as usize)).collect());
-        numbers.ok_or_else(|| format!("`{key}` is not a list of geom ids"))
-    };
-    let behavior = if value.get("right_hand_touches").is_some() {
-        BehaviorInfo::SelfTouch {
-            touches: PerHand {
-                right_hand: geoms("right_hand_touches")?,
-                left_hand: geoms("left_hand_touches")?,
-            },
-        }
-    } else if value.get("right_eye_right_hand").is_some() {
-        let [a, b, c, d] = EYE_HAND_PAIRS.map(count);
-        BehaviorInfo::HandRegard {
-            counts: [a?, b?, c?, d?].into(),
-        }
-    } else {
-        BehaviorInfo::None
-    };
-    let steps = count("steps")?;
-    Ok(record(steps, behavior))
-}
-
-/// Converts a list to records, which must be of one behavior.
-fn records(path: &Path, kind: &'static str, value: &Value, limits: &Limits) -> Result<Vec<Info>, LogError> {
-    let foreign = |reason: String| {
-        let path = path.to_path_buf();
-        LogError::Foreign { path, kind, reason }
-    };
-    let items = value
-        .items()
-        .ok_or_else(|| foreign("it is not a list of records".to_string()))?;
-    let mut out: Vec<Info> = Vec::with_capacity(items.len());
-    let mut touches = 0;
-    for (k, item) in items.iter().enumerate() {
-        let info = from_value(item, limits).map_err(|e| foreign(format!("record {k}: {e}")))?;
-        let same = |first: &Info| std::mem::discriminant(&first.behavior) == std::mem::discriminant(&info.behavior);
-        if !out.first().is_none_or(same) {
-            return Err(foreign(format!("record {k} has another behavior than record 0")));
-        }
-        touches += info.behavior.touches().map_or(0, |t| t[0].len() + t[1].len());
-        if touches > limits.pickle_numbers {
-            return Err(foreign("it has too many touches".to_string()));
-        }
-        out.push(info);
-    }
-    Ok(out)
-}
-
-/// Reads the training log of a run: one record for each completed episode.
-///
-/// # Errors
-/// No log, a file that is none, one that is damaged.
-pub fn read_training(save_dir: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
-    read_records(training_path(save_dir))
-}
-
-/// Reads a training log by its path.
-///
-/// # Errors
-/// As [`read_training`].
-pub fn read_records(path: impl AsRef<Path>) -> Result<Vec<Info>, LogError> {
-    read_records_with(path, &Limits::DEFAULT)
-}
-
-/// Reads a training log by its path, within other limits than the default ones.
-///
-/// # Errors
-/// As [`read_training`].
-pub fn read_records_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Vec<Info>, LogError> {
-    let path = path.as_ref();
-    let value = read_pickle(path, limits)?;
-    if value.get("qpos").is_some() {
-        return Err(LogError::Foreign {
-            path: path.to_path_buf(),
-            kind: "training",
-            reason: "it is the log of an evaluation episode".to_string(),
-        });
-    }
-    records(path, "training", &value, limits)
 }
 
 /// The log of a training run, saved as often as its configuration says.

@@ -11,6 +11,8 @@ pub use logs::{EvaluationLog, LogError, TrainingLog, read_training};
 pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use replay::{Recording, Replay, ReplayError, TouchRows, replay, replay_with_images};
+#[cfg(feature = "report")]
+pub(crate) use scene_file::scene_config;
 pub use scene_file::{
     KeptScene, SceneFile, SceneFileError, complete_scene, complete_scene_from, keep_scene, read_config, read_scene,
     write_scene, write_scene_from,

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::env::{Env, EnvError, Info, Viewer};
+use crate::env::{Env, EnvError, Info, Observation, Viewer};
 use crate::files::replace_file;
 use crate::formats::npz::{Npz, NpzError, NpzWriter};
 use crate::json;
-use crate::sensors::EYES;
+use crate::sensors::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages};
 
 /// An error in reading or replaying a recording.
 #[derive(Debug, Error)]
@@ -192,6 +192,8 @@ pub struct Replay {
     pub eye_left: Vec<u8>,
     /// What the right eye saw in them.
     pub eye_right: Vec<u8>,
+    /// What else the environment's eyes observed in them, left and right, (K, H, W) each.
+    pub eyes: [EyeImages; 2],
     /// Width and height of those pictures, pixels.
     pub eye_size: usize,
     /// Information of each step.
@@ -260,6 +262,7 @@ pub fn replay_with_images(
             for (key, all) in EYES.into_iter().zip([&mut out.eye_left, &mut out.eye_right]) {
                 all.extend_from_slice(viewer.draw(env, key, out.eye_size, out.eye_size).map_err(at(t))?);
             }
+            out.push_eyes(&env.observation());
         }
     }
     Ok(out)
@@ -308,6 +311,40 @@ impl Replay {
         self.info.push(env.info().clone());
     }
 
+    /// Adds what the eyes observe besides colours.
+    fn push_eyes(&mut self, observation: &Observation) {
+        let [left, right] = &mut self.eyes;
+        if let Some(gray) = observation.eye_gray {
+            left.gray.extend_from_slice(gray[0]);
+            right.gray.extend_from_slice(gray[1]);
+        }
+        if let Some(depth) = observation.eye_depth {
+            left.depth.extend_from_slice(depth[0]);
+            right.depth.extend_from_slice(depth[1]);
+        }
+        if let Some(ids) = observation.eye_segmentation {
+            left.segmentation.extend_from_slice(ids[0]);
+            right.segmentation.extend_from_slice(ids[1]);
+        }
+    }
+
+    /// Writes what the eyes observed besides colours.
+    fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), ReplayError> {
+        let shape = [self.eye_steps.len(), self.eye_size, self.eye_size];
+        for (k, eye) in self.eyes.iter().enumerate() {
+            if !eye.gray.is_empty() {
+                npz.add(EYES_GRAY[k], &shape, &eye.gray)?;
+            }
+            if !eye.depth.is_empty() {
+                npz.add(EYES_DEPTH[k], &shape, &eye.depth)?;
+            }
+            if !eye.segmentation.is_empty() {
+                npz.add(EYES_SEGMENTATION[k], &shape, &eye.segmentation)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Writes `replay.npz`, with the recording's own start and actions, and `info.jsonl` into a directory, which is
     /// made if it is not there.
     ///
@@ -352,6 +389,7 @@ impl Replay {
             npz.add("eye_steps", &[k], &self.eye_steps)?;
             npz.add("eye_left", &[k, side, side, 3], &self.eye_left)?;
             npz.add("eye_right", &[k, side, side, 3], &self.eye_right)?;
+            self.write_eyes(&mut npz)?;
         }
         let n = self.contact_dist.len();
         npz.add("contact_ptr", &[self.contact_ptr.len()], &self.contact_ptr)?;

@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::assets::{AssetSource, DirAssets, directory, resolve};
 use crate::config::{Config, ConfigError};
 use crate::env::Blueprint;
-use crate::files::replace_file;
+use crate::files::{self, replace_file};
 use crate::limits::Limits;
 use crate::mimo::{DOCUMENT, Version, embedded, scene_xml};
 use crate::mjcf_loader::{LoadError, Tree, load};
@@ -99,9 +99,25 @@ pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<
     let (tree, root) = Tree::read(&scene_xml(config), DOCUMENT, assets, &Limits::default())?;
     let mut xml = comment(config);
     let mut images = BTreeMap::new();
+    let is_folder = |element: &str, attribute: &str| element == "compiler" && attribute == "texturedir";
+    let mut texturedir = String::new();
+    tree.write(root, &mut String::new(), |element, attribute, value| {
+        if is_folder(element, attribute) {
+            texturedir = value.to_string();
+        }
+        Ok::<_, SceneFileError>(None)
+    })?;
+    let texturedir = texturedir.trim_end_matches('/');
     tree.write(root, &mut xml, |element, attribute, value| {
-        let names_image = element == "texture" && IMAGE_ATTRIBUTES.contains(&attribute);
-        names_image.then(|| image(value, assets, &mut images)).transpose()
+        if is_folder(element, attribute) {
+            return Ok(Some(String::new()));
+        }
+        let names_image = element == "texture" && IMAGE_ATTRIBUTES.contains(&attribute) && !value.is_empty();
+        let file = || match texturedir {
+            "" => value.to_string(),
+            folder => format!("{folder}/{value}"),
+        };
+        names_image.then(|| image(&file(), assets, &mut images)).transpose()
     })?;
     Ok(SceneFile { xml, images })
 }
@@ -167,8 +183,8 @@ pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<Kep
         Ok(found) if found == **model => KeptScene::Same,
         Ok(found) if same_ids(&found, model) => KeptScene::Similar,
         Ok(_) => {
-            let xml = std::fs::read_to_string(&path).unwrap_or_default();
-            let found = read_config(&xml).map_or_else(|_| "another scene".to_string(), |found| about(&found));
+            let found = scene_config(save_dir);
+            let found = found.map_or_else(|| "another scene".to_string(), |found| about(&found));
             let wanted = about(config);
             return Err(SceneFileError::Different { path, found, wanted });
         }
@@ -207,6 +223,12 @@ pub fn read_config(xml: &str) -> Result<Config, SceneFileError> {
     let text = xml.strip_prefix("<!--").and_then(|rest| rest.split_once("-->"));
     let text = text.map_or("", |(comment, _)| comment);
     Ok(Config::from_yaml(text, "scene.xml")?)
+}
+
+/// Reads the configuration in the `scene.xml` of a run, if there is one that can be read.
+pub(crate) fn scene_config(save_dir: &Path) -> Option<Config> {
+    let bytes = files::read(&save_dir.join(SCENE), Limits::DEFAULT.document_bytes as u64).ok()?;
+    read_config(std::str::from_utf8(&bytes).ok()?).ok()
 }
 
 /// Writes the configuration as an XML comment, without the explanations of its keys.

@@ -11,4 +11,4 @@ mod vision;
 pub use proprioception::{Component, Entry, Proprioception, limit_activation};
 pub use touch::{SkinLayout, Touch};
 pub use vestibular::Vestibular;
-pub use vision::{EYES, Vision};
+pub use vision::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Vision};

@@ -2,12 +2,19 @@
 
 use std::sync::Arc;
 
+use crate::config::{VisionOutput, VisionOutputs};
 use crate::model::Model;
 use crate::physics::State;
-use crate::render::{Poses, RenderError, RenderRequest, Renderer, View, Visual};
+use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, View, Visual};
 
 /// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
 pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
+/// Keys of the images in grey, left and right.
+pub const EYES_GRAY: [&str; 2] = ["eye_left_gray", "eye_right_gray"];
+/// Keys of depth, left and right.
+pub const EYES_DEPTH: [&str; 2] = ["eye_left_depth", "eye_right_depth"];
+/// Keys of geom ids, left and right.
+pub const EYES_SEGMENTATION: [&str; 2] = ["eye_left_segmentation", "eye_right_segmentation"];
 
 impl<'a> From<&'a State> for Poses<'a> {
     /// Returns the poses at the start of the last physics step.
@@ -19,10 +26,64 @@ impl<'a> From<&'a State> for Poses<'a> {
             site_xmat: &s.site_xmat,
             cam_xpos: &s.cam_xpos,
             cam_xmat: &s.cam_xmat,
+            free: None,
             xpos: &s.xpos,
             xmat: &s.xmat,
             subtree_com: &s.subtree_com,
         }
+    }
+}
+
+/// Images of one eye, or of several one after the other, each with rows from the top; those that are not observed are
+/// empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EyeImages {
+    /// Red, green and blue, (H, W, 3).
+    pub rgb: Vec<u8>,
+    /// Brightness, (H, W).
+    pub gray: Vec<u8>,
+    /// Distance from the camera's plane, m, (H, W).
+    pub depth: Vec<f32>,
+    /// Ids of geoms, (H, W).
+    pub segmentation: Vec<i32>,
+}
+
+impl EyeImages {
+    /// Makes room for images of so many pixels.
+    pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
+        let len = |output| if outputs.contains(output) { pixels } else { 0 };
+        Self {
+            rgb: vec![0; 3 * len(VisionOutput::Rgb)],
+            gray: vec![0; len(VisionOutput::Gray)],
+            depth: vec![0.0; len(VisionOutput::Depth)],
+            segmentation: vec![0; len(VisionOutput::Segmentation)],
+        }
+    }
+
+    /// Returns the memory of the images that are observed, for a renderer.
+    pub fn buffers(&mut self) -> ImageBuffers<'_> {
+        fn wanted<T>(values: &mut [T]) -> Option<&mut [T]> {
+            (!values.is_empty()).then_some(values)
+        }
+        ImageBuffers {
+            rgb: wanted(&mut self.rgb),
+            gray: wanted(&mut self.gray),
+            depth: wanted(&mut self.depth),
+            segmentation: wanted(&mut self.segmentation),
+        }
+    }
+
+    /// Copies images of the same sizes.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.rgb.clone_from(&other.rgb);
+        self.gray.clone_from(&other.gray);
+        self.depth.clone_from(&other.depth);
+        self.segmentation.clone_from(&other.segmentation);
+    }
+
+    /// Returns the memory that the images take, bytes.
+    pub fn bytes(&self) -> usize {
+        self.rgb.len() + self.gray.len() + 4 * (self.depth.len() + self.segmentation.len())
     }
 }
 
@@ -83,6 +144,15 @@ impl Vision {
     pub fn observe(&mut self, s: &State, eyes: [&mut [u8]; 2]) -> Result<(), RenderError> {
         let requests = self.requests(s);
         self.renderer.rgb(&requests, eyes)
+    }
+
+    /// Draws images of both eyes, left and right, those for which there are buffers, in one pass for each eye.
+    ///
+    /// # Errors
+    /// Fails if a buffer has the wrong length.
+    pub fn draw(&mut self, s: &State, eyes: [ImageBuffers<'_>; 2]) -> Result<(), RenderError> {
+        let requests = self.requests(s);
+        self.renderer.draw(&requests, eyes)
     }
 
     /// Draws both images in grey: a byte for each pixel, (resolution, resolution).

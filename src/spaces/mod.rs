@@ -79,12 +79,15 @@ pub enum Dtype {
     F32,
     /// 8-bit unsigned integer.
     U8,
+    /// 32-bit integer.
+    I32,
 }
 
 /// The shape and bounds of one entry of the observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservationSpace {
-    /// Key in the observation: `observation`, `touch`, `eye_left`, `eye_right` or `vestibular`.
+    /// Key in the observation: `observation`, `touch`, `eye_left`, `eye_right` (with `_gray`, `_depth` or `_segmentation`)
+    /// or `vestibular`.
     pub key: &'static str,
     /// Shape.
     pub shape: Vec<usize>,

@@ -38,12 +38,9 @@ impl<'a> Batch<'a> {
         self.ids.is_empty()
     }
 
-    /// Returns the observation of a row.
-    ///
-    /// # Panics
-    /// There is no such row.
-    pub fn row(&self, row: usize) -> Observation<'a> {
-        row_of(&self.observation, row, self.len())
+    /// Returns the observation of a row, if there is one.
+    pub fn row(&self, row: usize) -> Option<Observation<'a>> {
+        (row < self.len()).then(|| row_of(&self.observation, row, self.len()))
     }
 }
 
@@ -59,13 +56,10 @@ pub struct Finals<'a> {
 }
 
 impl<'a> Finals<'a> {
-    /// Returns the last observation of a row's episode, if it has ended.
-    ///
-    /// # Panics
-    /// There is no such row.
+    /// Returns the last observation of a row's episode, if there is such a row and it has ended.
     pub fn row(&self, row: usize) -> Option<Observation<'a>> {
-        let n = self.ended.len();
-        self.ended[row].then(|| row_of(&self.observation, row, n))
+        let ended = self.ended.get(row).copied().unwrap_or(false);
+        ended.then(|| row_of(&self.observation, row, self.ended.len()))
     }
 }
 

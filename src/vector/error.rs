@@ -11,10 +11,10 @@ pub enum VectorError {
     /// A vector of nothing was asked for.
     #[error("a vector needs at least one environment")]
     NoEnvironments,
-    /// The environments would not fit into memory.
+    /// The environments would not fit into memory; see [`VectorOptions::max_memory`](super::VectorOptions::max_memory).
     #[error(
-        "{envs} environments would take {} of memory ({} each), but {} may be used: use at most {fit}, or set max_memory",
-        human(*bytes), human(*each), human(*limit)
+        "{envs} environments would take {} of memory ({} each), but {} may be used: {}",
+        human(*bytes), human(*each), human(*limit), advice(*fit)
     )]
     Memory {
         /// Number of environments.
@@ -105,6 +105,14 @@ pub enum VectorError {
     /// The system gives no more threads.
     #[error("cannot start a thread: {0}")]
     Thread(#[from] std::io::Error),
+}
+
+/// Says how many environments there can be.
+fn advice(fit: usize) -> String {
+    match fit {
+        0 => "not even one fits".to_string(),
+        n => format!("use at most {n}"),
+    }
 }
 
 /// Describes a number of values, as a shape where it is one.

@@ -1,6 +1,5 @@
 //! Resets and steps: environments go to the pool with their tasks, and come back with their rows.
 
-use super::rows::Target;
 use super::slot::{Slot, Task};
 use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
 use crate::env::Env;
@@ -25,7 +24,30 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
+    /// Starts an episode in the environments that the mask marks, or in all, and writes the rows of all into memory of the
+    /// caller's, as [`VectorEnv::step_into`] does.
+    ///
+    /// # Errors
+    /// As [`VectorEnv::reset_where`]; memory of another shape.
+    pub fn reset_into<'s>(
+        &mut self,
+        mask: Option<&[bool]>,
+        seeds: impl Into<Seeds<'s>>,
+        mut buffers: Buffers<'_>,
+    ) -> Result<(), VectorError> {
+        buffers.check(self.len(), &self.layout)?;
+        self.submit_resets(mask, seeds.into())?;
+        self.collect(&mut buffers)?;
+        self.first_failure()
+    }
+
     fn reset_some(&mut self, mask: Option<&[bool]>, seeds: Seeds<'_>) -> Result<(), VectorError> {
+        self.submit_resets(mask, seeds)?;
+        self.collect_into_rows()?;
+        self.first_failure()
+    }
+
+    fn submit_resets(&mut self, mask: Option<&[bool]>, seeds: Seeds<'_>) -> Result<(), VectorError> {
         self.check_home()?;
         let n = self.len();
         if let Some(mask) = mask {
@@ -43,7 +65,11 @@ impl VectorEnv {
         });
         self.pool.submit(slots, true);
         self.in_flight = (0..n).filter(|env| marked(*env)).count();
-        self.collect_into_rows()?;
+        Ok(())
+    }
+
+    /// Returns the first of the failures as an error.
+    fn first_failure(&mut self) -> Result<(), VectorError> {
         match self.failures.is_empty() {
             true => Ok(()),
             false => {
@@ -83,10 +109,10 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::step`]; memory of another shape.
-    pub fn step_into(&mut self, actions: &[f32], buffers: Buffers<'_>) -> Result<(), VectorError> {
+    pub fn step_into(&mut self, actions: &[f32], mut buffers: Buffers<'_>) -> Result<(), VectorError> {
         buffers.check(self.len(), &self.layout)?;
         self.submit_all(actions)?;
-        self.collect(&mut Target::from(buffers))
+        self.collect(&mut buffers)
     }
 
     fn submit_all(&mut self, actions: &[f32]) -> Result<(), VectorError> {
@@ -120,17 +146,26 @@ impl VectorEnv {
     /// More environments than are in flight, or none; an environment that panicked, which is not in flight any more.
     pub fn recv(&mut self, n: usize) -> Result<Batch<'_>, VectorError> {
         let mut rows = std::mem::take(&mut self.rows);
-        let received = self.receive(n, &mut rows.target());
+        let received = self.receive(n, &mut rows.buffers());
         self.rows = rows;
         received?;
         Ok(self.batch())
     }
 
-    fn receive(&mut self, n: usize, out: &mut Target<'_>) -> Result<(), VectorError> {
-        if n == 0 || n > self.in_flight {
-            let (wanted, in_flight) = (n, self.in_flight);
-            return Err(VectorError::NotSent { wanted, in_flight });
-        }
+    /// Waits for `n` environments as [`VectorEnv::recv`] does and writes their rows into memory of the caller's, which has
+    /// room for `n`. Returns which environments they are, (n).
+    ///
+    /// # Errors
+    /// As [`VectorEnv::recv`]; memory of another shape.
+    pub fn recv_into(&mut self, n: usize, mut buffers: Buffers<'_>) -> Result<&[usize], VectorError> {
+        self.check_sent(n)?;
+        buffers.check(n, &self.layout)?;
+        self.receive(n, &mut buffers)?;
+        Ok(&self.ids)
+    }
+
+    fn receive(&mut self, n: usize, out: &mut Buffers<'_>) -> Result<(), VectorError> {
+        self.check_sent(n)?;
         self.pool.wait_for(n);
         if let Some(slot) = self.pool.take_panicked() {
             self.in_flight -= 1;
@@ -190,21 +225,18 @@ impl VectorEnv {
         check_length("actions", actions.len(), [n, len])?;
         let env_of = |row: usize| ids.map_or(row, |ids| ids[row]);
         let rows = || actions.chunks_exact(len.max(1)).enumerate();
+        self.sends += 1;
         for (row, action) in rows() {
             let env = env_of(row);
-            let slot = self.slots[env].as_ref().ok_or(VectorError::InFlight { env })?;
+            // an environment that is named twice would be in flight the second time
+            let home = self.slots[env].as_mut().filter(|slot| slot.named != self.sends);
+            let slot = home.ok_or(VectorError::InFlight { env })?;
+            slot.named = self.sends;
             if !slot.can_step() {
                 return Err(VectorError::NotReset { env });
             }
             if !action.iter().all(|v| v.is_finite()) {
                 slot.env.check_action(action).map_err(of(env))?;
-            }
-        }
-        if let Some(ids) = ids {
-            // an environment that is named twice would be in flight the second time
-            let twice = (1..ids.len()).find(|&k| ids[..k].contains(&ids[k]));
-            if let Some(k) = twice {
-                return Err(VectorError::InFlight { env: ids[k] });
             }
         }
         for (row, action) in rows() {
@@ -215,6 +247,15 @@ impl VectorEnv {
             }
         }
         Ok(())
+    }
+
+    /// Checks that environments can be waited for.
+    fn check_sent(&self, wanted: usize) -> Result<(), VectorError> {
+        let in_flight = self.in_flight;
+        match (1..=in_flight).contains(&wanted) {
+            true => Ok(()),
+            false => Err(VectorError::NotSent { wanted, in_flight }),
+        }
     }
 
     /// Checks that no environment is in flight.
@@ -228,13 +269,13 @@ impl VectorEnv {
 
     fn collect_into_rows(&mut self) -> Result<(), VectorError> {
         let mut rows = std::mem::take(&mut self.rows);
-        let collected = self.collect(&mut rows.target());
+        let collected = self.collect(&mut rows.buffers());
         self.rows = rows;
         collected
     }
 
     /// Waits for all environments in flight, helping to run them, and writes a row for each environment.
-    fn collect(&mut self, out: &mut Target<'_>) -> Result<(), VectorError> {
+    fn collect(&mut self, out: &mut Buffers<'_>) -> Result<(), VectorError> {
         self.begin_batch();
         let n = self.len();
         self.ids.extend(0..n);
@@ -277,7 +318,7 @@ impl VectorEnv {
     }
 
     /// Writes what came of an environment.
-    fn write(&mut self, row: usize, env: usize, out: &mut Target<'_>) {
+    fn write(&mut self, row: usize, env: usize, out: &mut Buffers<'_>) {
         let Some(slot) = &mut self.slots[env] else { return };
         out.write(row, &slot.env);
         out.write_flags(row, slot.reward, slot.terminated, slot.truncated);
@@ -285,7 +326,7 @@ impl VectorEnv {
         if let (Some(ends), Some(last)) = (&mut self.finals, &slot.last) {
             ends.ended[row] = slot.ended;
             if slot.ended {
-                ends.rows.target().write_whole(row, &last.observation());
+                ends.rows.buffers().write_whole(row, &last.observation());
                 ends.infos.write(row, &last.info);
             }
         }

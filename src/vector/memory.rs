@@ -1,5 +1,6 @@
 //! How much memory environments take, before they are made.
 
+use crate::config::VisionOutput;
 use crate::env::Env;
 use crate::vector::rows::Layout;
 use crate::vector::{AutoresetMode, VectorError};
@@ -20,7 +21,13 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     // the array of the vector and the vector of the sense; with the ends of episodes, another of each
     let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
     let rows = copies * layout.row_bytes();
-    let renderer = if layout.eye.is_some() { 300_000 } else { 0 };
+    let renderer = layout.pixels.map_or(0, |pixels| {
+        let has = |output| layout.outputs.contains(output);
+        let colour = has(VisionOutput::Rgb) || has(VisionOutput::Gray);
+        let centre = has(VisionOutput::Depth) || has(VisionOutput::Segmentation);
+        // with both, what each pixel shows is kept twice
+        300_000 + if colour && centre { 32 * pixels } else { 0 }
+    });
     // engine and state: contacts, bodies and geoms in Rapier, the matrices of the solver
     let physics = 400_000 + 3_100 * model.ngeom() + 9_500 * model.nv;
     (rows + renderer + physics) as u64
@@ -43,7 +50,7 @@ pub(super) fn check(envs: usize, each: u64, max_memory: Option<u64>) -> Result<(
     })
 }
 
-/// Returns the memory that the system has available, bytes, where it tells.
+/// Returns the memory that the system has available, and the container lets us have, bytes, where they tell.
 fn available() -> Option<u64> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -51,5 +58,11 @@ fn available() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
     let kib: u64 = line.split_whitespace().next()?.parse().ok()?;
-    Some(kib.saturating_mul(1024))
+    let system = kib.saturating_mul(1024);
+    let number = |name| {
+        let text = std::fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?;
+        text.trim().parse::<u64>().ok() // "max" where there is no limit
+    };
+    let container = number("memory.max").map(|max| max.saturating_sub(number("memory.current").unwrap_or(0)));
+    Some(container.map_or(system, |container| container.min(system)))
 }

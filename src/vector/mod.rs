@@ -10,7 +10,8 @@
 //! for _ in 0..5 {
 //!     envs.sample_actions(&mut actions)?; // [4, 44]
 //!     let batch = envs.step(&actions)?;
-//!     assert_eq!(batch.observation.proprioception.len(), 4 * batch.row(0).proprioception.len());
+//!     assert!(batch.row(3).is_some_and(|observation| observation.vestibular.is_some()));
+//!     assert_eq!(batch.observation.vestibular.map(<[f64]>::len), Some(4 * 6));
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -68,6 +69,8 @@ pub struct VectorEnv {
     slots: Vec<Option<Box<Slot>>>,
     pool: Pool,
     in_flight: usize,
+    /// Number of calls of `send`, so that an environment that is named twice is found.
+    sends: u64,
     threads: usize,
     clipped: Option<ClippedThreads>,
     autoreset: AutoresetMode,
@@ -150,6 +153,7 @@ impl VectorEnv {
             slots: slots.collect(),
             pool: Pool::new(threads, n)?,
             in_flight: 0,
+            sends: 0,
             threads,
             clipped,
             autoreset: mode,

@@ -1,6 +1,7 @@
 //! Threads that run environments, first come, first served. Without threads the caller runs them.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
@@ -10,8 +11,8 @@ use crate::vector::slot::Slot;
 /// A queue of environments to run, one of those that have run, and the threads between them.
 ///
 /// Environments move through the queues by value, in boxes, so that no step allocates and nothing is shared. A vector
-/// of one thread has none beside the caller's. Otherwise there are as many as asked for; when the caller helps, one of
-/// them rests.
+/// of one thread has none beside the caller's. Otherwise there are as many as asked for; when the caller helps, the last of
+/// them rests. Whoever has to wait looks out for a moment before it goes to sleep, as waking up takes longer than many a step.
 pub(super) struct Pool {
     shared: Arc<Shared>,
     workers: Vec<JoinHandle<()>>,
@@ -21,15 +22,27 @@ struct Shared {
     queues: Mutex<Queues>,
     /// Tells the threads that there is something to do.
     work: Condvar,
+    /// Tells the last thread, which is left asleep while the caller helps.
+    spare: Condvar,
     /// Tells the caller that what it waits for has been done.
     ready: Condvar,
+    /// Counts what was handed over, and what has run; both change under the lock.
+    handed: AtomicUsize,
+    finished: AtomicUsize,
+    /// How often a thread looks out before it sleeps.
+    patience: u32,
 }
+
+/// Looks that a thread takes before it sleeps: some 30 us.
+const PATIENCE: u32 = 1000;
 
 #[derive(Default)]
 struct Queues {
     tasks: VecDeque<Box<Slot>>,
     done: VecDeque<Box<Slot>>,
-    /// Number of threads that may take tasks.
+    /// Number of threads.
+    threads: usize,
+    /// Number of threads that may take tasks, the first ones.
     active: usize,
     /// Number of finished environments that the caller waits for, if it does.
     wanted: Option<usize>,
@@ -41,44 +54,84 @@ impl Shared {
         // environments panic in `Slot::run`, never under the lock
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    /// Looks out, without the lock, for a count to move on by `by` from where it stands; for a moment.
+    fn look_out(&self, queues: MutexGuard<'_, Queues>, count: &AtomicUsize, by: usize) {
+        let start = count.load(Ordering::Relaxed);
+        drop(queues);
+        for _ in 0..self.patience {
+            if count.load(Ordering::Relaxed).wrapping_sub(start) >= by {
+                return;
+            }
+            std::hint::spin_loop();
+        }
+    }
+
+    /// Waits for something to do, for a thread that has found nothing.
+    fn idle<'a>(&'a self, mut queues: MutexGuard<'a, Queues>, index: usize) -> MutexGuard<'a, Queues> {
+        if index < queues.active {
+            let before = self.handed.load(Ordering::Relaxed);
+            self.look_out(queues, &self.handed, 1);
+            queues = self.lock();
+            if self.handed.load(Ordering::Relaxed) != before {
+                return queues;
+            }
+        }
+        let bell = if index + 1 == queues.threads {
+            &self.spare
+        } else {
+            &self.work
+        };
+        bell.wait(queues).unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl Pool {
     /// Starts the threads for `envs` environments.
     pub fn new(threads: usize, envs: usize) -> std::io::Result<Self> {
+        let threads = if PARALLEL && threads > 1 { threads } else { 0 };
         let queues = Queues {
             tasks: VecDeque::with_capacity(envs),
             done: VecDeque::with_capacity(envs),
+            threads,
             ..Queues::default()
         };
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let shared = Arc::new(Shared {
             queues: Mutex::new(queues),
             work: Condvar::new(),
+            spare: Condvar::new(),
             ready: Condvar::new(),
+            handed: AtomicUsize::new(0),
+            finished: AtomicUsize::new(0),
+            // without a core for each, whoever looks out keeps another from working
+            patience: if threads > cores { 0 } else { PATIENCE },
         });
         let mut pool = Self {
             shared,
             workers: Vec::new(),
         };
-        if PARALLEL && threads > 1 {
-            for index in 0..threads {
-                let shared = pool.shared.clone();
-                let thread = std::thread::Builder::new().name(format!("babybench {index}"));
-                pool.workers.push(thread.spawn(move || work(&shared, index))?);
-            }
+        for index in 0..threads {
+            let shared = pool.shared.clone();
+            let thread = std::thread::Builder::new().name(format!("babybench {index}"));
+            pool.workers.push(thread.spawn(move || work(&shared, index))?);
         }
         Ok(pool)
     }
 
-    /// Hands environments over. With `help`, the caller is one of the threads ([`Pool::next`]), and one of the others
+    /// Hands environments over. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others
     /// rests.
     pub fn submit(&self, slots: impl Iterator<Item = Box<Slot>>, help: bool) {
         let mut queues = self.shared.lock();
         queues.tasks.extend(slots);
-        queues.active = self.workers.len().saturating_sub(usize::from(help));
+        queues.active = queues.threads.saturating_sub(usize::from(help));
+        self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
         if !self.workers.is_empty() {
             self.shared.work.notify_all();
+        }
+        if !self.workers.is_empty() && !help {
+            self.shared.spare.notify_one();
         }
     }
 
@@ -131,7 +184,14 @@ impl Pool {
         self.shared.lock().done.pop_front()
     }
 
-    fn wait<'a>(&self, mut queues: MutexGuard<'a, Queues>, wanted: usize) -> MutexGuard<'a, Queues> {
+    /// Waits for the threads until `wanted` environments have run, or for less.
+    fn wait<'a>(&'a self, queues: MutexGuard<'a, Queues>, wanted: usize) -> MutexGuard<'a, Queues> {
+        let missing = wanted.saturating_sub(queues.done.len());
+        self.shared.look_out(queues, &self.shared.finished, missing);
+        let mut queues = self.shared.lock();
+        if queues.done.len() >= wanted {
+            return queues;
+        }
         queues.wanted = Some(wanted);
         let waited = self.shared.ready.wait(queues);
         let mut queues = waited.unwrap_or_else(PoisonError::into_inner);
@@ -146,8 +206,10 @@ impl Drop for Pool {
         let mut queues = self.shared.lock();
         queues.stop = true;
         queues.tasks.clear();
+        self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
         self.shared.work.notify_all();
+        self.shared.spare.notify_one();
         for worker in self.workers.drain(..) {
             // it cannot have panicked: what panics is caught in `Slot::run`
             let _ = worker.join();
@@ -164,13 +226,14 @@ fn work(shared: &Shared, index: usize) {
             false => None,
         };
         let Some(mut slot) = task else {
-            queues = shared.work.wait(queues).unwrap_or_else(PoisonError::into_inner);
+            queues = shared.idle(queues, index);
             continue;
         };
         drop(queues);
         slot.run();
         queues = shared.lock();
         queues.done.push_back(slot);
+        shared.finished.fetch_add(1, Ordering::Relaxed);
         if queues.wanted.is_some_and(|wanted| queues.done.len() >= wanted) {
             shared.ready.notify_one();
         }

@@ -1,6 +1,8 @@
 //! Arrays over environments: a row for each.
 
+use crate::config::{VisionOutput, VisionOutputs};
 use crate::env::{BehaviorInfo, Env, Info, Observation};
+use crate::sensors::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages};
 use crate::vector::VectorError;
 
 /// Lengths of the rows.
@@ -10,7 +12,9 @@ pub(super) struct Layout {
     pub proprioception: usize,
     pub touch: Option<usize>,
     pub sensors: usize,
-    pub eye: Option<usize>,
+    /// Pixels of an eye.
+    pub pixels: Option<usize>,
+    pub outputs: VisionOutputs,
     pub vestibular: Option<usize>,
     /// Number of geoms of the largest scene, if any environment's behavior is `self_touch`.
     pub geoms: Option<usize>,
@@ -28,7 +32,8 @@ impl Layout {
             layout.proprioception = observation.proprioception.len();
             layout.touch = observation.touch.map(<[f32]>::len);
             layout.sensors = env.touch().map_or(0, |touch| touch.layout().len());
-            layout.eye = observation.eye_left.map(<[u8]>::len);
+            layout.pixels = env.vision().map(|v| v.shape()[0] * v.shape()[1]);
+            layout.outputs = env.config().vision_outputs;
             layout.vestibular = observation.vestibular.map(<[f64]>::len);
             layout.regards |= env.info().behavior.regards().is_some();
             if env.info().behavior.touches().is_some() {
@@ -38,11 +43,26 @@ impl Layout {
         layout
     }
 
+    /// Returns the length of a row of images of one eye; `None` if they are not observed.
+    pub fn eye(&self, output: VisionOutput) -> Option<usize> {
+        let colours = if output == VisionOutput::Rgb { 3 } else { 1 };
+        let observed = self.pixels.filter(|_| self.outputs.contains(output));
+        observed.map(|pixels| pixels * colours)
+    }
+
     /// Returns the size of a row of everything, bytes.
     pub fn row_bytes(&self) -> usize {
-        let [touch, eye, vestibular, geoms] =
-            [self.touch, self.eye, self.vestibular, self.geoms].map(Option::unwrap_or_default);
+        let [touch, vestibular, geoms] = [self.touch, self.vestibular, self.geoms].map(Option::unwrap_or_default);
+        let eye: usize = self.outputs.iter().map(|output| self.image_bytes(output)).sum();
         8 * (self.proprioception + vestibular) + 4 * touch + 4 * self.sensors + 2 * eye + 2 * geoms + 64
+    }
+
+    fn image_bytes(&self, output: VisionOutput) -> usize {
+        let each = match output {
+            VisionOutput::Rgb | VisionOutput::Gray => 1,
+            VisionOutput::Depth | VisionOutput::Segmentation => 4,
+        };
+        each * self.eye(output).unwrap_or_default()
     }
 }
 
@@ -59,6 +79,12 @@ pub struct Buffers<'a> {
     pub eye_left: Option<&'a mut [u8]>,
     /// What the right eyes see, (N, H W 3).
     pub eye_right: Option<&'a mut [u8]>,
+    /// What both eyes see in grey, left and right, (N, H W) each.
+    pub eye_gray: Option<[&'a mut [u8]; 2]>,
+    /// How far away it is, left and right, (N, H W) each, m.
+    pub eye_depth: Option<[&'a mut [f32]; 2]>,
+    /// Which geoms they are, left and right, (N, H W) each.
+    pub eye_segmentation: Option<[&'a mut [i32]; 2]>,
     /// Balance, (N, 6), m/s^2 and rad/s.
     pub vestibular: Option<&'a mut [f64]>,
     /// Rewards (N).
@@ -67,6 +93,9 @@ pub struct Buffers<'a> {
     pub terminated: Option<&'a mut [bool]>,
     /// Whether episodes were cut off (N).
     pub truncated: Option<&'a mut [bool]>,
+    /// For each row of `touch` (N) the sensors that are not zero there, if you keep both from call to call: then only what
+    /// feels something is written, instead of thousands of zeros. Start with zeros and empty lists.
+    pub touched: Option<&'a mut [Vec<u32>]>,
 }
 
 impl Buffers<'_> {
@@ -75,6 +104,13 @@ impl Buffers<'_> {
         fn length<T>(buffer: &Option<&mut [T]>) -> Option<usize> {
             buffer.as_ref().map(|b| b.len())
         }
+        fn lengths<T>(buffers: &Option<[&mut [T]; 2]>) -> [Option<usize>; 2] {
+            let [left, right] = [0, 1].map(|eye| buffers.as_ref().map(|b| b[eye].len()));
+            [left, right]
+        }
+        let (gray, depth) = (lengths(&self.eye_gray), lengths(&self.eye_depth));
+        let geoms = lengths(&self.eye_segmentation);
+        let eye = |output| layout.eye(output);
         for (what, found, len) in [
             (
                 "proprioception",
@@ -82,12 +118,19 @@ impl Buffers<'_> {
                 Some(layout.proprioception),
             ),
             ("touch", length(&self.touch), layout.touch),
-            ("eye_left", length(&self.eye_left), layout.eye),
-            ("eye_right", length(&self.eye_right), layout.eye),
+            (EYES[0], length(&self.eye_left), eye(VisionOutput::Rgb)),
+            (EYES[1], length(&self.eye_right), eye(VisionOutput::Rgb)),
+            (EYES_GRAY[0], gray[0], eye(VisionOutput::Gray)),
+            (EYES_GRAY[1], gray[1], eye(VisionOutput::Gray)),
+            (EYES_DEPTH[0], depth[0], eye(VisionOutput::Depth)),
+            (EYES_DEPTH[1], depth[1], eye(VisionOutput::Depth)),
+            (EYES_SEGMENTATION[0], geoms[0], eye(VisionOutput::Segmentation)),
+            (EYES_SEGMENTATION[1], geoms[1], eye(VisionOutput::Segmentation)),
             ("vestibular", length(&self.vestibular), layout.vestibular),
             ("rewards", length(&self.rewards), Some(1)),
             ("terminated", length(&self.terminated), Some(1)),
             ("truncated", length(&self.truncated), Some(1)),
+            ("touched", length(&self.touched), layout.touch.map(|_| 1)),
         ] {
             let Some(found) = found else { continue };
             let Some(len) = len else {
@@ -101,10 +144,40 @@ impl Buffers<'_> {
         Ok(())
     }
 
-    /// Writes a row of everything. There is room, which was checked before.
-    fn write(&mut self, row: usize, observation: &Observation<'_>) {
+    /// Writes what an environment observes. Of thousands of touch sensors only those that feel something are copied, where
+    /// that is enough. There is room, which was checked before.
+    pub(super) fn write(&mut self, row: usize, env: &Env) {
+        let observation = env.observation();
+        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.touch, env.touch()) else {
+            return self.write_whole(row, &observation);
+        };
+        let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());
+        let out = &mut out[row * values.len()..(row + 1) * values.len()];
+        let of = |sensor: u32| width * sensor as usize..width * (sensor as usize + 1);
+        for &sensor in &*touched {
+            // lists of the caller's may say anything
+            if let Some(out) = out.get_mut(of(sensor)) {
+                out.fill(0.0);
+            }
+        }
+        touched.clear();
+        touched.extend_from_slice(touch.touched());
+        for &sensor in &*touched {
+            out[of(sensor)].copy_from_slice(&values[of(sensor)]);
+        }
+        self.write_dense(row, &observation);
+    }
+
+    /// Writes a row from an observation that no environment holds any more. Do not mix it with [`Buffers::write`].
+    pub(super) fn write_whole(&mut self, row: usize, observation: &Observation<'_>) {
         write(&mut self.touch, row, observation.touch);
         self.write_dense(row, observation);
+    }
+
+    pub(super) fn write_flags(&mut self, row: usize, reward: f64, terminated: bool, truncated: bool) {
+        write(&mut self.rewards, row, Some(&[reward]));
+        write(&mut self.terminated, row, Some(&[terminated]));
+        write(&mut self.truncated, row, Some(&[truncated]));
     }
 
     /// Writes a row of everything but touch.
@@ -112,62 +185,24 @@ impl Buffers<'_> {
         write(&mut self.proprioception, row, Some(observation.proprioception));
         write(&mut self.eye_left, row, observation.eye_left);
         write(&mut self.eye_right, row, observation.eye_right);
+        write_pair(&mut self.eye_gray, row, observation.eye_gray);
+        write_pair(&mut self.eye_depth, row, observation.eye_depth);
+        write_pair(&mut self.eye_segmentation, row, observation.eye_segmentation);
         write(&mut self.vestibular, row, observation.vestibular);
-    }
-}
-
-/// The destination of rows: memory of the caller's, or arrays of the vector's own, of which it knows what stands in them.
-pub(super) struct Target<'a> {
-    buffers: Buffers<'a>,
-    /// For each row the touch sensors that are not zero there.
-    touched: Option<&'a mut [Vec<u32>]>,
-}
-
-impl<'a> From<Buffers<'a>> for Target<'a> {
-    fn from(buffers: Buffers<'a>) -> Self {
-        let touched = None;
-        Self { buffers, touched }
-    }
-}
-
-impl Target<'_> {
-    /// Writes what an environment observes. Of thousands of touch sensors only those that feel something are copied,
-    /// where that is enough.
-    pub fn write(&mut self, row: usize, env: &Env) {
-        let observation = env.observation();
-        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.buffers.touch, env.touch()) else {
-            return self.buffers.write(row, &observation);
-        };
-        let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());
-        let out = &mut out[row * values.len()..(row + 1) * values.len()];
-        let of = |sensor: u32| width * sensor as usize..width * (sensor as usize + 1);
-        for &sensor in &*touched {
-            out[of(sensor)].fill(0.0);
-        }
-        touched.clear();
-        touched.extend_from_slice(touch.touched());
-        for &sensor in &*touched {
-            out[of(sensor)].copy_from_slice(&values[of(sensor)]);
-        }
-        self.buffers.write_dense(row, &observation);
-    }
-
-    /// Writes a row from an observation that no environment holds any more. Do not mix it with [`Target::write`].
-    pub fn write_whole(&mut self, row: usize, observation: &Observation<'_>) {
-        self.buffers.write(row, observation);
-    }
-
-    pub fn write_flags(&mut self, row: usize, reward: f64, terminated: bool, truncated: bool) {
-        let out = &mut self.buffers;
-        write(&mut out.rewards, row, Some(&[reward]));
-        write(&mut out.terminated, row, Some(&[terminated]));
-        write(&mut out.truncated, row, Some(&[truncated]));
     }
 }
 
 /// Writes a row, if it is there and wanted. The array has room, which was checked before.
 fn write<T: Copy>(out: &mut Option<&mut [T]>, row: usize, values: Option<&[T]>) {
     if let (Some(out), Some(values)) = (out, values) {
+        let start = row * values.len();
+        out[start..start + values.len()].copy_from_slice(values);
+    }
+}
+
+/// Writes a row for each eye.
+fn write_pair<T: Copy>(out: &mut Option<[&mut [T]; 2]>, row: usize, values: Option<[&[T]; 2]>) {
+    for (out, values) in out.iter_mut().flatten().zip(values.into_iter().flatten()) {
         let start = row * values.len();
         out[start..start + values.len()].copy_from_slice(values);
     }
@@ -180,8 +215,7 @@ pub(super) struct Rows {
     proprioception: Vec<f64>,
     touch: Vec<f32>,
     touched: Vec<Vec<u32>>,
-    eye_left: Vec<u8>,
-    eye_right: Vec<u8>,
+    eyes: [EyeImages; 2],
     vestibular: Vec<f64>,
     rewards: Vec<f64>,
     terminated: Vec<bool>,
@@ -191,6 +225,7 @@ pub(super) struct Rows {
 impl Rows {
     pub fn new(n: usize, layout: Layout) -> Self {
         let of = |len: Option<usize>| n * len.unwrap_or_default();
+        let images = || EyeImages::new(layout.outputs, of(layout.pixels));
         Self {
             layout,
             proprioception: vec![0.0; n * layout.proprioception],
@@ -199,8 +234,7 @@ impl Rows {
                 Some(_) => (0..n).map(|_| Vec::with_capacity(layout.sensors)).collect(),
                 None => Vec::new(),
             },
-            eye_left: vec![0; of(layout.eye)],
-            eye_right: vec![0; of(layout.eye)],
+            eyes: [images(), images()],
             vestibular: vec![0.0; of(layout.vestibular)],
             rewards: vec![0.0; n],
             terminated: vec![false; n],
@@ -209,23 +243,26 @@ impl Rows {
     }
 
     /// Returns the arrays for writing, those of senses that are on.
-    pub fn target(&mut self) -> Target<'_> {
+    pub fn buffers(&mut self) -> Buffers<'_> {
         fn on<T>(values: &mut [T], len: Option<usize>) -> Option<&mut [T]> {
             len.map(|_| values)
         }
         let layout = self.layout;
-        let buffers = Buffers {
+        let [left, right] = self.eyes.each_mut().map(EyeImages::buffers);
+        Buffers {
             proprioception: Some(&mut self.proprioception),
             touch: on(&mut self.touch, layout.touch),
-            eye_left: on(&mut self.eye_left, layout.eye),
-            eye_right: on(&mut self.eye_right, layout.eye),
+            eye_left: left.rgb,
+            eye_right: right.rgb,
+            eye_gray: left.gray.zip(right.gray).map(<[_; 2]>::from),
+            eye_depth: left.depth.zip(right.depth).map(<[_; 2]>::from),
+            eye_segmentation: left.segmentation.zip(right.segmentation).map(<[_; 2]>::from),
             vestibular: on(&mut self.vestibular, layout.vestibular),
             rewards: Some(&mut self.rewards),
             terminated: Some(&mut self.terminated),
             truncated: Some(&mut self.truncated),
-        };
-        let touched = layout.touch.map(|_| &mut self.touched[..]);
-        Target { buffers, touched }
+            touched: on(&mut self.touched, layout.touch),
+        }
     }
 
     /// Returns the observations of the first `n` rows.
@@ -234,11 +271,23 @@ impl Rows {
             len.map(|len| &values[..n * len])
         }
         let layout = self.layout;
+        fn both<'a, T>(left: &'a [T], right: &'a [T], n: usize, len: Option<usize>) -> Option<[&'a [T]; 2]> {
+            len.map(|len| [&left[..n * len], &right[..n * len]])
+        }
+        let ([left, right], eye) = (&self.eyes, |output| layout.eye(output));
         Observation {
             proprioception: &self.proprioception[..n * layout.proprioception],
             touch: on(&self.touch, n, layout.touch),
-            eye_left: on(&self.eye_left, n, layout.eye),
-            eye_right: on(&self.eye_right, n, layout.eye),
+            eye_left: on(&left.rgb, n, eye(VisionOutput::Rgb)),
+            eye_right: on(&right.rgb, n, eye(VisionOutput::Rgb)),
+            eye_gray: both(&left.gray, &right.gray, n, eye(VisionOutput::Gray)),
+            eye_depth: both(&left.depth, &right.depth, n, eye(VisionOutput::Depth)),
+            eye_segmentation: both(
+                &left.segmentation,
+                &right.segmentation,
+                n,
+                eye(VisionOutput::Segmentation),
+            ),
             vestibular: on(&self.vestibular, n, layout.vestibular),
         }
     }
@@ -267,6 +316,9 @@ pub(super) fn row_of<'a>(all: &Observation<'a>, row: usize, n: usize) -> Observa
         touch: all.touch.map(|v| row_in(v, row, n)),
         eye_left: all.eye_left.map(|v| row_in(v, row, n)),
         eye_right: all.eye_right.map(|v| row_in(v, row, n)),
+        eye_gray: all.eye_gray.map(|pair| pair.map(|v| row_in(v, row, n))),
+        eye_depth: all.eye_depth.map(|pair| pair.map(|v| row_in(v, row, n))),
+        eye_segmentation: all.eye_segmentation.map(|pair| pair.map(|v| row_in(v, row, n))),
         vestibular: all.vestibular.map(|v| row_in(v, row, n)),
     }
 }

@@ -4,6 +4,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand};
+use crate::sensors::EyeImages;
 use crate::vector::AutoresetMode;
 
 /// What an environment is to do.
@@ -22,6 +23,8 @@ pub(super) struct Slot {
     pub task: Task,
     pub action: Vec<f32>,
     pub mode: AutoresetMode,
+    /// The last call of `send` that named it.
+    pub named: u64,
     /// Whether there was a reset.
     pub started: bool,
     pub reward: f64,
@@ -46,6 +49,7 @@ impl Slot {
             task: Task::Reset(None),
             action,
             mode,
+            named: 0,
             started: false,
             reward: 0.0,
             terminated: false,
@@ -142,19 +146,18 @@ pub(super) struct Last {
     pub info: Info,
     proprioception: Vec<f64>,
     touch: Vec<f32>,
-    eyes: [Vec<u8>; 2],
+    eyes: [EyeImages; 2],
     vestibular: Vec<f64>,
 }
 
 impl Last {
     fn new(env: &Env) -> Self {
         let observation = env.observation();
-        let image = |image: Option<&[u8]>| vec![0; image.map_or(0, <[u8]>::len)];
         let mut last = Self {
             info: Info::default(),
             proprioception: vec![0.0; observation.proprioception.len()],
             touch: vec![0.0; observation.touch.map_or(0, <[f32]>::len)],
-            eyes: [image(observation.eye_left), image(observation.eye_right)],
+            eyes: env.eye_images().clone(),
             vestibular: vec![0.0; observation.vestibular.map_or(0, <[f64]>::len)],
         };
         last.keep(env);
@@ -165,22 +168,21 @@ impl Last {
         let observation = env.observation();
         self.proprioception.copy_from_slice(observation.proprioception);
         self.touch.copy_from_slice(observation.touch.unwrap_or_default());
-        let [left, right] = &mut self.eyes;
-        left.copy_from_slice(observation.eye_left.unwrap_or_default());
-        right.copy_from_slice(observation.eye_right.unwrap_or_default());
+        for (own, eye) in self.eyes.iter_mut().zip(env.eye_images()) {
+            own.copy_from(eye);
+        }
         self.vestibular
             .copy_from_slice(observation.vestibular.unwrap_or_default());
         copy_info(env.info(), &mut self.info);
     }
 
-    /// Returns the last observation; of senses that are off, empty slices.
+    /// Returns the last observation; of senses that are off, empty slices or none.
     pub fn observation(&self) -> Observation<'_> {
         Observation {
             proprioception: &self.proprioception,
             touch: Some(&self.touch),
-            eye_left: Some(&self.eyes[0]),
-            eye_right: Some(&self.eyes[1]),
             vestibular: Some(&self.vestibular),
+            ..Observation::of_eyes(&self.eyes)
         }
     }
 }

@@ -40,11 +40,27 @@ pub fn kit() -> Result<PathBuf, String> {
         "BABYBENCH_KIT names no checkout of the BabyBench starter kit, whose files are not part of this repository",
     )?;
     let folder = workspace().join(folder);
-    let scenes = folder.join("MIMo/mimoEnv/assets/babybench");
-    match scenes.is_dir() {
-        true => Ok(folder),
-        false => Err(format!("BABYBENCH_KIT: there is no folder {}", scenes.display())),
+    check_kit(&folder)
+        .map(|()| folder)
+        .map_err(|e| format!("BABYBENCH_KIT: {e}"))
+}
+
+/// Tells whether a folder is a checkout of the BabyBench starter kit.
+///
+/// # Errors
+/// Says what is missing.
+pub fn check_kit(folder: &Path) -> Result<(), String> {
+    for part in ["MIMo/mimoEnv/assets/babybench", "babybench/utils.py"] {
+        let part = folder.join(part);
+        if !part.exists() {
+            return Err(format!(
+                "{} is no checkout of the BabyBench starter kit: there is no {}",
+                folder.display(),
+                part.display()
+            ));
+        }
     }
+    Ok(())
 }
 
 /// Returns the folder with the kit's MJCF and textures.
@@ -61,12 +77,27 @@ pub fn kit_assets() -> Result<PathBuf, String> {
 /// # Errors
 /// Says what is missing.
 pub fn python() -> Result<PathBuf, String> {
+    python_with("numpy", "target/python", &[])
+}
+
+/// Returns a Python that the BabyBench starter kit runs on: the one that the variable `PYTHON` names, or an environment in
+/// `target/python-kit`, which is made where it is missing.
+///
+/// # Errors
+/// Says what is missing.
+pub fn kit_python() -> Result<PathBuf, String> {
+    python_with("mujoco", "target/python-kit", &["kit"])
+}
+
+/// Returns the Python that the variable `PYTHON` names, which must have a module, or an environment that
+/// `fetch_python.sh` makes.
+fn python_with(module: &str, environment: &str, arguments: &[&str]) -> Result<PathBuf, String> {
     if let Some(python) = std::env::var_os("PYTHON") {
         let python = PathBuf::from(python);
-        return has_module(&python, "numpy").map(|()| python);
+        return has_module(&python, module).map(|()| python);
     }
-    let environment = workspace().join("target/python");
-    set_up("fetch_python.sh", &environment.join("ready"))?;
+    let environment = workspace().join(environment);
+    set_up("fetch_python.sh", arguments, &environment.join("ready"))?;
     Ok(environment.join("bin/python"))
 }
 
@@ -79,12 +110,12 @@ fn has_module(python: &Path, module: &str) -> Result<(), String> {
     }
 }
 
-/// Runs a script of `conformance/scripts` unless `result` is there. Processes take turns; after a failure they share its
+/// Runs a script of `conformance/scripts` with its arguments unless `result` is there. Processes take turns; after a failure they share its
 /// reason for ten minutes instead of trying again.
 ///
 /// # Errors
 /// Says why the script failed.
-pub fn set_up(script: &str, result: &Path) -> Result<(), String> {
+pub fn set_up(script: &str, arguments: &[&str], result: &Path) -> Result<(), String> {
     if result.exists() {
         return Ok(());
     }
@@ -92,9 +123,10 @@ pub fn set_up(script: &str, result: &Path) -> Result<(), String> {
         return Err(format!("conformance/scripts/{script} works on 64-bit Linux only"));
     }
     let target = workspace().join("target");
-    let failed = target.join(format!("{script}.failed"));
+    let name = [&[script], arguments].concat().join("-");
+    let failed = target.join(format!("{name}.failed"));
     let lock = std::fs::create_dir_all(&target)
-        .and_then(|()| File::create(target.join(format!("{script}.lock"))))
+        .and_then(|()| File::create(target.join(format!("{name}.lock"))))
         .and_then(|file| file.lock().map(|()| file))
         .map_err(|e| format!("{}: {e}", target.display()))?;
     if result.exists() {
@@ -103,7 +135,7 @@ pub fn set_up(script: &str, result: &Path) -> Result<(), String> {
     if let Some(reason) = recent(&failed) {
         return Err(reason);
     }
-    let outcome = run_script(script);
+    let outcome = run_script(script, arguments);
     match &outcome {
         Ok(()) => drop(std::fs::remove_file(&failed)),
         Err(reason) => drop(std::fs::write(&failed, reason)),
@@ -119,10 +151,15 @@ fn recent(failed: &Path) -> Option<String> {
     (age < PATIENCE).then(|| std::fs::read_to_string(failed).ok()).flatten()
 }
 
-fn run_script(script: &str) -> Result<(), String> {
+fn run_script(script: &str, arguments: &[&str]) -> Result<(), String> {
     let path = workspace().join("conformance/scripts").join(script);
-    eprintln!("running conformance/scripts/{script}, once");
-    let out = Command::new("bash").arg(&path).stdin(Stdio::null()).output();
+    let words = [&[script], arguments].concat().join(" ");
+    eprintln!("running conformance/scripts/{words}, once");
+    let out = Command::new("bash")
+        .arg(&path)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output();
     let out = out.map_err(|e| format!("bash does not start: {e}"))?;
     if out.status.success() {
         return Ok(());
@@ -130,5 +167,5 @@ fn run_script(script: &str) -> Result<(), String> {
     let said = String::from_utf8_lossy(&out.stderr);
     let last = said.lines().rev().find(|line| !line.trim().is_empty());
     let last = last.unwrap_or("it does not say why").trim();
-    Err(format!("conformance/scripts/{script} failed: {last}"))
+    Err(format!("conformance/scripts/{words} failed: {last}"))
 }

@@ -217,14 +217,27 @@ fn trace(config: Config) -> u64 {
     hash.0
 }
 
-/// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, and senses with tests of their own.
-const ELSEWHERE: [&str; 5] = ["save_dir", "save_logs_every", "render_size", "engine", "renderer"];
+/// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, MIMo v2's fingers, and senses with
+/// tests of their own.
+const ELSEWHERE: [&str; 7] = [
+    "save_dir",
+    "save_logs_every",
+    "render_size",
+    "engine",
+    "renderer",
+    "middle_finger_diameter",
+    "thumb_diameter",
+];
 
 #[test]
 fn no_key_is_without_effect() {
     let base = free(Behavior::None, Scene::Base);
-    let before = trace(base.clone());
-    assert_eq!(trace(base.clone()), before, "the trace repeats");
+    let infant = Config {
+        age: Some(12.0),
+        ..base.clone()
+    };
+    let (original, grown) = (trace(base.clone()), trace(infant.clone()));
+    assert_eq!(trace(base.clone()), original, "the trace repeats");
     let mut checked = 0;
     for key in Config::keys() {
         let name = key.name;
@@ -239,15 +252,26 @@ fn no_key_is_without_effect() {
             "max_episode_steps" => &["7"],
             "frame_skip" => &["2", "5"],
             "seed" => &["1", "18446744073709551615"],
+            "age" => &["0", "24"],
+            "strength_age" => &["3"],
+            "thigh_circumference" | "knee_sole_length" | "rump_knee_length" => &["20"],
+            "head_circumference" => &["40"],
+            "elbow_hand_length" | "forearm_circumference" | "upper_arm_circumference" => &["17"],
+            "ankle_circumference" | "calf_circumference" | "hip_breadth" | "shoulder_elbow_length" => &["14.5"],
+            _ if name.ends_with("_breadth") || name.ends_with("_length") => &["6"],
             _ if name.starts_with("lock_") => &["True"],
             _ => &["False"],
+        };
+        let (base, before) = match key.section == "Growth" && name != "age" {
+            true => (&infant, grown),
+            false => (&base, original),
         };
         for value in values {
             let config = base
                 .clone()
                 .overlay_yaml(&format!("{name}: {value}\n"), "test")
                 .expect("allowed");
-            assert_ne!(config, base, "{name}: {value} is another configuration");
+            assert_ne!(config, *base, "{name}: {value} is another configuration");
             assert_ne!(trace(config), before, "{name}: {value} changes nothing");
             checked += 1;
         }
@@ -263,9 +287,23 @@ fn without_the_feature_the_error_says_how_to_build() {
         renderer: babybench::config::RendererKind::Wgpu,
         ..free(Behavior::None, Scene::Base)
     };
+    assert_says(config, ["--features wgpu", "renderer: cpu"]);
+}
+
+/// So is an engine.
+#[cfg(not(feature = "rapier"))]
+#[test]
+fn without_the_engine_the_error_says_how_to_build() {
+    let config = Config {
+        engine: babybench::config::EngineKind::Rapier,
+        ..free(Behavior::None, Scene::Base)
+    };
+    assert_says(config, ["--features rapier", "engine: soft"]);
+}
+
+/// Checks that a configuration is refused with an error that has all of `words`.
+#[cfg(not(all(feature = "wgpu", feature = "rapier")))]
+fn assert_says(config: Config, words: [&str; 2]) {
     let error = Env::new(config).expect_err("not in this build").to_string();
-    assert!(
-        error.contains("--features wgpu") && error.contains("renderer: cpu"),
-        "{error}"
-    );
+    assert!(words.iter().all(|w| error.contains(w)), "{error}");
 }

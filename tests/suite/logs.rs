@@ -350,7 +350,7 @@ fn limits_of_logs_are_the_callers() {
         record_touches: 0,
         ..Limits::default()
     });
-    assert!(few.contains("is not a list of geom ids"), "{few}");
+    assert!(few.contains("is not a list of at most 0 geom ids"), "{few}");
     let short = told(&Limits {
         pickle_bytes: 10,
         ..Limits::default()

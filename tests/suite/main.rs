@@ -15,8 +15,10 @@ mod invariants;
 mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
+mod parts;
 #[cfg(feature = "eval")]
 mod policies;
+#[cfg(feature = "rapier")]
 mod rapier_engine;
 mod render;
 #[cfg(feature = "report")]

@@ -207,8 +207,12 @@ mod commands {
         refused(&script(&folder, "bytes.sh", "printf '\\377\\376\\n'"), &["not a list"]);
         refused(
             &script(&folder, "endless.sh", "yes '[' | tr -d '\\n'"),
-            &["answered \"[[[", "after 0 numbers"],
+            &["answered \"[[[", "it has more than 1048576 bytes"],
         );
+        let unasked = ["answered \"[0, 0", "more than one line came for one observation"];
+        refused("yes '[0, 0, 0, 0, 0, 0]'", &unasked);
+        let twice = script(&folder, "twice.sh", "printf '[0, 0, 0, 0, 0, 0]\\n%.0s' 1 2");
+        refused(&twice, &unasked);
         refused(
             &script(&folder, "words.sh", "echo loading a model"),
             &["\"loading a model\""],

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use babybench::assets::{AssetSource, MemoryAssets};
-use babybench::config::{Config, Scene};
+use babybench::config::{Config, Scene, VisionOutput, VisionOutputs};
 use babybench::env::Viewer;
 use babybench::mimo::{build_model, embedded};
-use babybench::render::{CpuRenderer, Poses, RenderError, View, Visual};
+use babybench::render::{CpuRenderer, FreeCamera, Poses, RenderError, View, Visual};
+use babybench::sensors::EyeImages;
+use babybench::spaces::Dtype;
 use babybench::{Blueprint, Env, EnvError, Model};
 
 use crate::allocations;
@@ -63,6 +65,36 @@ fn a_picture_is_the_same_every_time_and_from_every_renderer() {
     let other = env(Scene::Cubes);
     let mut viewer = Viewer::new(other.blueprint()).unwrap();
     assert_eq!(viewer.draw(&other, "corner", 101, 67).unwrap(), first);
+}
+
+#[test]
+fn a_free_camera_at_the_place_of_another_draws_the_same_picture() {
+    let e = env(Scene::Crib);
+    let mut viewer = Viewer::new(e.blueprint()).unwrap();
+    let closeup = viewer.draw(&e, "closeup", 96, 64).unwrap().to_vec();
+    // closeup has the free camera's field of view; where it is and what it looks at
+    let id = e.model().camera("closeup").unwrap();
+    let (pos, mat) = (e.state().cam_xpos[id], e.state().cam_xmat[id]);
+    let forward = [2, 5, 8].map(|k| -mat[k]);
+    let camera = FreeCamera {
+        lookat: [0, 1, 2].map(|k| pos[k] + forward[k]),
+        distance: 1.0,
+        azimuth: forward[1].atan2(forward[0]).to_degrees(),
+        elevation: forward[2].asin().to_degrees(),
+    };
+    let free = viewer.draw(&e, camera, 96, 64).unwrap().to_vec();
+    let apart: f64 = free.iter().zip(&closeup).map(|(&a, &b)| f64::from(a.abs_diff(b))).sum();
+    let mean = apart / free.len() as f64;
+    println!("mean difference {mean}");
+    assert!(mean < 0.05, "{mean}");
+    let rgba = viewer.draw_rgba(&e, camera, 96, 64).unwrap();
+    let colours: Vec<u8> = rgba.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
+    assert!(colours == free && rgba.chunks(4).all(|p| p[3] == 255));
+    let nowhere = FreeCamera {
+        distance: f64::NAN,
+        ..camera
+    };
+    assert!(viewer.draw(&e, nowhere, 8, 8).is_err());
 }
 
 #[test]
@@ -199,6 +231,118 @@ fn eyes_see_distances_geoms_and_grey() {
         matches!(wrong, Err(EnvError::Render(RenderError::Buffer { .. }))),
         "{wrong:?}"
     );
+}
+
+/// Images of one view in every kind, drawn one by one.
+fn apart(renderer: &mut CpuRenderer, visual: &Visual, poses: &Poses, view: &View) -> EyeImages {
+    let mut images = EyeImages::new(every_output(), view.pixels());
+    renderer.rgb(visual, poses, view, &mut images.rgb).unwrap();
+    let mut rgb = vec![0; view.rgb_len()];
+    renderer.gray(visual, poses, view, &mut rgb, &mut images.gray).unwrap();
+    renderer.depth(visual, poses, view, &mut images.depth).unwrap();
+    renderer
+        .segmentation(visual, poses, view, &mut images.segmentation)
+        .unwrap();
+    images
+}
+
+fn every_output() -> VisionOutputs {
+    VisionOutputs::new(VisionOutput::ALL.iter().copied())
+}
+
+#[test]
+fn images_of_one_pass_are_those_drawn_alone() {
+    for scene in Scene::ALL {
+        let e = env(*scene);
+        let poses = Poses::from(e.state());
+        let plain = e.blueprint().visual().unwrap();
+        let mut glass = (*plain).clone();
+        for drawable in glass.drawables.iter_mut().step_by(3) {
+            drawable.rgba[3] = 0.5;
+        }
+        let mut renderer = CpuRenderer::new();
+        for (visual, camera) in [&*plain, &glass]
+            .into_iter()
+            .flat_map(|v| (0..v.cameras.len()).map(move |c| (v, c)))
+        {
+            let view = View {
+                camera,
+                width: 60,
+                height: 45,
+            };
+            let expected = apart(&mut renderer, visual, &poses, &view);
+            for outputs in 1..1 << VisionOutput::ALL.len() {
+                let wanted = VisionOutput::ALL.iter().copied();
+                let wanted = VisionOutputs::new(wanted.filter(|&o| outputs >> o as usize & 1 == 1));
+                let mut images = EyeImages::new(wanted, view.pixels());
+                let before = renderer.passes();
+                renderer.draw(visual, &poses, &view, images.buffers()).unwrap();
+                assert_eq!(renderer.passes() - before, 1, "a second drawing");
+                for output in wanted.iter() {
+                    let same = match output {
+                        VisionOutput::Rgb => images.rgb == expected.rgb,
+                        VisionOutput::Gray => images.gray == expected.gray,
+                        VisionOutput::Depth => images.depth == expected.depth,
+                        VisionOutput::Segmentation => images.segmentation == expected.segmentation,
+                    };
+                    assert!(same, "{scene}, camera {camera}: {output} among {wanted:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_observation_has_the_images_that_the_configuration_asks_for() {
+    let mut e = Env::new(Config {
+        vision_outputs: every_output(),
+        vision_resolution: 24,
+        ..seen(Scene::Cubes)
+    })
+    .unwrap();
+    e.reset(Some(0)).unwrap();
+    let passes = |e: &Env| e.vision().unwrap().renderer().passes();
+    let before = passes(&e);
+    let action = vec![0.0; e.action_space().len()];
+    e.step(&action).unwrap();
+    assert_eq!(passes(&e) - before, 2, "one pass for each eye");
+    let images = || EyeImages::new(every_output(), 24 * 24);
+    let mut eyes = [images(), images()];
+    e.eye_buffers(eyes.each_mut().map(EyeImages::buffers)).unwrap();
+    let o = e.observation();
+    assert_eq!([o.eye_left, o.eye_right], eyes.each_ref().map(|i| Some(&i.rgb[..])));
+    assert_eq!(o.eye_gray, Some(eyes.each_ref().map(|i| &i.gray[..])));
+    assert_eq!(o.eye_depth, Some(eyes.each_ref().map(|i| &i.depth[..])));
+    assert_eq!(o.eye_segmentation, Some(eyes.each_ref().map(|i| &i.segmentation[..])));
+    let spaces = e.observation_space();
+    let space = |key: &str| {
+        spaces
+            .iter()
+            .find(|s| s.key == key)
+            .unwrap_or_else(|| panic!("no {key}"))
+    };
+    assert_eq!(space("eye_left").shape, [24, 24, 3]);
+    assert_eq!(
+        (space("eye_right_gray").dtype, &space("eye_right_gray").shape[..]),
+        (Dtype::U8, &[24, 24][..])
+    );
+    assert_eq!(
+        (space("eye_left_depth").dtype, space("eye_left_depth").low),
+        (Dtype::F32, 0.0)
+    );
+    assert_eq!(
+        (space("eye_left_segmentation").dtype, space("eye_left_segmentation").low),
+        (Dtype::I32, -1.0)
+    );
+    let mut far = Env::new(Config {
+        vision_outputs: VisionOutputs::new([VisionOutput::Depth]),
+        ..seen(Scene::Base)
+    })
+    .unwrap();
+    let o = far.reset(Some(0)).unwrap();
+    assert!(o.eye_left.is_none() && o.eye_gray.is_none() && o.eye_segmentation.is_none());
+    assert_eq!(o.eye_depth.map(|eyes| eyes.map(<[f32]>::len)), Some([64 * 64; 2]));
+    assert!(far.observation_space().iter().all(|s| s.key != "eye_left"));
 }
 
 #[test]

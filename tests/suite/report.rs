@@ -237,3 +237,27 @@ fn logs_of_the_kit_have_a_report_too() {
         );
     }
 }
+
+#[test]
+fn another_training_can_stand_beside_the_learning_curve() {
+    let [own, random, other] = ["own", "random", "other"].map(Folder::new);
+    run(&own, Behavior::SelfTouch, 6, 0, false);
+    run(&random, Behavior::SelfTouch, 4, 0, false);
+    run(&other, Behavior::HandRegard, 2, 0, false);
+    assert!(!report(&own).html.contains("line base"));
+    let page = Report::with_baseline(own.path(), random.path())
+        .expect("two trainings")
+        .html;
+    check_page(&page);
+    let name = random.path().file_name().expect("a name").to_string_lossy();
+    assert!(page.contains(&format!("{name}: moving mean")), "the baseline is named");
+    let path = page.split("line base\" d=\"").nth(1).and_then(|d| d.split('"').next());
+    // the first record does not count
+    assert_eq!(path.map(|d| d.matches(['M', 'L']).count()), Some(3));
+    let refused = |folder: &Folder| match Report::with_baseline(own.path(), folder.path()) {
+        Err(e @ ReportError::Baseline { .. }) => e.to_string(),
+        other => panic!("{other:?}"),
+    };
+    assert!(refused(&other).contains("its behavior is hand_regard"));
+    assert!(refused(&Folder::new("empty")).contains("a baseline is the save_dir of a training"));
+}

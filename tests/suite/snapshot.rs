@@ -36,6 +36,41 @@ fn of(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, compat:
 }
 
 #[test]
+fn a_snapshot_carries_forces_on_bodies() {
+    let mut env = started(free(Behavior::SelfTouch, Scene::Crib));
+    let hand = env.model().body("left_hand").expect("MIMo has hands");
+    let pull = |env: &mut Env| {
+        let state = env.state_mut();
+        let point = state.xpos[hand];
+        state
+            .apply_force(hand, [0.0, 1.0, 4.0], [0.01, 0.0, 0.0], point)
+            .expect("finite");
+    };
+    pull(&mut env);
+    let snapshot = env.snapshot();
+    let expect = course(&mut env, 5);
+    env.reset(Some(8)).expect("no divergence");
+    assert!(
+        env.state().xfrc_applied.iter().all(|f| *f == [0.0; 6]),
+        "a reset takes forces off"
+    );
+    env.restore(&snapshot).expect("its own snapshot");
+    assert!(course(&mut env, 5) == expect);
+    env.restore(&snapshot).expect("its own snapshot");
+    env.state_mut().release_forces();
+    assert!(course(&mut env, 5) != expect, "the force does something");
+    let state = env.state_mut();
+    let untouched = state.xfrc_applied.clone();
+    assert!(state.apply_force(10_000, [0.0; 3], [0.0; 3], [0.0; 3]).is_err());
+    assert!(
+        state
+            .apply_force(hand, [f64::NAN, 0.0, 0.0], [0.0; 3], [0.0; 3])
+            .is_err()
+    );
+    assert_eq!(state.xfrc_applied, untouched);
+}
+
+#[test]
 fn a_continuation_has_the_same_bits() {
     for &kind in ActuationModel::ALL {
         for (behavior, scene, compat) in [

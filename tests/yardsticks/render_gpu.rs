@@ -4,14 +4,14 @@ use babybench::config::{Config, RendererKind, Scene};
 use babybench::env::Viewer;
 use babybench::render::gpu::{Depth, GpuError, GpuRenderer, Gray, Pending, Rgb, Segmentation, wgpu};
 use babybench::render::{CpuRenderer, Poses, RenderError, RenderRequest, SharedGpu, View};
-use babybench::{Blueprint, Env, EnvError};
+use babybench::{Blueprint, Env, EnvError, VectorEnv, VectorOptions};
 use testkit::harness::{Need, Trial};
 use testkit::{show, trials};
 
 use crate::common::seen;
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs GPU: eyes_of_many_environments_are_drawn_together, a_picture_does_not_depend_on_its_company, depth_segmentation_and_gray_are_those_of_the_cpu_renderer, several_submissions_may_be_pending, wrong_requests_are_errors, a_lost_device_is_an_error, environments_and_renderers_move_between_threads]
+    trials![needs GPU: eyes_of_many_environments_are_drawn_together, a_vector_draws_all_eyes_in_one_submission, a_picture_does_not_depend_on_its_company, depth_segmentation_and_gray_are_those_of_the_cpu_renderer, several_submissions_may_be_pending, wrong_requests_are_errors, a_lost_device_is_an_error, environments_and_renderers_move_between_threads]
 }
 
 fn config(scene: Scene) -> Config {
@@ -119,6 +119,42 @@ fn eyes_of_many_environments_are_drawn_together() {
             let mut viewer = Viewer::new(env.blueprint()).unwrap();
             let corner = viewer.draw(env, "corner", 96, 64).unwrap().to_vec();
             assert_alike(&corner, &cpu(env, &shot(env, "corner", 96, 64)));
+        }
+    }
+}
+
+fn a_vector_draws_all_eyes_in_one_submission() {
+    const ENVS: usize = 5;
+    let (blueprint, gpu) = open(Scene::Base);
+    let submissions = || gpu.lock().unwrap().submissions();
+    for threads in [1, 2] {
+        let options = VectorOptions {
+            threads,
+            ..VectorOptions::default()
+        };
+        let mut envs = VectorEnv::new(&blueprint, ENVS, options).unwrap();
+        let before = submissions();
+        envs.reset(3).unwrap();
+        assert_eq!(submissions() - before, 1);
+        let mut actions = Vec::new();
+        for _ in 0..2 {
+            let before = submissions();
+            envs.sample_actions(&mut actions).unwrap();
+            envs.step(&actions).unwrap();
+            assert_eq!(submissions() - before, 1);
+        }
+        let len = envs.single_action_space().len();
+        envs.send(&actions[..2 * len], &[4, 1]).unwrap();
+        let before = submissions();
+        assert_eq!(envs.recv(2).unwrap().len(), 2);
+        assert_eq!(submissions() - before, 1);
+        envs.step(&actions).unwrap();
+        for k in 0..ENVS {
+            let env = envs.env(k).unwrap();
+            let row = envs.batch().row(k).unwrap();
+            let alone = gpu.lock().unwrap().draw::<Rgb>(&env.eyes().unwrap()).unwrap();
+            assert_same(&gpu, row.eye_left.unwrap(), alone.get(0).unwrap());
+            assert_alike(row.eye_right.unwrap(), &cpu(env, &env.eyes().unwrap()[1]));
         }
     }
 }

@@ -88,6 +88,10 @@ impl Evaluate {
             fps: self.fps,
             jobs: self.jobs,
         };
+        if plan.parallel() < plan.jobs {
+            let (given, wanted) = (plan.parallel(), plan.jobs);
+            note!("note: {given} instead of {wanted} jobs: that is all that these episodes and this machine can use");
+        }
         let (source, limit) = (
             PolicySource::new(&self.policy),
             Duration::from_secs_f64(self.policy_timeout),

@@ -125,12 +125,13 @@ fn write_sizes(out: &mut impl Write, env: &Env) -> io::Result<()> {
         model.ntendon(),
         model.nsensor(),
     )?;
+    let pairs = env.engine().pairs().pairs();
     writeln!(
         out,
         "timestep {} s, frame_skip {}; {} pairs of geoms can collide; total body mass {:.4} kg",
         model.opt.timestep,
         config.frame_skip,
-        env.engine().pairs().pairs().len(),
+        pairs.map_or_else(|| "many".to_string(), |pairs| pairs.len().to_string()),
         model.body_mass.iter().sum::<f64>(),
     )
 }

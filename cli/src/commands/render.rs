@@ -68,7 +68,7 @@ impl Render {
         }
         let size = self.size.unwrap_or(env.config().render_size as usize);
         let mut viewer = Viewer::new(env.blueprint())?;
-        let picture = viewer.draw(&env, &self.camera, size, size)?;
+        let picture = viewer.draw(&env, self.camera.as_str(), size, size)?;
         write_png(&self.out, picture, size, size)?;
         say!(
             "{}: {size} x {size} pixels from camera {}",

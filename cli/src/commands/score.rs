@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use babybench::Config;
 use babybench::config::Behavior;
-use babybench::eval::{ScoreParts, Touchables, eval_logs};
+use babybench::eval::{Score, ScoreParts, Touchables, eval_logs};
 use babybench::mimo::{build_model, embedded};
 use babybench::runs::read_scene;
 use clap::Args;
@@ -32,11 +32,17 @@ impl ScoreArgs {
             )
             .into());
         }
-        let score = eval_logs(&self.save_dir)?;
+        let mut score = eval_logs(&self.save_dir)?;
         let skin = match score.parts {
             // names of parts are those of the run's scene; folders of the Python kit hold one that need not load here
             ScoreParts::SelfTouch { .. } => match read_scene(&self.save_dir) {
-                Ok(model) => Touchables::new(&model),
+                Ok(model) => {
+                    let skin = Touchables::new(&model);
+                    if let Some(skin) = &skin {
+                        score = within_reach(score, skin);
+                    }
+                    skin
+                }
                 Err(e) => {
                     if self.save_dir.join("scene.xml").exists() {
                         note!(
@@ -59,4 +65,19 @@ impl ScoreArgs {
         }
         Ok(())
     }
+}
+
+/// Returns the score without what no hand can reach in the scene of the run, and notes what that is.
+fn within_reach(score: Score, skin: &Touchables) -> Score {
+    let parts = |score: &Score| match &score.parts {
+        ScoreParts::SelfTouch { touched } => touched.each_ref().iter().map(|t| t.len()).sum(),
+        ScoreParts::HandRegard { .. } => 0_usize,
+    };
+    let all = parts(&score);
+    let reached = score.within_reach(skin);
+    let beyond = all - parts(&reached);
+    if beyond > 0 {
+        note!("note: {beyond} touches of geoms do not count, because no hand can reach them in the run's scene");
+    }
+    reached
 }

@@ -4,8 +4,8 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use babybench::config::Compat;
-use babybench::eval::Score;
-use babybench::runs::logs::{read_records, training_path};
+use babybench::eval::{Score, steps as total_steps};
+use babybench::runs::logs::{read_recent, training_path};
 use babybench::runs::{RunVector, start_training_from};
 use babybench::{AutoresetMode, Config, Info};
 use clap::Args;
@@ -114,7 +114,7 @@ impl Train {
 
     /// Says what is resumed. Returns the seed of this run, the number of steps before it, and a progress bar.
     fn begin(&self, before: &[Info], config: &Config) -> Result<(u64, u64, ProgressBar), Box<dyn Error>> {
-        let (episodes, done) = (before.len() as u64, before.iter().map(|r| r.steps).sum::<u64>());
+        let (episodes, done) = (before.len() as u64, total_steps(before));
         if self.resume && episodes > 0 {
             say!("resuming after {episodes} episodes, {done} steps")?;
         }
@@ -156,8 +156,8 @@ fn look_at_old_log(config: &Config) -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     let path = path.display();
-    match read_records(training_path(&config.save_dir)) {
-        Ok(records) => match records.first().map(|r| r.behavior.name()) {
+    match read_recent(training_path(&config.save_dir), 1) {
+        Ok(log) => match log.records.first().map(|r| r.behavior.name()) {
             Some(found) if found != config.behavior.name() => {
                 let wanted = config.behavior;
                 return Err(format!(
@@ -168,7 +168,7 @@ fn look_at_old_log(config: &Config) -> Result<(), Box<dyn Error>> {
             }
             Some(_) => note!(
                 "warning: replacing the training log of {} records in {} (--resume continues it)",
-                records.len(),
+                log.total,
                 config.save_dir
             ),
             None => {}

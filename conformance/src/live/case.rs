@@ -31,6 +31,19 @@ pub const SUBJECTS: &[Subject] = &[
     },
 ];
 
+/// Returns the three example configurations with their names.
+pub fn example_configs() -> [(&'static str, Config); 3] {
+    let read = |name, text| (name, Config::from_yaml(text, name).expect("the examples are valid"));
+    [
+        read(
+            "test_installation",
+            include_str!("../../../configs/config_test_installation.yml"),
+        ),
+        read("selftouch", include_str!("../../../configs/config_selftouch.yml")),
+        read("handregard", include_str!("../../../configs/config_handregard.yml")),
+    ]
+}
+
 /// A version of MIMo in a scene.
 #[derive(Clone)]
 pub struct Case {
@@ -85,15 +98,8 @@ impl Case {
     ///
     /// v1 follows `test_installation` in the base scene and `selftouch` elsewhere; v2 follows `handregard`.
     pub fn examples() -> Vec<Self> {
-        let read = |text, name| Config::from_yaml(text, name).expect("the examples are valid");
-        let installation = read(
-            include_str!("../../../configs/config_test_installation.yml"),
-            "test_installation",
-        );
-        let self_touch = read(include_str!("../../../configs/config_selftouch.yml"), "selftouch");
-        let hand_regard = read(include_str!("../../../configs/config_handregard.yml"), "handregard");
         let mut all = Vec::new();
-        for example in [&installation, &self_touch, &hand_regard] {
+        for (_, example) in example_configs() {
             for &scene in Scene::ALL {
                 let version = Version::of(example.behavior);
                 if version == Version::V1 && (example.scene == Scene::Base) != (scene == Scene::Base) {

@@ -10,7 +10,7 @@ pub mod statistics;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-pub use case::{Case, SUBJECTS, Subject};
+pub use case::{Case, SUBJECTS, Subject, example_configs};
 pub use drive::{Drive, Motion};
 pub use episode::Episode;
 

@@ -72,7 +72,7 @@ pub fn reference() -> Result<&'static Mujoco, String> {
 
 /// MuJoCo 3.3.0, fetched where it is missing.
 pub const MUJOCO: Need = Need::new("MuJoCo", Some(REQUIRED), || {
-    set_up("fetch_mujoco.sh", &library(REFERENCE))?;
+    set_up("fetch_mujoco.sh", &[], &library(REFERENCE))?;
     reference().map(drop)
 });
 

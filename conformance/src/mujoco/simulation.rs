@@ -320,6 +320,8 @@ impl Simulation {
         self.set_warmstart(&s.qacc_warmstart);
         self.data_mut(field(DATA, "qfrc_applied"))
             .copy_from_slice(&s.qfrc_applied);
+        self.data_mut(field(DATA, "xfrc_applied"))
+            .copy_from_slice(s.xfrc_applied.as_flattened());
         self.set_params(model, &s.params);
         self.set_gear(s.reference_gear());
     }
@@ -402,6 +404,15 @@ impl Simulation {
         // SAFETY: `eq_active` has a byte for each equality.
         let bytes = unsafe { array::<u8>(self.data, const { field(DATA, "eq_active").at }, self.size("neq")) };
         bytes.iter().map(|&v| v != 0).collect()
+    }
+
+    /// Returns what a force and a torque at a point do to the joints (nv): `mj_applyFT`.
+    pub fn apply_ft(&mut self, body: usize, force: [f64; 3], torque: [f64; 3], point: [f64; 3]) -> Vec<f64> {
+        let mut qfrc = vec![0.0; self.size("nv")];
+        let (f, t, p) = (force.as_ptr(), torque.as_ptr(), point.as_ptr());
+        // SAFETY: model and data are valid, the vectors have 3 numbers and nv.
+        unsafe { (self.api.apply_ft)(self.model, self.data, f, t, p, body as c_int, qfrc.as_mut_ptr()) };
+        qfrc
     }
 
     /// Returns the number of contacts.

@@ -1,10 +1,12 @@
 //! How far babybench is from MuJoCo 3.3.0. What lacks its yardstick is reported as ignored, with the reason.
 
 mod actuation;
+mod applied_forces;
 mod compiled_model;
 mod complete_models;
 mod contact_free;
 mod contact_geometry;
+mod growth;
 mod kit;
 mod live_loader;
 mod live_mujoco;
@@ -27,10 +29,12 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let all = [
         actuation::trials(),
+        applied_forces::trials(),
         compiled_model::trials(),
         complete_models::trials(),
         contact_free::trials(),
         contact_geometry::trials(),
+        growth::trials(),
         kit::trials(),
         live_loader::trials(),
         live_mujoco::trials(),

@@ -8,7 +8,7 @@ use crate::model::Model;
 /// First bytes of a snapshot.
 pub(super) const MAGIC: [u8; 8] = *b"BBSNAP\r\n";
 /// Layout of the bytes that follow.
-pub(super) const VERSION: u32 = 2;
+pub(super) const VERSION: u32 = 3;
 /// Magic, version, a zero, fingerprint, checksum.
 pub(super) const HEADER: usize = 32;
 

@@ -2,8 +2,9 @@
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::{PARTS, Score, ScoreParts, Touchables};
+use super::{Score, ScoreParts, Touchables};
 use crate::env::EYE_HAND_PAIRS;
+use crate::env::SCORED_PARTS as PARTS;
 
 impl Serialize for Score {
     /// Serializes what [`Score::to_json`] prints without names.

@@ -2,6 +2,7 @@
 
 use super::header::{self, Number};
 use super::{Array, ArrayInfo, NpzError};
+use crate::files;
 use crate::limits::Limits;
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder, ZipSliceArchive};
@@ -42,15 +43,13 @@ impl Npz {
     /// # Errors
     /// As [`Npz::open`].
     pub fn open_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Self, NpzError> {
-        let most = limits.npz_bytes;
         let file = path.as_ref().display().to_string();
-        let mut bytes = Vec::new();
-        match std::fs::File::open(path).and_then(|open| open.take(most.saturating_add(1)).read_to_end(&mut bytes)) {
-            Ok(count) if count as u64 > most => Err(NpzError::Archive {
+        match files::read(path.as_ref(), limits.npz_bytes) {
+            Ok(bytes) => Self::from_bytes_with(bytes, &file, limits),
+            Err(e) if e.kind() == std::io::ErrorKind::FileTooLarge => Err(NpzError::Archive {
                 file,
-                reason: format!("more than {most} bytes"),
+                reason: format!("more than {} bytes", limits.npz_bytes),
             }),
-            Ok(_) => Self::from_bytes_with(bytes, &file, limits),
             Err(source) => Err(NpzError::Io { file, source }),
         }
     }
@@ -104,6 +103,8 @@ impl Npz {
             let data = archive.get_entry(place).map_err(|error| damaged(&error.to_string()))?;
             let header = header::read(inflate(data.data(), deflated), limits.npz_header_bytes)
                 .map_err(|reason| damaged(&reason))?;
+            let width = header::decoder(&header.dtype).map_or(1, |(width, _)| width);
+            check_shape(&header.shape, width, limits.npz_array_bytes).map_err(|reason| damaged(&reason))?;
             let info = ArrayInfo {
                 name: name.to_string(),
                 shape: header.shape,
@@ -210,13 +211,8 @@ impl Npz {
     /// Returns the bytes of an array after its header: `width` per number, which become at most `widest` in memory.
     fn bytes(&self, entry: &Entry, width: usize, widest: usize) -> Result<Vec<u8>, String> {
         let shape = &entry.info.shape;
-        let count = shape
-            .iter()
-            .try_fold(1_usize, |count, length| count.checked_mul(*length));
-        let limit = self.array_bytes;
-        let fits = |count: &usize| count.checked_mul(widest).is_some_and(|most| most <= limit);
-        let count = count.filter(fits);
-        let size = width * count.ok_or_else(|| format!("shape {shape:?} needs more than {limit} bytes"))?;
+        check_shape(shape, widest, self.array_bytes)?;
+        let size = width * shape.iter().product::<usize>();
         let data = self.archive.get_entry(entry.place).map_err(|error| error.to_string())?;
         // One byte more than expected, so that surplus shows and the checksum is reached; memory grows with the data.
         let expected = entry.header_bytes + size;
@@ -232,6 +228,17 @@ impl Npz {
         }
         bytes.drain(..entry.header_bytes);
         Ok(bytes)
+    }
+}
+
+/// Checks that an array of this shape, of so many bytes per number, is within a limit; each dimension counts, also where
+/// another is 0.
+fn check_shape(shape: &[usize], width: usize, limit: usize) -> Result<(), String> {
+    let mut lengths = shape.iter().map(|length| (*length).max(1));
+    let bytes = lengths.try_fold(width, |bytes: usize, length| bytes.checked_mul(length));
+    match bytes.is_some_and(|bytes| bytes <= limit) {
+        true => Ok(()),
+        false => Err(format!("shape {shape:?} needs more than {limit} bytes")),
     }
 }
 

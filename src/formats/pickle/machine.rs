@@ -28,26 +28,35 @@ pub fn from_bytes_with(bytes: &[u8], limits: &Limits) -> Result<Value, PickleErr
 
 impl Machine<'_> {
     fn run(mut self) -> Result<Value, PickleError> {
-        if self.bytes.first().is_some_and(|b| *b != 0x80) {
+        loop {
+            if let Some(root) = self.advance()? {
+                return self.unfold(root);
+            }
+        }
+    }
+
+    /// Does what the next opcode says; the last one returns the value that is left.
+    pub(super) fn advance(&mut self) -> Result<Option<Item>, PickleError> {
+        self.op = self.at;
+        if self.at == 0 && self.bytes.first().is_some_and(|b| *b != 0x80) {
             return Err(self.bad("it does not start with a protocol number from 2 on"));
         }
-        loop {
-            self.op = self.at;
-            let [opcode] = self.array()?;
-            if opcode == b'.' {
-                break;
-            }
-            self.step(opcode)?;
-            if self.objects.len().max(self.stack.len()).max(self.memo.len()) > self.limits.pickle_objects {
+        let [opcode] = self.array()?;
+        if opcode == b'.' {
+            let root = self.pop()?;
+            return match self.stack.is_empty() && self.marks.is_empty() {
+                true => Ok(Some(root)),
+                false => Err(self.bad("it ends with more than one value")),
+            };
+        }
+        self.step(opcode)?;
+        match self.objects.len().max(self.stack.len()).max(self.memo_length) > self.limits.pickle_objects {
+            true => {
                 let (what, limit) = ("values", self.limits.pickle_objects);
-                return Err(PickleError::Limit { what, limit });
+                Err(PickleError::Limit { what, limit })
             }
+            false => Ok(None),
         }
-        let root = self.pop()?;
-        if !self.stack.is_empty() || !self.marks.is_empty() {
-            return Err(self.bad("it ends with more than one value"));
-        }
-        self.unfold(root)
     }
 
     fn step(&mut self, opcode: u8) -> Done {
@@ -116,7 +125,7 @@ impl Machine<'_> {
     /// Writes to the memo, or pushes what it remembers.
     fn recall(&mut self, opcode: u8) -> Done {
         let index = match opcode {
-            0x94 => self.memo.len(),
+            0x94 => self.memo_length,
             b'q' | b'h' => usize::from(u8::from_le_bytes(self.array()?)),
             _ => u32::from_le_bytes(self.array()?) as usize,
         };
@@ -154,6 +163,7 @@ impl Machine<'_> {
         self.spend(items.len())?;
         match self.top()? {
             Item::Object(list) => match &mut self.objects[list] {
+                Object::List(l) if l.is_empty() => *l = items,
                 Object::List(l) => l.extend(items),
                 _ => return Err(self.bad("items for something that is not a list")),
             },

@@ -19,6 +19,9 @@ pub(super) struct Dtype {
     pub big_endian: bool,
 }
 
+/// Greatest length of a dimension of an array without numbers.
+const EMPTY: usize = 1 << 24;
+
 impl Dtype {
     /// Returns the type with NumPy's short name, such as `f8`.
     pub fn named(name: &str) -> Option<Self> {
@@ -83,7 +86,9 @@ impl Dtype {
             return Err("arrays in column order are not supported");
         }
         let length = shape.iter().try_fold(self.size, |n, &k| n.checked_mul(k));
-        if length != Some(bytes.len()) {
+        // an array of nothing has no other length that would mean anything
+        let empty_but_long = bytes.is_empty() && shape.iter().any(|&k| k > EMPTY);
+        if length != Some(bytes.len()) || empty_but_long {
             return Err("an array's data does not fit its shape");
         }
         let data = bytes.chunks_exact(self.size).map(|b| self.number(b)).collect();

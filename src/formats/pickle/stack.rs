@@ -1,10 +1,12 @@
 //! The stack machine of a pickle: bytes in, values on a stack, objects and a memo.
 
 use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::PickleError;
 use super::numbers::Dtype;
 use super::objects::{Item, Object};
+use super::records::recalled;
 use crate::limits::Limits;
 
 /// The outcome of an opcode.
@@ -18,9 +20,16 @@ pub(super) struct Machine<'a> {
     pub op: usize,
     pub stack: Vec<Item>,
     pub marks: Vec<usize>,
-    pub memo: Vec<Item>,
     pub objects: Vec<Object<'a>>,
     pub limits: &'a Limits,
+    /// Entries of the memo so far; those that are recalled, by their place.
+    pub memo_length: usize,
+    memo: BTreeMap<usize, Item>,
+    recalled: Vec<bool>,
+    /// Objects in the memo, which may be referred to more than once.
+    shared: BTreeSet<usize>,
+    /// Objects that are no longer used, whose places are.
+    free: Vec<usize>,
     /// What of [`Limits::pickle_numbers`] is left.
     budget: usize,
 }
@@ -34,9 +43,13 @@ impl<'a> Machine<'a> {
             op: 0,
             stack: Vec::new(),
             marks: Vec::new(),
-            memo: Vec::new(),
             objects: Vec::new(),
             limits,
+            memo_length: 0,
+            memo: BTreeMap::new(),
+            recalled: recalled(bytes, limits),
+            shared: BTreeSet::new(),
+            free: Vec::new(),
             budget: limits.pickle_numbers,
         }
     }
@@ -88,8 +101,37 @@ impl<'a> Machine<'a> {
 
     /// Pushes a new object.
     pub fn push(&mut self, object: Object<'a>) {
-        self.stack.push(Item::Object(self.objects.len()));
-        self.objects.push(object);
+        let place = self.free.pop().unwrap_or(self.objects.len());
+        match self.objects.get_mut(place) {
+            Some(old) => *old = object,
+            None => self.objects.push(object),
+        }
+        self.stack.push(Item::Object(place));
+    }
+
+    /// Takes what the list at the bottom of the stack, if the pickle is one, has so far.
+    pub fn take_records(&mut self) -> Option<Vec<Item>> {
+        match (self.stack.first(), self.objects.first_mut()) {
+            (Some(Item::Object(0)), Some(Object::List(items))) if !items.is_empty() => Some(std::mem::take(items)),
+            _ => None,
+        }
+    }
+
+    /// Frees the places of an item that nothing refers to any more, and of what is in it.
+    pub fn release(&mut self, item: Item) {
+        let mut rest = vec![item];
+        while let Some(item) = rest.pop() {
+            let Item::Object(place) = item else { continue };
+            if self.shared.contains(&place) {
+                continue;
+            }
+            match std::mem::replace(&mut self.objects[place], Object::List(Vec::new())) {
+                Object::List(items) | Object::Tuple(items) => rest.extend(items),
+                Object::Dict(pairs) => rest.extend(pairs.into_iter().flat_map(|(key, value)| [key, value])),
+                _ => {}
+            }
+            self.free.push(place);
+        }
     }
 
     /// Pushes text.
@@ -137,19 +179,22 @@ impl<'a> Machine<'a> {
     /// Remembers the top value in the memo.
     pub fn put(&mut self, index: usize) -> Done {
         let item = self.top()?;
-        if index < self.memo.len() {
-            self.memo[index] = item;
-        } else if index == self.memo.len() {
-            self.memo.push(item);
-        } else {
+        if index > self.memo_length {
             return Err(self.bad("the memo has a hole"));
+        }
+        self.memo_length = self.memo_length.max(index + 1);
+        if self.recalled.get(index).copied().unwrap_or(false) {
+            self.memo.insert(index, item);
+            if let Item::Object(place) = item {
+                self.shared.insert(place);
+            }
         }
         Ok(())
     }
 
     /// Pushes a value of the memo.
     pub fn get(&mut self, index: usize) -> Done {
-        let item = self.memo.get(index).copied();
+        let item = self.memo.get(&index).copied();
         self.stack
             .push(item.ok_or_else(|| self.bad("the memo has no such entry"))?);
         Ok(())

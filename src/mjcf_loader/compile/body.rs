@@ -17,7 +17,9 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
     let mut last_dof = Vec::with_capacity(document.bodies.len());
     let cameras = document.bodies.iter().flat_map(|body| &body.cameras);
     let nuser_cam = user_length(document.size.nuser_cam, cameras.map(|camera| &camera.user));
+    let limits = &context.tree.limits;
     for (id, body) in document.bodies.iter().enumerate() {
+        context.within(body.at, "bodies", limits.bodies, id + 1)?;
         frame(context, body, id, arrays)?;
         arrays.body_jntadr.push(arrays.jnt_name.len());
         arrays.body_dofadr.push(arrays.nv);
@@ -31,6 +33,7 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         if arrays.body_dofnum[id] > 6 {
             return Err(context.invalid(body.at, "a body can have at most 6 degrees of freedom"));
         }
+        context.within(body.at, "degrees of freedom", limits.dofs, arrays.nv)?;
         arrays.body_weldid.push(if id == 0 || !body.joints.is_empty() {
             id
         } else {
@@ -40,6 +43,7 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         arrays.body_geomnum.push(body.geoms.len());
         let mut solids = Vec::with_capacity(body.geoms.len());
         for geom in &body.geoms {
+            context.within(geom.at, "geoms", limits.geoms, arrays.geom_name.len() + 1)?;
             solids.push(compile_geom(context, geom, id, ids, arrays)?);
         }
         inertial(context, body, id, &solids, arrays)?;

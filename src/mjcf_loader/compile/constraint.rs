@@ -32,6 +32,7 @@ pub(super) fn compile_contacts(
             bodies.swap(0, 1);
         }
         pairs.push((bodies, geoms, pair));
+        context.within(pair.at, "contact pairs", context.tree.limits.pairs, pairs.len())?;
     }
     pairs.sort_by_key(|(bodies, ..)| *bodies);
     for (_, geoms, pair) in pairs {

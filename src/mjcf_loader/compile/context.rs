@@ -77,6 +77,14 @@ impl Context<'_> {
         self.tree.error(at, kind)
     }
 
+    /// Checks the number of elements of a kind so far, the last of which is at `at`.
+    pub fn within(&self, at: usize, what: &'static str, limit: usize, found: usize) -> Result<(), LoadError> {
+        match found > limit {
+            true => Err(self.error(at, ErrorKind::TooMuch { what, limit })),
+            false => Ok(()),
+        }
+    }
+
     pub fn invalid(&self, at: usize, message: &'static str) -> LoadError {
         self.tree.error(at, ErrorKind::Invalid(message))
     }

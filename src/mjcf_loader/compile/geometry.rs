@@ -160,7 +160,7 @@ pub(super) fn size_count(kind: GeomType) -> usize {
 }
 
 /// Computes the volume of a shape, m^3; 0 for planes.
-pub(super) fn volume(kind: GeomType, size: &Vec3) -> f64 {
+pub(in crate::mjcf_loader) fn volume(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {
         GeomType::Plane => 0.0,

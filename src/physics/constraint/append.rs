@@ -25,7 +25,7 @@ pub(super) struct Rows<'a> {
 
 impl Rows<'_> {
     /// Starts a block without columns.
-    #[inline]
+    #[inline(always)]
     pub(super) fn block(&mut self, kind: ConstraintType, id: usize, dim: usize) {
         let e = &mut *self.efc;
         e.blocks.push(Block {
@@ -39,7 +39,7 @@ impl Rows<'_> {
         });
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn block_mut(&mut self) -> &mut Block {
         let last = self.efc.blocks.len() - 1;
         &mut self.efc.blocks[last]
@@ -47,7 +47,7 @@ impl Rows<'_> {
 
     /// Adds to the entry of a degree of freedom in the last block, whose dimension is 1. Degrees of freedom come
     /// ascending.
-    #[inline]
+    #[inline(always)]
     pub(super) fn entry(&mut self, dof: usize, value: f64) {
         let slot = self.topology.slot[dof];
         let e = &mut *self.efc;
@@ -64,7 +64,7 @@ impl Rows<'_> {
     }
 
     /// Starts a block with one row on one degree of freedom.
-    #[inline]
+    #[inline(always)]
     pub(super) fn single(&mut self, kind: ConstraintType, id: usize, dof: usize, value: f64) {
         self.block(kind, id, 1);
         self.entry(dof, value);
@@ -74,6 +74,7 @@ impl Rows<'_> {
     /// Starts a block for the motion of a point of body `b` relative to a point of body `a`, over the tiles that move
     /// either; those that move both alike are left out. `rows` turns translation and rotation (three axes each) of a
     /// tile into rows.
+    #[inline(always)]
     pub(super) fn relative(
         &mut self,
         (kind, id, dim): (ConstraintType, usize, usize),
@@ -123,7 +124,7 @@ impl Rows<'_> {
 
     /// Appends a row whose impedance follows from `violation` (the distance to the margin, or the norm of a weld's
     /// error). Returns its damping.
-    #[inline]
+    #[inline(always)]
     pub(super) fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
         let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.timestep);
         let r = ((1.0 - i.imp) / i.imp * spec.diag).max(MINVAL);
@@ -136,7 +137,7 @@ impl Rows<'_> {
         i.b
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn push(&mut self, pos: f64, margin: f64, diag: f64, r: f64, aref: f64, damping: f64) {
         let e = &mut *self.efc;
         e.pos.push(pos);

@@ -58,6 +58,7 @@ struct Line {
 
 impl Cone {
     /// Creates the cone of a contact from its block of rows.
+    #[inline(always)]
     pub(super) fn new(b: &Block, efc: &Efc) -> Self {
         let mut cone = Self {
             dim: b.dim,
@@ -74,7 +75,7 @@ impl Cone {
     }
 
     /// Computes the cost, and fills in force and zone.
-    #[inline]
+    #[inline(always)]
     pub(super) fn evaluate(&mut self) -> f64 {
         let (jar, mu) = (&self.jar, self.mu);
         let n = jar[0] * mu;
@@ -111,7 +112,7 @@ impl Cone {
     /// Computes the Hessian of the cost on the surface of the cone with respect to `jar`.
     ///
     /// The cost is `dm/2 y^2` with `y = n - mu t`, `n = mu jar_0` and `t` the length of `u_k = friction_k jar_k`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn curvature(&self) -> [[f64; 6]; 6] {
         let (mu, dim) = (self.mu, self.dim);
         let mut u = [0.0; 6];
@@ -144,7 +145,7 @@ impl Cone {
     }
 
     /// Prepares [`Self::add_slopes`] for `jar` and `jv`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn prepare_line(&mut self) {
         let mut line = Line {
             n0: self.jar[0] * self.mu,
@@ -165,7 +166,7 @@ impl Cone {
     }
 
     /// Adds first and second derivative of the cost at `jar + alpha jv`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add_slopes(&self, alpha: f64, first: &mut f64, second: &mut f64) {
         let (c, mu) = (&self.line, self.mu);
         let n = c.n0 + alpha * c.n1;

@@ -8,6 +8,7 @@ use crate::physics::tiles::{
     Lanes, Pattern, Tile, ZERO, add_outer_products, factor_diagonal, scale_rows, solve, solve_columns,
     sub_transposed_product, sub_transposed_product_diagonal,
 };
+use crate::physics::vectorize::vectorize;
 
 mod pattern;
 
@@ -43,6 +44,8 @@ pub(super) struct Hessian {
     weighted: Vec<Lanes>,
 }
 
+/// Memory is reserved for islands of up to this many degrees of freedom, as some of it grows with their square.
+const MANY: usize = 512;
 /// No row.
 const NONE: u32 = u32::MAX;
 
@@ -50,7 +53,7 @@ impl Hessian {
     /// Reserves memory for `nv` degrees of freedom and `contacts` contacts.
     pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
         // tiles are mostly full, and few trees touch each other at a time
-        let (rows, tiles) = (nv, (nv * (nv + 1) / 16).min(4 * nv));
+        let (rows, tiles) = (nv.min(MANY), (nv * (nv + 1) / 16).min(4 * nv));
         Self {
             words: 0,
             bits: Vec::with_capacity(rows * rows.div_ceil(64)),
@@ -71,6 +74,7 @@ impl Hessian {
     }
 
     /// Assembles and factorises what has changed.
+    #[inline(always)]
     pub(super) fn refresh(&mut self, island: &Island, efc: &Efc) {
         self.find_changes(island);
         self.assemble(island, efc);
@@ -78,6 +82,7 @@ impl Hessian {
     }
 
     /// Marks the rows whose constraints have other curvatures than at the last call.
+    #[inline(always)]
     fn find_changes(&mut self, island: &Island) {
         let first = self.weight.is_empty() && self.zone.is_empty();
         if first {
@@ -105,12 +110,16 @@ impl Hessian {
         for (row, j) in &island.several {
             let (now, before) = weight(*row);
             if now != before {
-                island.cols(j).iter().for_each(|&c| self.changed[c as usize] = true);
+                for &c in island.cols(j) {
+                    self.changed[c as usize] = true;
+                }
             }
         }
         for ((c, j), zone) in island.cones.iter().zip(&self.zone) {
             if c.zone != *zone || c.zone == Zone::Surface {
-                island.cols(j).iter().for_each(|&c| self.changed[c as usize] = true);
+                for &c in island.cols(j) {
+                    self.changed[c as usize] = true;
+                }
             }
         }
         for (w, q) in self.weight.iter_mut().zip(&island.scalar_rows) {
@@ -122,6 +131,7 @@ impl Hessian {
     }
 
     /// Fills the changed rows of the matrix.
+    #[inline(always)]
     fn assemble(&mut self, island: &Island, efc: &Efc) {
         let n = island.tiles();
         for i in 0..n {
@@ -176,11 +186,13 @@ impl Hessian {
         }
     }
 
+    #[inline(always)]
     fn touches_changed(&self, island: &Island, j: &Jacobian) -> bool {
         island.cols(j).iter().any(|&c| self.changed[c as usize])
     }
 
     /// Computes `weighted = diag(weight) J`.
+    #[inline(always)]
     fn weigh_diagonal(&mut self, jac: &[Lanes], weight: &[f64; 6], dim: usize) {
         self.weighted.clear();
         for rows in jac.chunks_exact(dim) {
@@ -190,6 +202,7 @@ impl Hessian {
     }
 
     /// Computes `weighted = C J`.
+    #[inline(always)]
     fn weigh(&mut self, jac: &[Lanes], c: &[[f64; 6]; 6], dim: usize) {
         self.weighted.clear();
         for rows in jac.chunks_exact(dim) {
@@ -206,14 +219,23 @@ impl Hessian {
     }
 
     /// Adds `J' weighted` to the changed rows of the lower triangle.
+    #[inline(always)]
     fn add_weighted(&mut self, island: &Island, j: &Jacobian, efc: &Efc) {
-        let (n, cols) = (island.tiles(), island.cols(j));
-        for (a, (&i, rows)) in cols.iter().zip(j.values(efc).chunks_exact(j.dim)).enumerate() {
+        vectorize(
+            #[inline(always)]
+            || self.add_weighted_tiles(island.tiles(), island.cols(j), j.values(efc), j.dim),
+        );
+    }
+
+    /// Does so for a Jacobian over the columns `cols`, in an island of `n` tiles.
+    #[inline(always)]
+    fn add_weighted_tiles(&mut self, n: usize, cols: &[u32], jac: &[Lanes], dim: usize) {
+        for (a, (&i, rows)) in cols.iter().zip(jac.chunks_exact(dim)).enumerate() {
             let i = i as usize;
             if !self.changed[i] {
                 continue;
             }
-            for (&c, weighted) in cols[..a + 1].iter().zip(self.weighted.chunks_exact(j.dim)) {
+            for (&c, weighted) in cols[..a + 1].iter().zip(self.weighted.chunks_exact(dim)) {
                 let place = self.place[i * n + c as usize] as usize;
                 add_outer_products(&mut self.h[place], rows, weighted);
             }
@@ -221,6 +243,7 @@ impl Hessian {
     }
 
     /// Factorises the changed rows and those they are eliminated into.
+    #[inline(always)]
     fn factorise(&mut self) {
         let n = self.pattern.rows();
         for i in (0..n).rev() {
@@ -230,12 +253,16 @@ impl Hessian {
                 c = self.sibling[c as usize];
             }
             if self.changed[i] {
-                self.factorise_row(i);
+                vectorize(
+                    #[inline(always)]
+                    || self.factorise_row(i),
+                );
             }
         }
         self.changed.fill(false);
     }
 
+    #[inline(always)]
     fn factorise_row(&mut self, i: usize) {
         let range = self.pattern.start(i)..self.pattern.start(i + 1);
         let cols = self.pattern.cols(i);
@@ -257,11 +284,11 @@ impl Hessian {
                 let m = child_cols.len() - 1;
                 let (triangle, last) = update[..(m + 1) * (m + 2) / 2].split_at(m * (m + 1) / 2);
                 if m == count {
-                    row.iter_mut().zip(last).for_each(|(r, u)| add(r, u));
+                    add_tiles(row, last);
                     if empty {
                         mine.copy_from_slice(triangle);
                     } else {
-                        mine.iter_mut().zip(triangle).for_each(|(r, u)| add(r, u));
+                        add_tiles(mine, triangle);
                     }
                 } else {
                     if empty {
@@ -291,16 +318,22 @@ impl Hessian {
     }
 
     /// Sets `out` to minus the inverse times `gradient`.
+    #[inline(always)]
     pub(super) fn descend(&self, gradient: &[Lanes], out: &mut [Lanes]) {
         for (o, g) in out.iter_mut().zip(gradient) {
             *o = g.map(|v| -v);
         }
-        solve(&self.pattern, &self.factor, &self.inv, out);
+        let (pattern, factor, inv) = (&self.pattern, &self.factor[..], &self.inv[..]);
+        vectorize(
+            #[inline(always)]
+            || solve(pattern, factor, inv, out),
+        );
     }
 }
 
 /// Adds the update of a row with `child_cols` to the row with `cols` that it is eliminated into, and to that row's
 /// update.
+#[inline(always)]
 fn extend_add(cols: &[u32], child_cols: &[u32], row: &mut [Tile], update: &mut [Tile], child: &[Tile]) {
     let mut child = child.iter();
     let mut a = 0;
@@ -320,6 +353,13 @@ fn extend_add(cols: &[u32], child_cols: &[u32], row: &mut [Tile], update: &mut [
             }
             add(&mut target[b], u);
         }
+    }
+}
+
+#[inline(always)]
+fn add_tiles(a: &mut [Tile], b: &[Tile]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        add(a, b);
     }
 }
 

@@ -7,6 +7,9 @@ use crate::physics::constraint::{Block, ConstraintType, Efc};
 use crate::physics::state::State;
 use crate::physics::tiles::{Lanes, Pattern, Tile, mul, total};
 use crate::physics::topology::Topology;
+use crate::physics::vectorize::vectorize;
+
+mod start;
 
 /// The cost along the search direction, where the search starts.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +89,7 @@ impl Island {
     }
 
     /// Reads the trees and blocks (indices into `efc.blocks`) of an island.
+    #[inline(always)]
     pub(super) fn load(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc, s: &State) {
         self.load_trees(topology, trees, s);
         let lanes = self.tiles();
@@ -103,6 +107,7 @@ impl Island {
         self.load_rows(topology, blocks, efc);
     }
 
+    #[inline(always)]
     fn load_trees(&mut self, topology: &Topology, trees: &[usize], s: &State) {
         self.trees.clear();
         self.shift.resize(topology.ntree(), 0);
@@ -134,10 +139,12 @@ impl Island {
     }
 
     /// Returns the lane of a degree of freedom, counted over the tiles of the island.
+    #[inline(always)]
     fn slot(&self, topology: &Topology, dof: usize) -> usize {
         (topology.slot[dof] as usize).wrapping_add(self.shift[topology.dof_tree[dof]])
     }
 
+    #[inline(always)]
     fn load_rows(&mut self, topology: &Topology, blocks: &[u32], efc: &Efc) {
         self.scalar_rows.clear();
         self.singles.clear();
@@ -180,6 +187,7 @@ impl Island {
         }
     }
 
+    #[inline(always)]
     fn load_jacobian(&mut self, topology: &Topology, b: &Block, efc: &Efc) -> Jacobian {
         let col = self.cols.len();
         for &tile in &efc.cols[b.col..b.col + b.ncol] {
@@ -195,56 +203,27 @@ impl Island {
     }
 
     /// Returns the tiles of the columns, ascending.
+    #[inline(always)]
     pub(super) fn cols(&self, j: &Jacobian) -> &[u32] {
         &self.cols[j.col..j.col + j.ncol]
     }
 
-    /// Starts at the acceleration without constraints.
-    pub(super) fn start_smooth(&mut self, efc: &Efc) {
-        self.acc.copy_from_slice(&self.acc_smooth);
-        // M qacc_smooth is qfrc_smooth
-        self.ma.copy_from_slice(&self.force_smooth);
-        self.reset_rows(efc);
-    }
-
-    /// Starts at a given acceleration (nv).
-    pub(super) fn start_at(&mut self, topology: &Topology, qacc: &[f64], efc: &Efc) {
-        for &(t, _) in &self.trees {
-            for d in topology.tree_adr[t]..topology.tree_adr[t + 1] {
-                let slot = (topology.slot[d] as usize).wrapping_add(self.shift[t]);
-                self.acc[slot / 4][slot % 4] = qacc[d];
-            }
-        }
-        mul(&self.m_pattern, &self.m, &self.acc, &mut self.ma);
-        self.reset_rows(efc);
-    }
-
-    /// Computes all `jar` at `acc`.
-    fn reset_rows(&mut self, efc: &Efc) {
-        let x = std::mem::take(&mut self.acc);
-        self.rates(&x, efc);
-        self.acc = x;
-        for q in &mut self.scalar_rows {
-            for k in 0..4 {
-                q.jar[k] = q.jv[k] - q.aref[k];
-            }
-        }
-        for (c, _) in &mut self.cones {
-            for k in 0..6 {
-                c.jar[k] = c.jv[k] - c.aref[k];
-            }
-        }
-    }
-
     /// Computes `m_search` and all `jv` for `search`.
+    #[inline(always)]
     pub(super) fn follow_search(&mut self, efc: &Efc) {
-        mul(&self.m_pattern, &self.m, &self.search, &mut self.m_search);
+        let (pattern, m) = (&self.m_pattern, &self.m[..]);
+        let (search, m_search) = (&self.search[..], &mut self.m_search[..]);
+        vectorize(
+            #[inline(always)]
+            || mul(pattern, m, search, m_search),
+        );
         let x = std::mem::take(&mut self.search);
         self.rates(&x, efc);
         self.search = x;
     }
 
     /// Computes `jv = J x`.
+    #[inline(always)]
     fn rates(&mut self, x: &[Lanes], efc: &Efc) {
         for (q, x) in self.scalar_rows[..self.friction_tiles].iter_mut().zip(x) {
             q.jv = *x;
@@ -264,16 +243,22 @@ impl Island {
     }
 
     /// Moves by `alpha` along the search direction.
+    #[inline(always)]
     pub(super) fn advance(&mut self, alpha: f64) {
-        let axpy = |x: &mut Lanes, v: &Lanes| {
+        #[inline(always)]
+        fn axpy(x: &mut Lanes, alpha: f64, v: &Lanes) {
             for k in 0..4 {
                 x[k] += alpha * v[k];
             }
-        };
-        self.acc.iter_mut().zip(&self.search).for_each(|(x, v)| axpy(x, v));
-        self.ma.iter_mut().zip(&self.m_search).for_each(|(x, v)| axpy(x, v));
+        }
+        for (x, v) in self.acc.iter_mut().zip(&self.search) {
+            axpy(x, alpha, v);
+        }
+        for (x, v) in self.ma.iter_mut().zip(&self.m_search) {
+            axpy(x, alpha, v);
+        }
         for q in &mut self.scalar_rows {
-            axpy(&mut q.jar, &q.jv);
+            axpy(&mut q.jar, alpha, &q.jv);
         }
         for (c, _) in &mut self.cones {
             for k in 0..6 {
@@ -283,6 +268,7 @@ impl Island {
     }
 
     /// Returns the cost at the acceleration; fills in forces and curvatures.
+    #[inline(always)]
     pub(super) fn evaluate(&mut self) -> f64 {
         let mut cost = [0.0; 4];
         for (((ma, f), a), b) in self
@@ -312,6 +298,7 @@ impl Island {
     /// Computes the gradient of the cost and returns its length.
     ///
     /// `constraint_force = J' force`, `gradient = M acc - qfrc_smooth - J' force`.
+    #[inline(always)]
     pub(super) fn differentiate(&mut self, efc: &Efc) -> f64 {
         let out = &mut self.constraint_force;
         if self.friction_tiles > 0 {
@@ -347,6 +334,7 @@ impl Island {
     }
 
     /// Computes the sums along the search direction that the line search starts from.
+    #[inline(always)]
     pub(super) fn along_search(&self) -> AlongSearch {
         let mut sums = [[0.0; 4]; 4];
         for ((((s, ms), ma), f), g) in self
@@ -373,6 +361,7 @@ impl Island {
     }
 
     /// Writes acceleration, constraint force and the forces of the rows back.
+    #[inline(always)]
     pub(super) fn store(&self, topology: &Topology, efc: &mut Efc, s: &mut State) {
         for &(t, _) in &self.trees {
             for d in topology.tree_adr[t]..topology.tree_adr[t + 1] {

@@ -33,7 +33,7 @@ impl Jacobian {
 }
 
 /// Computes `J x`.
-#[inline]
+#[inline(always)]
 pub(super) fn product(cols: &[u32], jac: &[Lanes], j: &Jacobian, x: &[Lanes]) -> [f64; 6] {
     let mut out = [0.0; 6];
     let mut first = 0;
@@ -66,7 +66,7 @@ fn some_products<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, firs
 }
 
 /// Computes `out += J' force`.
-#[inline]
+#[inline(always)]
 pub(super) fn add_transposed_product(cols: &[u32], jac: &[Lanes], j: &Jacobian, force: &[f64; 6], out: &mut [Lanes]) {
     let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
     for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {

@@ -14,6 +14,7 @@ pub(super) struct LineSearch<'a> {
 
 impl LineSearch<'_> {
     /// Computes the first and second derivative of the cost at `alpha`.
+    #[inline(always)]
     fn derivatives(&self, alpha: f64) -> (f64, f64) {
         let (mut first, mut second) = ([0.0; 4], [0.0; 4]);
         for q in &self.island.scalar_rows {
@@ -30,6 +31,7 @@ impl LineSearch<'_> {
     /// Finds the step length at which the derivative vanishes to within `tolerance`, from a first guess.
     ///
     /// This is Newton's method on the derivative (which is monotone), kept inside a bracket.
+    #[inline(always)]
     pub(super) fn minimise(&self, guess: f64, tolerance: f64, iterations: usize) -> f64 {
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut alpha = guess;

@@ -23,7 +23,9 @@ pub use impedance::impedance;
 pub use newton::Newton;
 pub use rows::RowBuilder;
 pub use view::EfcRow;
-pub use weld::{Weld, weld_points};
+#[cfg(feature = "rapier")]
+pub use weld::Weld;
+pub use weld::weld_points;
 
 use crate::physics::tiles::Lanes;
 use crate::physics::topology::Topology;

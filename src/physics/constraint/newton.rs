@@ -10,6 +10,7 @@ use crate::physics::constraint::island::Island;
 use crate::physics::constraint::line_search::LineSearch;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
+use crate::physics::vectorize::vectorize;
 
 /// Solves for the accelerations under constraints; holds the working memory.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +19,8 @@ pub struct Newton {
     hessian: Hessian,
     /// Union-find over trees.
     parent: Vec<usize>,
+    /// The next tree of the same island, ascending; the number of trees after the last.
+    next: Vec<usize>,
     /// Trees of the island at hand.
     trees: Vec<usize>,
     /// Island (first tree) of each block.
@@ -36,6 +39,7 @@ impl Newton {
             island: Island::with_capacity(topology.tiles.tiles(), nv, contacts),
             hessian: Hessian::with_capacity(nv, contacts),
             parent: Vec::with_capacity(nv),
+            next: Vec::with_capacity(nv),
             trees: Vec::with_capacity(nv),
             block_tree: Vec::with_capacity(blocks),
             blocks: Vec::with_capacity(blocks),
@@ -46,6 +50,7 @@ impl Newton {
     /// Computes `qacc, qfrc_constraint`, the row forces and the contact forces. Starts from `qacc_warmstart` or
     /// `qacc_smooth`, whichever costs less, and stops when the improvement or the gradient, scaled by the mean inertia,
     /// falls below `opt.tolerance`.
+    #[inline(always)]
     pub fn solve(&mut self, model: &Model, topology: &Topology, s: &mut State) {
         s.qacc.copy_from_slice(&s.qacc_smooth);
         s.qfrc_constraint.fill(0.0);
@@ -59,8 +64,11 @@ impl Newton {
                     continue;
                 }
                 self.trees.clear();
-                self.trees
-                    .extend((root..topology.ntree()).filter(|&t| self.parent[t] == root));
+                let mut tree = root;
+                while tree < topology.ntree() {
+                    self.trees.push(tree);
+                    tree = self.next[tree];
+                }
                 self.solve_island(model, topology, blocks, &mut efc, s);
             }
             s.efc = efc;
@@ -77,6 +85,7 @@ impl Newton {
     /// Finds the islands and sorts the blocks by island.
     ///
     /// Trees that share a block belong together; the island's name is its first tree.
+    #[inline(always)]
     fn find_islands(&mut self, topology: &Topology, efc: &Efc) {
         let ntree = topology.ntree();
         self.parent.clear();
@@ -98,6 +107,15 @@ impl Newton {
         for t in 0..ntree {
             self.parent[t] = find(&mut self.parent, t);
         }
+        // lists of the trees of each island, filled from their ends
+        self.next.clear();
+        self.next.resize(ntree, ntree);
+        for t in (0..ntree).rev() {
+            let root = self.parent[t];
+            if root != t {
+                self.next[t] = std::mem::replace(&mut self.next[root], t);
+            }
+        }
         // counting sort
         self.block_adr.clear();
         self.block_adr.resize(ntree + 2, 0);
@@ -117,21 +135,16 @@ impl Newton {
         }
     }
 
+    #[inline(always)]
     fn solve_island(&mut self, model: &Model, topology: &Topology, blocks: Range<usize>, efc: &mut Efc, s: &mut State) {
         let (island, hessian) = (&mut self.island, &mut self.hessian);
-        island.load(topology, &self.trees, &self.blocks[blocks], efc, s);
-        island.start_smooth(efc);
-        let smooth_cost = island.evaluate();
-        island.start_at(topology, &s.qacc_warmstart, efc);
-        let mut cost = island.evaluate();
-        // a warm start that is no number costs no less
-        let warm = cost < smooth_cost;
-        if !warm {
-            island.start_smooth(efc);
-            cost = island.evaluate();
-        }
+        let (trees, blocks) = (&self.trees[..], &self.blocks[blocks]);
+        vectorize(
+            #[inline(always)]
+            || island.load(topology, trees, blocks, efc, s),
+        );
+        let (mut cost, length) = island.start(topology, &s.qacc_warmstart, efc);
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
-        let length = island.differentiate(efc);
         // what rests needs no step: the Hessian exceeds the inertia, so its steps are bounded by the inertia's inverse
         let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(model, t)).sum();
         if mobility > 0.0 && length * length * mobility < MINVAL {
@@ -148,14 +161,19 @@ impl Newton {
             if along.length < MINVAL || along.slope >= 0.0 || -along.slope < MINVAL {
                 break;
             }
-            island.cones.iter_mut().for_each(|(c, _)| c.prepare_line());
+            for (c, _) in &mut island.cones {
+                c.prepare_line();
+            }
             let line = LineSearch {
                 slope: along.inertial_slope,
                 curvature: along.inertial_curvature,
                 island,
             };
             let tolerance = model.opt.tolerance * model.opt.ls_tolerance * along.length / scale;
-            let alpha = line.minimise(1.0, tolerance, model.opt.ls_iterations);
+            let alpha = vectorize(
+                #[inline(always)]
+                || line.minimise(1.0, tolerance, model.opt.ls_iterations),
+            );
             if alpha == 0.0 {
                 break;
             }
@@ -173,6 +191,7 @@ impl Newton {
 }
 
 /// Finds the root of a tree's island, with path halving.
+#[inline(always)]
 fn find(parent: &mut [usize], mut t: usize) -> usize {
     while parent[t] != t {
         parent[t] = parent[parent[t]];

@@ -49,6 +49,7 @@ impl RowBuilder {
 
     /// Fills `s.efc` from the position stage, the contacts and `qvel`: equalities, friction loss, limits of joints and
     /// tendons, contacts.
+    #[inline(always)]
     pub fn build(&mut self, model: &Model, topology: &Topology, s: &mut State) {
         let mut efc = std::mem::take(&mut s.efc);
         efc.clear();
@@ -70,6 +71,7 @@ impl RowBuilder {
     }
 
     /// Appends dry friction.
+    #[inline(always)]
     fn add_friction(&self, efc: &mut Efc, s: &State) {
         let f = &self.friction;
         let (row, col, jac) = (efc.pos.len(), efc.cols.len(), efc.jac.len());
@@ -98,6 +100,7 @@ impl RowBuilder {
     }
 
     /// Computes the velocities of all rows but those of dry friction; `vel` holds the damping of each until here.
+    #[inline(always)]
     fn add_velocities(&self, efc: &mut Efc, s: &State) {
         efc.force.resize(efc.pos.len(), 0.0);
         for k in 0..efc.blocks.len() {
@@ -132,6 +135,7 @@ impl RowBuilder {
 }
 
 /// Appends the rows of the active equalities.
+#[inline(always)]
 fn equalities(rows: &mut Rows, s: &State) {
     let model = rows.model;
     for id in 0..model.neq() {
@@ -150,6 +154,7 @@ fn equalities(rows: &mut Rows, s: &State) {
 }
 
 /// Appends the row of a joint equality: joint 1 is a polynomial of joint 2, or constant without one.
+#[inline(always)]
 fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<usize>), c: [f64; 5]) {
     let model = rows.model;
     let (joint1, joint2) = joints;
@@ -189,6 +194,7 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
         s,
         (body2, weld.point2),
         (body1, weld.point1),
+        #[inline(always)]
         |translation, rotation, out| {
             let mut rates = [[0.0; 4]; 3];
             for k in 0..4 {
@@ -216,6 +222,7 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
 }
 
 /// Appends a row for each limit of a joint that is within its margin.
+#[inline(always)]
 fn joint_limits(rows: &mut Rows, s: &State) {
     let model = rows.model;
     for j in 0..model.njnt() {
@@ -239,6 +246,7 @@ fn joint_limits(rows: &mut Rows, s: &State) {
 }
 
 /// Appends a row for each limit of a tendon that is within its margin.
+#[inline(always)]
 fn tendon_limits(rows: &mut Rows, s: &State) {
     let model = rows.model;
     for t in 0..model.ntendon() {
@@ -272,6 +280,7 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
 
 /// Appends the rows of contact `i`: the normal, then friction. The friction rows have no stiffness; their
 /// regularisation follows from that of the normal so that the cone keeps its shape.
+#[inline(always)]
 fn contact(rows: &mut Rows, s: &mut State, i: usize) {
     let model = rows.model;
     s.contact[i].efc_address = None;
@@ -290,6 +299,7 @@ fn contact(rows: &mut Rows, s: &mut State, i: usize) {
         s,
         (b1, c.pos),
         (b2, c.pos),
+        #[inline(always)]
         |translation, rotation, out| {
             for r in 0..c.dim {
                 let (axis, motion) = (row(&c.frame, r % 3), if r < 3 { translation } else { rotation });

@@ -44,6 +44,7 @@ pub(super) const NO_ROWS: ScalarRows = ScalarRows {
 };
 
 impl ScalarRows {
+    #[inline(always)]
     pub(super) fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
         let (low, high) = match b.kind {
             ConstraintType::FrictionDof => (-b.frictionloss, b.frictionloss),

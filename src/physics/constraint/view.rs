@@ -47,6 +47,10 @@ impl Efc {
     /// Returns row `row` of the Jacobian in full (nv), or nothing if there is no such row.
     pub fn jacobian_row(&self, topology: &Topology, row: usize) -> Option<Vec<f64>> {
         let block = self.blocks.iter().find(|b| (b.row..b.row + b.dim).contains(&row))?;
+        let tiles = self.cols.get(block.col..block.col + block.ncol)?;
+        if tiles.iter().any(|&tile| tile as usize >= topology.tiles.rows()) {
+            return None;
+        }
         let mut values = vec![0.0; topology.dof_tree.len()];
         for (r, dof, value) in self.entries(topology, block) {
             if block.row + r == row {

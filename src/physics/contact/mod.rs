@@ -206,7 +206,7 @@ impl Default for Scratch {
 ///
 /// MuJoCo makes this test before [`collide`], and it does decide whether some contacts exist. `radius_a` and `radius_b`
 /// are the bounding radii about the centres, 0 for a plane. Needs `a.kind <= b.kind`.
-#[inline]
+#[inline(always)]
 pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f64, margin: f64) -> bool {
     if a.kind == GeomType::Plane {
         let height = dot(sub(b.pos, a.pos), a.axis());

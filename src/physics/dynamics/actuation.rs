@@ -1,6 +1,7 @@
 //! From controls to joint forces and unconstrained acceleration.
 
 use crate::model::{BiasType, Model};
+use crate::physics::dynamics::applied::xfrc_accumulate;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::state::State;
 
@@ -9,6 +10,7 @@ use crate::physics::state::State;
 /// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint; its length and velocity are gear times
 /// those of the joint. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
 /// of range are clamped. `bodies` must be up to date.
+#[inline(always)]
 pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
     s.qfrc_actuator.fill(0.0);
     for i in 0..model.nu() {
@@ -43,6 +45,7 @@ pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
     for d in 0..model.nv {
         s.qfrc_smooth[d] = s.qfrc_passive[d] - s.qfrc_bias[d] + s.qfrc_applied[d] + s.qfrc_actuator[d];
     }
+    xfrc_accumulate(model, s);
     let mut acc = std::mem::take(&mut s.qacc_smooth);
     bodies.solve(model, s, Damping::Without, &s.qfrc_smooth, &mut acc);
     s.qacc_smooth = acc;

@@ -1,5 +1,7 @@
 //! Solving `M x = b` by articulated bodies: linear in the number of degrees of freedom (Featherstone 2008, chapter 7).
 
+use std::ops::Range;
+
 use crate::model::Arrays;
 use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::physics::state::State;
@@ -45,6 +47,7 @@ const fn at(i: usize, j: usize) -> usize {
 }
 
 /// Converts the inertia of a rigid body to a matrix, as a packed lower triangle.
+#[inline(always)]
 fn matrix(i: &Inertia) -> [f64; 21] {
     let [xx, yy, zz, xy, xz, yz, x, y, z, m] = *i;
     [
@@ -57,6 +60,7 @@ fn matrix(i: &Inertia) -> [f64; 21] {
 
 impl Articulated {
     /// Computes the inertias from `cinert`, `cdof`, armature and damping.
+    #[inline(always)]
     pub fn update(&mut self, model: &Arrays, s: &State) {
         self.inertia.clear();
         self.inertia.extend(s.cinert.iter().map(|i| matrix(i).map(|v| [v; 2])));
@@ -84,20 +88,35 @@ impl Articulated {
     }
 
     /// Solves `M x = b` (nv), or with damping `(M + h D) x = b`.
+    #[inline(always)]
     pub fn solve(&mut self, model: &Arrays, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
+        let bodies = 1..model.nbody();
         match damping {
-            Damping::Without => self.solve_lane::<0>(model, s, b, x),
-            Damping::Implicit => self.solve_lane::<1>(model, s, b, x),
+            Damping::Without => self.solve_lane::<0>(model, s, bodies, b, x),
+            Damping::Implicit => self.solve_lane::<1>(model, s, bodies, b, x),
         }
     }
 
-    fn solve_lane<const LANE: usize>(&mut self, model: &Arrays, s: &State, b: &[f64], x: &mut [f64]) {
+    /// Solves `M x = b` for the degrees of freedom of some bodies that hold whole trees; the rest of `x` stays as it is.
+    pub(super) fn solve_trees(&mut self, model: &Arrays, s: &State, bodies: Range<usize>, b: &[f64], x: &mut [f64]) {
+        self.solve_lane::<0>(model, s, bodies, b, x);
+    }
+
+    #[inline(always)]
+    fn solve_lane<const LANE: usize>(
+        &mut self,
+        model: &Arrays,
+        s: &State,
+        bodies: Range<usize>,
+        b: &[f64],
+        x: &mut [f64],
+    ) {
         let nb = model.nbody();
-        self.force.clear();
         self.force.resize(nb, [0.0; 6]);
+        self.force[bodies.clone()].fill([0.0; 6]);
         self.acc.resize(nb, [0.0; 6]);
         self.rest.resize(model.nv, 0.0);
-        for body in (1..nb).rev() {
+        for body in bodies.clone().rev() {
             let mut f = self.force[body];
             let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
             let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
@@ -111,7 +130,7 @@ impl Articulated {
                 axpy6(&mut self.force[p], 1.0, &f);
             }
         }
-        for body in 1..nb {
+        for body in bodies {
             let p = model.body_parentid[body];
             let mut a = if p > 0 { self.acc[p] } else { [0.0; 6] };
             let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];

@@ -1,10 +1,12 @@
 //! Constants of a model that need its dynamics at `qpos0`.
 
+use std::ops::Range;
+
 use crate::math::*;
 use crate::model::{
     Arrays, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
 };
-use crate::physics::dynamics::{Articulated, Damping, com_pos, crb, kinematics};
+use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -63,6 +65,8 @@ struct Weights<'a> {
     topology: &'a Topology,
     s: &'a State,
     bodies: Articulated,
+    /// Bodies of each tree: its first one and all below.
+    tree_bodies: Vec<Range<usize>>,
     b: Vec<f64>,
     x: Vec<f64>,
 }
@@ -71,11 +75,15 @@ impl<'a> Weights<'a> {
     fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State) -> Self {
         let mut bodies = Articulated::default();
         bodies.update(model, s);
+        let first = |tree: usize| model.jnt_bodyid[model.dof_jntid[topology.tree_adr[tree]]];
+        let below = |b: usize| (b + 1..model.nbody()).find(|&c| model.body_parentid[c] < b);
+        let range = |b: usize| b..below(b).unwrap_or(model.nbody());
         Self {
             model,
             topology,
             s,
             bodies,
+            tree_bodies: (0..topology.ntree()).map(|tree| range(first(tree))).collect(),
             b: vec![0.0; model.nv],
             x: vec![0.0; model.nv],
         }
@@ -83,12 +91,18 @@ impl<'a> Weights<'a> {
 
     /// Computes the acceleration along a row of a Jacobian, given by its nonzero entries, per unit force along it.
     fn of(&mut self, jac: &[(usize, f64)]) -> f64 {
-        self.b.fill(0.0);
         for &(d, v) in jac {
             self.b[d] += v;
         }
-        self.bodies
-            .solve(self.model, self.s, Damping::Without, &self.b, &mut self.x);
+        // trees do not feel each other
+        let mut trees: Vec<usize> = jac.iter().map(|&(d, _)| self.topology.dof_tree[d]).collect();
+        trees.dedup();
+        for tree in trees {
+            let bodies = self.tree_bodies[tree].clone();
+            self.bodies
+                .solve_trees(self.model, self.s, bodies, &self.b, &mut self.x);
+        }
+        jac.iter().for_each(|&(d, _)| self.b[d] = 0.0);
         jac.iter().map(|&(d, v)| v * self.x[d]).sum()
     }
 
@@ -162,8 +176,9 @@ fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
 fn slides_alone(model: &Arrays, b: usize) -> bool {
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
     let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > MINVAL).count() == 1;
+    // a child, if there is one, comes next
     model.body_parentid[b] == 0
-        && !model.body_parentid.contains(&b)
+        && model.body_parentid.get(b + 1) != Some(&b)
         && model.body_sameframe[b] == SameFrame::Body
         && !joints.is_empty()
         && joints

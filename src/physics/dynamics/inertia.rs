@@ -3,10 +3,13 @@
 use crate::model::Arrays;
 use crate::physics::spatial::inertia_mul;
 use crate::physics::state::State;
-use crate::physics::tiles::{Tile, ZERO, add_outer_products, mul};
+#[cfg(any(test, feature = "rapier"))]
+use crate::physics::tiles::{Tile, mul};
+use crate::physics::tiles::{ZERO, add_outer_products};
 use crate::physics::topology::Topology;
 
 /// Computes `crb` and `qm` from `cinert` and `cdof`, armature included (composite-rigid-body algorithm).
+#[inline(always)]
 pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
     s.crb.copy_from_slice(&s.cinert);
     for b in (1..model.nbody()).rev() {
@@ -37,7 +40,9 @@ pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
             add_outer_products(tile, &force, &s.cdof_lanes[col as usize]);
             // a limb may leave the trunk in the middle of a tile
             if col as usize != row && lanes < 4 {
-                tile.iter_mut().for_each(|r| r[lanes as usize..].fill(0.0));
+                for row in tile {
+                    row[lanes as usize..].fill(0.0);
+                }
             }
         }
         if let Some(diagonal) = tiles.last_mut() {
@@ -57,6 +62,7 @@ pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
 }
 
 /// Computes `out = M x` (nv), for a matrix in tiles. Allocates: the solvers work in lanes throughout.
+#[cfg(any(test, feature = "rapier"))]
 pub fn mul_m(topology: &Topology, m: &[Tile], x: &[f64], out: &mut [f64]) {
     let mut lanes = vec![[0.0; 4]; topology.tiles.rows()];
     let mut product = lanes.clone();

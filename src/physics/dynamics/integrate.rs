@@ -15,6 +15,7 @@ pub struct Integrator {
 impl Integrator {
     /// Advances `qpos, qvel, time`: `v+ = v + h (M + h D)^-1 (qfrc_smooth + qfrc_constraint)`, then `q+ = q (+) h v+`;
     /// without damping `v+ = v + h qacc`. `bodies` must be up to date.
+    #[inline(always)]
     pub fn advance(&mut self, model: &Model, bodies: &mut Articulated, s: &mut State) {
         let h = model.opt.timestep;
         if s.params.dof_damping.iter().any(|&d| d > 0.0) {
@@ -39,6 +40,7 @@ impl Integrator {
 }
 
 /// Computes `qpos (+)= h qvel`; quaternions turn by the body-frame angular velocity.
+#[inline(always)]
 pub fn integrate_pos(model: &Model, qpos: &mut [f64], qvel: &[f64], h: f64) {
     for j in 0..model.njnt() {
         let (q, d) = (model.jnt_qposadr[j], model.jnt_dofadr[j]);

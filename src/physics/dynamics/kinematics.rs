@@ -9,6 +9,7 @@ use crate::physics::spatial::spatial;
 use crate::physics::state::State;
 
 /// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`.
+#[inline(always)]
 pub fn kinematics(model: &Arrays, s: &mut State) {
     for b in 1..model.nbody() {
         let (mut pos, mut quat);
@@ -81,6 +82,7 @@ fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFram
 
 /// Computes `cam_xpos, cam_xmat` from body poses. A targeting camera has its -z towards the target and its x axis
 /// horizontal.
+#[inline(always)]
 pub fn cameras(model: &Model, s: &mut State) {
     for c in 0..model.ncam() {
         let (b, p, q) = (model.cam_bodyid[c], model.cam_pos[c], model.cam_quat[c]);
@@ -96,6 +98,7 @@ pub fn cameras(model: &Model, s: &mut State) {
 }
 
 /// Computes `subtree_com, cinert, cdof` from poses.
+#[inline(always)]
 pub fn com_pos(model: &Arrays, s: &mut State) {
     let nb = model.nbody();
     s.subtree_com.fill([0.0; 3]);

@@ -4,6 +4,7 @@
 //! which [`crate::physics::SoftEngine`] calls them.
 
 mod actuation;
+mod applied;
 mod articulated;
 mod constants;
 mod inertia;
@@ -14,9 +15,13 @@ mod sensor;
 mod velocity;
 
 pub use actuation::fwd_actuation;
-pub use articulated::{Articulated, Damping};
+pub use articulated::Articulated;
+#[cfg(any(test, feature = "rapier"))]
+pub use articulated::Damping;
 pub(in crate::physics) use constants::constants;
-pub use inertia::{crb, mul_m};
+pub use inertia::crb;
+#[cfg(any(test, feature = "rapier"))]
+pub use inertia::mul_m;
 pub use integrate::Integrator;
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;

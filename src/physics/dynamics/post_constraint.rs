@@ -3,18 +3,26 @@
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
 use crate::physics::constraint::{ConstraintType, weld_points};
+use crate::physics::dynamics::applied::applied;
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
 /// Computes `cacc, cfrc_ext, cfrc_int` from `qacc` and the constraint forces (recursive Newton-Euler with the joint
 /// accelerations known).
 ///
-/// `cfrc_ext` holds contacts and welds; joint limits, friction loss, springs and actuators act inside joints and so show
+/// `cfrc_ext` holds contacts, welds and the forces that a caller applies to bodies; joint limits, friction loss, springs and actuators act inside joints and so show
 /// in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
 /// although their Jacobian is about half the angular one: the wrench is then about twice the true one.
+#[inline(always)]
 pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: bool) {
     let nb = model.nbody();
     s.cfrc_ext.fill([0.0; 6]);
+    let mut ext = std::mem::take(&mut s.cfrc_ext);
+    for (body, force, torque) in applied(s) {
+        let offset = sub(s.xipos[body], s.subtree_com[model.body_rootid[body]]);
+        ext[body] = wrench_from(torque, force, offset);
+    }
+    s.cfrc_ext = ext;
     for i in 0..s.contact.len() {
         let c = &s.contact[i];
         if c.efc_address.is_none() {
@@ -80,6 +88,7 @@ fn apply_welds(model: &Model, s: &mut State, double_weld_torque: bool) {
 }
 
 /// Adds `sign` times a wrench at a point to `cfrc_ext`.
+#[inline(always)]
 fn apply(model: &Model, s: &mut State, body: usize, torque: Vec3, force: Vec3, point: Vec3, sign: f64) {
     if body > 0 {
         let offset = sub(point, s.subtree_com[model.body_rootid[body]]);

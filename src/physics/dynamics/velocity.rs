@@ -5,6 +5,7 @@ use crate::physics::spatial::*;
 use crate::physics::state::State;
 
 /// Computes `cvel` and `cdof_dot` from `qvel`.
+#[inline(always)]
 pub fn com_vel(model: &Model, s: &mut State) {
     s.cvel[0] = [0.0; 6];
     for b in 1..model.nbody() {
@@ -40,6 +41,7 @@ pub struct BiasScratch {
 
 /// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`: springs `-k (q - springref)`, dampers `-d v`, and the recursive
 /// Newton-Euler algorithm at zero joint acceleration.
+#[inline(always)]
 pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
     com_vel(model, s);
     let nb = model.nbody();

@@ -222,7 +222,7 @@ impl Bridge {
         if self.options.disable_contacts {
             s.contact.clear();
         } else {
-            self.sweep.contacts(model, &self.pairs, s);
+            self.sweep.contacts(model, &self.pairs, s)?;
         }
         stage(Stage::Constraints, s);
         self.builder.build(model, topology, s);
@@ -238,14 +238,13 @@ impl Bridge {
         self.rig.load(model, topology, s, sets, &mut self.force);
         self.rows.load(&self.rig, model, topology, &mut self.inertia, s, sets);
         let (_, rate) = softness(self.options.contact_compliance, h);
-        self.aims.load(&self.pairs, s, h, rate);
+        self.aims.load(s, h, rate);
     }
 
     /// Returns the hooks for the step that [`Bridge::before`] prepared.
     pub fn hooks(&self) -> ContactHooks<'_> {
         ContactHooks {
             rig: &self.rig,
-            table: &self.pairs,
             aims: &self.aims,
         }
     }

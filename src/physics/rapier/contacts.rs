@@ -13,7 +13,7 @@ use crate::physics::constraint::ConstraintType;
 use crate::physics::contact::frame::from_normal;
 use crate::physics::rapier::rig::Rig;
 use crate::physics::state::{Contact, State};
-use crate::physics::world::{PairTable, geom_pose, pose};
+use crate::physics::world::{geom_pose, pose};
 
 /// The aim of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]
@@ -24,10 +24,16 @@ struct ContactAim {
     friction: f64,
 }
 
-/// The contacts of a pair of the table.
+/// Returns two geoms, the lower id first.
+fn unordered([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The contacts of a pair of geoms.
 #[derive(Clone, Copy, Debug)]
 struct TouchingPair {
-    pair: usize,
+    /// The geoms, the lower id first.
+    pair: [usize; 2],
     /// First contact of the state.
     first: usize,
     /// Number of contacts.
@@ -49,7 +55,7 @@ pub(super) struct ContactAims {
 
 impl ContactAims {
     /// Loads the contacts and rows of a state. `rate` is the rate at which Rapier reduces penetration, 1/s.
-    pub fn load(&mut self, table: &PairTable, s: &State, h: f64, rate: f64) {
+    pub fn load(&mut self, s: &State, h: f64, rate: f64) {
         (self.h, self.rate) = (h, rate);
         self.pairs.clear();
         self.aims.clear();
@@ -57,9 +63,7 @@ impl ContactAims {
         for (k, c) in s.contact.iter().enumerate() {
             self.frames.push(c.frame);
             self.aims.push(None);
-            let Some(pair) = table.find(c.geom[0], c.geom[1]) else {
-                continue;
-            };
+            let pair = unordered(c.geom);
             match self.pairs.last_mut() {
                 Some(last) if last.pair == pair => last.number += 1,
                 _ => self.pairs.push(TouchingPair {
@@ -69,6 +73,7 @@ impl ContactAims {
                 }),
             }
         }
+        self.pairs.sort_unstable_by_key(|p| p.pair);
         for block in &s.efc.blocks {
             if !matches!(
                 block.kind,
@@ -87,8 +92,8 @@ impl ContactAims {
     }
 
     /// Returns the contact at place `ordinal` in the list of a pair.
-    fn find(&self, pair: usize, ordinal: usize) -> Option<usize> {
-        let at = self.pairs.binary_search_by_key(&pair, |p| p.pair).ok()?;
+    fn find(&self, geoms: [usize; 2], ordinal: usize) -> Option<usize> {
+        let at = self.pairs.binary_search_by_key(&unordered(geoms), |p| p.pair).ok()?;
         let TouchingPair { first, number, .. } = self.pairs[at];
         (ordinal < number).then_some(first + ordinal)
     }
@@ -109,7 +114,6 @@ impl ContactAims {
 #[derive(Clone, Copy)]
 pub struct ContactHooks<'a> {
     pub(super) rig: &'a Rig,
-    pub(super) table: &'a PairTable,
     pub(super) aims: &'a ContactAims,
 }
 
@@ -122,7 +126,7 @@ impl std::fmt::Debug for ContactHooks<'_> {
 impl ContactHooks<'_> {
     /// Returns the contact of a manifold, by its geoms and its place in the list of the pair.
     fn contact(&self, a: usize, b: usize, manifold: &ContactManifold) -> Option<usize> {
-        self.aims.find(self.table.find(a, b)?, manifold.subshape1 as usize)
+        self.aims.find([a, b], manifold.subshape1 as usize)
     }
 }
 
@@ -130,10 +134,7 @@ impl PhysicsHooks for ContactHooks<'_> {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
         let of = |c| self.rig.geom_of(c);
         let touching = match (of(context.collider1), of(context.collider2)) {
-            (Some(a), Some(b)) => self
-                .table
-                .find(a, b)
-                .is_some_and(|pair| self.aims.find(pair, 0).is_some()),
+            (Some(a), Some(b)) => self.aims.find([a, b], 0).is_some(),
             _ => true,
         };
         touching.then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)

@@ -11,7 +11,8 @@ mod scene;
 mod sweep;
 
 pub use dispatcher::ContactDispatcher;
-pub use pairs::{Pair, PairTable};
+pub use pairs::{ContactRules, Pair, PairTable};
 pub use scene::{RapierScene, SceneContact};
+#[cfg(feature = "rapier")]
 pub(crate) use scene::{collider_order, geom_pose, pose, shape};
 pub(crate) use sweep::Sweep;

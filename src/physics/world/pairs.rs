@@ -1,8 +1,15 @@
 //! Geom pairs that may touch: the order of their contacts, and their parameters.
 
+mod rules;
+
 use crate::math::MINVAL;
-use crate::model::{GeomType, Model};
+use crate::model::Model;
 use crate::physics::state::Contact;
+pub use rules::ContactRules;
+
+/// Scenes of up to this many geoms have a table of all their pairs; the pairs of larger ones are made as geoms come near
+/// each other.
+const TABULATED: usize = 256;
 
 /// Least friction coefficient (MuJoCo's `mjMINMU`).
 const MIN_FRICTION: f64 = 1e-5;
@@ -10,7 +17,7 @@ const MIN_FRICTION: f64 = 1e-5;
 /// Two geoms that may touch, with the parameters of their contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// The geoms, the lower [`GeomType`] first; of equal types the one of the lower body, or the first of an explicit
+    /// The geoms, the lower [`GeomType`](crate::model::GeomType) first; of equal types the one of the lower body, or the first of an explicit
     /// pair.
     pub geom: [usize; 2],
     /// Distance up to which contacts are detected, m.
@@ -19,15 +26,23 @@ pub struct Pair {
     pub template: Contact,
 }
 
-/// Lists all pairs that may touch, in the order in which MuJoCo lists contacts.
+/// The pairs that may touch, in the order in which MuJoCo lists contacts.
 ///
 /// Two geoms may touch when their bits match (`contype` of one and `conaffinity` of the other), their bodies are
 /// neither rigidly joined nor parent and child (unless the parent is part of the world) nor excluded; explicit pairs
 /// always may, with their own parameters. Contacts are ordered by body pair; within it explicit pairs come first, then
 /// geom pairs.
+///
+/// Memory is linear in the number of geoms: where there are many, no list of pairs is kept.
 #[derive(Clone, Debug)]
 pub struct PairTable {
-    ngeom: usize,
+    rules: ContactRules,
+    table: Option<Table>,
+}
+
+/// All pairs, and which of them two geoms are.
+#[derive(Clone, Debug)]
+struct Table {
     index: Vec<u32>,
     pairs: Vec<Pair>,
 }
@@ -35,84 +50,89 @@ pub struct PairTable {
 const NONE: u32 = u32::MAX;
 
 /// Lower body, higher body, whether the pair is not explicit, order among those.
-type Order = (usize, usize, bool, usize, usize);
+pub(super) type Order = (u32, u32, bool, u32, u32);
 
 impl PairTable {
     /// Derives the table of `model`.
     pub fn new(model: &Model) -> Self {
-        let ngeom = model.ngeom();
-        let mut found: Vec<(Order, Pair)> = Vec::new();
-        let bodies = |a: usize, b: usize| {
-            let (x, y) = (model.geom_bodyid[a], model.geom_bodyid[b]);
-            (x.min(y), x.max(y))
-        };
-        for p in 0..model.npair() {
-            let [a, b] = model.pair_geom[p];
-            let (lo, hi) = bodies(a, b);
-            found.push(((lo, hi, false, p, 0), explicit(model, p)));
-        }
-        let explicit_pair = |a: usize, b: usize| model.pair_geom.iter().any(|g| *g == [a, b] || *g == [b, a]);
-        for a in 0..ngeom {
-            for b in a + 1..ngeom {
-                if may_touch(model, a, b) && !explicit_pair(a, b) {
-                    let geom = ordered(model, a, b);
-                    let (lo, hi) = bodies(a, b);
-                    found.push(((lo, hi, true, geom[0], geom[1]), dynamic(model, geom)));
-                }
+        let (rules, ngeom) = (ContactRules::new(model), model.ngeom());
+        let table = (ngeom <= TABULATED).then(|| {
+            let pairs = list(model, &rules);
+            let mut index = vec![NONE; ngeom * ngeom];
+            for (k, p) in pairs.iter().enumerate() {
+                let [a, b] = p.geom;
+                index[a * ngeom + b] = k as u32;
+                index[b * ngeom + a] = k as u32;
             }
-        }
-        found.sort_by_key(|f| f.0);
-        let pairs: Vec<Pair> = found.into_iter().map(|f| f.1).collect();
-        let mut index = vec![NONE; ngeom * ngeom];
-        for (k, p) in pairs.iter().enumerate() {
-            let [a, b] = p.geom;
-            index[a * ngeom + b] = k as u32;
-            index[b * ngeom + a] = k as u32;
-        }
-        Self { ngeom, index, pairs }
+            Table { index, pairs }
+        });
+        Self { rules, table }
     }
 
-    /// Returns all pairs, in contact order.
-    pub fn pairs(&self) -> &[Pair] {
-        &self.pairs
-    }
-
-    /// Returns the index in [`Self::pairs`] of the pair of two geoms, if they may touch.
+    /// Returns all pairs, in contact order; `None` for a scene of more than 256 geoms, whose pairs are not listed.
     #[inline]
-    pub fn find(&self, a: usize, b: usize) -> Option<usize> {
-        match self.index[a * self.ngeom + b] {
+    pub fn pairs(&self) -> Option<&[Pair]> {
+        self.table.as_ref().map(|table| table.pairs.as_slice())
+    }
+
+    /// Tells whether two geoms may touch.
+    pub fn may_touch(&self, a: usize, b: usize) -> bool {
+        match &self.table {
+            Some(_) => self.tabulated(a, b).is_some(),
+            None => self.rules.allow(a, b),
+        }
+    }
+
+    /// Tells whether a geom may touch any other, as far as its own properties say.
+    pub(super) fn takes_part(&self, geom: usize) -> bool {
+        match &self.table {
+            Some(table) => table.pairs.iter().any(|p| p.geom.contains(&geom)),
+            None => self.rules.takes_part(geom),
+        }
+    }
+
+    /// Returns the place of the pair of two geoms among those that are listed, if they may touch.
+    #[inline]
+    pub(super) fn tabulated(&self, a: usize, b: usize) -> Option<usize> {
+        let table = self.table.as_ref()?;
+        match table.index[a * self.rules.ngeom() + b] {
             NONE => None,
             k => Some(k as usize),
         }
     }
+
+    /// Returns the place of the pair of two geoms in contact order, if they may touch.
+    #[inline]
+    pub(super) fn order(&self, a: usize, b: usize) -> Option<Order> {
+        self.rules.order(a, b)
+    }
+
+    /// Makes the pair of two geoms that may touch.
+    pub(super) fn pair(&self, model: &Model, a: usize, b: usize) -> Pair {
+        match self.rules.explicit(a, b) {
+            Some(p) => explicit(model, p),
+            None => dynamic(model, self.rules.ordered(a, b)),
+        }
+    }
 }
 
-/// Orders two geoms by type, then by body.
-fn ordered(model: &Model, a: usize, b: usize) -> [usize; 2] {
-    let key = |g: usize| (model.geom_type[g], model.geom_bodyid[g], g);
-    if key(a) <= key(b) { [a, b] } else { [b, a] }
-}
-
-fn may_touch(model: &Model, a: usize, b: usize) -> bool {
-    let collides = |g: usize| model.geom_type[g] != GeomType::Ellipsoid;
-    if !collides(a) || !collides(b) || (model.geom_type[a] == GeomType::Plane && model.geom_type[b] == GeomType::Plane)
-    {
-        return false;
+/// Lists all pairs of a model in contact order.
+fn list(model: &Model, rules: &ContactRules) -> Vec<Pair> {
+    let mut found: Vec<(Order, Pair)> = Vec::new();
+    for (p, &[a, b]) in model.pair_geom.iter().enumerate() {
+        found.push((rules.explicit_order(p, a, b), explicit(model, p)));
     }
-    let matches = |x: usize, y: usize| model.geom_contype[x] & model.geom_conaffinity[y] != 0;
-    if !matches(a, b) && !matches(b, a) {
-        return false;
+    for a in 0..model.ngeom() {
+        for b in a + 1..model.ngeom() {
+            if rules.explicit(a, b).is_none()
+                && let Some(order) = rules.order(a, b)
+            {
+                found.push((order, dynamic(model, rules.ordered(a, b))));
+            }
+        }
     }
-    let (body_a, body_b) = (model.geom_bodyid[a], model.geom_bodyid[b]);
-    let (weld_a, weld_b) = (model.body_weldid[body_a], model.body_weldid[body_b]);
-    if weld_a == weld_b {
-        return false;
-    }
-    let weld_parent = |w: usize| model.body_weldid[model.body_parentid[w]];
-    if weld_a != 0 && weld_b != 0 && (weld_a == weld_parent(weld_b) || weld_b == weld_parent(weld_a)) {
-        return false;
-    }
-    !model.exclude.contains(&[body_a.min(body_b), body_a.max(body_b)])
+    found.sort_by_key(|f| f.0);
+    found.into_iter().map(|f| f.1).collect()
 }
 
 fn template(geom: [usize; 2], dim: usize, friction: [f64; 5], solref: [f64; 2], solimp: [f64; 5]) -> Contact {

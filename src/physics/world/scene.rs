@@ -1,5 +1,7 @@
 //! The model in Rapier's sets: one rigid body per body, one collider per geom.
 
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
 use parry3d_f64::math::{Pose, Rotation, Vector};
 use rapier3d_f64::dynamics::{IslandManager, RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
 use rapier3d_f64::geometry::{
@@ -16,18 +18,21 @@ use crate::physics::contact::ContactOptions;
 use crate::physics::state::State;
 use crate::physics::world::{ContactDispatcher, PairTable};
 
+/// Scenes of up to this many geoms go through Rapier's collision pipeline when they are made.
+const EAGER: usize = 256;
+
 /// A filter that lets Rapier test exactly the pairs of the table.
 struct PairFilter {
-    ncollider: usize,
-    allowed: Vec<bool>,
+    pairs: Arc<PairTable>,
+    /// Geom of each collider, by its index.
+    geom: Vec<usize>,
 }
 
 impl PhysicsHooks for PairFilter {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
-        let index = |h: ColliderHandle| h.into_raw_parts().0 as usize;
-        let (a, b) = (index(context.collider1), index(context.collider2));
-        let allowed = a < self.ncollider && b < self.ncollider && self.allowed[a * self.ncollider + b];
-        allowed.then(SolverFlags::empty)
+        let geom = |h: ColliderHandle| self.geom.get(h.into_raw_parts().0 as usize);
+        let (a, b) = (*geom(context.collider1)?, *geom(context.collider2)?);
+        self.pairs.may_touch(a, b).then(SolverFlags::empty)
     }
 }
 
@@ -44,14 +49,25 @@ pub struct SceneContact {
     pub normal: Vec3,
 }
 
+/// Rapier's bodies and colliders.
+#[derive(Default)]
+struct Sets {
+    bodies: RigidBodySet,
+    colliders: ColliderSet,
+}
+
 /// The model as a live Rapier scene. Poses are those of the last [`RapierScene::sync`], which the engine does each
-/// step.
+/// step; they reach Rapier when someone looks.
 ///
 /// Bodies are kinematic (fixed where nothing moves them); `user_data` of a body and a collider is the id of the body and
 /// geom. Do not run a `PhysicsPipeline` on these sets: the engine owns the poses.
 pub struct RapierScene {
-    bodies: RigidBodySet,
-    colliders: ColliderSet,
+    /// The sets, with the poses of the last `sync`; not here while nobody has looked since then.
+    live: OnceLock<Sets>,
+    /// The sets, with older poses, while they are not in `live`.
+    stale: Mutex<Sets>,
+    /// Pose of each moving body at the last `sync`.
+    poses: Vec<(Vec3, Quat)>,
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
     narrow_phase: NarrowPhase,
@@ -105,15 +121,15 @@ pub(crate) fn collider_order(model: &Model) -> Vec<usize> {
 impl std::fmt::Debug for RapierScene {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("RapierScene")
-            .field("bodies", &self.bodies.len())
-            .field("colliders", &self.colliders.len())
+            .field("bodies", &self.bodies().len())
+            .field("colliders", &self.colliders().len())
             .finish_non_exhaustive()
     }
 }
 
 impl RapierScene {
     /// Builds the scene at the origin; [`RapierScene::sync`] gives it its poses.
-    pub fn new(model: &Model, pairs: &PairTable, options: ContactOptions) -> Self {
+    pub fn new(model: &Model, pairs: &Arc<PairTable>, options: ContactOptions) -> Self {
         let mut bodies = RigidBodySet::new();
         let mut colliders = ColliderSet::new();
         let body_handle: Vec<RigidBodyHandle> = (0..model.nbody())
@@ -140,66 +156,77 @@ impl RapierScene {
                 .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
             collider_handle[g] = colliders.insert_with_parent(collider, body_handle[model.geom_bodyid[g]], &mut bodies);
         }
-        let n = order.len();
-        let mut allowed = vec![false; n * n];
-        for p in pairs.pairs() {
-            let [a, b] = p.geom.map(|g| collider_handle[g].into_raw_parts().0 as usize);
-            allowed[a * n + b] = true;
-            allowed[b * n + a] = true;
+        let moving: Vec<usize> = (1..model.nbody()).filter(|&b| model.body_weldid[b] != 0).collect();
+        for b in 1..model.nbody() {
+            // fixed bodies get their poses here, once
+            let parent = bodies.get(body_handle[model.body_parentid[b]]).map(|p| *p.position());
+            if let (Some(parent), Some(body)) = (parent, bodies.get_mut(body_handle[b])) {
+                body.set_position(parent * pose(model.body_pos[b], model.body_quat[b]), false);
+            }
         }
-        Self {
-            bodies,
-            colliders,
+        let mut scene = Self {
+            live: OnceLock::from(Sets { bodies, colliders }),
+            stale: Mutex::default(),
+            poses: Vec::with_capacity(moving.len()),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
             narrow_phase: NarrowPhase::with_query_dispatcher(ContactDispatcher::new(options)),
             pipeline: CollisionPipeline::new(),
-            filter: PairFilter { ncollider: n, allowed },
+            filter: PairFilter {
+                pairs: pairs.clone(),
+                geom: order,
+            },
             body_handle,
             collider_handle,
-            moving: (1..model.nbody()).filter(|&b| model.body_weldid[b] != 0).collect(),
-            dirty: false,
+            moving,
+            dirty: true,
+        };
+        // the first pipeline step clears the flags of creation, which saves work whenever somebody asks; where many geoms
+        // may stand in one place, it waits until then
+        if scene.colliders().len() <= EAGER {
+            scene.update_queries();
         }
-        .with_fixed_poses(model)
+        scene
     }
 
-    /// Gives fixed bodies their poses, once: chains of constant transforms from the world.
-    fn with_fixed_poses(mut self, model: &Model) -> Self {
-        let mut world = vec![Pose::IDENTITY; model.nbody()];
-        for b in 1..model.nbody() {
-            world[b] = world[model.body_parentid[b]] * pose(model.body_pos[b], model.body_quat[b]);
-            if let Some(body) = self.bodies.get_mut(self.body_handle[b]) {
-                body.set_position(world[b], false);
-            }
-        }
-        // the first pipeline step clears the flags of creation
-        self.dirty = true;
-        self.update_queries();
-        self
-    }
-
-    /// Writes the body poses of `s` to the moving bodies and their colliders.
+    /// Takes the body poses of `s`.
     pub fn sync(&mut self, s: &State) {
-        for &b in &self.moving {
-            if let Some(body) = self.bodies.get_mut(self.body_handle[b]) {
-                body.set_position(pose(s.xpos[b], s.xquat[b]), false);
-            }
+        self.poses.clear();
+        self.poses.extend(self.moving.iter().map(|&b| (s.xpos[b], s.xquat[b])));
+        if let Some(sets) = self.live.take() {
+            *self.stale.get_mut().unwrap_or_else(PoisonError::into_inner) = sets;
         }
-        self.bodies
-            .propagate_modified_body_positions_to_colliders(&mut self.colliders);
         self.dirty = true;
+    }
+
+    /// Returns Rapier's sets with the poses of the last `sync`.
+    fn sets(&self) -> &Sets {
+        self.live.get_or_init(|| {
+            let mut sets = std::mem::take(&mut *self.stale.lock().unwrap_or_else(PoisonError::into_inner));
+            for (&b, &(pos, quat)) in self.moving.iter().zip(&self.poses) {
+                if let Some(body) = sets.bodies.get_mut(self.body_handle[b]) {
+                    body.set_position(pose(pos, quat), false);
+                }
+            }
+            sets.bodies
+                .propagate_modified_body_positions_to_colliders(&mut sets.colliders);
+            sets
+        })
     }
 
     /// Brings Rapier's broad and narrow phase up to date with the poses; nothing is done when they are.
     pub fn update_queries(&mut self) {
-        if std::mem::take(&mut self.dirty) {
+        self.sets();
+        if let Some(sets) = self.live.get_mut()
+            && std::mem::take(&mut self.dirty)
+        {
             self.pipeline.step(
                 0.0,
                 &mut self.islands,
                 &mut self.broad_phase,
                 &mut self.narrow_phase,
-                &mut self.bodies,
-                &mut self.colliders,
+                &mut sets.bodies,
+                &mut sets.colliders,
                 &self.filter,
                 &(),
             );
@@ -209,10 +236,11 @@ impl RapierScene {
     /// Returns a pipeline for ray casts, shape casts and overlap tests on the scene.
     pub fn queries<'a>(&'a mut self, filter: QueryFilter<'a>) -> QueryPipeline<'a> {
         self.update_queries();
+        let sets = self.sets();
         self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),
-            &self.bodies,
-            &self.colliders,
+            &sets.bodies,
+            &sets.colliders,
             filter,
         )
     }
@@ -221,8 +249,9 @@ impl RapierScene {
     pub fn pipeline_contacts(&mut self) -> Vec<SceneContact> {
         self.update_queries();
         let mut out = Vec::new();
+        let colliders = self.colliders();
         for pair in self.narrow_phase.contact_pairs() {
-            let (Some(c1), Some(c2)) = (self.colliders.get(pair.collider1), self.colliders.get(pair.collider2)) else {
+            let (Some(c1), Some(c2)) = (colliders.get(pair.collider1), colliders.get(pair.collider2)) else {
                 continue;
             };
             for m in pair.manifolds() {
@@ -244,12 +273,12 @@ impl RapierScene {
 
     /// Returns Rapier's bodies.
     pub fn bodies(&self) -> &RigidBodySet {
-        &self.bodies
+        &self.sets().bodies
     }
 
     /// Returns Rapier's colliders.
     pub fn colliders(&self) -> &ColliderSet {
-        &self.colliders
+        &self.sets().colliders
     }
 
     /// Returns the handle of a body, by its id.

@@ -1,10 +1,13 @@
 //! Contact detection: sweep and prune along x, then the exact routines.
 
+use super::pairs::Order;
+use crate::limits::Limits;
 use crate::math::{Mat3, Vec3};
 use crate::model::{GeomType, Model};
 use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
+use crate::physics::engine::EngineError;
 use crate::physics::state::{Contact, RESERVED_CONTACTS, State};
-use crate::physics::world::PairTable;
+use crate::physics::world::{Pair, PairTable};
 
 /// Enlargement of boxes, m: more than rounding, so that the exact routines decide.
 const SLACK: f64 = 1e-7;
@@ -13,6 +16,8 @@ const SLACK: f64 = 1e-7;
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     geom: usize,
+    /// Whether it can touch what never moves.
+    moves: bool,
     low: Vec3,
     high: Vec3,
 }
@@ -24,68 +29,110 @@ pub struct Sweep {
     scratch: Scratch,
     /// Geoms that are part of a pair, with their boxes, by lower x of the last step.
     boxes: Vec<Bounds>,
+    /// Whether the boxes of geoms that never move are known.
+    fixed_known: bool,
+    /// Those of `boxes` that move or are near something that does, in the same order.
+    near: Vec<Bounds>,
+    /// Pairs whose boxes overlap, by their places in the table, or, where there is none, by their order.
     candidates: Vec<u32>,
+    untabulated: Vec<(Order, [u32; 2])>,
     points: Vec<ContactPoint>,
 }
 
 impl Sweep {
     /// Prepares the sweep over the geoms of `model` and the pairs of `table`.
     pub fn new(model: &Model, table: &PairTable, options: ContactOptions) -> Self {
-        let in_pair = |g: usize| table.pairs().iter().any(|p| p.geom.contains(&g));
+        // an explicit pair may be of two geoms that never move
+        let moves = |g: usize| {
+            model.body_weldid[model.geom_bodyid[g]] != 0 || model.pair_geom.iter().any(|pair| pair.contains(&g))
+        };
+        let boxes: Vec<Bounds> = (0..model.ngeom())
+            .filter(|&g| table.takes_part(g))
+            .map(|geom| Bounds {
+                geom,
+                moves: moves(geom),
+                low: [0.0; 3],
+                high: [0.0; 3],
+            })
+            .collect();
         Self {
             options,
             scratch: Scratch::new(),
-            boxes: (0..model.ngeom())
-                .filter(|&g| in_pair(g))
-                .map(|geom| Bounds {
-                    geom,
-                    low: [0.0; 3],
-                    high: [0.0; 3],
-                })
-                .collect(),
+            fixed_known: false,
+            near: Vec::with_capacity(boxes.len()),
+            boxes,
             candidates: Vec::with_capacity(2 * RESERVED_CONTACTS),
+            untabulated: Vec::new(),
             points: Vec::with_capacity(64),
         }
     }
 
     /// Fills `s.contact` from geom poses, in MuJoCo's order. The result depends on nothing but the poses.
-    pub fn contacts(&mut self, model: &Model, table: &PairTable, s: &mut State) {
-        self.broad_phase(model, table, s);
+    ///
+    /// # Errors
+    /// More geoms near each other, or more contacts, than [`Limits`] allow by default.
+    #[inline(always)]
+    pub fn contacts(&mut self, model: &Model, table: &PairTable, s: &mut State) -> Result<(), EngineError> {
+        self.place(model, s);
         s.contact.clear();
-        for &k in &self.candidates {
-            let pair = &table.pairs()[k as usize];
-            let placed = |g: usize| PlacedGeom {
-                kind: model.geom_type[g],
-                size: model.geom_size[g],
-                pos: s.geom_xpos[g],
-                mat: &s.geom_xmat[g],
-            };
-            let [a, b] = pair.geom;
-            let (first, second) = (placed(a), placed(b));
-            if !bounding_test(&first, model.geom_rbound[a], &second, model.geom_rbound[b], pair.margin) {
-                continue;
+        match table.pairs() {
+            Some(pairs) => {
+                self.sort_boxes();
+                self.select_near();
+                self.broad_phase(table);
+                let candidates = std::mem::take(&mut self.candidates);
+                for &k in &candidates {
+                    self.narrow_phase(model, &pairs[k as usize], s);
+                }
+                self.candidates = candidates;
             }
-            self.points.clear();
-            collide(
-                &first,
-                &second,
-                pair.margin,
-                &self.options,
-                &mut self.scratch,
-                &mut self.points,
-            );
-            s.contact.extend(self.points.iter().map(|p| Contact {
-                dist: p.dist,
-                pos: p.pos,
-                frame: p.frame,
-                ..pair.template
-            }));
+            None => {
+                self.boxes.sort_unstable_by(|a, b| a.low[0].total_cmp(&b.low[0]));
+                self.select_near();
+                self.broad_phase_untabulated(table, s.step)?;
+                let candidates = std::mem::take(&mut self.untabulated);
+                for &(_, [a, b]) in &candidates {
+                    self.narrow_phase(model, &table.pair(model, a as usize, b as usize), s);
+                    within(Limits::DEFAULT.contacts, s.contact.len(), "contacts", s.step)?;
+                }
+                self.untabulated = candidates;
+            }
         }
+        within(Limits::DEFAULT.contacts, s.contact.len(), "contacts", s.step)
     }
 
-    /// Fills `candidates` with the pairs whose boxes overlap, ascending.
-    fn broad_phase(&mut self, model: &Model, table: &PairTable, s: &State) {
+    /// Adds the contacts of a pair.
+    #[inline(always)]
+    fn narrow_phase(&mut self, model: &Model, pair: &Pair, s: &mut State) {
+        let placed = |g: usize| PlacedGeom {
+            kind: model.geom_type[g],
+            size: model.geom_size[g],
+            pos: s.geom_xpos[g],
+            mat: &s.geom_xmat[g],
+        };
+        let [a, b] = pair.geom;
+        let (first, second) = (placed(a), placed(b));
+        if !bounding_test(&first, model.geom_rbound[a], &second, model.geom_rbound[b], pair.margin) {
+            return;
+        }
+        let (scratch, points) = (&mut self.scratch, &mut self.points);
+        points.clear();
+        collide(&first, &second, pair.margin, &self.options, scratch, points);
+        s.contact.extend(points.iter().map(|p| Contact {
+            dist: p.dist,
+            pos: p.pos,
+            frame: p.frame,
+            ..pair.template
+        }));
+    }
+
+    /// Computes the boxes of what moves, and at the first call those of the rest.
+    #[inline(always)]
+    fn place(&mut self, model: &Model, s: &State) {
         for b in &mut self.boxes {
+            if self.fixed_known && !b.moves {
+                continue;
+            }
             let g = b.geom;
             let slack = SLACK + model.geom_margin[g];
             [b.low, b.high] = aabb(
@@ -96,7 +143,28 @@ impl Sweep {
                 slack,
             );
         }
-        // insertion sort: the order changes little from step to step
+        self.fixed_known = true;
+    }
+
+    /// Fills `near`: what never moves counts where it overlaps the box around all that does.
+    #[inline(always)]
+    fn select_near(&mut self) {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for b in self.boxes.iter().filter(|b| b.moves) {
+            for k in 0..3 {
+                low[k] = if b.low[k] < low[k] { b.low[k] } else { low[k] };
+                high[k] = if b.high[k] > high[k] { b.high[k] } else { high[k] };
+            }
+        }
+        let near =
+            |b: &&Bounds| b.moves | (0..3).fold(true, |all, k| all & (low[k] <= b.high[k]) & (b.low[k] <= high[k]));
+        self.near.clear();
+        self.near.extend(self.boxes.iter().filter(near));
+    }
+
+    /// Sorts the boxes by insertion: their order changes little from step to step.
+    #[inline(always)]
+    fn sort_boxes(&mut self) {
         for i in 1..self.boxes.len() {
             let b = self.boxes[i];
             let mut k = i;
@@ -108,28 +176,70 @@ impl Sweep {
                 self.boxes[k] = b;
             }
         }
+    }
+
+    /// Fills `candidates` with the pairs whose boxes overlap, ascending.
+    #[inline(always)]
+    fn broad_phase(&mut self, table: &PairTable) {
         self.candidates.clear();
-        let mut rest = &self.boxes[..];
-        while let [a, others @ ..] = rest {
-            rest = others;
-            let (low, high) = (a.low, a.high);
-            for b in others {
-                if b.low[0] > high[0] {
-                    break;
-                }
-                // no branches between the comparisons: they are hard to predict
-                let overlap =
-                    (low[1] <= b.high[1]) & (b.low[1] <= high[1]) & (low[2] <= b.high[2]) & (b.low[2] <= high[2]);
-                if overlap && let Some(k) = table.find(a.geom, b.geom) {
-                    self.candidates.push(k as u32);
-                }
+        let candidates = &mut self.candidates;
+        overlaps(&self.near, |a, b| {
+            if let Some(k) = table.tabulated(a, b) {
+                candidates.push(k as u32);
+            }
+            true
+        });
+        self.candidates.sort_unstable();
+    }
+
+    /// Fills `untabulated` with the pairs whose boxes overlap, in contact order.
+    fn broad_phase_untabulated(&mut self, table: &PairTable, step: u64) -> Result<(), EngineError> {
+        let (limit, mut near) = (Limits::DEFAULT.near_pairs, 0);
+        let candidates = &mut self.untabulated;
+        candidates.clear();
+        overlaps(&self.near, |a, b| {
+            if let Some(order) = table.order(a, b) {
+                candidates.push((order, [a as u32, b as u32]));
+            }
+            near += 1;
+            near <= limit
+        });
+        within(limit, near, "pairs of geoms near each other", step)?;
+        candidates.sort_unstable();
+        Ok(())
+    }
+}
+
+/// Checks a number against its limit.
+fn within(limit: usize, found: usize, what: &'static str, step: u64) -> Result<(), EngineError> {
+    match found > limit {
+        true => Err(EngineError::TooMany { step, what, limit }),
+        false => Ok(()),
+    }
+}
+
+/// Calls `found` with the geoms of boxes that overlap, which are sorted by lower x, until it returns false.
+#[inline(always)]
+fn overlaps(boxes: &[Bounds], mut found: impl FnMut(usize, usize) -> bool) {
+    let mut rest = boxes;
+    while let [a, others @ ..] = rest {
+        rest = others;
+        let (low, high) = (a.low, a.high);
+        for b in others {
+            if b.low[0] > high[0] {
+                break;
+            }
+            // no branches between the comparisons: they are hard to predict
+            let overlap = (low[1] <= b.high[1]) & (b.low[1] <= high[1]) & (low[2] <= b.high[2]) & (b.low[2] <= high[2]);
+            if overlap && !found(a.geom, b.geom) {
+                return;
             }
         }
-        self.candidates.sort_unstable();
     }
 }
 
 /// Returns the world box of a geom, enlarged by `slack` (m). A plane fills the half space behind it.
+#[inline(always)]
 fn aabb(kind: GeomType, size: Vec3, pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3; 2] {
     let half: Vec3 = match kind {
         GeomType::Plane => {

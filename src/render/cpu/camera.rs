@@ -1,7 +1,7 @@
 //! The camera of the reference: single precision, in the order of operations of MuJoCo and of Mesa's matrices, so that
 //! vertices fall on the same 1/256 of a pixel.
 
-use crate::math::{Mat3, Vec3, column};
+use crate::math::{MAT3_ID, Mat3, Vec3, column};
 use crate::render::mesh::MeshPart;
 use crate::render::view::{Poses, View};
 use crate::render::visual::Visual;
@@ -61,7 +61,8 @@ pub struct Eye {
 
 impl Eye {
     pub fn new(visual: &Visual, poses: &Poses, view: &View) -> Self {
-        let (place, mat) = (poses.cam_xpos[view.camera], &poses.cam_xmat[view.camera]);
+        let (place, mat) = poses.camera(view.camera).unwrap_or(([0.0; 3], MAT3_ID));
+        let mat = &mat;
         let aside = column(mat, 0);
         let side = |sign: f64| [0, 1, 2].map(|i| (place[i] + sign * EYE_DISTANCE * 0.5 * aside[i]) as f32);
         let (left, right) = (side(-1.0), side(1.0));
@@ -76,7 +77,7 @@ impl Eye {
         let right = unit(cross(forward, single(upward)));
         let up = unit(cross(right, forward));
         let (near, far) = (visual.near as f32, visual.far as f32);
-        let tangent = pxfm::f_tan(visual.cameras[view.camera].fovy * std::f64::consts::PI / 360.0);
+        let tangent = pxfm::f_tan(visual.fovy_of(view.camera) * std::f64::consts::PI / 360.0);
         let top = (f64::from(near) * tangent) as f32;
         let half_width = 0.5 * view.width as f32 / view.height as f32 * (top + top);
         let back = forward.map(|v| -v);

@@ -2,6 +2,7 @@
 
 use wide::f32x4;
 
+use super::lanes::four;
 use super::sample::{Coordinates, MipLevels, across, numbers, upward, whole};
 use crate::render::texture::{Face, Level};
 
@@ -33,8 +34,7 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x
             out[k] = blend(out[k], next[k], weight);
         }
     }
-    let colour = |k: usize| numbers(joined(out[k]));
-    [colour(0), colour(1), colour(2), colour(3)]
+    four(|k| numbers(joined(out[k])))
 }
 
 /// Spreads the bytes of a texel.
@@ -100,7 +100,7 @@ fn at_level(level: &Level, s: f32x4, t: f32x4, wanted: [bool; 4]) -> [Channels; 
     let mut out = [0; 4];
     for k in 0..4 {
         if wanted[k] {
-            let [a, b, c, d] = places.map(|p| spread(level.pixels[p[k] as usize]));
+            let [a, b, c, d] = four(|i| spread(level.pixels[places[i][k] as usize]));
             let (wx, wy) = (x.weight[k] as u64, y.weight[k] as u64);
             out[k] = blend(blend(a, b, wx), blend(c, d, wx), wy);
         }

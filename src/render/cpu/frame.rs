@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use super::camera::{Eye, Row, V3, dot, fused, part_rows, single};
-use super::clip::{self, Clip, EdgePoint, Origin, Polygon};
+use super::clip;
 use super::plane::{Basis, Vertex};
-use super::raster::{Extent, Fixed, LIMIT, is_counterclockwise};
-use super::sampling::Sampling;
-use super::target::{NONE, Opaque, Target, Transparent, Triangle};
+use super::raster::LIMIT;
+use super::small::Waiting;
+use super::target::{Target, Triangle};
 use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
 use crate::render::mesh::{LANES, Mesh};
@@ -17,14 +17,25 @@ use crate::render::visual::{Drawable, Element, Shape, Visual};
 /// The geometry of an image.
 #[derive(Debug, Default)]
 pub struct Frame {
-    pub target: Target,
+    /// What is seen at four samples of each pixel.
+    pub colour: Target,
+    /// What is seen at the middle of each pixel.
+    pub centre: Target,
+    /// Those of both that are drawn to.
+    pub targets: Targets,
+    /// Width and height, pixels.
+    pub size: [usize; 2],
     /// Projected vertices of everything that is drawn.
     pub vertices: Vec<Vertex>,
-    fixed: Vec<Fixed>,
+    /// Their places, 1/256 pixels from the lower left, rounded to whole numbers.
+    pub x: Vec<f32>,
+    pub y: Vec<f32>,
     /// For each vertex, one bit for every clipping plane that it lies beyond.
-    sides: Vec<u8>,
+    pub sides: Vec<u8>,
     /// For each band of the drawable being drawn, the sides on which any of its vertices is, and on which all are.
     bands: Vec<(u8, u8)>,
+    /// Triangles of the drawable being drawn that are still to be rasterised.
+    pub waiting: Waiting,
     /// Points made by clipping.
     pub points: Vec<ClipPoint>,
     /// Everything that is drawn, indexed like the drawables of the visual.
@@ -51,9 +62,9 @@ pub struct PlacedDrawable {
     /// Opacity.
     pub alpha: f32,
     /// Whether it shows its back, so that triangles are wound the other way.
-    flip: bool,
+    pub flip: bool,
     /// Whether it is transparent: it hides nothing.
-    transparent: bool,
+    pub transparent: bool,
 }
 
 /// A vertex between two other vertices of the frame: `from + share (to - from)`.
@@ -77,15 +88,13 @@ impl PlacedDrawable {
     };
 }
 
-/// The treatment of transparent drawables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Transparency {
-    /// PlacedDrawable them as if they were opaque.
-    Opaque,
-    /// Leave them out.
-    Hidden,
-    /// Collect their fragments for blending.
-    Blended,
+/// The targets that are drawn to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Targets {
+    /// Four samples for each pixel, for colours.
+    pub colour: bool,
+    /// The middle of each pixel, for depth and segmentation.
+    pub centre: bool,
 }
 
 /// Least opacity of an opaque drawable.
@@ -102,17 +111,11 @@ pub fn pose(drawable: &Drawable, poses: &Poses) -> (Vec3, Mat3) {
 }
 
 impl Frame {
-    /// Finds what is seen at each sample.
-    pub fn draw<S: Sampling>(
-        &mut self,
-        visual: &Visual,
-        poses: &Poses,
-        view: &View,
-        transparency: Transparency,
-    ) -> Result<Eye, RenderError> {
+    /// Begins an image: finds what is in view.
+    pub fn begin(&mut self, visual: &Visual, poses: &Poses, view: &View, targets: Targets) -> Result<Eye, RenderError> {
         visual.check(poses, view)?;
         let eye = Eye::new(visual, poses, view);
-        self.clear(visual, view);
+        self.clear(visual, view, targets);
         for (i, drawable) in visual.drawables.iter().enumerate() {
             let (pos, mat) = pose(drawable, poses);
             let [x, y, z] = eye.locate(single(pos));
@@ -124,28 +127,43 @@ impl Frame {
             }
         }
         let nearer = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        if transparency == Transparency::Opaque {
-            self.opaque.append(&mut self.transparent);
-        }
         self.opaque.sort_unstable_by(nearer);
         self.transparent.sort_unstable_by(nearer);
-        for k in 0..self.opaque.len() {
-            self.place::<S>(visual, poses, &eye, self.opaque[k].1 as usize, false);
-        }
-        if transparency == Transparency::Blended {
-            for k in 0..self.transparent.len() {
-                let start = self.target.fragments.len();
-                self.place::<S>(visual, poses, &eye, self.transparent[k].1 as usize, true);
-                self.layers.push(start..self.target.fragments.len());
-            }
-        }
         Ok(eye)
     }
 
-    fn clear(&mut self, visual: &Visual, view: &View) {
-        self.target.clear(view.width, view.height);
+    /// Finds what is seen of opaque drawables at each sample.
+    pub fn draw_opaque(&mut self, visual: &Visual, poses: &Poses, eye: &Eye) {
+        for k in 0..self.opaque.len() {
+            self.place(visual, poses, eye, self.opaque[k].1 as usize, false);
+        }
+    }
+
+    /// Adds transparent drawables: their fragments for colours and, if `hiding`, to the middles of pixels as if they were
+    /// opaque.
+    pub fn draw_transparent(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, hiding: bool) {
+        self.targets.centre &= hiding;
+        if self.targets == Targets::default() {
+            return;
+        }
+        for k in 0..self.transparent.len() {
+            let start = self.colour.fragments.len();
+            self.place(visual, poses, eye, self.transparent[k].1 as usize, true);
+            self.layers.push(start..self.colour.fragments.len());
+        }
+    }
+
+    fn clear(&mut self, visual: &Visual, view: &View, targets: Targets) {
+        self.targets = targets;
+        self.size = [view.width, view.height];
+        for (target, wanted) in [(&mut self.colour, targets.colour), (&mut self.centre, targets.centre)] {
+            if wanted {
+                target.clear(view.width, view.height);
+            }
+        }
         self.vertices.clear();
-        self.fixed.clear();
+        self.x.clear();
+        self.y.clear();
         self.sides.clear();
         self.points.clear();
         self.draws.clear();
@@ -176,7 +194,7 @@ impl Frame {
     }
 
     /// Draws a drawable unless it is hidden.
-    fn place<S: Sampling>(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
+    fn place(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
         let drawable = &visual.drawables[index];
         let (pos, mat) = pose(drawable, poses);
         if self.hidden(drawable, eye, single(pos)) {
@@ -191,18 +209,32 @@ impl Frame {
             transparent,
             ..self.draws[index]
         };
-        self.add::<S>(visual, eye, index);
+        self.add(visual, eye, index);
     }
 
-    /// Returns the distance (m) from the camera's plane to what the middle of a pixel shows; infinity where it shows
-    /// nothing.
-    pub fn distance(&self, x: usize, y: usize) -> f32 {
-        let id = self.target.ids[y * self.target.width + x][0];
-        self.target.records.get(id as usize).map_or(f32::INFINITY, |record| {
+    /// Writes the distance (m) from the camera's plane to what the middle of each pixel shows, rows from the top; infinity
+    /// where it shows nothing.
+    pub fn distances(&self, out: &mut [f32]) {
+        self.middles(out, f32::INFINITY, |record, x, y| {
             let vertices = record.vertices.map(|v| &self.vertices[v as usize]);
             let plane = Basis::new(vertices).plane(vertices.map(|v| v.iw));
             1.0 / plane.at([x as f32 + 0.5; 4], [y as f32 + 0.5; 4])[0]
-        })
+        });
+    }
+
+    /// Writes what `of` says of the drawable that the middle of each pixel shows, rows from the top; -1 where it shows none.
+    pub fn elements(&self, out: &mut [i32], of: impl Fn(usize) -> i32) {
+        self.middles(out, -1, |record, _, _| of(record.draw as usize));
+    }
+
+    fn middles<T: Copy>(&self, out: &mut [T], nothing: T, of: impl Fn(&Triangle, usize, usize) -> T) {
+        let width = self.size[0];
+        for (y, line) in out.chunks_exact_mut(width).rev().enumerate() {
+            for (x, v) in line.iter_mut().enumerate() {
+                let record = self.centre.records.get(self.centre.ids[y * width + x][0] as usize);
+                *v = record.map_or(nothing, |record| of(record, x, y));
+            }
+        }
     }
 
     /// Returns whether nearer things cover the bounding sphere of a drawable.
@@ -219,26 +251,31 @@ impl Frame {
             let high = place((v * z + root) / d).ceil() + 1.0;
             low.clamp(0.0, pixels as f32) as usize..high.clamp(0.0, pixels as f32) as usize
         };
-        let x = range(x, eye.tan[0], self.target.width);
-        let y = range(y, eye.tan[1], self.target.height);
+        let x = range(x, eye.tan[0], self.size[0]);
+        let y = range(y, eye.tan[1], self.size[1]);
         // steep triangles are off by some rounding
         const SAFE: f32 = 1.001;
-        x.start >= x.end || y.start >= y.end || self.target.hides(x, y, eye.depth_at(z - r) * SAFE)
+        let nearest = eye.depth_at(z - r) * SAFE;
+        let hides = |wanted: bool, target: &Target| !wanted || target.hides(x.clone(), y.clone(), nearest);
+        x.start >= x.end
+            || y.start >= y.end
+            || (hides(self.targets.colour, &self.colour) && hides(self.targets.centre, &self.centre))
     }
 
     /// Projects and draws all triangles of a drawable.
-    fn add<S: Sampling>(&mut self, visual: &Visual, eye: &Eye, index: usize) {
+    fn add(&mut self, visual: &Visual, eye: &Eye, index: usize) {
         let drawable = &visual.drawables[index];
         let mesh = &visual.meshes[drawable.shape as usize];
         let draw = self.draws[index];
-        let half = [self.target.width as f32 * 0.5, self.target.height as f32 * 0.5];
+        let half = [self.size[0] as f32 * 0.5, self.size[1] as f32 * 0.5];
         self.bands.clear();
         for band in &mesh.bands {
             let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
             let sides = if clip::is_box_outside(&rows, band.low, band.high) {
                 let end = self.vertices.len() + band.vertices.len();
                 self.vertices.resize(end, Vertex::default());
-                self.fixed.resize(end, [0; 2]);
+                self.x.resize(end, 0.0);
+                self.y.resize(end, 0.0);
                 self.sides.resize(end, u8::MAX);
                 (u8::MAX, u8::MAX)
             } else {
@@ -248,68 +285,15 @@ impl Frame {
         }
         for (k, band) in mesh.bands.iter().enumerate() {
             match self.bands[k] {
-                (0, _) if !draw.flip => self.inside::<S>(mesh, index, band.triangles.clone()),
+                (0, _) if !draw.flip => self.inside(mesh, index, band),
                 (_, 0) => {
                     let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
-                    self.across::<S>(mesh, &rows, index, band.triangles.clone());
+                    self.across(mesh, &rows, index, band.triangles.clone());
                 }
                 _ => {}
             }
         }
-    }
-
-    /// Draws triangles of which some are not wholly in view.
-    fn across<S: Sampling>(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, range: Range<usize>) {
-        let draw = self.draws[index];
-        for &[a, b, c] in &mesh.triangles[range] {
-            let t = if draw.flip { [a, c, b] } else { [a, b, c] };
-            let own = t.map(|i| draw.base + usize::from(i));
-            let [p, q, r] = own.map(|i| self.sides[i]);
-            if p & q & r != 0 {
-                continue;
-            }
-            if p | q | r != 0 {
-                self.clipped::<S>(mesh, rows, index, t, p | q | r);
-            } else if is_seen::<S>(&own.map(|i| self.fixed[i])) {
-                self.triangle::<S>(index, own);
-            }
-        }
-    }
-
-    /// Draws triangles that are wholly in view.
-    fn inside<S: Sampling>(&mut self, mesh: &Mesh, index: usize, range: Range<usize>) {
-        let base = self.draws[index].base;
-        let mut k = range.start;
-        let all = &mesh.triangles[..range.end];
-        while k < all.len() {
-            let fixed = &self.fixed[base..base + mesh.x.len()];
-            let seen = |t: &[u16; 3]| is_seen::<S>(&t.map(|i| fixed[usize::from(i)]));
-            let Some(next) = all[k..].iter().position(seen) else {
-                return;
-            };
-            k += next;
-            self.triangle::<S>(index, all[k].map(|i| base + usize::from(i)));
-            k += 1;
-        }
-    }
-
-    /// Draws a triangle, whose vertices are given, unless it shows its back.
-    fn triangle<S: Sampling>(&mut self, index: usize, [a, b, c]: [usize; 3]) {
-        let fixed = [self.fixed[a], self.fixed[b], self.fixed[c]];
-        if !is_counterclockwise(&fixed) {
-            return;
-        }
-        // the order in which Mesa sets triangles up
-        let record = Triangle {
-            draw: index as u32,
-            vertices: [b as u32, a as u32, c as u32],
-            setup: NONE,
-        };
-        if self.draws[index].transparent {
-            self.target.triangle::<S, Transparent>(&fixed, &self.vertices, record);
-        } else {
-            self.target.triangle::<S, Opaque>(&fixed, &self.vertices, record);
-        }
+        self.flush(index);
     }
 
     /// Projects vertices of a mesh. Gives the outer sides on which any of them is, and on which all are.
@@ -322,7 +306,7 @@ impl Frame {
         };
         for at in range.step_by(LANES) {
             let [x, y, z] = [&mesh.x, &mesh.y, &mesh.z].map(|v| coordinates(v, at));
-            let (mut vertices, mut places) = ([Vertex::default(); LANES], [[0; 2]; LANES]);
+            let mut vertices = [Vertex::default(); LANES];
             let (mut px, mut py, mut pz, mut iw) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
             let mut sides = [0; LANES];
             for k in 0..LANES {
@@ -341,11 +325,12 @@ impl Frame {
                     z: pz[k],
                     iw: iw[k],
                 };
-                places[k] = [fixed(px[k]), fixed(py[k])];
+                (px[k], py[k]) = (steps(px[k]), steps(py[k]));
             }
             let sides = sides.map(|s| s as u8);
             self.vertices.extend_from_slice(&vertices);
-            self.fixed.extend_from_slice(&places);
+            self.x.extend_from_slice(&px);
+            self.y.extend_from_slice(&py);
             self.sides.extend_from_slice(&sides);
             for s in &sides {
                 any |= s;
@@ -354,61 +339,14 @@ impl Frame {
         }
         (any, all)
     }
-
-    /// Draws what is left of a triangle that reaches beyond some sides of what is seen.
-    #[cold]
-    fn clipped<S: Sampling>(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, t: [u16; 3], sides: u8) {
-        let draw = self.draws[index];
-        let half = [self.target.width, self.target.height].map(|n| n as f32 * 0.5);
-        let corner = |i: u16| {
-            let i = usize::from(i);
-            clip::apply(rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
-        };
-        let triangle: [Clip; 3] = [corner(t[0]), corner(t[1]), corner(t[2])];
-        if clip::faces_away(&triangle) {
-            return;
-        }
-        let mut polygon = Polygon::new(triangle);
-        polygon.cut(u32::from(sides));
-        let (corners, points) = polygon.parts();
-        if corners.len() < 3 {
-            return;
-        }
-        let first = self.vertices.len();
-        let place = |source: Origin| match source {
-            Origin::Own(k) => draw.base + usize::from(t[k]),
-            Origin::New(k) => first + k,
-        };
-        for &EdgePoint { clip, from, to, share } in points {
-            let vertex = clip::project(clip, half);
-            self.fixed.push([fixed(vertex.x), fixed(vertex.y)]);
-            self.vertices.push(vertex);
-            self.sides.push(0);
-            self.points.push(ClipPoint {
-                from: place(from) as u32,
-                to: place(to) as u32,
-                share,
-            });
-        }
-        for k in 2..corners.len() {
-            let [a, b, c] = [k - 1, k, 0].map(|k| place(corners[k].from));
-            self.triangle::<S>(index, [a, b, c]);
-        }
-    }
-}
-
-/// Returns whether a triangle shows its front and does not lie between the samples.
-#[inline(always)]
-fn is_seen<S: Sampling>(fixed: &[Fixed; 3]) -> bool {
-    is_counterclockwise(fixed) && !Extent::new(fixed).misses::<S>()
 }
 
 /// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
 #[inline(always)]
-fn fixed(pixels: f32) -> i32 {
-    // adding 1.5 * 2^23 leaves the integer in the low bits
+pub fn steps(pixels: f32) -> f32 {
+    // adding 1.5 * 2^23 rounds to the nearest integer
     const SHIFT: f32 = 12_582_912.0;
     #[allow(clippy::manual_clamp)] // unlike `clamp`, this turns NaN into a number
     let v = (pixels * 256.0).max(-LIMIT).min(LIMIT);
-    (v + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
+    (v + SHIFT) - SHIFT
 }

@@ -253,6 +253,7 @@ mod tests {
             site_xmat: &[],
             cam_xpos: &[],
             cam_xmat: &[],
+            free: None,
             xpos: &[[0.0; 3], [1.0, 0.0, 1.0], [0.0, 2.0, 0.4]],
             xmat: &[identity, [cos, 0.0, sin, 0.0, 1.0, 0.0, -sin, 0.0, cos], identity],
             subtree_com: &[

@@ -4,26 +4,28 @@ mod camera;
 mod clip;
 mod flat;
 mod frame;
+mod lanes;
 mod light;
 mod plane;
 mod raster;
 mod sample;
 mod sampling;
 mod shade;
+mod small;
 mod target;
+mod triangles;
 
 #[cfg(feature = "wgpu")]
 pub(super) use camera::{Eye, V3, dot, single};
 #[cfg(feature = "wgpu")]
 pub(super) use frame::pose;
-use frame::{Frame, Transparency};
+use frame::{Frame, Targets};
 #[cfg(feature = "wgpu")]
 pub(super) use light::{PlacedLight, place as place_lights};
-use sampling::{FourSamples, PixelCentre};
 use shade::{Pixels, Shader};
 
 use crate::render::RenderError;
-use crate::render::view::{Poses, View};
+use crate::render::view::{ImageBuffers, Poses, View, fits};
 use crate::render::visual::{Element, Visual};
 
 /// A renderer on the CPU. It keeps its buffers, so that drawing allocates nothing once the largest image has been
@@ -34,6 +36,9 @@ use crate::render::visual::{Element, Visual};
 pub struct CpuRenderer {
     frame: Frame,
     shader: Shader,
+    /// Working memory for images in grey.
+    colours: Vec<u8>,
+    passes: u64,
 }
 
 impl CpuRenderer {
@@ -42,18 +47,71 @@ impl CpuRenderer {
         Self::default()
     }
 
+    /// Draws images of one view in one pass, those for which there are buffers. Each is the same as if it were drawn
+    /// alone.
+    ///
+    /// # Errors
+    /// Fails if the camera does not exist, the size is not allowed, or poses or a buffer have the wrong length.
+    pub fn draw(
+        &mut self,
+        visual: &Visual,
+        poses: &Poses,
+        view: &View,
+        images: ImageBuffers<'_>,
+    ) -> Result<(), RenderError> {
+        images.check(view)?;
+        self.passes += 1;
+        let ImageBuffers {
+            rgb,
+            gray,
+            depth,
+            segmentation,
+        } = images;
+        let frame = &mut self.frame;
+        let targets = Targets {
+            colour: rgb.is_some() || gray.is_some(),
+            centre: depth.is_some() || segmentation.is_some(),
+        };
+        let eye = frame.begin(visual, poses, view, targets)?;
+        frame.draw_opaque(visual, poses, &eye);
+        if let Some(out) = depth {
+            frame.distances(out);
+        }
+        frame.draw_transparent(visual, poses, &eye, segmentation.is_some());
+        if let Some(out) = segmentation {
+            frame.elements(out, |index| match visual.drawables[index].element {
+                Element::Geom(geom) => geom as i32,
+                Element::Site(_) => -1,
+            });
+        }
+        if targets.colour {
+            let colours = match rgb {
+                Some(out) => out,
+                None => {
+                    self.colours.resize(view.rgb_len(), 0);
+                    &mut self.colours[..]
+                }
+            };
+            self.shader
+                .resolve(frame, visual, poses, &eye, (Pixels::All, &mut *colours));
+            for (gray, pixel) in gray.into_iter().flatten().zip(colours.as_chunks().0) {
+                *gray = luma(*pixel);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns how often the geometry of a scene was gone through.
+    pub fn passes(&self) -> u64 {
+        self.passes
+    }
+
     /// Draws an image: red, green, blue of each pixel, rows from the top.
     ///
     /// # Errors
-    /// Fails if the camera does not exist, the size is not allowed, or poses or the buffer have the wrong length.
+    /// Fails like [`CpuRenderer::draw`].
     pub fn rgb(&mut self, visual: &Visual, poses: &Poses, view: &View, out: &mut [u8]) -> Result<(), RenderError> {
-        fits(out.len(), view.rgb_len())?;
-        let eye = self
-            .frame
-            .draw::<FourSamples>(visual, poses, view, Transparency::Blended)?;
-        self.shader
-            .resolve(&mut self.frame, visual, poses, &eye, (Pixels::All, out));
-        Ok(())
+        self.draw(visual, poses, view, ImageBuffers::rgb(out))
     }
 
     /// Draws every second pixel of every second row of an image, the first ones included: the same as those of
@@ -74,11 +132,16 @@ impl CpuRenderer {
             ..*view
         };
         fits(out.len(), half.rgb_len())?;
-        let eye = self
-            .frame
-            .draw::<FourSamples>(visual, poses, view, Transparency::Blended)?;
-        self.shader
-            .resolve(&mut self.frame, visual, poses, &eye, (Pixels::Second, out));
+        let targets = Targets {
+            colour: true,
+            centre: false,
+        };
+        self.passes += 1;
+        let frame = &mut self.frame;
+        let eye = frame.begin(visual, poses, view, targets)?;
+        frame.draw_opaque(visual, poses, &eye);
+        frame.draw_transparent(visual, poses, &eye, false);
+        self.shader.resolve(frame, visual, poses, &eye, (Pixels::Second, out));
         Ok(())
     }
 
@@ -95,12 +158,11 @@ impl CpuRenderer {
         rgb: &mut [u8],
         out: &mut [u8],
     ) -> Result<(), RenderError> {
-        fits(out.len(), view.pixels())?;
-        self.rgb(visual, poses, view, rgb)?;
-        for (gray, pixel) in out.iter_mut().zip(rgb.chunks_exact(3)) {
-            *gray = luma([pixel[0], pixel[1], pixel[2]]);
-        }
-        Ok(())
+        let images = ImageBuffers {
+            rgb: Some(rgb),
+            ..ImageBuffers::gray(out)
+        };
+        self.draw(visual, poses, view, images)
     }
 
     /// Draws depth: the distance (m) from the camera's plane to what the middle of each pixel shows, rows from the top;
@@ -109,15 +171,7 @@ impl CpuRenderer {
     /// # Errors
     /// Fails like [`CpuRenderer::rgb`].
     pub fn depth(&mut self, visual: &Visual, poses: &Poses, view: &View, out: &mut [f32]) -> Result<(), RenderError> {
-        fits(out.len(), view.pixels())?;
-        self.frame
-            .draw::<PixelCentre>(visual, poses, view, Transparency::Hidden)?;
-        for (row, line) in out.chunks_exact_mut(view.width).rev().enumerate() {
-            for (column, v) in line.iter_mut().enumerate() {
-                *v = self.frame.distance(column, row);
-            }
-        }
-        Ok(())
+        self.draw(visual, poses, view, ImageBuffers::depth(out))
     }
 
     /// Draws geom ids: the geom that the middle of each pixel shows, rows from the top; -1 where it shows none. Sites
@@ -132,35 +186,11 @@ impl CpuRenderer {
         view: &View,
         out: &mut [i32],
     ) -> Result<(), RenderError> {
-        fits(out.len(), view.pixels())?;
-        self.frame
-            .draw::<PixelCentre>(visual, poses, view, Transparency::Opaque)?;
-        let target = &self.frame.target;
-        for (row, line) in out.chunks_exact_mut(view.width).rev().enumerate() {
-            for (v, id) in line.iter_mut().zip(&target.ids[row * view.width..]) {
-                let drawable = target
-                    .records
-                    .get(id[0] as usize)
-                    .map(|r| &visual.drawables[r.draw as usize]);
-                *v = match drawable.map(|d| d.element) {
-                    Some(Element::Geom(g)) => g as i32,
-                    _ => -1,
-                };
-            }
-        }
-        Ok(())
+        self.draw(visual, poses, view, ImageBuffers::segmentation(out))
     }
 }
 
 /// Returns the brightness of a colour, as `rgb2gray` computes it.
 pub(crate) fn luma([r, g, b]: [u8; 3]) -> u8 {
     (0.2989 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) as u8
-}
-
-fn fits(found: usize, expected: usize) -> Result<(), RenderError> {
-    if found == expected {
-        Ok(())
-    } else {
-        Err(RenderError::Buffer { found, expected })
-    }
 }

@@ -1,5 +1,6 @@
 //! Rasterisation: which triangle each sample shows. Edges are in 1/256 pixels; depth is interpolated as in llvmpipe.
 
+use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 use super::plane::{Basis, Plane, Vertex};
@@ -19,9 +20,9 @@ pub type Fixed = [i32; 2];
 
 /// A receiver of the samples that a triangle covers.
 pub trait Sink {
-    /// Takes the samples of one pixel: `at` counts pixels from the lower left, `inside` has a bit for each covered
-    /// sample, `z` holds the depths of all four.
-    fn pixel(&mut self, at: usize, inside: u32, z: f32x4);
+    /// Takes the samples of one pixel: `at` counts pixels from the lower left, `inside` is a mask of the covered samples,
+    /// `z` holds the depths of all four.
+    fn pixel(&mut self, at: usize, inside: f32x4, z: f32x4);
 }
 
 /// An edge function: positive to the left of the edge; zero belongs to one of the two triangles that share it.
@@ -100,8 +101,9 @@ impl Depth {
         }
     }
 
+    /// Returns the depth at the samples of a pixel.
     #[inline(always)]
-    fn at<S: Sampling>(&self, x: i32, y: i32) -> f32x4 {
+    pub fn at<S: Sampling>(&self, x: i32, y: i32) -> f32x4 {
         let (x, y) = (x as f32, y as f32);
         let z = if self.gentle {
             f32x4::splat(self.plane.quick(x, y)) + self.spread
@@ -126,14 +128,14 @@ pub fn is_counterclockwise([a, b, c]: &[Fixed; 3]) -> bool {
 }
 
 /// The extent of a triangle, 1/256 pixels.
-pub struct Extent {
+struct Extent {
     x: [i32; 2],
     y: [i32; 2],
 }
 
 impl Extent {
     #[inline(always)]
-    pub fn new([a, b, c]: &[Fixed; 3]) -> Self {
+    fn new([a, b, c]: &[Fixed; 3]) -> Self {
         let range = |k: usize| [a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k])];
         Self {
             x: range(0),
@@ -144,17 +146,6 @@ impl Extent {
     #[inline(always)]
     fn below(&self, limit: i32) -> bool {
         self.x[1] - self.x[0] < limit && self.y[1] - self.y[0] < limit
-    }
-
-    /// Returns whether the triangle certainly lies between the samples: none is within its extent.
-    #[inline(always)]
-    pub fn misses<S: Sampling>(&self) -> bool {
-        let within = |[low, high]: [i32; 2], places: [i32; 4]| {
-            let places = i32x4::new(places);
-            let below = |v: i32| -> i32x4 { (i32x4::splat(v) - places) >> 8 };
-            below(high).simd_gt(below(low - 1))
-        };
-        (within(self.x, S::PLACES[0]) & within(self.y, S::PLACES[1])).to_bitmask() == 0
     }
 
     /// Returns the first and the last pixel in each direction that the triangle may cover; `None` if it covers none.
@@ -233,11 +224,11 @@ fn small<S: Sampling>(
         let [mut a, mut b, mut c] = samples;
         let mut px = x[0];
         while px <= x[1] {
-            let outside = a.fast_min(b).fast_min(c).simd_lt(f32x4::ZERO).to_bitmask();
-            if outside != 15 {
+            let inside = a.fast_min(b).fast_min(c).simd_ge(f32x4::ZERO);
+            if inside.to_bitmask() != 0 {
                 let depth = depth.get_or_insert_with(&new_depth);
                 let at = py as usize * width + px as usize;
-                sink.pixel(at, !outside & 15, depth.at::<S>(px, py));
+                sink.pixel(at, inside, depth.at::<S>(px, py));
             }
             a += right[0];
             b += right[1];
@@ -282,9 +273,10 @@ fn blocks<S: Sampling>(
                 continue;
             }
             if whole {
+                let all = f32x4::ZERO.simd_eq(f32x4::ZERO);
                 for py in y[0]..=y[1] {
                     for px in x[0]..=x[1] {
-                        sink.pixel(py as usize * width + px as usize, 15, depth.at::<S>(px, py));
+                        sink.pixel(py as usize * width + px as usize, all, depth.at::<S>(px, py));
                     }
                 }
             } else {
@@ -309,9 +301,9 @@ fn patch<S: Sampling>(
         let [mut a, mut b, mut c] = [local[0].samples, local[1].samples, local[2].samples];
         let mut px = x[0];
         while px <= x[1] {
-            let inside = !(a | b | c).to_bitmask() & 15;
-            if inside != 0 {
-                sink.pixel(row + px as usize, inside, depth.at::<S>(px, py));
+            let inside = (a | b | c).simd_gt(-i32x4::ONE);
+            if inside.to_bitmask() != 0 {
+                sink.pixel(row + px as usize, cast(inside), depth.at::<S>(px, py));
             }
             a += local[0].right;
             b += local[1].right;

@@ -6,6 +6,7 @@ use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 use super::flat;
+use super::lanes::four;
 use crate::render::texture::{Face, Level, Texture};
 
 /// The mip levels to blend at each pixel of a block, and their blend weights.
@@ -31,7 +32,7 @@ impl MipLevels {
         let whole = level.fast_trunc_int();
         let first = whole.to_array()[0];
         Self {
-            level: whole.to_array().map(|l| l as usize),
+            level: four(|k| whole.to_array()[k] as usize),
             blend: (level - f32x4::from_i32x4(whole)).to_array(),
             same: whole.simd_eq(i32x4::splat(first)).to_bitmask() == 15,
         }
@@ -53,7 +54,7 @@ impl Texture {
             Texture::Flat(face) => flat::colours(face, at, wanted),
             Texture::Cube(faces) => CubePoints::new(faces, at).colours(faces, wanted),
         };
-        colours.map(|c| c * f32x4::splat(1.0 / 255.0))
+        four(|k| colours[k] * f32x4::splat(1.0 / 255.0))
     }
 }
 
@@ -161,12 +162,12 @@ impl CubePoints {
     fn mixed(&self, faces: &[Face; 6], wanted: [bool; 4]) -> [f32x4; 4] {
         let last = faces[0].len() - 1;
         let at = |level: [usize; 4]| {
-            let images = [0, 1, 2, 3].map(|k| &faces[usize::from(self.side[k])][level[k]]);
+            let images = four(|k| &faces[usize::from(self.side[k])][level[k]]);
             self.at_level(faces, images, level, wanted)
         };
         let mut colours = at(self.detail.level);
         if self.detail.blends() {
-            let next = at(self.detail.level.map(|l| (l + 1).min(last)));
+            let next = at(four(|k| (self.detail.level[k] + 1).min(last)));
             self.blend(&mut colours, &next);
         }
         colours
@@ -183,7 +184,7 @@ impl CubePoints {
     /// Looks up bilinearly in one mip level for each pixel, across the edges of the cube where needed; 0..255.
     #[inline(always)]
     fn at_level(&self, faces: &[Face; 6], images: [&Level; 4], level: [usize; 4], wanted: [bool; 4]) -> [f32x4; 4] {
-        let size = f32x4::new(images.map(|image| image.width as f32));
+        let size = f32x4::new(four(|k| images[k].width as f32));
         let (x, y) = (self.u * size - 0.5, self.v * size - 0.5);
         let (left, top) = (whole(x), whole(y));
         let (wx, wy) = ((x - left).to_array(), (y - top).to_array());
@@ -211,7 +212,7 @@ impl CubePoints {
             let (upper, lower) = (a + wx * (b - a), c + wx * (d - c));
             upper + f32x4::splat(wy[k]) * (lower - upper)
         };
-        [pixel(0), pixel(1), pixel(2), pixel(3)]
+        four(pixel)
     }
 }
 

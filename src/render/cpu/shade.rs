@@ -4,6 +4,7 @@ use wide::{f32x4, u32x4};
 
 use super::camera::Eye;
 use super::frame::Frame;
+use super::lanes::{four, three};
 use super::light::{self, PlacedLight};
 use super::plane::{Basis, Planes};
 use super::target::{NONE, Triangle};
@@ -100,7 +101,7 @@ impl Shader {
         self.lit_of.resize(frame.vertices.len(), NONE);
         self.lit.clear();
         self.setups.clear();
-        let (w, h) = (frame.target.width, frame.target.height);
+        let (w, h) = (frame.size[0], frame.size[1]);
         let inputs = Inputs {
             visual,
             eye,
@@ -123,7 +124,7 @@ impl Shader {
                         out[3 * at..3 * at + 3].copy_from_slice(&colour);
                     }
                 };
-                if let Some(id) = frame.target.only(x, y) {
+                if let Some(id) = frame.colour.only(x, y) {
                     let colours = self.colours(frame, &inputs, [x, y], id, wanted);
                     for k in 0..4 {
                         write(k, truncated(bytes(colours[k])));
@@ -152,13 +153,13 @@ impl Shader {
         part: u32,
         mut emit: impl FnMut(usize, u32, f32x4),
     ) {
-        let (w, h) = (frame.target.width, frame.target.height);
+        let (w, h) = (frame.size[0], frame.size[1]);
         let [x, y] = at;
         let first = y * w + x;
         let (right, up) = (usize::from(x + 1 < w), if y + 1 < h { w } else { 0 });
-        let ids = &frame.target.ids;
+        let ids = &frame.colour.ids;
         let seen = [ids[first], ids[first + right], ids[first + up], ids[first + up + right]];
-        let vectors = seen.map(u32x4::new);
+        let vectors = four(|k| u32x4::new(seen[k]));
         let mut rest = part;
         while rest != 0 {
             let next = rest.trailing_zeros() as usize;
@@ -167,7 +168,7 @@ impl Shader {
             let mine = (same(0) | same(1) | same(2) | same(3)) & rest;
             rest &= !mine;
             let samples = [mine & 15, mine >> 4 & 15, mine >> 8 & 15, mine >> 12 & 15];
-            let colours = self.colours(frame, inputs, at, id, samples.map(|s| s != 0));
+            let colours = self.colours(frame, inputs, at, id, four(|k| samples[k] != 0));
             for k in 0..4 {
                 if samples[k] != 0 {
                     emit(k, samples[k], bytes(colours[k]));
@@ -179,7 +180,7 @@ impl Shader {
     /// Writes an image with transparent things, each drawn twice: from the front to the back and then back.
     #[cold]
     fn blended(&mut self, frame: &mut Frame, inputs: &Inputs, pixels: Pixels, out: &mut [u8]) {
-        let (w, h) = (frame.target.width, frame.target.height);
+        let (w, h) = (frame.size[0], frame.size[1]);
         let mut samples = std::mem::take(&mut self.samples);
         samples.clear();
         samples.resize(w * h, [f32x4::ZERO; 4]);
@@ -198,14 +199,14 @@ impl Shader {
         let layers = frame.layers.len();
         for k in (0..layers).chain((0..layers).rev()) {
             for i in frame.layers[k].clone() {
-                let fragment = frame.target.fragments[i];
+                let fragment = frame.colour.fragments[i];
                 let (x, y) = (fragment.at as usize % w, fragment.at as usize / w);
                 let mut wanted = [false; 4];
                 let own = x % 2 + 2 * (y % 2);
                 wanted[own] = true;
                 let block = [x - x % 2, y - y % 2];
                 let colour = self.colours(frame, inputs, block, fragment.id, wanted)[own];
-                let draw = frame.target.records[fragment.id as usize].draw;
+                let draw = frame.colour.records[fragment.id as usize].draw;
                 let alpha = frame.draws[draw as usize].alpha;
                 for s in (0..4).filter(|s| fragment.samples >> s & 1 == 1) {
                     let under = &mut samples[fragment.at as usize][s];
@@ -235,30 +236,30 @@ impl Shader {
         if id == NONE {
             return inputs.sky(x, y, wanted);
         }
-        let mut index = frame.target.records[id as usize].setup;
+        let mut index = frame.colour.records[id as usize].setup;
         if index == NONE {
             index = self.setups.len() as u32;
-            let record = frame.target.records[id as usize];
+            let record = frame.colour.records[id as usize];
             let setup = self.setup(frame, inputs, &record);
             self.setups.push(setup);
-            frame.target.records[id as usize].setup = index;
+            frame.colour.records[id as usize].setup = index;
         }
         self.setups[index as usize].colours(inputs.visual, x, y, wanted)
     }
 
     fn setup(&mut self, frame: &Frame, inputs: &Inputs, record: &Triangle) -> Setup {
         let index = record.draw as usize;
-        let lit = record.vertices.map(|v| self.lit(frame, inputs, index, v));
-        let vertices = record.vertices.map(|v| &frame.vertices[v as usize]);
+        let lit = three(|k| self.lit(frame, inputs, index, record.vertices[k]));
+        let vertices = three(|k| &frame.vertices[record.vertices[k] as usize]);
         let basis = Basis::new(vertices);
-        let iw = vertices.map(|v| f32x4::splat(v.iw));
-        let size = [frame.target.width, frame.target.height];
+        let iw = three(|k| f32x4::splat(vertices[k].iw));
+        let size = [frame.size[0], frame.size[1]];
         let over = |[a, b, c]: [f32x4; 3]| Planes::new(&basis, [a * iw[0], b * iw[1], c * iw[2]], vertices[0].iw, size);
         let image = inputs.visual.drawables[index].texture;
         Setup {
-            colour: over(lit.map(|l| l.colour)),
+            colour: over(three(|k| lit[k].colour)),
             texture: match image {
-                Some(_) => over(lit.map(|l| l.texture)),
+                Some(_) => over(three(|k| lit[k].texture)),
                 None => Planes::default(),
             },
             image: image.map_or(NONE, |i| i as u32),
@@ -335,7 +336,7 @@ impl Setup {
     #[inline(always)]
     fn colours(&self, visual: &Visual, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
         let mut colours = self.colour.block(x, y);
-        let w = f32x4::ONE / f32x4::new(colours.map(|c| c.to_array()[3]));
+        let w = f32x4::ONE / f32x4::new(four(|k| colours[k].to_array()[3]));
         let each = w.to_array();
         for k in 0..4 {
             colours[k] *= f32x4::splat(each[k]);

@@ -2,11 +2,14 @@
 
 use std::marker::PhantomData;
 
+use wide::bytemuck::cast;
 use wide::{f32x4, u32x4};
 
+use super::lanes::{four, three};
 use super::plane::Vertex;
 use super::raster::{Depth, Fixed, Sink, scan};
 use super::sampling::Sampling;
+use super::small::Spots;
 
 /// Index of nothing.
 pub const NONE: u32 = u32::MAX;
@@ -97,8 +100,40 @@ impl Target {
             id: NONE,
             kind: PhantomData::<K>,
         };
-        let depth = || Depth::new::<S>(corners.map(|v| &vertices[v as usize]), size);
+        let depth = || Depth::new::<S>(three(|k| &vertices[corners[k] as usize]), size);
         scan::<S>(&mut writer, size, fixed, depth);
+    }
+
+    /// Draws a small triangle, of which the covered samples are known.
+    #[inline(never)]
+    pub fn spots<'a, S: Sampling, K>(&'a mut self, spots: &Spots, vertices: &[Vertex], record: Triangle)
+    where
+        Writer<'a, K>: Sink,
+    {
+        let (width, height) = (self.width, self.height);
+        let depth = Depth::new::<S>(three(|k| &vertices[record.vertices[k] as usize]), [width, height]);
+        let mut writer = Writer {
+            target: self,
+            record,
+            id: NONE,
+            kind: PhantomData::<K>,
+        };
+        let mut rest = spots.samples;
+        while rest != 0 {
+            let at = spots.pixel::<S>(rest.trailing_zeros() as usize);
+            let mut own = 0;
+            for k in 0..4 {
+                own |= u32::from(spots.pixel::<S>(k) == at) << k;
+            }
+            own &= rest;
+            rest &= !own;
+            let [x, y] = at;
+            if (0..width as i32).contains(&x) && (0..height as i32).contains(&y) {
+                let kinds = u32x4::new([1, 2, 4, 8]);
+                let inside = (u32x4::splat(own) & kinds).simd_eq(kinds);
+                writer.pixel(y as usize * width + x as usize, cast(inside), depth.at::<S>(x, y));
+            }
+        }
     }
 }
 
@@ -126,47 +161,36 @@ fn keep(id: &mut u32, records: &mut Vec<Triangle>, record: Triangle) {
 
 impl Sink for Writer<'_, Opaque> {
     #[inline(always)]
-    fn pixel(&mut self, at: usize, inside: u32, z: f32x4) {
+    fn pixel(&mut self, at: usize, inside: f32x4, z: f32x4) {
         let depth = &mut self.target.depth[at];
         let before = f32x4::new(*depth);
-        let mut seen = inside & z.simd_ge(before).to_bitmask();
-        if seen == 0 {
+        let mut seen = inside & z.simd_ge(before);
+        if seen.to_bitmask() == 0 {
             return;
         }
         let ids = &mut self.target.ids[at];
         let records = &mut self.target.records;
         // at equal depth the one that comes later in the model is seen
-        let tie = seen & z.simd_eq(before).to_bitmask();
+        let tie = (seen & z.simd_eq(before)).to_bitmask();
         if tie != 0 {
-            for k in 0..4 {
-                let later = |id: u32| records.get(id as usize).is_some_and(|r| r.draw > self.record.draw);
-                if tie & 1 << k != 0 && ids[k] != self.id && later(ids[k]) {
-                    seen &= !(1 << k);
-                }
-            }
-            if seen == 0 {
+            let later = |id: u32| records.get(id as usize).is_some_and(|r| r.draw > self.record.draw);
+            let covered = four(|k| tie >> k & 1 == 1 && ids[k] != self.id && later(ids[k]));
+            let covered = u32x4::new(four(|k| if covered[k] { u32::MAX } else { 0 }));
+            seen = cast(cast::<_, u32x4>(seen) & !covered);
+            if seen.to_bitmask() == 0 {
                 return;
             }
         }
         keep(&mut self.id, records, self.record);
-        let z = z.to_array();
-        if seen == 15 {
-            *depth = z;
-            *ids = [self.id; 4];
-            return;
-        }
-        for k in 0..4 {
-            if seen & 1 << k != 0 {
-                depth[k] = z[k];
-                ids[k] = self.id;
-            }
-        }
+        *depth = seen.select(z, before).to_array();
+        let mask: u32x4 = cast(seen);
+        *ids = mask.select(u32x4::splat(self.id), u32x4::new(*ids)).to_array();
     }
 }
 
 impl Sink for Writer<'_, Transparent> {
-    fn pixel(&mut self, at: usize, inside: u32, z: f32x4) {
-        let samples = inside & z.simd_ge(f32x4::new(self.target.depth[at])).to_bitmask();
+    fn pixel(&mut self, at: usize, inside: f32x4, z: f32x4) {
+        let samples = (inside & z.simd_ge(f32x4::new(self.target.depth[at]))).to_bitmask();
         if samples == 0 {
             return;
         }

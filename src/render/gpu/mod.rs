@@ -35,6 +35,8 @@ mod pending;
 mod pipelines;
 mod scene;
 mod target;
+#[cfg(target_arch = "wasm32")]
+mod timer;
 
 pub use channel::{Channel, Depth, Gray, Rgb, Segmentation};
 pub use error::GpuError;
@@ -73,6 +75,7 @@ pub struct GpuRenderer {
     targets: [Option<Target>; 2],
     pool: Pool,
     apart: bool,
+    submissions: u64,
 }
 
 impl GpuRenderer {
@@ -114,6 +117,7 @@ impl GpuRenderer {
             targets: [None, None],
             pool: Pool::default(),
             apart: gpu.software,
+            submissions: 0,
             gpu,
             visual,
             layouts,
@@ -145,8 +149,12 @@ impl GpuRenderer {
         &self.visual
     }
 
-    /// Starts drawing. Submissions are processed in order; more can be started before earlier ones are read.
-    /// Submissions are worked off in order; more can be started before earlier ones are read.
+    /// Returns the number of submissions to the device so far.
+    pub fn submissions(&self) -> u64 {
+        self.submissions
+    }
+
+    /// Starts drawing. Submissions are worked off in order; more can be started before earlier ones are read.
     ///
     /// # Errors
     /// Fails like the CPU renderer for each request, if there are more images than the device takes, or if the device is
@@ -186,6 +194,7 @@ impl GpuRenderer {
         let buffer = self.readback(bytes);
         let commands = self.encode(C::OUTPUT, &atlas, &slots, &buffer);
         let submission = self.gpu.queue.submit([commands]);
+        self.submissions += 1;
         self.gpu.check()?;
         Ok(Pending::new(&self.gpu, slots, buffer, submission, &self.pool))
     }

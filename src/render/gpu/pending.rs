@@ -23,9 +23,17 @@ pub type Pool = Arc<Mutex<Vec<wgpu::Buffer>>>;
 
 /// The device's answer about the buffer, and the task that waits for it.
 #[derive(Debug, Default)]
-struct Arrival {
+pub(super) struct Arrival {
     mapped: Option<Result<(), wgpu::BufferAsyncError>>,
     waker: Option<Waker>,
+}
+
+#[cfg(target_arch = "wasm32")]
+impl Arrival {
+    /// Hands over the task that waits, to be woken.
+    pub fn waiting(&mut self) -> Option<Waker> {
+        self.waker.take()
+    }
 }
 
 /// Images that the device is drawing. Several submissions may be pending at once.
@@ -256,9 +264,12 @@ impl Future for Mapped<'_> {
             Some(Err(e)) => failed(e),
             None => {
                 arrival.waker = Some(context.waker().clone());
-                // outside browsers there is no notification: poll again
+                drop(arrival);
+                // WebGPU tells when the buffer is there, but WebGL2 and native devices only when they are polled
                 #[cfg(not(target_arch = "wasm32"))]
                 context.waker().wake_by_ref();
+                #[cfg(target_arch = "wasm32")]
+                super::timer::later(&self.transfer.arrival);
                 Poll::Pending
             }
         }

@@ -133,7 +133,7 @@ impl EvaluationLog {
         let (Some(rows), Some(info)) = (value.get("qpos").and_then(Value::items), value.get("info")) else {
             return Err(foreign("it has no `qpos` and `info`"));
         };
-        let info = records(path, "evaluation", info, limits)?;
+        let info = records(info, limits).map_err(|reason| foreign(&reason))?;
         let mut log = Self {
             info,
             ..Self::default()

@@ -16,7 +16,7 @@ use crate::model::Model;
 const INTERIOR: f64 = 1e-9;
 
 /// Greatest number of sensors of a skin.
-pub const MAX_SENSORS: usize = 1 << 24;
+pub const MAX_SENSORS: usize = 1 << 20;
 
 /// An error in making a skin.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -32,13 +32,16 @@ pub enum SkinError {
     },
     /// There would be too many sensors.
     #[error(
-        "{spacing} m between the touch sensors of {body:?} would bring the total above {MAX_SENSORS}; raise touch_scale"
+        "{spacing} m between the touch sensors of {body:?} would bring the total to about {expected}, above {MAX_SENSORS}, \
+         which takes seconds to make and hundreds of bytes each; raise touch_scale"
     )]
     TooMany {
         /// Name of the body at which the limit is exceeded.
         body: String,
         /// Distance between its sensors, m.
         spacing: f64,
+        /// An estimate of the total up to that body.
+        expected: u64,
     },
 }
 
@@ -100,7 +103,7 @@ impl SkinBody {
 /// the convex hull of the points of another geom of the same body are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkinLayout {
-    bodies: Vec<SkinBody>,
+    pub(super) bodies: Vec<SkinBody>,
     /// Index in `bodies` plus one, for each body of the model; 0 for bodies without sensors.
     of_body: Vec<u32>,
     len: usize,
@@ -146,7 +149,12 @@ impl SkinLayout {
                 expected += estimate(model.geom_type[g], model.geom_size[g], spacing);
             }
             if expected > MAX_SENSORS as f64 {
-                return Err(SkinError::TooMany { body: name, spacing });
+                let expected = expected as u64;
+                return Err(SkinError::TooMany {
+                    body: name,
+                    spacing,
+                    expected,
+                });
             }
             let (positions, geoms) = assemble(model, &geoms, spacing);
             let grid = Grid::new(&positions, 2.0 * spacing);

@@ -33,6 +33,7 @@ mod grid;
 mod hull;
 mod layout;
 pub(crate) mod points;
+mod scaled;
 
 use std::sync::Arc;
 

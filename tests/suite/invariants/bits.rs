@@ -118,7 +118,10 @@ fn a_copied_state_continues_with_the_same_bits() {
 /// In the middle of an action, so that all that an actuation model needs must come along.
 #[test]
 fn a_copied_state_continues_with_every_actuation_model_and_engine() {
-    for engine in [EngineKind::Soft, EngineKind::Rapier] {
+    let engines = EngineKind::ALL
+        .iter()
+        .filter(|e| **e == EngineKind::Soft || cfg!(feature = "rapier"));
+    for &engine in engines {
         for &actuation_model in ActuationModel::ALL {
             for compat in [Compat::Api, Compat::Reference] {
                 let mut env = env(Config {

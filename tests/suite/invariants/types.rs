@@ -4,7 +4,9 @@ use babybench::actuation::Actuation;
 use babybench::env::{EnvError, Snapshot, SnapshotError};
 use babybench::eval::{EvaluationError, ScoreError};
 use babybench::mjcf_loader::LoadError;
-use babybench::physics::{Engine, EngineError, Params, RapierEngine, RapierModel, SoftEngine, State};
+use babybench::physics::{Engine, EngineError, Params, SoftEngine, State};
+#[cfg(feature = "rapier")]
+use babybench::physics::{RapierEngine, RapierModel};
 use babybench::policy::PolicyError;
 use babybench::render::{CpuRenderer, RenderError, Renderer, Visual};
 use babybench::runs::LogError;
@@ -25,6 +27,7 @@ fn environments_move_between_threads() {
     moves::<Env>();
     moves::<VectorEnv>();
     moves::<SoftEngine>();
+    #[cfg(feature = "rapier")]
     moves::<RapierEngine>();
 }
 
@@ -35,6 +38,7 @@ fn what_environments_share_is_shared_between_threads() {
     is_shared::<Model>();
     is_shared::<State>();
     is_shared::<Params>();
+    #[cfg(feature = "rapier")]
     is_shared::<RapierModel>();
     is_shared::<Snapshot>();
     is_shared::<Info>();

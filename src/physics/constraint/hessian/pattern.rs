@@ -6,6 +6,7 @@ use crate::physics::tiles::ZERO;
 
 impl Hessian {
     /// Finds the pattern for an island.
+    #[inline(always)]
     pub(in crate::physics::constraint) fn analyse(&mut self, island: &Island) {
         let n = island.tiles();
         self.words = n.div_ceil(64);
@@ -37,6 +38,7 @@ impl Hessian {
     }
 
     /// Eliminates symbolically, then collects the columns of each row.
+    #[inline(always)]
     fn eliminate(&mut self, n: usize) {
         let words = self.words;
         self.child.clear();
@@ -84,7 +86,7 @@ impl Hessian {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn set(bits: &mut [u64], i: u32) {
     bits[i as usize / 64] |= 1 << (i % 64);
 }

@@ -1,0 +1,42 @@
+//! The bits of an environment, folded into a number.
+
+use babybench::{Env, Observation};
+
+/// Folds positions, velocities and all senses.
+pub fn bits(env: &Env) -> u64 {
+    let mut hash = Hash::new();
+    let state = env.state();
+    state
+        .qpos
+        .iter()
+        .chain(&state.qvel)
+        .for_each(|v| hash.fold(v.to_bits()));
+    hash.observation(&env.observation());
+    hash.0
+}
+
+/// FNV-1a on 64-bit words.
+pub struct Hash(pub u64);
+
+impl Hash {
+    /// Starts with nothing.
+    pub fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    /// Folds a word.
+    pub fn fold(&mut self, word: u64) {
+        self.0 = (self.0 ^ word).wrapping_mul(0x0100_0000_01b3);
+    }
+
+    /// Folds all senses.
+    pub fn observation(&mut self, seen: &Observation<'_>) {
+        let dense = [seen.proprioception, seen.vestibular.unwrap_or_default()];
+        dense.concat().iter().for_each(|v| self.fold(v.to_bits()));
+        let touch = seen.touch.unwrap_or_default().iter();
+        touch.for_each(|v| self.fold(u64::from(v.to_bits())));
+        for image in [seen.eye_left, seen.eye_right] {
+            image.unwrap_or_default().iter().for_each(|&v| self.fold(u64::from(v)));
+        }
+    }
+}

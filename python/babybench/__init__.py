@@ -1,0 +1,61 @@
+"""BabyBench: the infant model MIMo behind Gymnasium's interface, on a physics engine in Rust.
+
+Example:
+    >>> import babybench
+    >>> env = babybench.make("self_touch")
+    >>> observation, info = env.reset(seed=0)
+    >>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+    >>> env.close()
+
+:func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
+Stable-Baselines3. Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
+``babybench/HandRegard-v0`` and ``babybench/Installation-v0``. ``babybench.utils``, ``babybench.eval``,
+``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter kit, for scripts written for it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from babybench_core._native import __version__, config_examples, config_keys
+from babybench_core._paths import extended as _extended
+
+if TYPE_CHECKING:
+    from babybench_core.env import Env, make
+    from babybench_core.scenes import read_config
+    from babybench_core.vector import VectorEnv
+
+__all__ = ["Env", "VectorEnv", "__version__", "config_examples", "config_keys", "make", "read_config"]
+
+__path__ = _extended(__path__)
+
+_HOMES = {
+    "Env": "babybench_core.env",
+    "VectorEnv": "babybench_core.vector",
+    "make": "babybench_core.env",
+    "read_config": "babybench_core.scenes",
+    "sb3": "babybench.sb3",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Imports what is asked for, when it is asked for."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    home = import_module(_HOMES[name])
+    return home if name == "sb3" else getattr(home, name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOMES])
+
+
+def _tell_gymnasium() -> None:
+    from babybench_core.registration import register
+
+    register()
+
+
+_tell_gymnasium()

@@ -1,0 +1,1 @@
+"""What the packages ``babybench`` and ``mimoEnv`` are made of; import those."""

@@ -1,0 +1,362 @@
+"""The native part: scenes, environments and vectors of environments, in Rust.
+
+Prefer the package itself; this is what it is made of. Every array that is returned is a fresh copy, unless said
+otherwise. Errors are Python's own: ``ValueError``, ``TypeError``, ``KeyError``, ``FileNotFoundError``, ``RuntimeError``.
+"""
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar, final
+
+import numpy as np
+import numpy.typing as npt
+
+from babybench_core.records import LockReport, TouchBody
+
+__all__ = [
+    "Blueprint",
+    "Env",
+    "Parts",
+    "VectorEnv",
+    "__version__",
+    "config_examples",
+    "config_from_mapping",
+    "config_from_yaml",
+    "config_keys",
+    "embedded_files",
+    "model_extras",
+    "scene_file",
+    "write_video",
+]
+
+__version__: str
+
+_Space = tuple[str, list[int], str, float, float]
+_Floats = npt.NDArray[np.float64]
+_Flags = npt.NDArray[np.bool_]
+_Array = npt.NDArray[Any]
+
+def config_keys() -> dict[str, dict[str, Any]]:
+    """Returns every key of a configuration: ``default``, ``section``, ``expected``, ``doc`` and, for names, ``choices``."""
+
+def config_examples() -> dict[str, dict[str, Any]]:
+    """Returns the three example configurations: ``self_touch``, ``hand_regard``, ``test_installation``."""
+
+def config_from_mapping(mapping: Mapping[str, object]) -> dict[str, Any]:
+    """Checks a configuration and returns all its keys; those left out have their default."""
+
+def config_from_yaml(text: str, file: str = "configuration") -> dict[str, Any]:
+    """Reads a configuration from YAML and returns all its keys; ``file`` names the text in errors."""
+
+@final
+class Blueprint:
+    """A compiled scene with its configuration and its settled state, which environments share."""
+
+    MODEL_ARRAYS: ClassVar[list[str]]
+    """The names of :meth:`model_array`."""
+
+    def __new__(
+        cls,
+        config: Mapping[str, object] | str | os.PathLike[str],
+        assets: str | os.PathLike[str] | None = None,
+    ) -> Blueprint:
+        """Compiles a scene. A ``str`` is the path of a YAML file; ``assets`` is a folder laid out like the kit's."""
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """All keys with their values."""
+    @property
+    def init_qpos(self) -> _Floats:
+        """The settled positions (nq), from which episodes start."""
+    @property
+    def init_qvel(self) -> _Floats:
+        """The settled velocities (nv)."""
+    @property
+    def model_names(self) -> dict[str, list[str]]:
+        """Names by kind: body, joint, geom, site, camera, equality, tendon, actuator, sensor; some are empty."""
+    @property
+    def model_options(self) -> dict[str, Any]:
+        """Sizes (``nq``, ``nbody``, ...) and options (``timestep``, ``gravity``, ...)."""
+    def model_array(self, name: str) -> _Array:
+        """Returns an array of the scene by MuJoCo's name, in MuJoCo's order, numbers and units."""
+
+@final
+class Env:
+    """An environment. One thread uses it at a time; steps and pictures do not hold Python's lock."""
+
+    STATE_ARRAYS: ClassVar[list[str]]
+    """The names of :meth:`state_array`."""
+
+    def __new__(cls, blueprint: Blueprint, views: bool = False) -> Env:
+        """Makes an environment; with ``views``, observations are read-only arrays that each step brings up to date."""
+
+    def reset(self, seed: int | None = None) -> dict[str, _Array]:
+        """Starts an episode: the settled state, then ten random start actions (not without behavior).
+
+        Under ``compat: api`` a seed reseeds every random choice; under ``compat: reference`` it is ignored:
+        see :meth:`seed_action_space` and :meth:`reset_with`.
+        """
+    def reset_with(self, actions: npt.ArrayLike) -> dict[str, _Array]:
+        """Starts an episode with the given start actions (any number, action size), a physics step each."""
+    def reset_to(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
+        """Starts an episode at positions (nq) and velocities (nv), without start actions."""
+    def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
+        """Puts the scene at positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
+    def forward(self) -> dict[str, _Array]:
+        """Computes everything that follows from the present positions, velocities and controls, without advancing."""
+    def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], bool]:
+        """Applies an action; returns the observation and whether the episode has reached its last step."""
+    def run(self, actions: npt.ArrayLike) -> None:
+        """Applies actions, (K, action size), one after the other, and returns nothing: to replay, and to time the core."""
+    def observe(self) -> dict[str, _Array]:
+        """Returns the observation of the last reset or step."""
+    def info(self, details: bool = True) -> dict[str, Any]:
+        """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
+    def accumulate_info(self, on: bool) -> None:
+        """Sets whether resets leave the counters and lists of the behavior as they are."""
+    def close(self) -> None:
+        """Frees the environment; whatever is called afterwards but ``close`` and ``closed`` raises ``RuntimeError``."""
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+    @property
+    def ready(self) -> bool:
+        """Whether a step may follow: there was a reset, and nothing diverged since."""
+    @property
+    def blueprint(self) -> Blueprint:
+        """What it was made from."""
+
+    @property
+    def action_bounds(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+        """Lower and upper bounds of actions."""
+    @property
+    def observation_spaces(self) -> list[_Space]:
+        """Key, shape, number type, lower and upper bound of each observation."""
+    def seed_action_space(self, seed: int) -> None:
+        """Seeds the generator of :meth:`sample_action` and of start actions, as ``action_space.seed`` does."""
+    def sample_action(self) -> npt.NDArray[np.float32]:
+        """Returns a random action, the same that ``action_space.sample()`` draws from the same seed."""
+
+    time: float
+    """Simulated time, s."""
+
+    def state_array(self, name: str) -> _Array:
+        """Returns an array of the state by MuJoCo's name: ``qpos``, ``xpos`` (nbody, 3), ``xmat`` (nbody, 9), ...
+
+        Quantities that are computed describe the start of the last physics step.
+        """
+    def write_state(self, name: str, values: npt.ArrayLike) -> None:
+        """Writes ``qpos``, ``qvel``, ``ctrl``, ``act``, ``qfrc_applied`` or ``qacc_warmstart``.
+
+        What follows from them is computed by the next step, or by :meth:`forward`.
+        """
+    def contacts(self) -> dict[str, _Array]:
+        """Returns the contacts of the start of the last physics step, in MuJoCo's order.
+
+        Entries: ``geom1``, ``geom2``, ``dim``, ``dist`` (m), ``pos`` (m), ``frame`` (9), ``friction`` (5), ``solref``,
+        ``solreffriction``, ``solimp``, ``includemargin``, ``efc_address``, ``force`` (6, contact frame, N and N m).
+        """
+    def snapshot(self) -> bytes:
+        """Returns the present moment, from which a run continues with the same bits."""
+    def restore(self, snapshot: bytes) -> None:
+        """Goes back to a snapshot of this environment, or of another of the same configuration and scene."""
+    def lock(self, target: str | int, angle: float = 0.0) -> LockReport:
+        """Locks a joint (name or number), or all joints of a part such as ``"head"``, at an angle in rad."""
+    def unlock(self, target: str | int) -> LockReport:
+        """Unlocks a joint, or all joints of a part."""
+
+    @property
+    def touch_width(self) -> int:
+        """Values of each touch sensor: 1 or 3; 0 without touch."""
+    def touch_layout(self) -> list[TouchBody]:
+        """Returns where the touch sensors are, body by body, in the order of the observation."""
+    def touch_of(self, body: int) -> npt.NDArray[np.float32]:
+        """Returns the values of the sensors of a body, (sensors, 1 or 3), N; (0, 1 or 3) if it has none."""
+    def touched(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
+        """Returns sparse touch: the sensors that contacts reach, ascending (K), and their values, (K, 1 or 3), N."""
+    def touch_contacts(self) -> dict[str, _Array]:
+        """Returns the contacts with skin, an entry for each side that feels.
+
+        Entries: ``contact`` (index in :meth:`contacts`), ``body``, ``geom``, ``other`` (geom), ``normal`` (N), ``force``
+        and ``point`` (world, N and m), ``force_body`` and ``point_body`` (frame of the body).
+        """
+    @property
+    def proprioception_entries(self) -> list[tuple[str, str, int, int]]:
+        """Component, name, first and last plus one place of each entry of the observation."""
+    @property
+    def gaze_angles(self) -> list[float] | None:
+        """How far each hand is off the axis of each eye, rad: right-right, right-left, left-right, left-left (eye, hand)."""
+
+    def render(self, camera: str, width: int, height: int) -> npt.NDArray[np.uint8]:
+        """Draws from a camera of the scene, (height, width, 3), red, green, blue, rows from the top."""
+    def depth(self, camera: str, width: int, height: int) -> npt.NDArray[np.float32]:
+        """Draws the distance from the camera's plane, (height, width), m; infinite where nothing is."""
+    def segmentation(self, camera: str, width: int, height: int) -> npt.NDArray[np.int32]:
+        """Draws the ids of geoms, (height, width); -1 where none is."""
+
+@final
+class VectorEnv:
+    """Many environments at once, on threads, with arrays over them.
+
+    The arrays that resets, steps and :meth:`recv` return are read-only, stay the same and change with the next call.
+    """
+
+    def __new__(
+        cls,
+        blueprints: Sequence[Blueprint],
+        autoreset: str = "next_step",
+        threads: int = 0,
+        max_memory: int | None = None,
+    ) -> VectorEnv:
+        """Makes an environment of each blueprint; ``autoreset`` is ``next_step``, ``same_step`` or ``disabled``."""
+
+    def reset(
+        self,
+        seeds: int | Sequence[int | None] | None = None,
+        mask: Sequence[bool] | npt.NDArray[np.bool_] | None = None,
+    ) -> dict[str, _Array]:
+        """Starts an episode in all environments, or in those of the mask; with one seed, environment i gets it plus i."""
+    def step(self, actions: npt.ArrayLike) -> dict[str, _Array]:
+        """Applies an action in each environment, (N, action size), and waits for all."""
+    def run(self, actions: npt.ArrayLike) -> None:
+        """Applies actions, (K, N, action size), one after the other, and returns nothing."""
+    def send(self, actions: npt.ArrayLike, ids: Sequence[int] | npt.NDArray[np.integer[Any]]) -> None:
+        """Hands actions, (K, action size), to K environments and returns at once."""
+    def recv(self, n: int) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
+        """Waits for ``n`` environments: observations, rewards, terminated, truncated, and which they are."""
+    def close(self) -> None:
+        """Ends the threads and frees the environments."""
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+    @property
+    def flags(self) -> list[_Array]:
+        """Rewards, terminated, truncated of the last step (N)."""
+    def infos(self) -> dict[str, _Array]:
+        """Returns fresh arrays, a row for each of the last rows.
+
+        ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0; ``regards``
+        (N, 4), how often hands were in view.
+        """
+    def failures(self) -> list[tuple[int, str]]:
+        """Returns the environments that could not go on in the last step, and why."""
+    def final_observations(self) -> list[tuple[int, dict[str, _Array]]]:
+        """Returns the last observations of the episodes that ended in the last step, with ``same_step``."""
+    def info(self, env: int, details: bool = True) -> dict[str, Any]:
+        """Returns the information of one environment."""
+    def final_info(self, env: int, details: bool = True) -> dict[str, Any] | None:
+        """Returns the information of the end of the episode that ended in the last step, with ``same_step``."""
+    @property
+    def num_envs(self) -> int:
+        """Number of environments."""
+    @property
+    def threads(self) -> int:
+        """Number of threads that step environments."""
+    @property
+    def clipped_threads(self) -> str | None:
+        """Why there are fewer threads than asked for, if there are."""
+    @property
+    def in_flight(self) -> int:
+        """Number of environments that were sent and have not been received."""
+    @property
+    def action_bounds(self) -> list[npt.NDArray[np.float32]]:
+        """Lower and upper bounds of the actions of one environment."""
+    @property
+    def observation_spaces(self) -> list[_Space]:
+        """Key, shape, number type, lower and upper bound of each observation of one environment."""
+    def seed_action_spaces(self, seed: int) -> None:
+        """Seeds the generators of :meth:`sample_actions` and of start actions: environment i gets the seed plus i."""
+    def sample_actions(self) -> npt.NDArray[np.float32]:
+        """Returns a random action of each environment, (N, action size), from their own generators."""
+    def config(self, env: int) -> dict[str, Any]:
+        """Returns the configuration of one environment."""
+    def snapshot(self, env: int) -> bytes:
+        """Returns the present moment of one environment."""
+    def restore(self, env: int, snapshot: bytes) -> None:
+        """Takes one environment back to a snapshot."""
+    def lock(self, env: int, target: str | int, angle: float = 0.0) -> LockReport:
+        """Locks a joint, or all joints of a part, of one environment at an angle in rad."""
+    def unlock(self, env: int, target: str | int) -> LockReport:
+        """Unlocks a joint, or all joints of a part, of one environment."""
+    def state_array(self, env: int, name: str) -> _Array:
+        """Returns an array of the state of one environment."""
+    def render(self, env: int, camera: str, width: int, height: int) -> npt.NDArray[np.uint8]:
+        """Draws one environment from a camera of its scene, (height, width, 3)."""
+
+# --- for environments that go through a reset and a step as the Python kit does ---
+
+@final
+class Parts:
+    """The parts of an environment's reset and step, one by one."""
+
+    FILLED: ClassVar[list[str]]
+    """The arrays that ``fill`` writes."""
+
+    def __new__(cls, env: Env) -> Parts: ...
+    def reset_data(self) -> None:
+        """Forgets the past: ``qpos0`` at rest, of which nothing is computed."""
+    def forward(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> None:
+        """Computes everything at positions (nq,) and velocities (nv,), without sensing it."""
+    def set_position(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> None:
+        """Sets positions (nq,) and velocities (nv,) for the next physics step."""
+    def set_action(self, action: npt.ArrayLike) -> None:
+        """Gives an action, (n,), to the actuators."""
+    def substep(self) -> None:
+        """Updates the actuators, as before each physics step of a step but the first."""
+    def physics_step(self) -> None:
+        """Advances by one physics step, without sensing."""
+    def observe(self) -> None:
+        """Senses the present state."""
+    def track(self) -> None:
+        """Counts what the behavior counts."""
+    def clear_info(self) -> None:
+        """Clears what the behavior has counted."""
+    def touches(self, right: int, left: int) -> tuple[list[int], list[int]] | None:
+        """Returns the geoms that each palm has touched, beyond the first ``right`` and ``left`` ones."""
+    @property
+    def regards(self) -> tuple[int, int, int, int] | None:
+        """Returns for how many steps each eye has had each hand before it."""
+    @property
+    def cost(self) -> float:
+        """Returns the cost of the present controls, 0 to 1."""
+    @property
+    def gear(self) -> _Floats:
+        """Returns the gears of the actuators, (nu,); with muscles their torques, N m."""
+    @property
+    def start(self) -> tuple[_Floats, _Floats]:
+        """Returns positions and velocities at the start of the last physics step."""
+    @property
+    def efc_force(self) -> _Floats:
+        """Returns the force of each constraint row, N or N m."""
+    @property
+    def eq_active(self) -> npt.NDArray[np.uint8]:
+        """Returns which equality constraints hold now, (neq,)."""
+    @property
+    def eq_active0(self) -> npt.NDArray[np.uint8]:
+        """Returns which equality constraints hold after a reset, (neq,)."""
+    @property
+    def proprioception(self) -> _Floats:
+        """Returns the proprioception of the last observation, (n,)."""
+    @property
+    def touch(self) -> npt.NDArray[np.float32] | None:
+        """Returns the touch of the last observation, (n,), N."""
+    def fill(self, arrays: Sequence[_Floats]) -> None:
+        """Writes what is known of the state into arrays of the same lengths, in the order of ``FILLED``."""
+    def differences(self, arrays: Sequence[_Floats]) -> int:
+        """Tells which of ``qpos``, ``qvel``, ``ctrl``, ``act`` and ``qfrc_applied`` differ from the state: bits 0 to 4."""
+
+def scene_file(
+    config: Mapping[str, Any] | str | os.PathLike[str], assets: str | os.PathLike[str] | None = None
+) -> tuple[str, dict[str, bytes]]:
+    """Returns the complete document of a configuration's scene, and its images by name."""
+
+def embedded_files() -> dict[str, bytes]:
+    """Returns the files that are embedded in the library, by path."""
+
+def model_extras(blueprint: Blueprint) -> dict[str, Any]:
+    """Returns names of textures and materials, the number of lights, and MuJoCo's arrays of equality constraints."""
+
+def write_video(
+    path: str | os.PathLike[str], frames: Sequence[npt.NDArray[np.uint8]], frame_rate: float, width: int, height: int
+) -> None:
+    """Writes frames (height, width, 3), red, green and blue, as motion JPEG."""

@@ -1,0 +1,314 @@
+"""One environment, behind today's Gymnasium interface."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, Optional, Union
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+
+from babybench_core import _native, scenes, spaces
+from babybench_core.records import LockReport
+from babybench_core.senses import Proprioception, Touch
+from babybench_core.window import Window
+
+Observation = dict[str, npt.NDArray[Any]]
+"""What MIMo senses, by name: see :class:`Env`."""
+
+
+class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
+    """MIMo in a room: an environment of BabyBench.
+
+    The action is a vector of motor commands (``action_space``, float32); values out of bounds are clipped. There is no
+    extrinsic reward (always 0), and no end but truncation after ``max_episode_steps``. The observation has an entry for
+    each sense that the configuration turns on:
+
+    ============= ======== ====================================================================================
+    entry         type     meaning
+    ============= ======== ====================================================================================
+    observation   float64  proprioception: rad, rad/s, N m (``env.proprioception`` says what stands where)
+    touch         float32  forces on the skin, N (``env.touch``)
+    eye_left      uint8    what the left eye sees, (resolution, resolution, 3), red, green, blue, from the top
+    eye_right     uint8    what the right eye sees
+    vestibular    float64  linear acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of the head
+    ============= ======== ====================================================================================
+
+    Arrays are fresh with every step, unless ``views`` is set.
+
+    The information has ``steps`` and, by behavior, ``right_hand_touches`` and ``left_hand_touches`` (ids of the geoms that
+    the palm has touched in this episode) with their names in ``right_hand_parts`` and ``left_hand_parts``; or how many
+    steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad).
+
+    Example:
+        >>> import babybench
+        >>> env = babybench.make("self_touch", vision_active=False)
+        >>> observation, info = env.reset(seed=0)
+        >>> observation["touch"].shape
+        (17169,)
+        >>> observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+        >>> info["steps"]
+        1
+    """
+
+    action_space: gymnasium.spaces.Box  # type: ignore[assignment, unused-ignore]
+    observation_space: gymnasium.spaces.Dict  # type: ignore[assignment, unused-ignore]
+
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "depth_array"], "render_fps": 200}  # noqa: RUF012
+
+    def __init__(
+        self,
+        config: scenes.ConfigLike = None,
+        *,
+        render_mode: Optional[str] = None,
+        camera: str = "corner",
+        assets: Optional[Union[str, os.PathLike[str]]] = None,
+        views: bool = False,
+        **keys: object,
+    ) -> None:
+        """Builds an environment.
+
+        Args:
+            config: A mapping, the name of an example, the path of a YAML file, or nothing for the defaults.
+            render_mode: ``None``, ``"rgb_array"``, ``"depth_array"`` (m) or ``"human"`` (a window, by pygame).
+            camera: The camera of :meth:`render`.
+            assets: A folder with MJCF and textures laid out like the kit's, instead of those that come with the package.
+            views: Observations are read-only arrays that stay the same and change with the next step or reset: nothing
+                is allocated. Copy what is to be kept.
+            **keys: Keys of the configuration that replace those of ``config``; ``babybench.config_keys()`` lists them.
+
+        Raises:
+            FileNotFoundError: There is no such file or folder.
+            ValueError: An unknown key, a value that is not allowed, assets that cannot be read.
+        """
+        modes = self.metadata["render_modes"]
+        if render_mode is not None and render_mode not in modes:
+            raise ValueError(f"render_mode is {render_mode!r}, expected None or one of {', '.join(modes)}")
+        self.render_mode = render_mode
+        self.camera = camera
+        self.config: dict[str, Any] = scenes.read_config(config, **keys)
+        """All keys of the configuration with their values."""
+        self._assets = None if assets is None else os.fspath(assets)
+        self._views = views
+        self._window: Optional[Window] = None
+        self._build()
+        self.action_space = spaces.action_space(self._core.action_bounds)
+        self.observation_space = spaces.observation_space(self._core)
+        options = self._core.blueprint.model_options
+        self._check_camera(camera)
+        self.metadata = {**self.metadata, "render_fps": round(1 / (options["timestep"] * self.config["frame_skip"]))}
+
+    def _build(self) -> None:
+        self._core = _native.Env(scenes.blueprint(self.config, self._assets), self._views)
+
+    # --- Gymnasium ---
+
+    def reset(
+        self, *, seed: Optional[int] = None, options: Optional[Mapping[str, object]] = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Starts an episode.
+
+        Args:
+            seed: Reseeds every random choice; without, they go on. Under ``compat: reference`` it seeds nothing.
+            options: Ignored.
+
+        Returns:
+            The observation and the information.
+        """
+        super().reset(seed=seed)
+        observation = self._core.reset(seed)
+        self._show()
+        return observation, self._core.info()
+
+    def step(self, action: npt.NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Applies an action for ``frame_skip`` physics steps of 5 ms.
+
+        Returns:
+            Observation, reward (0), terminated (False), truncated, information.
+
+        Raises:
+            ValueError: An action of another shape, or with numbers that are not finite; nothing has happened then.
+            RuntimeError: The simulation diverged, or there was no reset; reset it.
+        """
+        observation, truncated = self._core.step(action)
+        self._show()
+        return observation, 0.0, False, truncated, self._core.info()
+
+    def render(self) -> Optional[npt.NDArray[Any]]:  # type: ignore[override, unused-ignore]
+        """Draws the room from ``camera``: ``render_size`` by ``render_size`` pixels.
+
+        Returns:
+            (height, width, 3) bytes for ``rgb_array``, (height, width) m for ``depth_array``, nothing for ``human``.
+        """
+        size = self.config["render_size"]
+        if self.render_mode == "rgb_array":
+            return self._core.render(self.camera, size, size)
+        if self.render_mode == "depth_array":
+            return self._core.depth(self.camera, size, size)
+        if self.render_mode is None:
+            gymnasium.logger.warn('render() draws nothing: make the environment with render_mode="rgb_array"')
+        return None
+
+    def close(self) -> None:
+        """Frees the environment and closes the window; what comes after raises ``RuntimeError``."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+        self._core.close()
+
+    def _show(self) -> None:
+        if self.render_mode != "human":
+            return
+        size = self.config["render_size"]
+        if self._window is None:
+            self._window = Window("BabyBench", size, size)
+        self._window.show(self._core.render(self.camera, size, size), self.metadata["render_fps"])
+
+    # --- pictures ---
+
+    def picture(self, camera: str, width: int = 480, height: int = 480) -> npt.NDArray[np.uint8]:
+        """Draws from a camera of the scene.
+
+        Args:
+            camera: ``corner``, ``top``, ``side1``, ``side2``, ``closeup``, ``eye_left`` or ``eye_right``.
+            width: Pixels.
+            height: Pixels.
+
+        Returns:
+            (height, width, 3): red, green, blue, rows from the top.
+
+        Raises:
+            KeyError: There is no such camera.
+        """
+        return self._core.render(camera, width, height)
+
+    def depth(self, camera: str = "eye_left", width: int = 64, height: int = 64) -> npt.NDArray[np.float32]:
+        """Draws how far away things are from a camera's plane, (height, width), m; infinite where nothing is."""
+        return self._core.depth(camera, width, height)
+
+    def segmentation(self, camera: str = "eye_left", width: int = 64, height: int = 64) -> npt.NDArray[np.int32]:
+        """Draws the id of the geom in each pixel, (height, width); -1 where none is (names: ``geom_names``)."""
+        return self._core.segmentation(camera, width, height)
+
+    # --- what the numbers are ---
+
+    @cached_property
+    def proprioception(self) -> Proprioception:
+        """What stands where in ``observation``."""
+        return Proprioception(self._core)
+
+    @cached_property
+    def touch(self) -> Touch:
+        """What stands where in ``touch``, and touch beyond the vector.
+
+        Raises:
+            ValueError: Touch is off.
+        """
+        return Touch(self._core)
+
+    @cached_property
+    def actuator_names(self) -> list[str]:
+        """The actuators; with muscles, the action has all of them twice, flexors first."""
+        return list(self._core.blueprint.model_names["actuator"])
+
+    @cached_property
+    def geom_names(self) -> list[str]:
+        """The parts that the ids of touches and :meth:`segmentation` mean: the body, and which of its geoms."""
+        blueprint = self._core.blueprint
+        bodies = [blueprint.model_names["body"][b] for b in blueprint.model_array("geom_bodyid")]
+        count = {body: bodies.count(body) for body in set(bodies)}
+        seen: dict[str, int] = dict.fromkeys(bodies, 0)
+        names = []
+        for body in bodies:
+            seen[body] += 1
+            names.append(body if count[body] == 1 else f"{body} {seen[body]}/{count[body]}")
+        return names
+
+    def array(self, name: str) -> npt.NDArray[Any]:
+        """Returns a copy of an array of the scene or of its state by MuJoCo's name, such as ``jnt_range`` or ``xpos``.
+
+        Raises:
+            KeyError: There is no such array.
+        """
+        if name in self._core.STATE_ARRAYS:
+            return self._core.state_array(name)
+        return self._core.blueprint.model_array(name)
+
+    # --- other moments ---
+
+    def snapshot(self) -> bytes:
+        """Returns the present moment; :meth:`restore` comes back to it, and goes on with the same bits."""
+        return self._core.snapshot()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Goes back to a snapshot of this environment, or of another of the same configuration.
+
+        Touch and images are those of that moment from the next step on.
+
+        Raises:
+            ValueError: A snapshot of something else, or a damaged one; nothing has happened then.
+        """
+        self._core.restore(snapshot)
+
+    def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> Observation:
+        """Puts the scene at positions (nq; m, rad, quaternions) and velocities (nv; m/s, rad/s) and observes it."""
+        return self._core.set_state(qpos, qvel)
+
+    def lock(self, target: Union[str, int], angle: float = 0.0) -> LockReport:
+        """Locks a joint (``"robot:right_elbow"``), or all joints of a part (``"head"``), at an angle in rad.
+
+        Locks outlast resets.
+
+        Raises:
+            KeyError: There is no such joint.
+        """
+        return self._core.lock(target, angle)
+
+    def unlock(self, target: Union[str, int]) -> LockReport:
+        """Unlocks a joint, or all joints of a part."""
+        return self._core.unlock(target)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Returns what a copy needs to go on with the same bits."""
+        state = self.__dict__.copy()
+        for made in ("_core", "_window", "proprioception", "touch"):
+            state.pop(made, None)
+        state["_snapshot"] = None if self._core.closed else self._core.snapshot()
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Builds the copy."""
+        snapshot = state.pop("_snapshot")
+        self.__dict__.update(state)
+        self._window = None
+        self._build()
+        if snapshot is None:
+            self._core.close()
+        else:
+            self._core.restore(snapshot)
+
+    def _check_camera(self, camera: str) -> None:
+        cameras = self._core.blueprint.model_names["camera"]
+        if camera not in cameras:
+            raise ValueError(f"camera is {camera!r}, expected one of {', '.join(cameras)}")
+
+    def __repr__(self) -> str:
+        return f"<babybench.Env {self.config['behavior']} in {self.config['scene']}>"
+
+
+def make(config: scenes.ConfigLike = "self_touch", **arguments: Any) -> Env:
+    """Builds an environment.
+
+    Args:
+        config: An example (``self_touch``, ``hand_regard``, ``test_installation``), a mapping, or the path of a YAML file.
+        **arguments: Arguments of :class:`Env`, and keys that replace those of the configuration.
+
+    Example:
+        >>> import babybench
+        >>> babybench.make("hand_regard", vision_resolution=32, render_mode="rgb_array")
+        <babybench.Env hand_regard in cubes>
+    """
+    return Env(config, **arguments)

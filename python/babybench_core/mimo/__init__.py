@@ -1,0 +1,1 @@
+"""What runs under the names of the Python kit."""

@@ -1,0 +1,201 @@
+"""The engine under an environment: its parts, what it knows of the scene, and the state that scripts hold."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _native
+from . import live
+from .scene import Scene
+from .settings import blueprint
+
+Array = NDArray[np.float64]
+
+
+class Poses:
+    """The poses of bodies and geoms at the start of the last physics step, as ``MjData`` gives them."""
+
+    def __init__(self, engine: _native.Env) -> None:
+        """Reads all poses."""
+        self.xpos, self.xmat = engine.state_array("xpos"), engine.state_array("xmat")
+        self.geom_xpos, self.geom_xmat = engine.state_array("geom_xpos"), engine.state_array("geom_xmat")
+
+    def body(self, number: int) -> SimpleNamespace:
+        """Returns position and orientation of a body."""
+        return SimpleNamespace(xpos=self.xpos[number], xmat=self.xmat[number])
+
+    def geom(self, number: int) -> SimpleNamespace:
+        """Returns position and orientation of a geom."""
+        return SimpleNamespace(xpos=self.geom_xpos[number], xmat=self.geom_xmat[number])
+
+
+class Core:
+    """The engine under one environment.
+
+    Attributes:
+        config: The complete configuration of the engine.
+        assets: The folder of MJCF files and textures; nothing for the embedded ones.
+        engine: The environment in Rust; ``parts`` are the parts of its reset and step.
+        names: Names of all elements, by kind.
+        settled: Whether no script can have written to the state since it was last read back.
+        observed: Number of observations so far.
+        width, height: Size of pictures for people, pixels.
+    """
+
+    def __init__(self, config: dict[str, Any], scene: Scene, width: int, height: int) -> None:
+        """Compiles a scene, or takes a compiled one."""
+        self.config, self.assets, self.width, self.height = config, scene.assets, width, height
+        self.blueprint = blueprint(config, scene.assets)
+        self.engine = _native.Env(self.blueprint)
+        self.parts = _native.Parts(self.engine)
+        self.names: dict[str, list[str]] = {kind: list(names) for kind, names in self.blueprint.model_names.items()}
+        self.place = None if scene.place is None else scene.place["pos"]
+        self.observed = 0
+        self.plain_actuation = True
+        self.timestep = float(self.blueprint.model_options["timestep"])
+        array = self.blueprint.model_array
+        self.body_of_geom: NDArray[np.int32] = array("geom_bodyid")
+        self.tree = SimpleNamespace(
+            body_parentid=array("body_parentid"), body_geomadr=array("body_geomadr"), body_geomnum=array("body_geomnum")
+        )
+        joints = self.names["joint"]
+        self.mimo_joints = np.asarray([i for i, name in enumerate(joints) if name.startswith("robot:")])
+        self.computed = False
+        self.settled = False
+        self._fresh = False
+        self._contacts: dict[str, NDArray[Any]] | None = None
+        self._poses: Poses | None = None
+        self._watched: live.Watched | None = None
+        self._live: live.Live | None = None
+        self.layout = self._proprioception_layout()
+
+    def _proprioception_layout(self) -> dict[str, slice]:
+        """Returns where each part of proprioception stands: in alphabetical order of their names."""
+        joints = len(self.mimo_joints)
+        torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
+        total = len(self.parts.proprioception)
+        sizes = {
+            "actuation": total - 3 * joints - torques,
+            "limits": joints,
+            "qpos": joints,
+            "qvel": joints,
+            "torques": torques,
+        }
+        layout, at = {}, 0
+        for name, size in sizes.items():
+            layout[name] = slice(at, at + size)
+            at += size
+        return layout
+
+    # --- moving on ---
+
+    def forget(self) -> None:
+        """Forgets what was read of the state, which is another one now."""
+        self._fresh = False
+        self._contacts = self._poses = None
+
+    def changed(self, computed: bool = True) -> None:
+        """Takes note that the state is another one."""
+        self.computed = computed
+        self.forget()
+        if self._live is not None and computed:
+            self._live.changed()
+
+    def pull(self) -> None:
+        """Reads back what a script has written to the state."""
+        if self._live is not None and not self.settled:
+            self._live.pull()
+
+    def reset_data(self) -> None:
+        """Forgets the past; see ``mujoco.mj_resetData``. Locks that a script has set begin to hold."""
+        if self._watched is not None:
+            self._watched.check()
+        self.parts.reset_data()
+        if self._live is not None:
+            self._live.stale = True
+        self.changed(computed=False)
+
+    def forward(self, qpos: Any, qvel: Any) -> None:
+        """Computes everything at positions and velocities."""
+        self.parts.forward(qpos, qvel)
+        self.changed()
+
+    def set_action(self, action: Any) -> None:
+        """Gives an action to the actuators."""
+        self.parts.set_action(action)
+        self._show_controls()
+
+    def substep(self) -> None:
+        """Updates the actuators, as before each physics step of a step but the first."""
+        self.parts.substep()
+        self._show_controls()
+
+    def _show_controls(self) -> None:
+        """Shows new controls to whoever holds the state, lest the old ones be read back."""
+        if self._live is not None and not self._live.stale:
+            self._live.data.ctrl[:] = self.engine.state_array("ctrl")
+
+    def physics_step(self) -> None:
+        """Advances by one physics step."""
+        self.pull()
+        self.parts.physics_step()
+        self.changed()
+
+    # --- senses ---
+
+    def observe(self) -> None:
+        """Senses the present state, if that has not been done."""
+        self.pull()
+        if not self._fresh:
+            self.parts.observe()
+            self.observed += 1
+            self._fresh = True
+
+    def observation(self) -> dict[str, NDArray[Any]]:
+        """Returns what was sensed last, in fresh arrays."""
+        return self.engine.observe()
+
+    def proprioception(self) -> Array:
+        """Returns the last proprioception, (n,)."""
+        return self.parts.proprioception
+
+    def touch(self) -> NDArray[np.float32]:
+        """Returns what was felt last, (n,), N."""
+        felt = self.parts.touch
+        return np.zeros(0, np.float32) if felt is None else felt
+
+    def contacts(self) -> dict[str, NDArray[Any]]:
+        """Returns the contacts of the present state as columns."""
+        self.pull()
+        if self._contacts is None:
+            self._contacts = self.engine.contacts()
+        return self._contacts
+
+    @property
+    def poses(self) -> Poses:
+        """Returns the poses of the present state."""
+        if self._poses is None:
+            self._poses = Poses(self.engine)
+        return self._poses
+
+    # --- what scripts hold ---
+
+    @property
+    def model(self) -> Any:
+        """Returns the model that scripts see."""
+        if self._watched is None:
+            self._watched = live.Watched(self, live.make_model(self))
+        return self._watched.model
+
+    @property
+    def data(self) -> Any:
+        """Returns the state that scripts see, up to date."""
+        if self._live is None:
+            self._live = live.make_live(self)
+        elif self._live.stale:
+            self._live.refresh()
+        return self._live.data

@@ -1,0 +1,300 @@
+"""BabyBench's environments: ``mimoEnv.babybench``."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import tables
+from .actuation import MODELS, ActuationModel, EngineActuation, SpringDamperModel
+from .core import Core
+from .mimo_env import DEFAULT_SIZE, EMOTES, SCENE_NAME, MIMoEnv, Observation
+from .utils import get_child_bodies, get_geoms_for_body
+
+__all__ = [
+    "DEFAULT_SIZE",
+    "EMOTES",
+    "SCENE_NAME",
+    "BabyBenchEnv",
+    "BabyBenchHandRegardEnv",
+    "BabyBenchSelfTouchEnv",
+    "MIMoEnv",
+]
+
+_SETTLING = 100
+"""Physics steps without action before the first episode."""
+
+_START_ACTIONS = 10
+"""Physics steps with random actions at the start of an episode."""
+
+
+def subtree_geoms(core: Core, bodies: Iterable[int]) -> NDArray[np.int64]:
+    """Returns the ids of the geoms of bodies."""
+    return np.concatenate([np.array(get_geoms_for_body(core.tree, body)) for body in bodies]).astype(np.int64)
+
+
+class BabyBenchEnv(MIMoEnv):
+    """MIMo in a scene of BabyBench, without extrinsic reward.
+
+    Args:
+        model_path: The scene.
+        frame_skip: Physics steps of 5 ms for each step.
+        proprio_params, vision_params, vestibular_params, touch_params: Parameters of the senses; a configuration replaces them.
+        actuation_model: The class of the actuation model; a configuration replaces it.
+        width, height: Size of pictures for people, pixels.
+        config: The configuration of BabyBench.
+        training: Whether episodes are logged in ``save_dir`` and counted one by one.
+
+    Attributes:
+        behavior, save_dir, save_logs_every, training: As in the configuration.
+        steps: Number of steps in this episode.
+    """
+
+    def __init__(
+        self,
+        model_path: str | os.PathLike[str] = SCENE_NAME,
+        frame_skip: int = 1,
+        proprio_params: dict[str, Any] | None = None,
+        vision_params: dict[str, Any] | None = None,
+        vestibular_params: dict[str, Any] | None = None,
+        touch_params: dict[str, Any] | None = None,
+        actuation_model: type[ActuationModel] = SpringDamperModel,
+        width: int = DEFAULT_SIZE,
+        height: int = DEFAULT_SIZE,
+        **kwargs: Any,
+    ) -> None:
+        """Compiles the scene and lets MIMo settle."""
+        config: Mapping[str, Any] | None = kwargs.get("config")
+        senses: dict[str, Any] = {
+            "proprio_params": proprio_params or tables.proprioception_params(),
+            "vision_params": vision_params or tables.vision_params(64),
+            "vestibular_params": vestibular_params or tables.vestibular_params(),
+            "touch_params": touch_params or tables.touch_params(),
+        }
+        self.behavior = self.save_dir = self.save_logs_every = self.training = None
+        if config is not None:
+            _configure(senses, config)
+            chosen = config.get("actuation_model")
+            if chosen is not None:
+                if chosen not in MODELS:
+                    raise ValueError(
+                        f"configuration: actuation_model is {chosen!r}, expected one of {', '.join(MODELS)}"
+                    )
+                actuation_model = MODELS[chosen]
+            self.behavior, self.save_dir = config.get("behavior"), config.get("save_dir")
+            self.save_logs_every, self.training = config.get("save_logs_every"), kwargs.get("training")
+        super().__init__(
+            model_path,
+            frame_skip=frame_skip,
+            width=width,
+            height=height,
+            actuation_model=actuation_model,
+            goals_in_observation=False,
+            done_active=False,
+            render_mode=kwargs.get("render_mode"),
+            camera_id=kwargs.get("camera_id"),
+            camera_name=kwargs.get("camera_name"),
+            config=config,
+            **senses,
+        )
+        self._settle()
+        self.steps = 0
+        self._info_init()
+        self._info_hist: list[dict[str, Any]] = []
+
+    def _settle(self) -> None:
+        """Lets the scene come to rest; episodes start there."""
+        core = self._core
+        if core.place is None and isinstance(self.actuation_model, EngineActuation):
+            # the engine has done that
+            self.init_qpos, self.init_qvel = core.blueprint.init_qpos, core.blueprint.init_qvel
+            core.forward(self.init_qpos, self.init_qvel)
+        else:
+            self.set_state(self.init_qpos, self.init_qvel)
+            self._set_action(np.zeros(self.action_space.shape or ()))
+            for _ in range(_SETTLING):
+                self._single_mujoco_step()
+            self.init_qpos, self.init_qvel = core.engine.state_array("qpos"), core.engine.state_array("qvel")
+
+    def compute_reward(self, achieved_goal: Any = None, desired_goal: Any = None, info: Any = None, **_: Any) -> Any:
+        """Returns 0: the reward is the learner's own affair."""
+        return 0
+
+    def reset_model(self) -> Observation:
+        """Logs the last episode, puts the scene at the start of another, and returns the observation."""
+        if self.training:
+            self._info_reset()
+        self.set_state(self.init_qpos, self.init_qvel)
+        self._randomize_reset()
+        self.steps = 0
+        return self._get_obs()
+
+    def _randomize_reset(self) -> None:
+        """Changes the start of an episode; here nothing."""
+
+    def _start_actions(self) -> None:
+        """Takes random actions at the start of an episode."""
+        for _ in range(_START_ACTIONS):
+            self._set_action(self.action_space.sample())
+            self._single_mujoco_step()
+
+    def step(self, action: ArrayLike) -> tuple[Observation, Any, bool, bool, dict[str, Any]]:
+        """Applies an action, (n,), for ``frame_skip`` physics steps.
+
+        Returns:
+            Observation, 0, False, False (a wrapper counts steps), and information: what the behavior counts, and ``steps``,
+            one less than the steps done.
+        """
+        observation = self._advance(action)
+        self._obs_callback()
+        info = self._info()
+        info["steps"] = self.steps
+        terminated, truncated = self._is_done(None, self.goal, info)
+        reward = self.compute_reward()
+        self.steps += 1
+        return observation, reward, terminated, truncated, info
+
+    def _info_reset(self) -> None:
+        """Adds the last episode to the log, and starts counting anew."""
+        info = self._info()
+        info["steps"] = self.steps
+        self._info_hist.append(info)
+        if self.save_logs_every is not None and self.save_dir is not None and self.steps % self.save_logs_every == 0:
+            self._write_log(Path(self.save_dir) / "logs" / "training.pkl")
+        self._info_init()
+
+    def _write_log(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{path.name}.{os.getpid()}")
+        with part.open("wb") as file:
+            pickle.dump(self._info_hist, file, -1)
+        part.replace(path)
+
+    def _info(self) -> dict[str, Any]:
+        """Counts, and returns what the behavior reports."""
+        return {}
+
+    def _info_init(self) -> None:
+        """Starts counting anew."""
+
+    def is_success(self, achieved_goal: Any = None, desired_goal: Any = None) -> bool:
+        """Returns False."""
+        return False
+
+    def is_failure(self, achieved_goal: Any = None, desired_goal: Any = None) -> bool:
+        """Returns False."""
+        return False
+
+    def is_truncated(self) -> bool:
+        """Returns False."""
+        return False
+
+    def sample_goal(self) -> Any:
+        """Returns False."""
+        return False
+
+    def get_achieved_goal(self) -> Any:
+        """Returns False."""
+        return False
+
+
+def _configure(senses: dict[str, Any], config: Mapping[str, Any]) -> None:
+    """Changes the parameters of the senses to what a configuration says; keys without a value leave them."""
+    if config.get("vision_active") is False:
+        senses["vision_params"] = None
+    elif config.get("vision_resolution") is not None:
+        senses["vision_params"] = tables.vision_params(config["vision_resolution"])
+    if config.get("vestibular_active") is False:
+        senses["vestibular_params"] = None
+    scale = config.get("touch_scale")
+    if config.get("touch_active") is False or (config.get("touch_active") is not None and scale == 0):
+        senses["touch_params"] = None
+        return
+    touch = senses["touch_params"] = dict(senses["touch_params"])
+    if scale is not None:
+        on = {part for part in tables.PARTS if config.get(f"touch_{part}", part != "eyes") is True}
+        touch["scales"] = {b: s * scale for b, s in touch["scales"].items() if tables.PART_OF_BODY[b] in on}
+        if not touch["scales"]:
+            raise ValueError("configuration: touch_active, but every touch_* is off; set touch_active to False")
+    touch["touch_function"] = config.get("touch_function") or touch["touch_function"]
+    touch["response_function"] = config.get("touch_response") or touch["response_function"]
+
+
+class BabyBenchSelfTouchEnv(BabyBenchEnv):
+    """MIMo v1 learns to touch itself.
+
+    Attributes:
+        right_hand_geoms, left_hand_geoms: Ids of the geoms of the palms.
+        mimo_bodies, mimo_geoms: Ids of MIMo's bodies and geoms, from the hip outwards.
+    """
+
+    _engine_behavior = "self_touch"
+
+    def __init__(
+        self,
+        model_path: str | os.PathLike[str] = SCENE_NAME,
+        frame_skip: int = 1,
+        width: int = DEFAULT_SIZE,
+        height: int = DEFAULT_SIZE,
+        **kwargs: Any,
+    ) -> None:
+        """Compiles the scene and lets MIMo settle."""
+        self._counted = (0, 0)
+        super().__init__(model_path=model_path, frame_skip=frame_skip, width=width, height=height, **kwargs)
+        bodies, tree = self._core.names["body"], self._core.tree
+        self.right_hand_geoms = get_geoms_for_body(tree, bodies.index("right_hand"))
+        self.left_hand_geoms = get_geoms_for_body(tree, bodies.index("left_hand"))
+        self.mimo_bodies = get_child_bodies(tree, bodies.index("hip"))
+        self.mimo_geoms = subtree_geoms(self._core, self.mimo_bodies)
+
+    def _info(self) -> dict[str, Any]:
+        """Returns the geoms that the palms have touched; the lists are the same all through an episode."""
+        right, left = self._self_touch_right_hand, self._self_touch_left_hand
+        if self._core.computed:
+            parts = self._core.parts
+            parts.track()
+            new = parts.touches(*self._counted)
+            if new is not None and (new[0] or new[1]):
+                right.extend(new[0])
+                left.extend(new[1])
+                self._counted = (self._counted[0] + len(new[0]), self._counted[1] + len(new[1]))
+        return {"right_hand_touches": right, "left_hand_touches": left}
+
+    def _info_init(self) -> None:
+        """Starts counting anew."""
+        self._core.parts.clear_info()
+        self._counted = (0, 0)
+        self._self_touch_right_hand: list[int] = []
+        self._self_touch_left_hand: list[int] = []
+
+    def _randomize_reset(self) -> None:
+        """Takes random actions."""
+        self._start_actions()
+
+
+class BabyBenchHandRegardEnv(BabyBenchEnv):
+    """MIMo v2 learns to look at its hands."""
+
+    _engine_behavior = "hand_regard"
+    _PAIRS = ("right_eye_right_hand", "right_eye_left_hand", "left_eye_right_hand", "left_eye_left_hand")
+
+    def _info(self) -> dict[str, Any]:
+        """Returns for how many steps each eye has had each hand before it."""
+        parts = self._core.parts
+        if self._core.computed:
+            parts.track()
+        return dict(zip(self._PAIRS, parts.regards or (0, 0, 0, 0)))
+
+    def _info_init(self) -> None:
+        """Starts counting anew."""
+        self._core.parts.clear_info()
+
+    def _randomize_reset(self) -> None:
+        """Takes random actions."""
+        self._start_actions()

@@ -1,0 +1,52 @@
+"""The ids of the kit's environments, and their attributes through wrappers."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+import gymnasium as gym
+
+IDS = {
+    "BabyBench": "BabyBenchEnv",
+    "BabyBench-SelfTouch": "BabyBenchSelfTouchEnv",
+    "BabyBench-HandRegard": "BabyBenchHandRegardEnv",
+}
+"""Ids of the environments, with their classes."""
+
+_MIMO_ONLY = (
+    "{name} is one of MIMo's own experiments, which this library does not have: install MIMo (pip install -e MIMo), "
+    "which then serves mimoEnv. BabyBench's environments are BabyBench, BabyBench-SelfTouch and BabyBench-HandRegard"
+)
+
+
+def _forwarded(self: gym.Wrapper[Any, Any, Any, Any], name: str) -> Any:
+    """Returns an attribute of what is wrapped, if that is one of MIMo's environments in the end."""
+    env = self.__dict__.get("env")
+    if env is None or name.startswith("_") or not getattr(env.unwrapped, "_forwards_attributes", False):
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+    return getattr(env, name)
+
+
+def forward_attributes() -> None:
+    """Lets wrappers show the attributes of MIMo's environments, as all wrappers did before Gymnasium 1.
+
+    Scripts for the kit say ``env.touch`` and, in wrappers of their own, ``self.model``. Other environments are as before.
+    """
+    if not hasattr(gym.Wrapper, "__getattr__"):
+        gym.Wrapper.__getattr__ = _forwarded  # type: ignore[attr-defined]
+
+
+def register_kit() -> None:
+    """Registers the ids of the kit with Gymnasium."""
+    forward_attributes()
+    for name, cls in IDS.items():
+        # a seed alone does not decide how an episode starts: see MIMoEnv.reset
+        entry_point = f"babybench_core.mimo.env:{cls}"
+        gym.register(id=name, entry_point=entry_point, max_episode_steps=1000, nondeterministic=True)
+
+
+def missing_env(name: str) -> NoReturn:
+    """Tells where an experiment of MIMo's is to be had."""
+    if name.startswith("MIMo"):
+        raise ImportError(_MIMO_ONLY.format(name=name))
+    raise AttributeError(f"module 'mimoEnv.envs' has no attribute {name!r}")

@@ -1,0 +1,87 @@
+"""Environments that are trained and evaluated in a folder: ``babybench.utils.make_env``."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+
+from ..standin import CHOICE
+from .build_xml import build
+from .live import assets_folder
+from .scene import kit_assets
+
+ENVS = {"none": "BabyBench", "self_touch": "BabyBench-SelfTouch", "hand_regard": "BabyBench-HandRegard"}
+"""The id of each behavior's environment."""
+
+
+def make_dir(dir_name: str | os.PathLike[str]) -> None:
+    """Makes a folder, if it is not there."""
+    Path(dir_name).mkdir(parents=True, exist_ok=True)
+
+
+def make_save_dirs(save_dir: str | os.PathLike[str]) -> None:
+    """Makes the folder of a run, with ``logs`` and ``videos`` in it."""
+    for name in ("logs", "videos"):
+        make_dir(Path(save_dir) / name)
+
+
+def _mimo() -> str | None:
+    """Imports ``mimoEnv``, which registers the ids; returns where it is if it is MIMo's own."""
+    module = importlib.import_module("mimoEnv")
+    folder = Path(module.__file__ or "").parent
+    if (folder / "assets" / "babybench").is_dir():
+        warnings.warn(
+            f"MIMo is installed ({folder}) and runs these environments, with MuJoCo. To run them with this library's engine, "
+            f"uninstall MIMo (pip uninstall MIMo-BabyBench), or set {CHOICE}=babybench if it was installed with pip install -e",
+            stacklevel=4,
+        )
+        return str(folder / "assets")
+    return None
+
+
+def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> Any:
+    """Makes the environment of a configuration.
+
+    Training writes the scene to ``save_dir/scene.xml`` and logs to ``save_dir/logs``; evaluation takes the scene that is there.
+    The files that the scene includes are those of the first checkout of the kit on ``sys.path``, or else the library's own.
+
+    Args:
+        config: The configuration.
+        training: Whether this is training.
+
+    Raises:
+        AssertionError: There is no scene to evaluate.
+    """
+    if config is None:
+        raise TypeError("make_env needs a configuration: make_env(yaml.safe_load(open('config.yml')))")
+    behavior = config["behavior"]
+    if behavior not in ENVS:
+        raise ValueError(f"configuration: behavior is {behavior!r}, expected one of {', '.join(ENVS)}")
+    scene_path = Path(config["save_dir"]) / "scene.xml"
+    own_assets = _mimo()
+    if training is True:
+        make_save_dirs(config["save_dir"])
+        assets = own_assets or str(kit_assets() or assets_folder())
+        scene_path.write_text(build(config, path_to_assets=assets) + "\n", encoding="utf-8")
+    else:
+        if not scene_path.parent.exists():
+            raise AssertionError(f"{scene_path.parent}: there is no such folder; was this configuration trained?")
+        if not scene_path.exists():
+            raise AssertionError(f"{scene_path}: there is no such file; was this configuration trained?")
+    return gym.make(
+        ENVS[behavior],
+        model_path=str(scene_path.resolve()),
+        actuation_model=config.get("actuation_model", "spring_damper"),
+        max_episode_steps=config.get("max_episode_steps"),
+        frame_skip=config.get("frame_skip", 1),
+        width=config.get("render_size", 480),
+        height=config.get("render_size", 480),
+        config=config,
+        training=training,
+    )

@@ -1,0 +1,30 @@
+"""The names under which Gymnasium finds the environments."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+
+IDS = {
+    "babybench/SelfTouch-v0": "self_touch",
+    "babybench/HandRegard-v0": "hand_regard",
+    "babybench/Installation-v0": "test_installation",
+}
+"""Gymnasium's names of the example configurations."""
+
+
+def register() -> None:
+    """Tells Gymnasium the names, once."""
+    vectors = "vector_entry_point" in gymnasium.envs.registration.EnvSpec.__dataclass_fields__
+    for name, example in IDS.items():
+        if name in gymnasium.registry:
+            continue
+        more: dict[str, Any] = {"vector_entry_point": "babybench_core.vector:VectorEnv"} if vectors else {}
+        gymnasium.register(
+            name,
+            entry_point="babybench_core.env:Env",
+            kwargs={"config": example},
+            disable_env_checker=True,  # checked in the tests, not with every environment
+            **more,
+        )

@@ -1,0 +1,102 @@
+"""Many environments at once for Stable-Baselines3.
+
+Example:
+    .. code-block:: python
+
+        from stable_baselines3 import PPO
+
+        import babybench
+
+        envs = babybench.sb3.VecEnv("self_touch", num_envs=16)
+        PPO("MultiInputPolicy", envs, n_steps=256).learn(100_000)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+from stable_baselines3.common.vec_env import VecEnv as BaseVecEnv
+
+from babybench_core.vector import AutoresetMode, VectorEnv
+
+Indices = Union[None, int, Iterable[int]]
+
+
+class VecEnv(BaseVecEnv):
+    """A vector of environments behind Stable-Baselines3's interface, on all cores and in one process.
+
+    Ends of episodes are in ``infos[i]["terminal_observation"]``. Wrappers such as ``VecMonitor`` and ``VecNormalize`` go
+    around it; wrappers of single environments do not go in, so intrinsic rewards are those of a vector: see
+    ``examples/ppo_selftouch.py``.
+    """
+
+    def __init__(self, config: Any = "self_touch", num_envs: Optional[int] = None, **arguments: Any) -> None:
+        """Builds a vector; the arguments are those of :class:`babybench.VectorEnv` but ``autoreset_mode``."""
+        arguments["autoreset_mode"] = AutoresetMode.SAME_STEP
+        arguments.setdefault("copy", False)  # stable-baselines3 copies into its buffers
+        self.envs = VectorEnv(config, num_envs, **arguments)
+        self._actions: Optional[npt.NDArray[np.float32]] = None
+        super().__init__(self.envs.num_envs, self.envs.single_observation_space, self.envs.single_action_space)
+
+    def reset(self) -> dict[str, npt.NDArray[Any]]:
+        """Starts an episode in all environments, with the seeds of :meth:`seed` if there are any."""
+        seeds = list(self._seeds)
+        observations, _ = self.envs.reset(seed=seeds if any(seed is not None for seed in seeds) else None)
+        self._reset_seeds()
+        self._reset_options()
+        return observations
+
+    def step_async(self, actions: npt.NDArray[np.float32]) -> None:
+        """Keeps the actions for :meth:`step_wait`."""
+        self._actions = actions
+
+    def step_wait(
+        self,
+    ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
+        """Applies the actions and waits for all environments."""
+        if self._actions is None:
+            raise RuntimeError("step_wait without step_async: nothing is under way")
+        observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
+        self._actions = None
+        dones = terminated | truncated
+        return observations, rewards.astype(np.float32), dones, self._split(infos, dones)
+
+    def _split(self, infos: dict[str, Any], dones: npt.NDArray[np.bool_]) -> list[dict[str, Any]]:
+        """Returns the information of each environment."""
+        keys = [key for key in ("steps", "touches", "regards") if key in infos]
+        split: list[dict[str, Any]] = [{key: infos[key][env] for key in keys} for env in range(self.num_envs)]
+        for env in np.flatnonzero(dones):
+            split[env]["TimeLimit.truncated"] = True
+            split[env]["terminal_observation"] = infos["final_obs"][env]
+            split[env]["final_info"] = infos["final_info"][env]
+        for env in np.flatnonzero(infos.get("_failure", ())):
+            split[env]["failure"] = infos["failure"][env]
+        return split
+
+    def close(self) -> None:
+        """Ends the threads and frees the environments."""
+        self.envs.close()
+
+    def get_images(self) -> Sequence[Optional[npt.NDArray[np.uint8]]]:
+        """Draws the rooms."""
+        return self.envs.render() or [None] * self.num_envs
+
+    def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
+        """Returns an attribute of the vector, once for each environment."""
+        return [getattr(self.envs, attr_name) for _ in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
+        """Refuses: environments of a vector have no attributes of their own."""
+        raise AttributeError(f"cannot set {attr_name!r}: environments of a vector have no attributes of their own")
+
+    def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
+        """Calls a method of the vector (``info``, ``snapshot``, ``lock``, ...) with the number of each environment."""
+        method = getattr(self.envs, method_name)
+        return [method(env, *args, **kwargs) for env in self._get_indices(indices)]
+
+    def env_is_wrapped(self, wrapper_class: Any, indices: Indices = None) -> list[bool]:
+        """Returns False for each environment."""
+        return [False for _ in self._get_indices(indices)]

@@ -1,0 +1,66 @@
+"""Compiled scenes, which environments of one configuration share."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Optional, Union
+from weakref import WeakValueDictionary
+
+from babybench_core._native import Blueprint, config_examples, config_from_mapping, config_from_yaml
+
+ConfigLike = Union[Mapping[str, object], str, "os.PathLike[str]", None]
+"""A configuration: its keys, the name of an example, the path of a YAML file, or nothing for the defaults."""
+
+_shared: WeakValueDictionary[tuple[object, ...], Blueprint] = WeakValueDictionary()
+
+
+def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
+    """Returns all keys of a configuration with their values.
+
+    Args:
+        config: A mapping, the name of an example (``self_touch``, ``hand_regard``, ``test_installation``), the path of a
+            YAML file, or nothing for the defaults.
+        **keys: Keys that replace those of ``config``.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: An unknown key or a value that is not allowed; the text names it and what is allowed.
+        TypeError: A value of a type that no key has.
+    """
+    if config is None:
+        return config_from_mapping(keys)
+    if isinstance(config, Mapping):
+        return config_from_mapping({**config, **keys})
+    examples = config_examples()
+    found = examples.get(os.fspath(config)) or _read_file(Path(config), list(examples))
+    return config_from_mapping({**found, **keys}) if keys else found
+
+
+def _read_file(path: Path, examples: list[str]) -> dict[str, Any]:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        choices = ", ".join(examples)
+        text = f"there is no file {str(path)!r}, and no example of that name; examples are {choices}"
+        raise FileNotFoundError(text) from None
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: {error}; save the file as UTF-8") from None
+    return config_from_yaml(text, str(path))
+
+
+def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathLike[str]]] = None) -> Blueprint:
+    """Compiles a scene, or returns the one that environments of the same configuration use already.
+
+    Args:
+        config: A configuration; keys left out have their default.
+        assets: A folder with MJCF and textures laid out like the kit's, instead of those that come with the package.
+    """
+    full = config_from_mapping(config)
+    where = None if assets is None else os.path.realpath(assets)
+    key = (repr(full), where)
+    found = _shared.get(key)
+    if found is None:
+        found = _shared[key] = Blueprint(full, where)
+    return found

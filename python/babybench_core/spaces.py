@@ -1,0 +1,33 @@
+"""Spaces of Gymnasium from what the native part says."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from babybench_core import _native
+
+
+def observation_space(core: _native.Env | _native.VectorEnv) -> Any:
+    """Returns the space of the observations of one environment, a ``Dict`` (whose type differs from release to release).
+
+    What has no bounds is finite all the same, as a simulation that diverges is an error: bounds so far out that only infinite
+    numbers are excluded say so, and a sample can be drawn between them.
+    """
+    boxes: dict[str, spaces.Space[Any]] = {}
+    for key, shape, dtype, low, high in core.observation_spaces:
+        kind = np.dtype(dtype).type
+        if np.isinf(low) and np.isinf(high):
+            high = float(np.finfo(kind).max) / 4
+            low = -high
+        boxes[key] = spaces.Box(kind(low), kind(high), tuple(shape), kind)
+    return spaces.Dict(boxes)
+
+
+def action_space(bounds: tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]) -> Any:
+    """Returns the space of the actions of one environment, a ``Box``."""
+    low, high = bounds
+    return spaces.Box(low, high, low.shape, np.float32)

@@ -1,0 +1,40 @@
+"""The base of BabyBench's environments, and the default parameters of the senses."""
+
+import os
+
+from babybench_core.mimo import tables
+from babybench_core.mimo.actuation import MODELS as ACTUATION_MODELS
+from babybench_core.mimo.actuation import MuscleModel, PositionalModel, SpringDamperModel
+from babybench_core.mimo.env import DEFAULT_SIZE, SCENE_NAME, BabyBenchEnv, MIMoEnv
+from babybench_core.mimo.live import assets_folder
+from babybench_core.mimo.tables import PART_OF_BODY as BODY_GROUPS
+
+__all__ = [
+    "ACTUATION_MODELS",
+    "BODY_GROUPS",
+    "DEFAULT_SIZE",
+    "PROPRIOCEPTION_PARAMS",
+    "TOUCH_PARAMS",
+    "TOUCH_PARAMS_V2",
+    "VESTIBULAR_PARAMS",
+    "VISION_PARAMS",
+    "BabyBenchEnv",
+    "MIMoEnv",
+    "MuscleModel",
+    "PositionalModel",
+    "SpringDamperModel",
+]
+
+TOUCH_PARAMS = tables.touch_params()
+TOUCH_PARAMS_V2 = tables.touch_params(tables.SPACING_V2)
+VISION_PARAMS = tables.vision_params(64)
+VESTIBULAR_PARAMS = tables.vestibular_params()
+PROPRIOCEPTION_PARAMS = tables.proprioception_params()
+
+
+def __getattr__(name: str) -> str:
+    if name == "SCENE_DIRECTORY":
+        return str(assets_folder())
+    if name == "SCENE_XML":
+        return os.path.join(assets_folder(), SCENE_NAME)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,5 @@
+"""MIMo's proprioception."""
+
+from babybench_core.mimo.senses import Proprioception, SimpleProprioception
+
+__all__ = ["Proprioception", "SimpleProprioception"]

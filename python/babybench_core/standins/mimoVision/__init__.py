@@ -1,0 +1,1 @@
+"""MIMo's vision."""

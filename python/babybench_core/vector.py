@@ -1,0 +1,329 @@
+"""Many environments at once: Gymnasium's vector interface, and EnvPool's halves of a step."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from enum import Enum
+from typing import Any, Optional, Union
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+from gymnasium.vector.utils import batch_space
+
+from babybench_core import _native, scenes, spaces
+from babybench_core.records import LockReport
+
+try:
+    from gymnasium.vector import AutoresetMode
+except ImportError:  # Gymnasium before 1.1
+
+    class AutoresetMode(Enum):  # type: ignore[no-redef]
+        """When an environment whose episode has ended starts the next one."""
+
+        NEXT_STEP = "NextStep"
+        SAME_STEP = "SameStep"
+        DISABLED = "Disabled"
+
+
+__all__ = ["AutoresetMode", "VectorEnv"]
+
+Observations = dict[str, npt.NDArray[Any]]
+"""Observations of all environments, by name: a row for each."""
+
+Mask = npt.NDArray[np.bool_]
+
+_MODES = {
+    AutoresetMode.NEXT_STEP: "next_step",
+    AutoresetMode.SAME_STEP: "same_step",
+    AutoresetMode.DISABLED: "disabled",
+}
+# before 1.0 every vector of Gymnasium's resets in the same step
+_USUAL = AutoresetMode.NEXT_STEP if hasattr(gymnasium.vector, "AutoresetMode") else AutoresetMode.SAME_STEP
+
+
+class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ignore]
+    """Environments that are stepped together, on all cores.
+
+    What environment i returns has the same bits as if it were alone, whatever the number of threads. While threads
+    step, Python's lock is free.
+
+    Information comes as arrays over environments: ``steps`` (N), and by behavior ``touches`` (N, 2, geoms), which geoms
+    the right and the left palm have touched in this episode, 1 or 0; or ``regards`` (N, 4), how many steps the right hand,
+    then the left, was in the view of the right eye, then of the left. ``envs.info(i)`` has the lists and names of one
+    environment. An environment whose simulation diverges is truncated and starts anew; ``infos["failure"]`` says why.
+
+    Example:
+        >>> import babybench
+        >>> envs = babybench.VectorEnv("self_touch", num_envs=4)
+        >>> observations, infos = envs.reset(seed=0)  # environment i is seeded with i
+        >>> observations, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
+        >>> observations["touch"].shape
+        (4, 17169)
+        >>> envs.close()
+    """
+
+    single_action_space: gymnasium.spaces.Box  # type: ignore[assignment, unused-ignore]
+    single_observation_space: gymnasium.spaces.Dict  # type: ignore[assignment, unused-ignore]
+
+    def __init__(
+        self,
+        config: Union[scenes.ConfigLike, Sequence[scenes.ConfigLike]] = "self_touch",
+        num_envs: Optional[int] = None,
+        *,
+        autoreset_mode: Union[AutoresetMode, str, None] = None,
+        threads: int = 0,
+        copy: bool = True,
+        render_mode: Optional[str] = None,
+        camera: str = "corner",
+        assets: Optional[Union[str, os.PathLike[str]]] = None,
+        max_memory: Optional[int] = None,
+        **keys: object,
+    ) -> None:
+        """Builds a vector.
+
+        Args:
+            config: The configuration of all environments (an example, a mapping or the path of a YAML file), or a list with
+                one for each; scenes and behaviors may differ, spaces may not.
+            num_envs: How many; by default 1, or the length of the list.
+            autoreset_mode: When the next episode starts: Gymnasium's ``AutoresetMode`` or its value (``"NextStep"``,
+                ``"SameStep"``, ``"Disabled"``). By default as Gymnasium's own vectors do.
+            threads: How many threads step environments; 0 means one for each core.
+            copy: Whether observations, rewards and flags are fresh arrays. Otherwise they are read-only views of the
+                arrays that threads write into: nothing is copied, and the next step or reset changes them.
+            render_mode: ``None`` or ``"rgb_array"``.
+            camera: The camera of :meth:`render`.
+            assets: A folder with MJCF and textures laid out like the kit's.
+            max_memory: How much memory the environments may take, bytes; by default what the system has available.
+            **keys: Keys that replace those of every configuration.
+
+        Raises:
+            ValueError: What is not allowed; spaces that differ.
+            MemoryError: More environments than fit; the text says how many would.
+        """
+        configs = [config] if config is None or isinstance(config, (str, os.PathLike, Mapping)) else list(config)
+        if num_envs is None:
+            num_envs = len(configs)
+        if len(configs) not in (1, num_envs):
+            raise ValueError(f"num_envs is {num_envs}, but there are {len(configs)} configurations")
+        if num_envs < 1:
+            raise ValueError(f"num_envs is {num_envs}, expected at least 1")
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode is {render_mode!r}, expected None or rgb_array")
+        mode = _USUAL if autoreset_mode is None else AutoresetMode(autoreset_mode)
+        full = [scenes.read_config(one, **keys) for one in configs]
+        blueprints = [scenes.blueprint(one, assets) for one in full]
+        self.config: dict[str, Any] = full[0]
+        """The configuration of the first environment."""
+        if len(blueprints) < num_envs:
+            blueprints *= num_envs
+        self._core = _native.VectorEnv(blueprints, _MODES[mode], threads, max_memory)
+        self._blueprints = tuple(blueprints)  # as long as this lives, others may share them
+        self._copy = copy
+        self._camera = camera
+        self._everyone: Mask = np.ones(num_envs, np.bool_)
+        self.autoreset_mode = mode
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        low, high = self._core.action_bounds
+        self.single_action_space = spaces.action_space((low, high))
+        self.single_observation_space = spaces.observation_space(self._core)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": 200, "autoreset_mode": mode}
+        self.spec = None
+        self.closed = False
+        self._sent: Optional[npt.NDArray[np.float32]] = None
+
+    # --- Gymnasium ---
+
+    def reset(  # type: ignore[override, unused-ignore]
+        self,
+        *,
+        seed: Union[int, Sequence[Optional[int]], None] = None,
+        options: Optional[Mapping[str, Any]] = None,
+    ) -> tuple[Observations, dict[str, Any]]:
+        """Starts an episode in all environments.
+
+        Args:
+            seed: With one seed, environment i gets the seed plus i; a list has one, or none, for each.
+            options: ``reset_mask`` (N), bool: which environments to reset; the rows of the others stay.
+
+        Returns:
+            Observations and information.
+        """
+        mask = None if options is None else options.get("reset_mask")
+        if mask is not None:
+            mask = np.asarray(mask)
+            if mask.shape != (self.num_envs,) or mask.dtype != np.bool_:
+                expected = f"bool of shape ({self.num_envs},)"
+                raise ValueError(f"reset_mask is {mask.dtype} of shape {mask.shape}, expected {expected}")
+        observations = self._core.reset(seed, mask)
+        return self._given(observations), self._infos()
+
+    def step(self, actions: npt.ArrayLike) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
+        """Applies an action in each environment, (N, action size), and waits for all of them.
+
+        Returns:
+            Observations, rewards (0), terminated (False), truncated, information; a row for each environment. With
+            ``SAME_STEP``, the ends of episodes are in ``final_obs`` and ``final_info``.
+
+        Raises:
+            ValueError: Actions of another shape, or with numbers that are not finite; nothing has happened then.
+            RuntimeError: Environments that need a reset, or are in flight.
+        """
+        observations = self._core.step(actions)
+        rewards, terminated, truncated = self._core.flags
+        if self._copy:
+            rewards, terminated, truncated = rewards.copy(), terminated.copy(), truncated.copy()
+        return self._given(observations), rewards, terminated, truncated, self._infos()
+
+    def step_async(self, actions: npt.ArrayLike) -> None:
+        """Hands all environments an action and returns at once; :meth:`step_wait` waits for them."""
+        self._core.send(actions, np.arange(self.num_envs))
+
+    def step_wait(self, **_: object) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
+        """Waits for what :meth:`step_async` began; rows are in the order of the environments."""
+        received, rewards, terminated, truncated, ids = self._core.recv(self.num_envs)
+        order = np.argsort(ids)
+        infos = self._infos(ids)
+        rows = {key: rows[order] for key, rows in received.items()}
+        ordered = {key: rows[order] for key, rows in infos.items()}
+        return rows, rewards[order], terminated[order], truncated[order], ordered
+
+    def render(self) -> Optional[tuple[npt.NDArray[np.uint8], ...]]:
+        """Draws the rooms, (render_size, render_size, 3) each, with ``render_mode="rgb_array"``."""
+        if self.render_mode is None:
+            gymnasium.logger.warn('render() draws nothing: make the vector with render_mode="rgb_array"')
+            return None
+        size = self.config["render_size"]
+        return tuple(self._core.render(env, self._camera, size, size) for env in range(self.num_envs))
+
+    def close(self, **_: object) -> None:
+        """Ends the threads and frees the environments; what comes after raises ``RuntimeError``."""
+        self.closed = True
+        self._core.close()
+
+    def close_extras(self, **_: object) -> None:
+        """Does nothing: :meth:`close` does it all."""
+
+    def __del__(self) -> None:
+        """Does nothing: the native part ends its threads when it goes."""
+
+    # --- EnvPool ---
+
+    def send(
+        self, actions: npt.ArrayLike, ids: Optional[Union[Sequence[int], npt.NDArray[np.integer[Any]]]] = None
+    ) -> None:
+        """Hands environments an action each, (K, action size), and returns at once.
+
+        Args:
+            actions: The actions.
+            ids: Which environments; all of them by default.
+
+        Raises:
+            ValueError: Actions of another shape, or with numbers that are not finite; nothing is sent then.
+            IndexError: There is no such environment.
+            RuntimeError: An environment that is under way already, or needs a reset.
+        """
+        self._core.send(actions, np.arange(self.num_envs) if ids is None else ids)
+
+    def recv(
+        self, batch_size: Optional[int] = None
+    ) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
+        """Waits for the first environments that are ready, so that a slow one does not hold the others.
+
+        Args:
+            batch_size: For how many; by default for all that are under way.
+
+        Returns:
+            As :meth:`step`, a row for each of them; ``info["env_id"]`` says which they are.
+
+        Raises:
+            RuntimeError: Fewer are under way.
+        """
+        wanted = self._core.in_flight if batch_size is None else batch_size
+        received, rewards, terminated, truncated, ids = self._core.recv(wanted)
+        infos = self._infos(ids)
+        if self._copy:
+            rewards, terminated, truncated = rewards.copy(), terminated.copy(), truncated.copy()
+        return self._given(received), rewards, terminated, truncated, infos
+
+    # --- one environment ---
+
+    def info(self, env: int) -> dict[str, Any]:
+        """Returns the information of one environment as :class:`babybench.Env` gives it, with lists and names."""
+        return self._core.info(env)
+
+    def snapshot(self, env: int) -> bytes:
+        """Returns the present moment of one environment; it fits :meth:`restore`, and that of an :class:`Env` alone."""
+        return self._core.snapshot(env)
+
+    def restore(self, env: int, snapshot: bytes) -> None:
+        """Takes one environment back to a snapshot; its row follows with the next step."""
+        self._core.restore(env, snapshot)
+
+    def lock(self, env: int, target: Union[str, int], angle: float = 0.0) -> LockReport:
+        """Locks a joint, or all joints of a part, of one environment at an angle in rad."""
+        return self._core.lock(env, target, angle)
+
+    def unlock(self, env: int, target: Union[str, int]) -> LockReport:
+        """Unlocks a joint, or all joints of a part, of one environment."""
+        return self._core.unlock(env, target)
+
+    def array(self, env: int, name: str) -> npt.NDArray[Any]:
+        """Returns a copy of an array of the state of one environment by MuJoCo's name, such as ``xpos``."""
+        return self._core.state_array(env, name)
+
+    @property
+    def threads(self) -> int:
+        """Number of threads that step environments."""
+        return self._core.threads
+
+    # --- inside ---
+
+    def _given(self, observations: Observations) -> Observations:
+        """Returns what the caller gets: copies or views."""
+        if self._copy:
+            return {key: rows.copy() for key, rows in observations.items()}
+        return dict(observations)
+
+    def _infos(self, ids: Optional[npt.NDArray[np.int64]] = None) -> dict[str, Any]:
+        """Returns the information of the last rows in Gymnasium's layout: each array with a mask of who has it."""
+        infos: dict[str, Any] = self._core.infos()
+        rows = self.num_envs if ids is None else len(ids)
+        everyone = self._everyone if rows == self.num_envs else np.ones(rows, np.bool_)
+        infos.update({f"_{key}": everyone for key in list(infos)})
+        if ids is not None:
+            infos["env_id"] = ids
+        row_of = (lambda env: env) if ids is None else {int(env): row for row, env in enumerate(ids)}.__getitem__
+        failures = [(row_of(env), text) for env, text in self._core.failures()]
+        if failures:
+            infos.update(_sparse("failure", rows, failures))
+        if self.autoreset_mode is AutoresetMode.SAME_STEP:
+            self._add_ends(infos, rows, row_of)
+        return infos
+
+    def _add_ends(self, infos: dict[str, Any], rows: int, row_of: Any) -> None:
+        ends = self._core.final_observations()
+        if not ends:
+            return
+        observations = [(row_of(env), observation) for env, observation in ends]
+        details = [(row_of(env), self._core.final_info(env)) for env, _ in ends]
+        for key in ("final_obs", "final_observation"):
+            infos.update(_sparse(key, rows, observations))
+        infos.update(_sparse("final_info", rows, details))
+
+    def __repr__(self) -> str:
+        return f"<babybench.VectorEnv of {self.num_envs}>"
+
+
+def _sparse(key: str, rows: int, entries: Sequence[tuple[int, object]]) -> dict[str, Any]:
+    """Returns an array of objects that some rows have, and the mask of those rows."""
+    values = np.full(rows, None, dtype=object)
+    mask = np.zeros(rows, np.bool_)
+    for row, value in entries:
+        values[row] = value
+        mask[row] = True
+    return {key: values, f"_{key}": mask}

@@ -1,0 +1,143 @@
+//! Numbers of the library as arrays of NumPy, and back.
+
+use babybench::model::{BiasType, GeomType, JointType, SensorType};
+use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::intern;
+use pyo3::prelude::*;
+
+/// Two vectors.
+pub type Pair<'py, T> = (Bound<'py, PyArray1<T>>, Bound<'py, PyArray1<T>>);
+
+/// Something that is an array in Python.
+pub trait ToArray {
+    /// Returns a fresh array.
+    fn to_array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
+}
+
+/// Something that is a number in Python.
+trait Number: Copy {
+    type Out: Element + Copy;
+    fn number(self) -> Self::Out;
+}
+
+macro_rules! numbers {
+    ($($type:ty => $out:ty, |$value:ident| $number:expr;)*) => {$(
+        impl Number for $type {
+            type Out = $out;
+            fn number(self) -> $out {
+                let $value = self;
+                $number
+            }
+        }
+    )*};
+}
+
+numbers! {
+    f64 => f64, |v| v;
+    bool => bool, |v| v;
+    i32 => i32, |v| v;
+    u32 => i32, |v| v as i32;
+    usize => i32, |v| v as i32;
+    Option<usize> => i32, |v| v.map_or(-1, |v| v as i32);
+    // MuJoCo's numbers
+    GeomType => i32, |v| match v {
+        GeomType::Plane => 0,
+        GeomType::Sphere => 2,
+        GeomType::Capsule => 3,
+        GeomType::Ellipsoid => 4,
+        GeomType::Cylinder => 5,
+        GeomType::Box => 6,
+    };
+    JointType => i32, |v| match v {
+        JointType::Free => 0,
+        JointType::Slide => 2,
+        JointType::Hinge => 3,
+    };
+    BiasType => i32, |v| match v {
+        BiasType::None => 0,
+        BiasType::Affine => 1,
+    };
+    SensorType => i32, |v| match v {
+        SensorType::Accelerometer => 1,
+        SensorType::Gyro => 3,
+        SensorType::Torque => 5,
+    };
+}
+
+impl<T: Number> ToArray for [T] {
+    fn to_array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(PyArray1::from_iter(py, self.iter().map(|v| v.number())).into_any())
+    }
+}
+
+impl<T: Number, const N: usize> ToArray for [[T; N]] {
+    fn to_array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let flat = PyArray1::from_iter(py, self.iter().flatten().map(|v| v.number()));
+        Ok(flat.reshape([self.len(), N])?.into_any())
+    }
+}
+
+impl ToArray for [Vec<f64>] {
+    /// Returns rows of the length of the longest, filled up with zeros.
+    fn to_array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let width = self.iter().map(Vec::len).max().unwrap_or(0);
+        let padded: Vec<Vec<f64>> = self
+            .iter()
+            .map(|row| {
+                let mut row = row.clone();
+                row.resize(width, 0.0);
+                row
+            })
+            .collect();
+        Ok(PyArray2::from_vec2(py, &padded)
+            .map_err(|e| PyValueError::new_err(e.to_string()))?
+            .into_any())
+    }
+}
+
+/// Returns a fresh array of a shape; the number of values must fit.
+pub fn shaped<'py, T: Element + Copy>(py: Python<'py>, values: &[T], shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
+    Ok(PyArray1::from_slice(py, values).reshape(shape)?.into_any())
+}
+
+/// Reads numbers of a shape from an array, or from anything that NumPy can turn into one.
+pub fn read<T: Element + Copy>(
+    what: &str,
+    values: &Bound<'_, PyAny>,
+    shape: &[usize],
+    out: &mut Vec<T>,
+) -> PyResult<()> {
+    let py = values.py();
+    let array = match values.cast::<PyArrayDyn<T>>() {
+        Ok(array) => array.clone(),
+        Err(_) => {
+            let asarray = py.import(intern!(py, "numpy"))?.getattr(intern!(py, "asarray"))?;
+            asarray.call1((values, T::get_dtype(py)))?.cast_into()?
+        }
+    };
+    if array.shape() != shape {
+        let (found, needed) = (tuple(array.shape()), tuple(shape));
+        return Err(PyValueError::new_err(format!(
+            "{what} has the shape {found}, but {needed} is needed"
+        )));
+    }
+    let array = array.try_readonly()?;
+    out.clear();
+    match array.as_slice() {
+        Ok(values) => out.extend_from_slice(values),
+        Err(_) => out.extend(array.as_array().iter().copied()),
+    }
+    Ok(())
+}
+
+/// Writes a shape as Python does.
+fn tuple(shape: &[usize]) -> String {
+    match shape {
+        [n] => format!("({n},)"),
+        _ => format!(
+            "({})",
+            shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+        ),
+    }
+}

@@ -1,0 +1,42 @@
+//! The native part of the Python package `babybench`: environments, vectors of environments, and the numbers in them.
+//!
+//! What Python sees is documented in `babybench_core/_native.pyi`.
+#![deny(missing_docs, unsafe_code)]
+
+mod arrays;
+mod config;
+mod env;
+mod errors;
+mod model;
+mod observation;
+mod parts;
+mod scene;
+mod state;
+mod touch;
+mod vector;
+mod video;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::config::{config_examples, config_from_mapping, config_from_yaml, config_keys};
+    #[pymodule_export]
+    use super::env::{Blueprint, Env};
+    #[pymodule_export]
+    use super::parts::Parts;
+    #[pymodule_export]
+    use super::scene::{embedded_files, model_extras, scene_file};
+    #[pymodule_export]
+    use super::vector::VectorEnv;
+    #[pymodule_export]
+    use super::video::write_video;
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

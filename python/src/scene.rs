@@ -1,0 +1,111 @@
+//! Scenes as documents, and what the model of a scene keeps in another form than MuJoCo.
+
+use std::path::PathBuf;
+
+use babybench::assets::{AssetSource, DirAssets};
+use babybench::mimo::embedded;
+use babybench::model::EqualityKind;
+use babybench::runs::{SceneFile, SceneFileError, complete_scene, complete_scene_from};
+use numpy::PyArray1;
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::arrays::ToArray;
+use crate::config::config_of;
+use crate::env::Blueprint;
+use crate::errors::{IntoException, detached};
+
+impl IntoException for SceneFileError {
+    fn into_exception(self) -> PyErr {
+        let text = self.to_string();
+        match self {
+            Self::Io { .. } => PyOSError::new_err(text),
+            _ => PyValueError::new_err(text),
+        }
+    }
+}
+
+/// Returns the complete document of a configuration's scene, and its images by name.
+#[pyfunction]
+#[pyo3(signature = (config, assets=None))]
+pub fn scene_file<'py>(
+    py: Python<'py>,
+    config: &Bound<'py, PyAny>,
+    assets: Option<PathBuf>,
+) -> PyResult<(String, Bound<'py, PyDict>)> {
+    let config = config_of(py, config)?;
+    let assets = assets.map(DirAssets::new).transpose();
+    let assets = assets.map_err(IntoException::into_exception)?;
+    let SceneFile { xml, images } = detached(py, || match &assets {
+        Some(assets) => complete_scene_from(&config, assets),
+        None => complete_scene(&config),
+    })?;
+    let files = PyDict::new(py);
+    for (name, bytes) in &images {
+        files.set_item(name, PyBytes::new(py, bytes))?;
+    }
+    Ok((xml, files))
+}
+
+/// Returns the files that are embedded in the library, by path.
+#[pyfunction]
+pub fn embedded_files(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let (files, assets) = (PyDict::new(py), embedded());
+    for &(name, _) in assets.0 {
+        let bytes = assets.read(name).map_err(IntoException::into_exception)?;
+        files.set_item(name, PyBytes::new(py, &bytes))?;
+    }
+    Ok(files)
+}
+
+/// Returns names of textures and materials, the number of lights, and MuJoCo's arrays of equality constraints.
+#[pyfunction]
+pub fn model_extras<'py>(py: Python<'py>, blueprint: &Bound<'py, Blueprint>) -> PyResult<Bound<'py, PyDict>> {
+    let (extras, model) = (PyDict::new(py), blueprint.get().inner.model());
+    extras.set_item(
+        "texture",
+        model.textures.iter().map(|t| &t.name[..]).collect::<Vec<_>>(),
+    )?;
+    extras.set_item(
+        "material",
+        model.materials.iter().map(|m| &m.name[..]).collect::<Vec<_>>(),
+    )?;
+    extras.set_item("nlight", model.lights.len())?;
+    let mut rows: Vec<[f64; 11]> = Vec::with_capacity(model.neq());
+    let mut ids: Vec<[i32; 3]> = Vec::with_capacity(model.neq());
+    for kind in &model.eq_kind {
+        let mut row = [0.0; 11];
+        ids.push(match *kind {
+            EqualityKind::Weld {
+                body1,
+                body2,
+                anchor,
+                relpos,
+                relquat,
+                torquescale,
+            } => {
+                row[..3].copy_from_slice(&anchor);
+                row[3..6].copy_from_slice(&relpos);
+                row[6..10].copy_from_slice(&relquat);
+                row[10] = torquescale;
+                [1, body1 as i32, body2 as i32]
+            }
+            EqualityKind::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                row[..5].copy_from_slice(&polycoef);
+                row[10] = 1.0;
+                [2, joint1 as i32, joint2.map_or(-1, |j| j as i32)]
+            }
+        });
+        rows.push(row);
+    }
+    extras.set_item("eq_data", rows[..].to_array(py)?)?;
+    for (k, name) in ["eq_type", "eq_obj1id", "eq_obj2id"].into_iter().enumerate() {
+        extras.set_item(name, PyArray1::from_iter(py, ids.iter().map(|id| id[k])))?;
+    }
+    Ok(extras)
+}

@@ -1,0 +1,35 @@
+"""What tests of several files share."""
+
+from __future__ import annotations
+
+import pytest
+
+import babybench
+
+SMALL: dict[str, object] = {
+    "behavior": "self_touch",
+    "scene": "crib",
+    "vision_active": False,
+    "touch_scale": 2.0,
+    "max_episode_steps": 6,
+}
+"""A configuration that is quick to build and to step."""
+
+SEEING: dict[str, object] = {
+    "behavior": "hand_regard",
+    "scene": "cubes",
+    "vision_resolution": 16,
+    "touch_active": False,
+    "render_size": 48,
+    "max_episode_steps": 4,
+}
+"""A configuration with eyes."""
+
+
+@pytest.fixture
+def env() -> babybench.Env:
+    """An environment that has been reset."""
+    env = babybench.Env(SMALL)
+    env.action_space.seed(1)
+    env.reset(seed=0)
+    return env

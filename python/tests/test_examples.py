@@ -1,0 +1,109 @@
+"""Examples run, documentation tells the truth, types are those of the code."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent.parent
+EXAMPLES = HERE / "examples"
+
+
+def run(example, *arguments, cwd, **variables):
+    """Runs an example; returns what it prints."""
+    command = [sys.executable, str(EXAMPLES / example), *map(str, arguments)]
+    env = {**os.environ, **variables}
+    done = subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_quick_start(tmp_path):
+    pytest.importorskip("matplotlib", reason="the picture needs matplotlib")
+    said = run("quick_start.py", "--steps", 50, cwd=tmp_path)
+    assert "after 50 random steps" in said
+    assert "touch         17169 numbers (float32)" in said
+    assert (tmp_path / "mimo.png").stat().st_size > 10_000
+
+
+def test_plot_touch(tmp_path):
+    pytest.importorskip("matplotlib", reason="the picture needs matplotlib")
+    said = run("plot_touch.py", "--steps", 30, cwd=tmp_path)
+    assert re.search(r"shows \d+ sensors that feel something", said)
+    assert (tmp_path / "touch.png").stat().st_size > 30_000
+
+
+def test_ray_on_two_workers(tmp_path):
+    pytest.importorskip("ray", reason="Ray is not installed")
+    # warnings of Ray's own about this machine are not ours
+    arguments = ("--workers", 2, "--iterations", 2, "--directions", 2, "--steps", 20)
+    said = run("ray_vectors.py", *arguments, cwd=tmp_path, RAY_DEDUP_LOGS="0")
+    assert re.findall(r"^ +(\d+) steps", said, re.MULTILINE) == ["160", "320"]
+
+
+def test_ppo_in_one_file(tmp_path):
+    pytest.importorskip(
+        "torch", reason="PyTorch is not installed: Linux wheels of the registry come with gigabytes of CUDA"
+    )
+    arguments = ("--envs", 4, "--rollout", 32, "--total-steps", 256)
+    said = run("ppo_single_file.py", *arguments, cwd=tmp_path)
+    assert "256 steps" in said
+
+
+def test_ppo_of_stable_baselines3(tmp_path):
+    pytest.importorskip("stable_baselines3", reason="Stable-Baselines3 is not installed: it needs PyTorch")
+    said = run("ppo_selftouch.py", "--envs", 4, "--rollout", 32, "--steps", 256, cwd=tmp_path)
+    assert "steps a second, with learning" in said
+    assert (tmp_path / "ppo_selftouch.zip").exists()
+
+
+def test_recordings_are_compared(tmp_path):
+    config = tmp_path / "config.yml"
+    config.write_text("behavior: self_touch\nscene: crib\nvision_active: False\ntouch_function: force_vector\n"
+                      "touch_fingers: True\nsave_dir: results\n", "utf-8")  # fmt: skip
+    import yaml
+
+    import babybench
+
+    whole = {**babybench.config_examples()["self_touch"], "compat": "reference", "save_dir": str(tmp_path)}
+    config.write_text(yaml.safe_dump(whole), "utf-8")
+    for out in ("a.npz", "b.npz"):
+        run("compare_with_kit.py", "record", out, "--config", config, "--steps", 12, cwd=tmp_path)
+    said = run("compare_with_kit.py", "compare", "a.npz", "b.npz", cwd=tmp_path)
+    assert "information equal: True" in said
+    assert set(re.findall(r"\d\.\d\de[+-]\d\d", said)) == {"0.00e+00"}
+
+
+@pytest.mark.parametrize(
+    "module", ["babybench", "babybench_core.env", "babybench_core.senses", "babybench_core.vector"]
+)
+def test_the_documentation_tells_the_truth(module):
+    result = doctest.testmod(importlib.import_module(module), optionflags=doctest.ELLIPSIS)
+    assert result.attempted > 0
+    assert result.failed == 0
+
+
+def test_the_programs_of_the_readme_run(tmp_path):
+    text = (HERE / "README.md").read_text("utf-8")
+    programs = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert programs
+    for program in programs:
+        if "stable_baselines3" in program and importlib.util.find_spec("stable_baselines3") is None:
+            continue
+        command = [sys.executable, "-c", program]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, program + done.stderr
+
+
+def test_the_stubs_are_those_of_the_native_part():
+    pytest.importorskip("mypy", reason="mypy is not installed")
+    command = [sys.executable, "-m", "mypy.stubtest", "babybench_core._native"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=HERE / "tests")
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,0 +1,73 @@
+"""Stable-Baselines3 takes the environments as they are. It needs PyTorch: see docs/learners.md."""
+
+from __future__ import annotations
+
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from conftest import SEEING, SMALL
+
+import babybench
+
+pytest.importorskip("stable_baselines3", reason="Stable-Baselines3 is not installed: it needs PyTorch")
+
+
+@pytest.mark.parametrize("name", ["SelfTouch", "HandRegard", "Installation"])
+def test_the_checker_finds_nothing(name):
+    from stable_baselines3.common.env_checker import check_env
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(gymnasium.make(f"babybench/{name}-v0", render_size=48).unwrapped)
+
+
+def test_a_vector_is_many_environments():
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    ours = babybench.sb3.VecEnv(SMALL, 2)
+    theirs = DummyVecEnv([lambda: babybench.Env(SMALL)] * 2)
+    ours.seed(3)
+    theirs.seed(3)
+    a, b = ours.reset(), theirs.reset()
+    rng = np.random.default_rng(0)
+    for step in range(8):
+        for key in b:
+            np.testing.assert_array_equal(a[key], b[key])
+        actions = rng.uniform(-1, 1, (2, *ours.action_space.shape)).astype(np.float32)
+        (a, *flags_a, infos_a), (b, *flags_b, infos_b) = ours.step(actions), theirs.step(actions)
+        for x, y in zip(flags_a, flags_b):
+            np.testing.assert_array_equal(x, y)
+        if step == 5:
+            assert flags_a[1].all()
+            for one, other in zip(infos_a, infos_b):
+                assert one["TimeLimit.truncated"] == other["TimeLimit.truncated"] is True
+                for key, value in other["terminal_observation"].items():
+                    np.testing.assert_array_equal(one["terminal_observation"][key], value)
+            # the starts of unseeded episodes come from generators that go on
+            break
+
+
+def test_wrappers_of_vectors_go_around():
+    from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
+
+    envs = VecNormalize(VecMonitor(babybench.sb3.VecEnv(SMALL, 2)), norm_obs_keys=["observation"])
+    envs.reset()
+    for _ in range(6):
+        *_, infos = envs.step(np.zeros((2, *envs.action_space.shape), np.float32))
+    assert infos[0]["episode"]["l"] == 6
+    assert len(envs.env_method("snapshot")) == 2
+    with pytest.raises(AttributeError, match="no attributes of their own"):
+        envs.set_attr("x", 1)
+    with pytest.raises(RuntimeError, match="nothing is under way"):
+        envs.unwrapped.step_wait()
+
+
+@pytest.mark.parametrize("config", [SMALL, {**SEEING, "vision_resolution": 36}], ids=["self_touch", "hand_regard"])
+def test_a_policy_learns(config):
+    from stable_baselines3 import PPO
+
+    envs = babybench.sb3.VecEnv(config, 2)
+    model = PPO("MultiInputPolicy", envs, n_steps=8, batch_size=8, n_epochs=1, device="cpu")
+    assert model.learn(32).num_timesteps == 32

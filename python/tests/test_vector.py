@@ -1,0 +1,204 @@
+"""Vectors: the same bits as alone, modes of reset, halves of a step, copies and views."""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+import pytest
+from conftest import SEEING, SMALL
+
+import babybench
+from babybench.vector import AutoresetMode
+
+MODES = list(AutoresetMode)
+VERSION = tuple(int(part) for part in gymnasium.__version__.split(".")[:2])
+
+
+def actions_of(envs, steps, seed=0):
+    rng = np.random.default_rng(seed)
+    low, high = envs.action_space.low, envs.action_space.high
+    return rng.uniform(low, high, (steps, *low.shape)).astype(np.float32)
+
+
+@pytest.mark.parametrize("config", [SMALL, SEEING], ids=["self_touch", "hand_regard"])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_each_environment_goes_as_if_it_were_alone(config, threads):
+    envs = babybench.VectorEnv(config, 3, threads=threads)
+    alone = [babybench.Env(config) for _ in range(3)]
+    observations, infos = envs.reset(seed=5)
+    for i, env in enumerate(alone):
+        first, _ = env.reset(seed=5 + i)
+        for key in first:
+            np.testing.assert_array_equal(observations[key][i], first[key], strict=True)
+    for actions in actions_of(envs, 3):
+        observations, rewards, terminated, truncated, infos = envs.step(actions)
+        assert envs.observation_space.contains(observations)
+        assert (rewards == 0).all()
+        assert not terminated.any()
+        for i, env in enumerate(alone):
+            one, _, _, cut, info = env.step(actions[i])
+            for key in one:
+                np.testing.assert_array_equal(observations[key][i], one[key], err_msg=key)
+            assert truncated[i] == cut
+            assert infos["steps"][i] == info["steps"]
+            assert envs.info(i) == info
+            if "touches" in infos:
+                right = sorted(info["right_hand_touches"])
+                assert np.flatnonzero(infos["touches"][i, 0]).tolist() == right
+    envs.close()
+
+
+@pytest.mark.parametrize("mode", MODES, ids=[mode.name for mode in MODES])
+def test_episodes_follow_each_other_as_the_mode_says(mode):
+    envs = babybench.VectorEnv(SMALL, 2, autoreset_mode=mode)
+    envs.reset(seed=0)
+    script = actions_of(envs, 9)
+    seen = [envs.step(actions) for actions in script[:6]]
+    assert seen[-1][3].tolist() == [True, True]
+    last = seen[-1]
+    if mode is AutoresetMode.SAME_STEP:
+        assert last[4]["_final_obs"].all()
+        assert last[4]["_final_info"].all()
+        alone = babybench.Env(SMALL)
+        alone.reset(seed=1)
+        ends = [alone.step(actions[1]) for actions in script[:6]][-1]
+        for key, value in last[4]["final_obs"][1].items():
+            np.testing.assert_array_equal(value, ends[0][key], strict=True)
+        assert last[4]["final_info"][1] == ends[4]
+        assert last[4]["steps"].tolist() == [0, 0]
+        assert "final_obs" not in envs.step(script[6])[4]
+    elif mode is AutoresetMode.NEXT_STEP:
+        _, _, _, truncated, infos = envs.step(script[6])
+        assert (truncated.tolist(), infos["steps"].tolist()) == ([False, False], [0, 0])
+        assert envs.step(script[7])[4]["steps"].tolist() == [1, 1]
+    else:
+        assert envs.step(script[6])[4]["steps"].tolist() == [7, 7]
+        observations, infos = envs.reset(options={"reset_mask": np.array([False, True])})
+        assert infos["steps"].tolist() == [7, 0]
+        with pytest.raises(ValueError, match="reset_mask"):
+            envs.reset(options={"reset_mask": np.array([1, 0])})
+
+
+def test_modes_have_names():
+    for name in ("NextStep", "SameStep", "Disabled"):
+        envs = babybench.VectorEnv(SMALL, 1, autoreset_mode=name)
+        assert envs.metadata["autoreset_mode"].value == name
+    with pytest.raises(ValueError, match="Never"):
+        babybench.VectorEnv(SMALL, 1, autoreset_mode="Never")
+
+
+def test_copies_are_kept_and_views_change():
+    copies, views = babybench.VectorEnv(SMALL, 2), babybench.VectorEnv(SMALL, 2, copy=False)
+    first, _ = copies.reset(seed=0)
+    seen, _ = views.reset(seed=0)
+    kept = seen["observation"].copy()
+    for actions in actions_of(copies, 5):
+        a, *flags_a, _ = copies.step(actions)
+        b, *flags_b, _ = views.step(actions)
+        for key in a:
+            np.testing.assert_array_equal(a[key], b[key], strict=True)
+            assert b[key] is seen[key]
+            assert not np.shares_memory(a[key], first[key])
+        for x, y in zip(flags_a, flags_b):
+            np.testing.assert_array_equal(x, y)
+    assert not np.array_equal(kept, seen["observation"])
+    with pytest.raises(ValueError, match="read-only"):
+        seen["touch"][0, 0] = 1
+    # what was given outlives the vector
+    views.close()
+    del views
+    assert np.isfinite(seen["touch"]).all()
+
+
+def test_halves_of_a_step_return_whoever_is_ready():
+    envs = babybench.VectorEnv(SMALL, 4)
+    whole = babybench.VectorEnv(SMALL, 4)
+    envs.reset(seed=0)
+    whole.reset(seed=0)
+    script = actions_of(envs, 3)
+    expected = [whole.step(actions) for actions in script]
+    counts = np.zeros(4, int)
+    envs.send(script[0])
+    received = 0
+    while received < 12:
+        observations, _, _, truncated, infos = envs.recv(2)
+        ids = infos["env_id"]
+        for row, i in enumerate(ids):
+            np.testing.assert_array_equal(observations["touch"][row], expected[counts[i]][0]["touch"][i])
+            assert infos["steps"][row] == counts[i] + 1
+        counts[ids] += 1
+        received += 2
+        going = ids[counts[ids] < 3]
+        if len(going):
+            envs.send(np.stack([script[counts[i], i] for i in going]), going)
+    assert counts.tolist() == [3] * 4
+    with pytest.raises(RuntimeError, match="call send first"):
+        envs.recv(1)
+    with pytest.raises(RuntimeError, match="call send first"):
+        envs.recv(5)
+
+
+def test_step_async_and_step_wait_are_a_step():
+    one, other = babybench.VectorEnv(SMALL, 3), babybench.VectorEnv(SMALL, 3)
+    one.reset(seed=0)
+    other.reset(seed=0)
+    for actions in actions_of(one, 8):
+        one.step_async(actions)
+        a, b = one.step_wait(), other.step(actions)
+        for key in b[0]:
+            np.testing.assert_array_equal(a[0][key], b[0][key])
+        for x, y in zip(a[1:4], b[1:4]):
+            np.testing.assert_array_equal(x, y)
+        np.testing.assert_array_equal(a[4]["steps"], b[4]["steps"])
+
+
+def test_environments_of_different_scenes_share_arrays():
+    envs = babybench.VectorEnv([{**SMALL, "scene": scene} for scene in ("crib", "base")])
+    assert envs.num_envs == 2
+    assert envs.reset(seed=0)[0]["touch"].shape[0] == 2
+    with pytest.raises(ValueError, match="differs from environment 0"):
+        babybench.VectorEnv([SMALL, {**SMALL, "touch_scale": 3.0}])
+    with pytest.raises(ValueError, match="2 configurations"):
+        babybench.VectorEnv([SMALL, SMALL], 3)
+
+
+def test_snapshots_fit_vectors_and_single_environments():
+    envs, env = babybench.VectorEnv(SMALL, 2), babybench.Env(SMALL)
+    envs.reset(seed=0)
+    script = actions_of(envs, 4)
+    envs.step(script[0])
+    env.restore(envs.snapshot(1))
+    envs.restore(0, envs.snapshot(1))
+    observations, *_ = envs.step(np.stack([script[1, 1]] * 2))
+    one, *_ = env.step(script[1, 1])
+    for i in (0, 1):
+        np.testing.assert_array_equal(observations["touch"][i], one["touch"])
+    assert envs.lock(0, "head")["changed"]
+    assert envs.array(0, "qpos").shape == env.array("qpos").shape
+
+
+def test_pictures_of_all():
+    envs = babybench.VectorEnv({**SMALL, "render_size": 24}, 2, render_mode="rgb_array")
+    envs.reset(seed=0)
+    pictures = envs.render()
+    assert [picture.shape for picture in pictures] == [(24, 24, 3)] * 2
+
+
+@pytest.mark.skipif(VERSION < (1, 0), reason="Gymnasium before 1.0 makes no vectors of their own class")
+def test_gymnasium_makes_vectors():
+    envs = gymnasium.make_vec("babybench/SelfTouch-v0", num_envs=2, touch_scale=2.0)
+    assert isinstance(envs.unwrapped, babybench.VectorEnv)
+    observations, _ = envs.reset(seed=0)
+    assert observations["touch"].shape[0] == 2
+    envs.close()
+
+
+@pytest.mark.skipif(VERSION < (1, 0), reason="wrappers of vectors came with Gymnasium 1.0")
+def test_wrappers_of_vectors_go_around():
+    from gymnasium.wrappers import vector
+
+    envs = vector.RecordEpisodeStatistics(babybench.VectorEnv(SMALL, 2))
+    envs.reset(seed=0)
+    script = actions_of(envs, 6)
+    infos = [envs.step(actions)[4] for actions in script][-1]
+    assert infos["episode"]["l"].tolist() == [6, 6]

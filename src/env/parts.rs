@@ -1,0 +1,86 @@
+//! The parts of a reset and of a step, one by one, for environments that put them together in another way.
+
+use super::check_vector;
+use crate::env::{Env, EnvError};
+
+impl Env {
+    /// Forgets the past as MuJoCo's `mj_resetData` does: time and controls are 0, positions are `qpos0`, velocities are 0 and the
+    /// actuators rest. Nothing is computed there: [`Env::forward`] does that. Counters and information stay.
+    ///
+    /// Under `compat: reference` a reset of the environment is this, [`Env::forward`] at the settled state, and the start actions.
+    pub fn reset_data(&mut self) {
+        let model = self.blueprint.model();
+        self.physics.reset(model);
+        self.actuation.reset(model, &mut self.physics.state);
+    }
+
+    /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the
+    /// solver stay.
+    ///
+    /// # Errors
+    /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
+    pub fn forward(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        self.set_position(qpos, qvel)?;
+        let forward = self.physics.engine.forward(&mut self.physics.state);
+        self.episode.ready = forward.is_ok();
+        Ok(forward?)
+    }
+
+    /// Sets positions (nq) and velocities (nv) for the next physics step, without computing anything there.
+    ///
+    /// # Errors
+    /// Wrong lengths or numbers that are not finite, which change nothing.
+    pub fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        let model = self.blueprint.model();
+        check_vector("qpos", qpos, model.nq)?;
+        check_vector("qvel", qvel, model.nv)?;
+        self.physics.state.qpos.copy_from_slice(qpos);
+        self.physics.state.qvel.copy_from_slice(qvel);
+        Ok(())
+    }
+
+    /// Gives an action, clipped to the action space, to the actuators.
+    ///
+    /// # Errors
+    /// An action of wrong length or with numbers that are not finite, which changes nothing.
+    pub fn set_action(&mut self, action: &[f32]) -> Result<(), EnvError> {
+        self.check_action(action)?;
+        let model = self.blueprint.model();
+        self.actuation.set_action(model, &mut self.physics.state, action);
+        Ok(())
+    }
+
+    /// Updates the actuators, as before each physics step of a step but the first.
+    pub fn substep(&mut self) {
+        let model = self.blueprint.model();
+        self.actuation.substep(model, &mut self.physics.state);
+    }
+
+    /// Advances by one physics step, without sensing.
+    ///
+    /// # Errors
+    /// A simulation that diverged.
+    pub fn physics_step(&mut self) -> Result<(), EnvError> {
+        let stepped = self.physics.engine.step(&mut self.physics.state);
+        self.episode.ready &= stepped.is_ok();
+        Ok(stepped?)
+    }
+
+    /// Senses the state: computes [`Env::observation`] anew.
+    ///
+    /// # Errors
+    /// As the renderer.
+    pub fn observe(&mut self) -> Result<(), EnvError> {
+        self.sense()
+    }
+
+    /// Counts what the behavior counts, in [`Env::info`].
+    pub fn track(&mut self) {
+        self.tracker.update(&self.physics.state, &mut self.info);
+    }
+
+    /// Clears what the behavior has counted.
+    pub fn clear_info(&mut self) {
+        self.tracker.reset(&mut self.info);
+    }
+}

@@ -1,0 +1,149 @@
+//! Long lists of records, one at a time: nothing of a record stays in memory once it has been handed out.
+
+use super::PickleError;
+use super::objects::{Item, Object};
+use super::stack::Machine;
+use crate::limits::Limits;
+
+/// What a pickle is, besides the records that were handed out.
+pub(crate) enum Root {
+    /// A list of so many records.
+    List,
+    /// A dictionary with these text keys.
+    Dict(Vec<String>),
+    /// Anything else.
+    Other,
+}
+
+/// A value within a record.
+#[derive(Clone, Copy)]
+pub(crate) struct Node<'m, 'a> {
+    machine: &'m Machine<'a>,
+    item: Item,
+}
+
+impl<'m, 'a> Node<'m, 'a> {
+    pub(super) fn new(machine: &'m Machine<'a>, item: Item) -> Self {
+        Self { machine, item }
+    }
+
+    fn object(self) -> Option<&'m Object<'a>> {
+        match self.item {
+            Item::Object(o) => self.machine.objects.get(o),
+            _ => None,
+        }
+    }
+
+    /// Tells whether this is a dictionary.
+    pub fn is_dict(self) -> bool {
+        matches!(self.object(), Some(Object::Dict(_)))
+    }
+
+    /// Returns the value of a key of a dictionary.
+    pub fn get(self, key: &str) -> Option<Self> {
+        let Some(Object::Dict(pairs)) = self.object() else {
+            return None;
+        };
+        let named = |item: Item| matches!(Node { item, ..self }.object(), Some(Object::Text(text)) if *text == key);
+        let (_, item) = pairs.iter().rev().find(|(k, _)| named(*k))?;
+        Some(Self { item: *item, ..self })
+    }
+
+    /// Returns the items of a list.
+    pub fn items(self) -> Option<impl ExactSizeIterator<Item = Self>> {
+        match self.object() {
+            Some(Object::List(items) | Object::Tuple(items)) => {
+                Some(items.iter().map(move |&item| Self { item, ..self }))
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns a whole number that is not negative.
+    pub fn count(self) -> Option<u64> {
+        match self.item {
+            Item::Int(i) => u64::try_from(i).ok(),
+            _ => None,
+        }
+    }
+}
+
+/// Reads the records of a list, which `visit` gets one at a time; it may refuse the rest.
+///
+/// # Errors
+/// As [`super::from_bytes`]; what `visit` refuses.
+pub(crate) fn visit_records<E: From<PickleError>>(
+    bytes: &[u8],
+    limits: &Limits,
+    mut visit: impl FnMut(Node) -> Result<(), E>,
+) -> Result<Root, E> {
+    let mut machine = Machine::new(bytes, limits);
+    let mut root = None;
+    while root.is_none() {
+        root = machine.advance()?;
+        if let Some(items) = machine.take_records() {
+            for item in items {
+                visit(Node::new(&machine, item))?;
+                machine.release(item);
+            }
+        }
+    }
+    let root = root.unwrap_or(Item::None);
+    Ok(match (root, Node::new(&machine, root).object()) {
+        (Item::Object(0), Some(Object::List(_))) => Root::List,
+        (_, Some(Object::Dict(pairs))) => {
+            let text = |item: &Item| match Node::new(&machine, *item).object() {
+                Some(Object::Text(text)) => Some((*text).to_string()),
+                _ => None,
+            };
+            Root::Dict(pairs.iter().filter_map(|(key, _)| text(key)).collect())
+        }
+        _ => Root::Other,
+    })
+}
+
+/// Finds the places in the memo that are recalled later. What cannot be read ends the search: reading it fails there, too.
+pub(super) fn recalled(bytes: &[u8], limits: &Limits) -> Vec<bool> {
+    let mut recalled = Vec::new();
+    let mut rest = bytes;
+    while let Some((&opcode, after)) = rest.split_first() {
+        let number = |n: usize| {
+            after
+                .get(..n)
+                .map(|b| b.iter().rev().fold(0_u64, |x, &b| x << 8 | u64::from(b)))
+        };
+        let index = match opcode {
+            b'h' => number(1),
+            b'j' => number(4),
+            _ => None,
+        };
+        if let Some(index) = index
+            .and_then(|i| usize::try_from(i).ok())
+            .filter(|i| *i < limits.pickle_objects)
+        {
+            recalled.resize(recalled.len().max(index + 1), false);
+            recalled[index] = true;
+        }
+        let sized = |n: usize| number(n).and_then(|length| usize::try_from(length).ok()?.checked_add(n));
+        let length = match opcode {
+            b'.' => None,
+            0x80 | b'K' | b'q' | b'h' => Some(1),
+            b'M' => Some(2),
+            b'J' | b'r' | b'j' => Some(4),
+            0x95 | b'G' => Some(8),
+            0x8a | 0x8c | b'C' => sized(1),
+            b'X' | b'B' => sized(4),
+            0x8d | 0x8e | 0x96 => sized(8),
+            b'c' => {
+                let mut ends = (0..after.len()).filter(|&k| after[k] == b'\n');
+                ends.nth(1).map(|end| end + 1)
+            }
+            _ => Some(0),
+        };
+        match length.and_then(|n| after.get(n..)) {
+            Some(after) => rest = after,
+            None => break,
+        }
+    }
+    recalled
+}

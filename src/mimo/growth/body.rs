@@ -1,0 +1,133 @@
+//! Trunk, head, arms and legs, which both versions of MIMo have in common.
+
+use super::lengths::Lengths;
+use super::shapes::{Shapes, Side, long, on_x, on_z, sphere};
+
+/// Slack by which the edge of a rounded part lies within it, m.
+pub(super) const SLACK: f64 = 1e-4;
+/// Height of the neck's stump, of which only this much is left, m.
+const NECK: f64 = 2e-6;
+
+/// Lengths in which the feet and the toes of both versions are given.
+pub(super) struct Foot {
+    /// Ratio of the foot's length to the base's.
+    pub ratio: f64,
+    /// Half thickness, m.
+    pub thickness: f64,
+    /// Distance of the toes from the ankle, m.
+    pub ball: f64,
+}
+
+/// Returns the lengths of the feet.
+pub(super) fn foot(now: &Lengths, base: &Lengths) -> Foot {
+    let ratio = now.foot_length / base.foot_length;
+    Foot {
+        ratio,
+        thickness: 0.01 * (now.foot_length + now.foot_breadth) / (base.foot_length + base.foot_breadth),
+        ball: 0.054 * ratio,
+    }
+}
+
+/// Adds the trunk, which follows the breadth of the hip.
+pub(super) fn trunk(now: &Lengths, base: &Lengths, out: &mut Shapes) {
+    let h = now.hip_breadth / base.hip_breadth;
+    let capsule = |radius: f64, half: f64, x: f64, z: f64| (long(radius * h, half * h), [x, 0.0, z * h]);
+    out.geoms(Side::Middle, "hip", [capsule(0.048, 0.043, -0.002, 0.005)]);
+    out.geoms(Side::Middle, "lower_body", [capsule(0.053, 0.035, 0.005, -0.008)]);
+    let upper = [
+        capsule(0.052, 0.035, 0.007, -0.032),
+        capsule(0.048, 0.039, 0.004, 0.03),
+        capsule(0.041, 0.047, 0.0, 0.09),
+    ];
+    out.geoms(Side::Middle, "upper_body", upper);
+    let bodies = [
+        ("hip", [0.0; 3]),
+        ("lower_body", [0.002, 0.0, 0.076 * h]),
+        ("upper_body", [-0.002, 0.0, 0.091 * h]),
+        ("head", on_z(0.131 * h + NECK)),
+    ];
+    out.bodies(Side::Middle, bodies);
+    let (lower, upper) = (on_z(-0.053 * h), on_z(-0.052 * h));
+    out.joints(
+        Side::Middle,
+        [("hip_lean1", lower), ("hip_rot1", lower), ("hip_bend1", lower)],
+    );
+    out.joints(
+        Side::Middle,
+        [("hip_lean2", upper), ("hip_rot2", upper), ("hip_bend2", upper)],
+    );
+}
+
+/// Adds the head with the eyes, which follow its circumference.
+pub(super) fn head(now: &Lengths, base: &Lengths, out: &mut Shapes) {
+    let k = now.head_circumference / base.head_circumference;
+    let radius = 0.0735 * k;
+    out.geoms(Side::Middle, "head", [(sphere(radius), [0.01 * k, 0.0, radius])]);
+    out.geoms(Side::Both, "eye", [(sphere(0.01125 * k), [0.0; 3])]);
+    out.bodies(Side::Both, [("eye", [0.07, 0.0245, 0.067375].map(|x| x * k))]);
+    out.joints(
+        Side::Middle,
+        [("head_tilt", on_z(0.01225 * k)), ("head_tilt_side", on_z(0.0245 * k))],
+    );
+    let (name, side) = ("vestibular", Side::Middle);
+    let pos = [0.01, 0.0, radius];
+    out.sites.push(super::shapes::Place { name, side, pos });
+}
+
+/// Adds the arms without hands. Returns the radius and half length of the forearm.
+pub(super) fn arms(now: &Lengths, base: &Lengths, out: &mut Shapes) -> (f64, f64) {
+    let h = now.hip_breadth / base.hip_breadth;
+    let bone = |l: &Lengths| l.shoulder_elbow_length - l.upper_arm_circumference;
+    let upper = (
+        0.024 * now.upper_arm_circumference / base.upper_arm_circumference,
+        0.0536 * bone(now) / bone(base),
+    );
+    let bone = |l: &Lengths| l.elbow_hand_length - l.hand_length - l.forearm_circumference;
+    let lower = (
+        0.023 * now.forearm_circumference / base.forearm_circumference,
+        0.037 * bone(now) / bone(base),
+    );
+    out.geoms(Side::Both, "upper_arm", [(long(upper.0, upper.1), on_z(upper.1))]);
+    out.geoms(Side::Both, "lower_arm", [(long(lower.0, lower.1), on_z(lower.1))]);
+    out.bodies(Side::Both, [("upper_arm", [0.0, 0.088 * h + 0.25 * upper.0, 0.09 * h])]);
+    out.bodies(Side::Both, [("lower_arm", on_z(2.0 * upper.1))]);
+    out.joints(Side::Both, [("shoulder_horizontal", [0.0; 3])]);
+    lower
+}
+
+/// Adds the legs with feet, without toes.
+pub(super) fn legs(now: &Lengths, base: &Lengths, foot: &Foot, out: &mut Shapes) {
+    let h = now.hip_breadth / base.hip_breadth;
+    let bone = |l: &Lengths| l.rump_knee_length - l.thigh_circumference;
+    let thigh = (
+        0.037 * now.thigh_circumference / base.thigh_circumference,
+        0.0625 * bone(now) / bone(base),
+    );
+    let shin = now.knee_sole_length / base.knee_sole_length;
+    let calf = 0.044 * shin;
+    out.geoms(
+        Side::Both,
+        "upper_leg",
+        [(long(thigh.0, thigh.1), on_z(-1.032 * thigh.1))],
+    );
+    let lower = [
+        (long(now.calf_circumference, calf), on_z(-calf)),
+        (long(now.ankle_circumference, 0.028 * shin), on_z(-3.0 * calf)),
+    ];
+    out.geoms(Side::Both, "lower_leg", lower);
+    let (length, breadth, thickness) = (0.035 * foot.ratio, now.foot_breadth, foot.thickness);
+    let sole = [
+        (long(breadth - SLACK, thickness - SLACK), on_x(-0.016 * foot.ratio)),
+        ([length, breadth, thickness], on_x(0.019 * foot.ratio)),
+        (long(thickness - SLACK, breadth - 2.0 * SLACK), on_x(foot.ball)),
+    ];
+    out.geoms(Side::Both, "foot", sole);
+    let bodies = [
+        ("upper_leg", [0.005, 0.051 * h, -0.007]),
+        ("lower_leg", on_z(-(2.0 * thigh.0 + thigh.1))),
+        ("foot", on_z(-4.0 * calf)),
+    ];
+    out.bodies(Side::Both, bodies);
+    let ankle = on_z(1.5 * thickness);
+    out.joints(Side::Both, [("foot1", ankle), ("foot2", ankle), ("foot3", ankle)]);
+}

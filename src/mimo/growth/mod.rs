@@ -1,0 +1,262 @@
+//! MIMo at other ages than that of his original proportions, from birth to 24 months.
+//!
+//! Sizes follow 18 measurements of AnthroKids (1977), fitted over age; masses follow volumes at the density of the original
+//! parts, and the strength of a motor or muscle follows the volume of the part that carries it. Joint ranges, stiffness,
+//! damping, friction and armature stay those of the original. Below one month four of the curves fall steeply, so the
+//! proportions of a newborn are the least certain.
+//!
+//! Source: MIMo's authors, arXiv 2509.09805 (ICDL 2025), and the code of their repository. Its model has a chest that
+//! BabyBench's lacks; here the chest's parts belong to the upper body. Its muscles keep their strength at all ages; here
+//! they follow the motors.
+
+mod body;
+mod fingers;
+mod lengths;
+mod mitten;
+mod shapes;
+mod strength;
+
+use thiserror::Error;
+
+use crate::config::{Compat, Config, MAX_AGE};
+use crate::math::Vec3;
+use crate::mimo::Version;
+use crate::mjcf_loader::Draft;
+use lengths::Lengths;
+use shapes::{Geom, Shapes, Side};
+use strength::carrier;
+
+/// Half the diameter of an eyeball of the original proportions, m: how far its camera is before its centre.
+const EYEBALL: f64 = 0.01125;
+
+/// A reason why a body cannot grow.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum GrowthError {
+    /// The age is out of range.
+    #[error("`{key}`: {age} is no age that MIMo can have; it must be from 0 to {MAX_AGE} months")]
+    Age {
+        /// Key of the configuration.
+        key: &'static str,
+        /// Age asked for, months.
+        age: f64,
+    },
+    /// A geom would vanish.
+    #[error(
+        "at {age} months, with these measurements, geom {index} of the body {body:?} would vanish: \
+         its size {axis} is {size:.4} m; change the measurement of that part"
+    )]
+    Vanishes {
+        /// Age, months.
+        age: f64,
+        /// Name of the body.
+        body: String,
+        /// Index among the geoms of the body.
+        index: usize,
+        /// Index of the size at fault.
+        axis: usize,
+        /// Size, m.
+        size: f64,
+    },
+    /// The scene lacks a part that grows.
+    #[error("the scene's MIMo has no {what}, which `age` would change; its assets are of another MIMo")]
+    Missing {
+        /// Kind and name of the element.
+        what: String,
+    },
+}
+
+/// The age of a body, in months: that of its proportions, and that of its strength.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    age: f64,
+    version: Version,
+    body: Shapes,
+    /// The body of the strength's age.
+    strong: Shapes,
+    camera: f64,
+}
+
+impl Growth {
+    /// Returns how MIMo grows to the `age` of a configuration; `None` if it has none.
+    ///
+    /// # Errors
+    /// An age out of range, measurements that make a part vanish.
+    pub fn of(config: &Config) -> Result<Option<Self>, GrowthError> {
+        let Some(age) = config.age else { return Ok(None) };
+        let strength_age = config.strength_age.unwrap_or(age);
+        for (key, age) in [("age", age), ("strength_age", strength_age)] {
+            if !(0.0..=MAX_AGE).contains(&age) {
+                return Err(GrowthError::Age { key, age });
+            }
+        }
+        let version = Version::of(config.behavior);
+        let base = Lengths::base();
+        let now = Lengths::new(age, &config.measurements);
+        let body = shapes(version, &now, &base);
+        let strong = shapes(version, &Lengths::new(strength_age, &config.measurements), &base);
+        for (age, shapes) in [(age, &body), (strength_age, &strong)] {
+            check(age, shapes)?;
+        }
+        let camera = match config.compat {
+            Compat::Api => EYEBALL * now.head_circumference / base.head_circumference,
+            Compat::Reference => EYEBALL, // where it was, outside a newborn's eye
+        };
+        Ok(Some(Self {
+            age,
+            version,
+            body,
+            strong,
+            camera,
+        }))
+    }
+
+    /// Returns the age of the proportions, months.
+    pub fn age(&self) -> f64 {
+        self.age
+    }
+
+    /// Gives a document's MIMo, of his original proportions, the sizes, masses and strength of this age.
+    ///
+    /// # Errors
+    /// Parts that the document lacks.
+    pub fn apply(&self, draft: &mut Draft) -> Result<(), GrowthError> {
+        self.strengthen(draft)?; // first, as it needs the original volumes
+        for geom in &self.body.geoms {
+            for (body, _) in sides(geom.side, geom.body) {
+                let found = draft.geom(&body, geom.index);
+                let grown = found.ok_or_else(|| missing_geom(&body, geom.index))?;
+                let volume = grown.volume();
+                (*grown.size, *grown.pos) = (geom.size, geom.pos);
+                *grown.mass = grown.mass.map(|mass| grown.volume() * (mass / volume));
+            }
+        }
+        let placed = |found: Option<&mut Vec3>, kind: &str, name: &str, pos: Vec3| match found {
+            Some(old) => {
+                *old = pos;
+                Ok(())
+            }
+            None => Err(missing(format!("{kind} {name:?}"))),
+        };
+        for place in &self.body.bodies {
+            for (name, mirrored) in sides(place.side, place.name) {
+                placed(draft.body_pos(&name), "body", &name, mirror(place.pos, mirrored))?;
+            }
+        }
+        for place in &self.body.joints {
+            for (name, mirrored) in sides(place.side, place.name) {
+                let name = format!("robot:{name}");
+                placed(draft.joint_pos(&name), "joint", &name, mirror(place.pos, mirrored))?;
+            }
+        }
+        for place in &self.body.sites {
+            placed(draft.site_pos(place.name), "site", place.name, place.pos)?;
+        }
+        for name in ["eye_left", "eye_right"] {
+            placed(draft.camera_pos(name), "camera", name, [self.camera, 0.0, 0.0])?;
+        }
+        Ok(())
+    }
+
+    /// Multiplies the gears of motors and the greatest forces of muscles by the ratio of the volumes of the parts that carry them.
+    fn strengthen(&self, draft: &mut Draft) -> Result<(), GrowthError> {
+        let mut ratios = Vec::new();
+        for geom in &self.strong.geoms {
+            for (body, _) in sides(geom.side, geom.body) {
+                let found = draft.geom(&body, geom.index);
+                let grown = found.ok_or_else(|| missing_geom(&body, geom.index))?;
+                let (volume, old) = (grown.volume(), *grown.size);
+                *grown.size = geom.size;
+                ratios.push((body, geom.index, grown.volume() / volume));
+                *grown.size = old;
+            }
+        }
+        for actuator in draft.actuators() {
+            let Some((body, index)) = carrier(actuator.name, self.version) else {
+                continue;
+            };
+            let Some((.., ratio)) = ratios.iter().find(|(b, i, _)| *b == body && *i == index) else {
+                continue;
+            };
+            *actuator.gear *= ratio * strength::share(actuator.name, self.version);
+            // VMAX, the velocity of the muscles, stays; FMAX of the negative and of the positive muscle follow
+            actuator.user.iter_mut().skip(1).for_each(|fmax| *fmax *= ratio);
+        }
+        Ok(())
+    }
+}
+
+/// Returns the sizes and positions of a version of MIMo with given lengths.
+fn shapes(version: Version, now: &Lengths, base: &Lengths) -> Shapes {
+    let mut out = Shapes::default();
+    let foot = body::foot(now, base);
+    body::trunk(now, base, &mut out);
+    body::head(now, base, &mut out);
+    let forearm = body::arms(now, base, &mut out);
+    body::legs(now, base, &foot, &mut out);
+    match version {
+        Version::V1 => {
+            mitten::hands(now, base, forearm, &mut out);
+            mitten::toes(now, &foot, &mut out);
+        }
+        Version::V2 => {
+            fingers::hands(now, base, forearm, &mut out);
+            fingers::toes(now, base, &foot, &mut out);
+        }
+    }
+    out
+}
+
+/// Checks that every geom has a size.
+fn check(age: f64, shapes: &Shapes) -> Result<(), GrowthError> {
+    for &Geom {
+        body,
+        side,
+        index,
+        size,
+        ..
+    } in &shapes.geoms
+    {
+        if let Some(axis) = size
+            .iter()
+            .position(|s| !(s.is_finite() && *s >= 0.0))
+            .or((size[0] == 0.0).then_some(0))
+        {
+            let body = sides(side, body).next().map(|(name, _)| name).unwrap_or_default();
+            let size = size[axis];
+            return Err(GrowthError::Vanishes {
+                age,
+                body,
+                index,
+                axis,
+                size,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Returns the names of a part, and whether each is the mirror image.
+fn sides(side: Side, name: &str) -> impl Iterator<Item = (String, bool)> {
+    let names = match side {
+        Side::Middle => [Some((name.to_string(), false)), None],
+        Side::Both => [
+            Some((format!("left_{name}"), false)),
+            Some((format!("right_{name}"), true)),
+        ],
+    };
+    names.into_iter().flatten()
+}
+
+/// Returns the mirror image of a position, on the other side.
+fn mirror(pos: Vec3, mirrored: bool) -> Vec3 {
+    if mirrored { [pos[0], -pos[1], pos[2]] } else { pos }
+}
+
+fn missing(what: String) -> GrowthError {
+    GrowthError::Missing { what }
+}
+
+fn missing_geom(body: &str, index: usize) -> GrowthError {
+    missing(format!("geom {index} of the body {body:?}"))
+}

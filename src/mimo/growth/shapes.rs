@@ -1,0 +1,90 @@
+//! What growth changes: sizes and positions of MIMo's parts.
+
+use crate::math::Vec3;
+
+/// A side of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// The middle: nothing is mirrored.
+    Middle,
+    /// Given for the left; the right is its mirror image.
+    Both,
+}
+
+/// The size and the position of a geom, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Geom {
+    /// Name of its body, without `left_`.
+    pub body: &'static str,
+    pub side: Side,
+    /// Index among the geoms of the body.
+    pub index: usize,
+    pub size: Vec3,
+    pub pos: Vec3,
+}
+
+/// The position of a body, joint or site in its body, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    /// Name, without `left_` (and, for joints, without `robot:`).
+    pub name: &'static str,
+    pub side: Side,
+    pub pos: Vec3,
+}
+
+/// All of a body's parts that growth changes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Shapes {
+    pub geoms: Vec<Geom>,
+    pub bodies: Vec<Place>,
+    pub joints: Vec<Place>,
+    pub sites: Vec<Place>,
+}
+
+impl Shapes {
+    /// Adds the geoms of a body, in order: sizes and positions.
+    pub fn geoms<const N: usize>(&mut self, side: Side, body: &'static str, geoms: [(Vec3, Vec3); N]) {
+        let indexed = geoms.into_iter().enumerate();
+        self.geoms.extend(indexed.map(|(index, (size, pos))| Geom {
+            body,
+            side,
+            index,
+            size,
+            pos,
+        }));
+    }
+
+    /// Adds the positions of bodies.
+    pub fn bodies<const N: usize>(&mut self, side: Side, bodies: [(&'static str, Vec3); N]) {
+        self.bodies.extend(places(side, bodies));
+    }
+
+    /// Adds the positions of joints.
+    pub fn joints<const N: usize>(&mut self, side: Side, joints: [(&'static str, Vec3); N]) {
+        self.joints.extend(places(side, joints));
+    }
+}
+
+fn places<const N: usize>(side: Side, places: [(&'static str, Vec3); N]) -> impl Iterator<Item = Place> {
+    places.into_iter().map(move |(name, pos)| Place { name, side, pos })
+}
+
+/// Returns the size of a sphere.
+pub(super) fn sphere(radius: f64) -> Vec3 {
+    [radius, 0.0, 0.0]
+}
+
+/// Returns the size of a capsule or a cylinder.
+pub(super) fn long(radius: f64, half_length: f64) -> Vec3 {
+    [radius, half_length, 0.0]
+}
+
+/// Returns a position on the x axis.
+pub(super) fn on_x(x: f64) -> Vec3 {
+    [x, 0.0, 0.0]
+}
+
+/// Returns a position on the z axis.
+pub(super) fn on_z(z: f64) -> Vec3 {
+    [0.0, 0.0, z]
+}

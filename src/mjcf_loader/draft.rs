@@ -1,0 +1,169 @@
+//! What an MJCF document says, while a program may still change it.
+
+use crate::assets::{AssetSource, directory, resolve};
+use crate::limits::Limits;
+use crate::math::Vec3;
+use crate::model::GeomType;
+
+use super::document::{Body, Document};
+use super::error::{ErrorKind, LoadError};
+use super::geom_volume;
+use super::spec::{Places, Spec};
+use super::xml::Tree;
+use super::{compile, elements, read, schema};
+
+/// An MJCF document that was read and checked, with its default classes applied, and not yet compiled: sizes, positions,
+/// masses and strengths can be changed, as in MuJoCo's `mjSpec` before `mj_compile`. Names and ids stay.
+///
+/// ```
+/// use babybench::assets::MemoryAssets;
+/// use babybench::{mjcf_loader::Draft, physics};
+///
+/// let text = r#"<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1" mass="2"/></body></worldbody></mujoco>"#;
+/// let mut draft = Draft::read_str(text, "ball.xml", &MemoryAssets::new())?;
+/// if let Some(geom) = draft.geom("ball", 0) {
+///     geom.size[0] = 0.05;
+/// }
+/// let model = physics::compile(draft.compile(&MemoryAssets::new())?)?;
+/// assert_eq!((model.geom_size[0][0], model.body_mass[1]), (0.05, 2.0));
+/// # Ok::<(), babybench::mjcf_loader::LoadError>(())
+/// ```
+pub struct Draft {
+    tree: Tree,
+    document: Document,
+    path: String,
+}
+
+/// A geom of a [`Draft`].
+#[derive(Debug)]
+pub struct DraftGeom<'a> {
+    /// Shape.
+    pub kind: GeomType,
+    /// Size as MJCF has it: radius, half lengths, m.
+    pub size: &'a mut Vec3,
+    /// Position in the body, m.
+    pub pos: &'a mut Vec3,
+    /// Mass, kg; `None` if it follows from the density.
+    pub mass: &'a mut Option<f64>,
+}
+
+impl DraftGeom<'_> {
+    /// Returns the volume, m^3; 0 for a plane.
+    pub fn volume(&self) -> f64 {
+        geom_volume(self.kind, self.size)
+    }
+}
+
+/// An actuator of a [`Draft`].
+#[derive(Debug)]
+pub struct DraftActuator<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Ratio of the force on the joint to the actuator's force.
+    pub gear: &'a mut f64,
+    /// Numbers for programs.
+    pub user: &'a mut [f64],
+}
+
+impl std::fmt::Debug for Draft {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Draft")
+            .field("path", &self.path)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Draft {
+    /// Reads a document given as text, as if it were the file `virtual_path` of `source`.
+    ///
+    /// # Errors
+    /// As [`super::load`].
+    pub fn read_str(xml: &str, virtual_path: &str, source: &dyn AssetSource) -> Result<Self, LoadError> {
+        Self::read_str_with(xml, virtual_path, source, &Limits::default())
+    }
+
+    /// Reads a document as [`Draft::read_str`] does, within other limits than the default ones.
+    ///
+    /// # Errors
+    /// As [`super::load`].
+    pub fn read_str_with(
+        xml: &str,
+        virtual_path: &str,
+        source: &dyn AssetSource,
+        limits: &Limits,
+    ) -> Result<Self, LoadError> {
+        let path = resolve("", virtual_path).map_err(|e| LoadError::in_file(virtual_path, e))?;
+        let (tree, root) = Tree::read(xml, &path, source, limits)?;
+        let name = &tree.nodes[root].name;
+        if name != "mujoco" {
+            return Err(tree.error(root, ErrorKind::WrongRoot(name.clone())));
+        }
+        let checked = schema::check(&tree, root, &elements::MUJOCO)?;
+        let document = read::read(&tree, &checked)?;
+        Ok(Self { tree, document, path })
+    }
+
+    /// Compiles the document, with what was changed, into ids and arrays. Textures are looked up in `source`.
+    ///
+    /// # Errors
+    /// As [`super::load`]; an element at fault is named with its place in the text.
+    pub fn compile(self, source: &dyn AssetSource) -> Result<Spec, LoadError> {
+        let Self { tree, document, path } = self;
+        let arrays = compile::compile(&tree, &document, source, directory(&path))?;
+        let places = Places {
+            bodies: document.bodies.iter().map(|body| body.at).collect(),
+            tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),
+            tree,
+        };
+        Ok(Spec { arrays, places })
+    }
+
+    /// Returns the position of a body in its parent, m; `None` if there is no such body.
+    pub fn body_pos(&mut self, name: &str) -> Option<&mut Vec3> {
+        self.body(name).map(|body| &mut body.frame.pos)
+    }
+
+    /// Returns the anchor of a joint in its body, m; `None` if there is no such joint.
+    pub fn joint_pos(&mut self, name: &str) -> Option<&mut Vec3> {
+        let mut joints = self.document.bodies.iter_mut().flat_map(|body| &mut body.joints);
+        joints.find(|joint| joint.name == name).map(|joint| &mut joint.pos)
+    }
+
+    /// Returns the position of a site in its body, m; `None` if there is no such site.
+    pub fn site_pos(&mut self, name: &str) -> Option<&mut Vec3> {
+        let mut sites = self.document.bodies.iter_mut().flat_map(|body| &mut body.sites);
+        sites.find(|site| site.name == name).map(|site| &mut site.frame.pos)
+    }
+
+    /// Returns the position of a camera in its body, m; `None` if there is no such camera.
+    pub fn camera_pos(&mut self, name: &str) -> Option<&mut Vec3> {
+        let mut cameras = self.document.bodies.iter_mut().flat_map(|body| &mut body.cameras);
+        cameras
+            .find(|camera| camera.name == name)
+            .map(|camera| &mut camera.frame.pos)
+    }
+
+    /// Returns a geom by its body and its index among the geoms of that body; `None` if there is no such geom.
+    pub fn geom(&mut self, body: &str, index: usize) -> Option<DraftGeom<'_>> {
+        let geom = self.body(body)?.geoms.get_mut(index)?;
+        Some(DraftGeom {
+            kind: geom.kind,
+            size: &mut geom.size,
+            pos: &mut geom.frame.pos,
+            mass: &mut geom.mass,
+        })
+    }
+
+    /// Returns the actuators, by id.
+    pub fn actuators(&mut self) -> impl Iterator<Item = DraftActuator<'_>> {
+        self.document.actuators.iter_mut().map(|actuator| DraftActuator {
+            name: &actuator.name,
+            gear: &mut actuator.gear,
+            user: &mut actuator.user,
+        })
+    }
+
+    fn body(&mut self, name: &str) -> Option<&mut Body> {
+        self.document.bodies.iter_mut().find(|body| body.name == name)
+    }
+}

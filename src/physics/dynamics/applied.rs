@@ -1,0 +1,33 @@
+//! Forces and torques that a caller applies to bodies.
+
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::spatial::*;
+use crate::physics::state::State;
+
+/// Iterates over the bodies on which [`State::xfrc_applied`] acts: body, force, torque. The world does not move.
+pub(super) fn applied(s: &State) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
+    let acting = s.xfrc_applied.iter().enumerate().skip(1);
+    acting
+        .filter(|(_, wrench)| **wrench != [0.0; 6])
+        .map(|(body, w)| (body, [w[0], w[1], w[2]], [w[3], w[4], w[5]]))
+}
+
+/// Adds to `qfrc_smooth` what [`State::xfrc_applied`] does to the joints: the transposed Jacobian of each body's centre of
+/// mass, in the order of operations of MuJoCo's `mj_xfrcAccumulate`.
+pub fn xfrc_accumulate(model: &Model, s: &mut State) {
+    let mut smooth = std::mem::take(&mut s.qfrc_smooth);
+    for (body, force, torque) in applied(s) {
+        let offset = sub(s.xipos[body], s.subtree_com[model.body_rootid[body]]);
+        let mut b = body;
+        while b > 0 {
+            for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
+                let velocity = velocity_at(&s.cdof[d], offset);
+                smooth[d] += dot(velocity, force);
+                smooth[d] += dot(angular(&s.cdof[d]), torque);
+            }
+            b = model.body_parentid[b];
+        }
+    }
+    s.qfrc_smooth = smooth;
+}

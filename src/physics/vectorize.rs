@@ -1,0 +1,16 @@
+//! The instruction set that the hot parts of a step are compiled for.
+
+/// Runs `work` with the vector instructions that the processor has: those of AVX2, or else those that every processor of
+/// the target has.
+///
+/// What is inlined into `work` is compiled once for each, so hot functions are `#[inline(always)]` down to their kernels,
+/// and `work` is a closure with the same attribute. The bits are those of any other target: the compiler neither reorders
+/// sums nor fuses products with them.
+#[inline(always)]
+pub(super) fn vectorize<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
+        return fearless_simd::Simd::vectorize(avx2, work);
+    }
+    work()
+}

@@ -1,0 +1,130 @@
+//! Which geoms may touch, and in which order their contacts stand; linear in the size of the model.
+
+use super::Order;
+use crate::model::{GeomType, Model};
+
+/// What of a geom decides which others it may touch.
+#[derive(Clone, Copy, Debug)]
+struct Geom {
+    kind: GeomType,
+    contype: u32,
+    conaffinity: u32,
+    body: u32,
+    /// The first body of those that its body is rigidly joined to, and the same of the parent of that one.
+    weld: u32,
+    weld_parent: u32,
+}
+
+/// Which geoms of a model may touch; see [`super::PairTable`].
+#[derive(Clone, Debug)]
+pub struct ContactRules {
+    geoms: Vec<Geom>,
+    /// Body pairs that are excluded, the lower first, sorted.
+    excludes: Vec<[u32; 2]>,
+    /// Geoms of explicit pairs, the lower first, each with its number; sorted.
+    explicit: Vec<([u32; 2], u32)>,
+}
+
+/// Returns two ids, the lower first.
+fn sorted(a: usize, b: usize) -> [u32; 2] {
+    [a.min(b) as u32, a.max(b) as u32]
+}
+
+impl ContactRules {
+    /// Derives the rules of `model`.
+    pub fn new(model: &Model) -> Self {
+        let weld = |body: usize| model.body_weldid[body];
+        let geom = |g: usize| {
+            let body = model.geom_bodyid[g];
+            Geom {
+                kind: model.geom_type[g],
+                contype: model.geom_contype[g],
+                conaffinity: model.geom_conaffinity[g],
+                body: body as u32,
+                weld: weld(body) as u32,
+                weld_parent: weld(model.body_parentid[weld(body)]) as u32,
+            }
+        };
+        let mut excludes: Vec<[u32; 2]> = model.exclude.iter().map(|&[a, b]| sorted(a, b)).collect();
+        excludes.sort_unstable();
+        let numbered = model.pair_geom.iter().enumerate();
+        let mut explicit: Vec<_> = numbered.map(|(p, &[a, b])| (sorted(a, b), p as u32)).collect();
+        explicit.sort_unstable();
+        Self {
+            geoms: (0..model.ngeom()).map(geom).collect(),
+            excludes,
+            explicit,
+        }
+    }
+
+    #[inline]
+    pub(super) fn ngeom(&self) -> usize {
+        self.geoms.len()
+    }
+
+    /// Tells whether a geom may touch any other, as far as its own properties say.
+    pub(super) fn takes_part(&self, g: usize) -> bool {
+        let geom = &self.geoms[g];
+        let bits = geom.contype | geom.conaffinity != 0 && geom.kind != GeomType::Ellipsoid;
+        bits || self.explicit.iter().any(|(geoms, _)| geoms.contains(&(g as u32)))
+    }
+
+    /// Returns the number of the explicit pair of two geoms; of several, the last.
+    pub(super) fn explicit(&self, a: usize, b: usize) -> Option<usize> {
+        let geoms = sorted(a, b);
+        let end = self.explicit.partition_point(|e| e.0 <= geoms);
+        let (found, p) = *self.explicit.get(end.checked_sub(1)?)?;
+        (found == geoms).then_some(p as usize)
+    }
+
+    /// Tells whether two geoms may touch.
+    pub fn allow(&self, a: usize, b: usize) -> bool {
+        self.explicit(a, b).is_some() || self.collide(a, b)
+    }
+
+    /// Orders two geoms by type, then by body.
+    pub(super) fn ordered(&self, a: usize, b: usize) -> [usize; 2] {
+        let key = |g: usize| (self.geoms[g].kind, self.geoms[g].body, g);
+        if key(a) <= key(b) { [a, b] } else { [b, a] }
+    }
+
+    /// Returns the place of two geoms in contact order, if they may touch.
+    pub(super) fn order(&self, a: usize, b: usize) -> Option<Order> {
+        if let Some(p) = self.explicit(a, b) {
+            return Some(self.explicit_order(p, a, b));
+        }
+        self.collide(a, b).then(|| {
+            let ([lo, hi], [x, y]) = (self.bodies(a, b), self.ordered(a, b));
+            (lo, hi, true, x as u32, y as u32)
+        })
+    }
+
+    /// Returns the place of an explicit pair in contact order.
+    pub(super) fn explicit_order(&self, p: usize, a: usize, b: usize) -> Order {
+        let [lo, hi] = self.bodies(a, b);
+        (lo, hi, false, p as u32, 0)
+    }
+
+    fn bodies(&self, a: usize, b: usize) -> [u32; 2] {
+        sorted(self.geoms[a].body as usize, self.geoms[b].body as usize)
+    }
+
+    /// Tells whether two geoms may touch that are no explicit pair.
+    fn collide(&self, a: usize, b: usize) -> bool {
+        let (x, y) = (&self.geoms[a], &self.geoms[b]);
+        let none = |kind: GeomType| kind == GeomType::Ellipsoid;
+        if none(x.kind) || none(y.kind) || (x.kind == GeomType::Plane && y.kind == GeomType::Plane) {
+            return false;
+        }
+        if x.contype & y.conaffinity == 0 && y.contype & x.conaffinity == 0 {
+            return false;
+        }
+        if x.weld == y.weld {
+            return false;
+        }
+        if x.weld != 0 && y.weld != 0 && (x.weld == y.weld_parent || y.weld == x.weld_parent) {
+            return false;
+        }
+        self.excludes.binary_search(&self.bodies(a, b)).is_err()
+    }
+}

@@ -1,0 +1,212 @@
+//! The triangles of a frame: those that show their front and do not lie between the samples are rasterised.
+
+use std::ops::Range;
+
+use wide::f32x4;
+
+use super::camera::Row;
+use super::clip::{self, Clip, EdgePoint, Origin, Polygon};
+use super::frame::{ClipPoint, Frame, Targets, steps};
+use super::lanes::{four, three};
+use super::plane::Vertex;
+use super::raster::{Sink, is_counterclockwise};
+use super::sampling::{FourSamples, PixelCentre, Sampling};
+use super::small::{Quads, Waiting};
+use super::target::{NONE, Opaque, Target, Transparent, Triangle, Writer};
+use crate::render::mesh::{Band, Mesh};
+use crate::render::strip::{STRIP_LANES, Strip};
+
+impl Frame {
+    /// Draws triangles of which some are not wholly in view.
+    pub fn across(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, range: Range<usize>) {
+        let draw = self.draws[index];
+        for &[a, b, c] in &mesh.triangles[range] {
+            let t = if draw.flip { [a, c, b] } else { [a, b, c] };
+            let own = three(|k| draw.base + usize::from(t[k]));
+            let [p, q, r] = three(|k| self.sides[own[k]]);
+            if p & q & r != 0 {
+                continue;
+            }
+            if p | q | r != 0 {
+                self.clipped(mesh, rows, index, t, p | q | r);
+            } else if self.shows_front(own) {
+                self.wait(index, own);
+            }
+        }
+    }
+
+    /// Returns whether a triangle may show its front.
+    #[inline(always)]
+    fn shows_front(&self, [a, b, c]: [usize; 3]) -> bool {
+        let (x, y) = (&self.x, &self.y);
+        // rounding may make products equal, but does not change their order
+        (x[b] - x[a]) * (y[c] - y[a]) >= (y[b] - y[a]) * (x[c] - x[a])
+    }
+
+    /// Draws a band that is wholly in view.
+    pub fn inside(&mut self, mesh: &Mesh, index: usize, band: &Band) {
+        let base = self.draws[index].base;
+        for t in &mesh.triangles[band.triangles.clone()][..band.loose] {
+            self.wait(index, three(|k| base + usize::from(t[k])));
+        }
+        for strip in &band.strips {
+            self.strip(index, strip);
+        }
+    }
+
+    /// Draws a strip that is wholly in view.
+    fn strip(&mut self, index: usize, strip: &Strip) {
+        let base = self.draws[index].base;
+        let step = four(|k| usize::from(strip.step[k]));
+        let mut at = four(|k| base + usize::from(strip.first[k]));
+        for _ in (0..strip.count).step_by(STRIP_LANES) {
+            let quads = Quads(four(|k| {
+                [lanes(&self.x, at[k], step[k]), lanes(&self.y, at[k], step[k])]
+            }));
+            let front = quads.front();
+            let hit = match self.targets {
+                _ if front == [0; 2] => 0,
+                Targets { centre: false, .. } => quads.hit::<FourSamples>(),
+                Targets { colour: false, .. } => quads.hit::<PixelCentre>(),
+                _ => quads.hit::<FourSamples>() | quads.hit::<PixelCentre>(),
+            };
+            let first = front[0] & hit;
+            let second = if strip.fan { 0 } else { front[1] & hit };
+            let mut rest = first | second;
+            while rest != 0 {
+                let j = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                let [a, b, c, d] = four(|k| at[k] + step[k] * j);
+                if first >> j & 1 == 1 {
+                    self.wait(index, [a, b, d]);
+                }
+                if second >> j & 1 == 1 {
+                    self.wait(index, [b, c, d]);
+                }
+            }
+            for k in 0..4 {
+                at[k] += step[k] * STRIP_LANES;
+            }
+        }
+    }
+
+    /// Puts a triangle, whose vertices are given, among those to be rasterised.
+    #[inline(always)]
+    fn wait(&mut self, index: usize, vertices: [usize; 3]) {
+        if self.waiting.add(vertices, &self.x, &self.y) {
+            self.flush(index);
+        }
+    }
+
+    /// Rasterises the triangles that wait.
+    #[inline(never)]
+    pub fn flush(&mut self, index: usize) {
+        let geometry = Geometry {
+            vertices: &self.vertices,
+            x: &self.x,
+            y: &self.y,
+        };
+        if self.targets.colour && self.draws[index].transparent {
+            geometry.raster::<FourSamples, Transparent>(&self.waiting, index, &mut self.colour);
+        } else if self.targets.colour {
+            geometry.raster::<FourSamples, Opaque>(&self.waiting, index, &mut self.colour);
+        }
+        if self.targets.centre {
+            geometry.raster::<PixelCentre, Opaque>(&self.waiting, index, &mut self.centre);
+        }
+        self.waiting.clear();
+    }
+
+    /// Draws what is left of a triangle that reaches beyond some sides of what is seen.
+    #[cold]
+    fn clipped(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, t: [u16; 3], sides: u8) {
+        let draw = self.draws[index];
+        let half = self.size.map(|n| n as f32 * 0.5);
+        let corner = |i: u16| {
+            let i = usize::from(i);
+            clip::apply(rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
+        };
+        let triangle: [Clip; 3] = [corner(t[0]), corner(t[1]), corner(t[2])];
+        if clip::faces_away(&triangle) {
+            return;
+        }
+        let mut polygon = Polygon::new(triangle);
+        polygon.cut(u32::from(sides));
+        let (corners, points) = polygon.parts();
+        if corners.len() < 3 {
+            return;
+        }
+        let first = self.vertices.len();
+        let place = |source: Origin| match source {
+            Origin::Own(k) => draw.base + usize::from(t[k]),
+            Origin::New(k) => first + k,
+        };
+        for &EdgePoint { clip, from, to, share } in points {
+            let vertex = clip::project(clip, half);
+            self.x.push(steps(vertex.x));
+            self.y.push(steps(vertex.y));
+            self.vertices.push(vertex);
+            self.sides.push(0);
+            self.points.push(ClipPoint {
+                from: place(from) as u32,
+                to: place(to) as u32,
+                share,
+            });
+        }
+        for k in 2..corners.len() {
+            let [a, b, c] = [
+                place(corners[k - 1].from),
+                place(corners[k].from),
+                place(corners[0].from),
+            ];
+            self.wait(index, [a, b, c]);
+        }
+    }
+}
+
+/// The projected vertices of a frame.
+struct Geometry<'a> {
+    vertices: &'a [Vertex],
+    /// Their places, whole numbers of 1/256 pixels.
+    x: &'a [f32],
+    y: &'a [f32],
+}
+
+impl Geometry<'_> {
+    /// Rasterises the triangles that wait, as `K` says.
+    #[inline(always)]
+    fn raster<S: Sampling, K>(&self, waiting: &Waiting, index: usize, target: &mut Target)
+    where
+        for<'t> Writer<'t, K>: Sink,
+    {
+        waiting.each::<S>(|own, spots| {
+            let [a, b, c] = own;
+            // the order in which Mesa sets triangles up
+            let record = Triangle {
+                draw: index as u32,
+                vertices: [b as u32, a as u32, c as u32],
+                setup: NONE,
+            };
+            if let Some(spots) = spots {
+                if spots.samples != 0 {
+                    target.spots::<S, K>(&spots, self.vertices, record);
+                }
+                return;
+            }
+            let fixed = three(|k| [self.x[own[k]] as i32, self.y[own[k]] as i32]);
+            if is_counterclockwise(&fixed) {
+                target.triangle::<S, K>(&fixed, self.vertices, record);
+            }
+        });
+    }
+}
+
+/// Returns four values, each a step after the one before.
+#[inline(always)]
+fn lanes(v: &[f32], from: usize, step: usize) -> f32x4 {
+    if step == 0 {
+        return f32x4::splat(v[from]);
+    }
+    let v = &v[from..from + STRIP_LANES];
+    f32x4::new([v[0], v[1], v[2], v[3]])
+}

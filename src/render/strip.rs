@@ -1,0 +1,28 @@
+//! Rows of quadrilaterals, of which meshes consist.
+
+/// Number of quadrilaterals of which the length of each strip is a multiple.
+pub const STRIP_LANES: usize = 4;
+
+/// A row of quadrilaterals, each split into two triangles: [a, b, d] and [b, c, d]. A fan has only the first of each two.
+#[derive(Clone, Copy, Debug)]
+pub struct Strip {
+    /// Corners a, b, c, d of the first.
+    pub first: [u16; 4],
+    /// What is added to each corner from one to the next, 0 or 1.
+    pub step: [u16; 4],
+    /// Number of quadrilaterals, a multiple of [`STRIP_LANES`].
+    pub count: usize,
+    /// Whether it is a fan.
+    pub fan: bool,
+}
+
+impl Strip {
+    /// Returns the corners a, b, c, d of a quadrilateral.
+    pub fn corners(&self, index: usize) -> [u16; 4] {
+        let mut corners = self.first;
+        for (corner, step) in corners.iter_mut().zip(self.step) {
+            *corner += step * index as u16;
+        }
+        corners
+    }
+}

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Builds web/dist/: the page, all that a static host needs, and in web/dist/babybench/ the npm package.
+#   web/build.sh [package]   # package: without the page
+# Needs Rust with the target wasm32-unknown-unknown (or RUSTC_WASM, a compiler that has it) and Node.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+target=${CARGO_TARGET_DIR:-target}
+wasm=wasm32-unknown-unknown
+package=web/dist/babybench
+if ! [ -d web/node_modules ]; then npm ci --prefix web --ignore-scripts --no-audit --no-fund; fi
+
+# The modules: 128-bit vector instructions are in every browser since 2023 and in node since 16.
+# One after the other: together, each would have the features of both.
+for module in babybench-web babybench-onnx; do
+  env RUSTFLAGS='-C target-feature=+simd128' ${RUSTC_WASM:+RUSTC="$RUSTC_WASM"} cargo build --locked --profile web \
+    --target "$wasm" --target-dir "$target/wasm" -p "$module"
+done
+cargo build --locked --release -p babybench-bindgen
+
+rm -rf "$package"
+mkdir -p "$package"
+bind() { # MODULE NAME: JavaScript beside a module
+  "$target/release/babybench-bindgen" "$target/wasm/$wasm/web/$1.wasm" "$package" "$2"
+}
+bind babybench_web core
+bind babybench_onnx onnx_core
+
+# The package: its sources, and types from their comments.
+cp web/package/*.js web/package/package.json web/package/README.md LICENSE-MIT LICENSE-APACHE NOTICE "$package"
+web/node_modules/.bin/tsc -p web/package
+
+if [ "${1:-}" != package ]; then node web/page/build.mjs web/dist; fi

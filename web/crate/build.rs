@@ -1,0 +1,11 @@
+//! Bounds the memory of the module: what asks for more fails with an error, and does not take the browser down.
+
+/// Most memory that the module may take, bytes. Scenes need 20 to 60 MB; many environments more.
+const MAX_MEMORY: u32 = 1 << 30;
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    if std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32") {
+        println!("cargo::rustc-link-arg-cdylib=--max-memory={MAX_MEMORY}");
+    }
+}

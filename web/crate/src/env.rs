@@ -1,0 +1,398 @@
+//! One environment.
+
+use std::sync::Arc;
+
+use babybench::Env;
+use babybench::config::Part;
+use babybench::env::{Snapshot, ViewFrom, Viewer};
+use babybench::mimo::{LockReport, LockTarget, lock_of};
+use babybench::model::JointType;
+use babybench::physics::State;
+use babybench::render::{FreeCamera, Visual};
+use babybench::sensors::Touch;
+use wasm_bindgen::prelude::*;
+
+use crate::fold;
+use crate::frame::Frame;
+use crate::js::{self, id, ids, list, object, optional};
+use crate::scene;
+
+/// An environment, with what a page draws of it.
+#[wasm_bindgen]
+pub struct Core {
+    env: Env,
+    visual: Option<Arc<Visual>>,
+    viewer: Option<Viewer>,
+    frame: Frame,
+    /// The last random action, and where the caller may write the next one.
+    action: Vec<f32>,
+    /// What the skin feels after a snapshot was restored, until the next step.
+    restored: Option<Touch>,
+}
+
+#[wasm_bindgen]
+impl Core {
+    pub(crate) fn new(blueprint: &babybench::Blueprint) -> Result<Core, JsValue> {
+        let env = blueprint.env().map_err(|e| js::env_error(&e))?;
+        Ok(Self {
+            action: vec![0.0; env.action_space().len()],
+            visual: None,
+            viewer: None,
+            frame: Frame::default(),
+            restored: None,
+            env,
+        })
+    }
+
+    /// Starts an episode.
+    pub fn reset(&mut self, seed: Option<u64>) -> Result<(), JsValue> {
+        self.restored = None;
+        done(self.env.reset(seed))
+    }
+
+    /// Starts an episode from positions and velocities.
+    #[wasm_bindgen(js_name = resetTo)]
+    pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), JsValue> {
+        self.restored = None;
+        done(self.env.reset_to(qpos, qvel))
+    }
+
+    /// Sets positions and velocities in the middle of an episode.
+    #[wasm_bindgen(js_name = setState)]
+    pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), JsValue> {
+        self.restored = None;
+        done(self.env.set_state(qpos, qvel))
+    }
+
+    /// Sets the activations of the muscles.
+    #[wasm_bindgen(js_name = setActivity)]
+    pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), JsValue> {
+        done(self.env.set_activity(activity))
+    }
+
+    /// Steps with the action in the view `action`; returns whether the episode is over.
+    pub fn step(&mut self) -> Result<bool, JsValue> {
+        self.restored = None;
+        let step = self.env.step(&self.action).map_err(|e| js::env_error(&e))?;
+        Ok(step.truncated)
+    }
+
+    /// Draws a random action into the view `action`.
+    #[wasm_bindgen(js_name = sampleAction)]
+    pub fn sample_action(&mut self) {
+        // the room is enough, so that the view stays where it is
+        self.env.sample_action(&mut self.action);
+    }
+
+    /// Seeds the generator of random actions.
+    #[wasm_bindgen(js_name = seedActionSpace)]
+    pub fn seed_action_space(&mut self, seed: u64) {
+        self.env.seed_action_space(seed);
+    }
+
+    /// Sets whether the eyes are drawn on demand only, by `drawEyes`.
+    #[wasm_bindgen(js_name = deferVision)]
+    pub fn defer_vision(&mut self, deferred: bool) {
+        self.env.defer_vision(deferred);
+    }
+
+    /// Draws what the eyes see into the observation.
+    #[wasm_bindgen(js_name = drawEyes)]
+    pub fn draw_eyes(&mut self) -> Result<(), JsValue> {
+        done(Env::draw_eyes([&mut self.env]))
+    }
+
+    /// Returns where numbers stand: kind (1 for u8, 4 for f32, 5 for u32, 8 for f64), address, length. They stay there
+    /// until a snapshot is restored; those of the frame move with `update`.
+    pub fn view(&self, name: &str) -> Option<Vec<u32>> {
+        let (state, seen) = (self.env.state(), self.env.observation());
+        let numbers = match name {
+            "action" => Numbers::F32(&self.action),
+            "proprioception" => Numbers::F64(seen.proprioception),
+            "vestibular" => Numbers::F64(seen.vestibular?),
+            "touch" => Numbers::F32(seen.touch?),
+            "eye_left" => Numbers::U8(seen.eye_left?),
+            "eye_right" => Numbers::U8(seen.eye_right?),
+            "poses" => Numbers::F32(&self.frame.poses),
+            "bodies" => Numbers::F32(&self.frame.bodies),
+            "felt" => Numbers::F32(&self.frame.felt),
+            "contacts" => Numbers::F32(&self.frame.contacts),
+            _ => Numbers::of_state(state, name)?,
+        };
+        Some(numbers.place().to_vec())
+    }
+
+    /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`.
+    pub fn update(&mut self) -> Result<(), JsValue> {
+        let visual = self.visual()?;
+        let touch = self.restored.as_ref().or(self.env.touch());
+        self.frame.update(self.env.model(), &visual, self.env.state(), touch);
+        Ok(())
+    }
+
+    /// Describes bodies, joints, cameras and actions.
+    pub fn model(&self) -> JsValue {
+        scene::model(&self.env)
+    }
+
+    /// Describes what is drawn, and the light.
+    pub fn look(&mut self) -> Result<JsValue, JsValue> {
+        let visual = self.visual()?;
+        Ok(scene::look(self.env.model(), &visual))
+    }
+
+    /// Returns where the pixels of an image of a texture stand: address and length in bytes, red, green, blue and 255.
+    #[wasm_bindgen(js_name = texturePixels)]
+    pub fn texture_pixels(&mut self, texture: usize, face: usize) -> Result<Option<Vec<u32>>, JsValue> {
+        let visual = self.visual()?;
+        let faces = visual.textures.get(texture).map(scene::faces);
+        let level = faces.and_then(|f| f.get(face)).and_then(|levels| levels.first());
+        Ok(level.map(|l| Numbers::U8(l.pixels.as_flattened()).place().to_vec()))
+    }
+
+    /// Returns where each touch sensor is in the frame of its body, m.
+    #[wasm_bindgen(js_name = skinPositions)]
+    pub fn skin_positions(&self) -> Vec<f32> {
+        let bodies = self.env.touch().into_iter().flat_map(|t| t.layout().bodies());
+        let points = bodies.flat_map(|b| b.positions().as_flattened());
+        points.map(|&v| v as f32).collect()
+    }
+
+    /// Returns the body of each touch sensor.
+    #[wasm_bindgen(js_name = skinBodies)]
+    pub fn skin_bodies(&self) -> Vec<u32> {
+        let bodies = self.env.touch().into_iter().flat_map(|t| t.layout().bodies());
+        bodies.flat_map(|b| vec![b.body as u32; b.len()]).collect()
+    }
+
+    /// Returns the number of values of a touch sensor, 0 without touch.
+    #[wasm_bindgen(js_name = touchWidth)]
+    pub fn touch_width(&self) -> usize {
+        self.env.touch().map_or(0, Touch::width)
+    }
+
+    /// Names the values of proprioception, in order.
+    #[wasm_bindgen(js_name = proprioceptionNames)]
+    pub fn proprioception_names(&self) -> JsValue {
+        let entries = self
+            .env
+            .proprioception()
+            .entries(self.env.model(), self.env.actuation());
+        list(entries.iter().map(|e| {
+            object([
+                ("component", e.component.name().into()),
+                ("name", e.name.as_str().into()),
+                ("start", id(e.range.start)),
+                ("end", id(e.range.end)),
+            ])
+        }))
+    }
+
+    /// Returns the information of the last step.
+    pub fn info(&self) -> JsValue {
+        let info = self.env.info();
+        let touches = info.behavior.touches();
+        let parts = info.details.touched_parts.as_ref().map(|p| p.each_ref());
+        let hands = |make: &dyn Fn(usize) -> JsValue| object([("right_hand", make(0)), ("left_hand", make(1))]);
+        object([
+            ("steps", (info.steps as f64).into()),
+            ("behavior", info.behavior.name().into()),
+            ("touches", optional(touches, |t| hands(&|hand| ids(t[hand])))),
+            (
+                "touched_parts",
+                optional(parts, |p| {
+                    hands(&|hand| list(p[hand].iter().map(|name| JsValue::from(&**name))))
+                }),
+            ),
+            (
+                "regards",
+                optional(info.behavior.regards(), |counts| js::numbers(&counts.map(|c| c as f64))),
+            ),
+            ("score", optional(info.behavior.score(info.steps), JsValue::from)),
+            (
+                "gaze_angles",
+                optional(info.details.gaze_angles, |angles| js::numbers(&angles.to_array())),
+            ),
+        ])
+    }
+
+    /// Locks a joint, or all joints of a part, at an angle in rad.
+    pub fn lock(&mut self, target: &str, angle: f64) -> Result<JsValue, JsValue> {
+        let report = self.env.lock(lock_target(target), angle);
+        report.map(|r| self.report(&r)).map_err(|e| js::env_error(&e))
+    }
+
+    /// Unlocks a joint, or all joints of a part.
+    pub fn unlock(&mut self, target: &str) -> Result<JsValue, JsValue> {
+        let report = self.env.unlock(lock_target(target));
+        report.map(|r| self.report(&r)).map_err(|e| js::env_error(&e))
+    }
+
+    /// Lists the locked joints by id.
+    pub fn locked(&self) -> Vec<u32> {
+        let (m, active) = (self.env.model(), &self.env.state().params.eq_active);
+        let hinges = (0..m.njnt()).filter(|&j| m.jnt_type[j] != JointType::Free);
+        let locked = hinges.filter(|&j| lock_of(m, j).is_some_and(|e| active[e]));
+        locked.map(|j| j as u32).collect()
+    }
+
+    /// Takes a snapshot.
+    pub fn snapshot(&self) -> Vec<u8> {
+        self.env.snapshot().as_bytes().to_vec()
+    }
+
+    /// Goes back to a snapshot, with poses, contacts and forces brought up to date, so that they can be drawn at once.
+    pub fn restore(&mut self, bytes: Vec<u8>) -> Result<(), JsValue> {
+        let snapshot = Snapshot::from_bytes(bytes).map_err(js::error)?;
+        self.env.restore(&snapshot).map_err(js::error)?;
+        // on a copy: what decides how the run goes on keeps its bits
+        let mut posed = self.env.state().clone();
+        self.env.engine_mut().forward(&mut posed).map_err(js::error)?;
+        posed.copy_dynamic_from(self.env.state());
+        *self.env.state_mut() = posed;
+        self.restored = self.env.touch().cloned();
+        if let Some(touch) = &mut self.restored {
+            touch.observe(self.env.model(), self.env.state());
+        }
+        Ok(())
+    }
+
+    /// Adds a force and a torque at a point, in the world, to what acts on a body.
+    #[wasm_bindgen(js_name = applyForce)]
+    pub fn apply_force(&mut self, body: usize, force: &[f64], torque: &[f64], point: &[f64]) -> Result<(), JsValue> {
+        let (force, torque, point) = (three("force", force)?, three("torque", torque)?, three("point", point)?);
+        let state = self.env.state_mut();
+        state.apply_force(body, force, torque, point).map_err(js::error)
+    }
+
+    /// Takes off all forces on bodies.
+    #[wasm_bindgen(js_name = releaseForces)]
+    pub fn release_forces(&mut self) {
+        self.env.state_mut().release_forces();
+    }
+
+    /// Draws from a camera of the scene or, with `free` (lookat, distance, azimuth, elevation), from anywhere. Returns where
+    /// the pixels stand: address and length in bytes, red, green, blue and 255.
+    pub fn draw(
+        &mut self,
+        camera: &str,
+        free: Option<Vec<f64>>,
+        width: usize,
+        height: usize,
+    ) -> Result<Vec<u32>, JsValue> {
+        let from = match free.as_deref() {
+            None => ViewFrom::Camera(camera),
+            Some(&[x, y, z, distance, azimuth, elevation]) => ViewFrom::Free(FreeCamera {
+                lookat: [x, y, z],
+                distance,
+                azimuth,
+                elevation,
+            }),
+            Some(other) => return Err(js::error(format!("a free camera has 6 numbers, not {}", other.len()))),
+        };
+        let viewer = match self.viewer.take() {
+            Some(viewer) => viewer,
+            None => Viewer::new(self.env.blueprint()).map_err(|e| js::env_error(&e))?,
+        };
+        let viewer = self.viewer.insert(viewer);
+        let pixels = viewer.draw_rgba(&self.env, from, width, height);
+        let pixels = pixels.map_err(|e| js::env_error(&e))?;
+        Ok(Numbers::U8(pixels).place()[1..].to_vec())
+    }
+
+    /// Returns the checksum of positions, velocities and senses, as `examples/checksum` prints it.
+    pub fn checksum(&self) -> String {
+        format!("{:016x}", fold::bits(&self.env))
+    }
+
+    /// Returns the simulated time, s.
+    pub fn time(&self) -> f64 {
+        self.env.state().time
+    }
+}
+
+impl Core {
+    /// Returns the look of the scene, made when it is first needed.
+    fn visual(&mut self) -> Result<Arc<Visual>, JsValue> {
+        if let Some(visual) = &self.visual {
+            return Ok(visual.clone());
+        }
+        let visual = self.env.blueprint().visual().map_err(|e| js::env_error(&e))?;
+        Ok(self.visual.insert(visual).clone())
+    }
+
+    /// Describes what a lock changed, by names of joints.
+    fn report(&self, report: &LockReport) -> JsValue {
+        let names = &self.env.model().jnt_name;
+        let named = |joints: &[usize]| list(joints.iter().map(|&j| names[j].as_str()));
+        let held: Vec<usize> = report.held.iter().map(|&(joint, _)| joint).collect();
+        object([
+            ("changed", named(&report.changed)),
+            ("held", named(&held)),
+            ("beyond_limits", named(&report.beyond_limits)),
+        ])
+    }
+}
+
+/// Numbers in the memory of the module.
+enum Numbers<'a> {
+    U8(&'a [u8]),
+    F32(&'a [f32]),
+    F64(&'a [f64]),
+}
+
+impl<'a> Numbers<'a> {
+    /// Finds a vector of the state by MuJoCo's name.
+    fn of_state(s: &'a State, name: &str) -> Option<Self> {
+        Some(Self::F64(match name {
+            "qpos" => &s.qpos,
+            "qvel" => &s.qvel,
+            "qacc" => &s.qacc,
+            "ctrl" => &s.ctrl,
+            "act" => &s.act,
+            "actuator_force" => &s.actuator_force,
+            "qfrc_actuator" => &s.qfrc_actuator,
+            "qfrc_constraint" => &s.qfrc_constraint,
+            "sensordata" => &s.sensordata,
+            "xpos" => s.xpos.as_flattened(),
+            "xquat" => s.xquat.as_flattened(),
+            "xmat" => s.xmat.as_flattened(),
+            "xipos" => s.xipos.as_flattened(),
+            "geom_xpos" => s.geom_xpos.as_flattened(),
+            "geom_xmat" => s.geom_xmat.as_flattened(),
+            "site_xpos" => s.site_xpos.as_flattened(),
+            "site_xmat" => s.site_xmat.as_flattened(),
+            "cam_xpos" => s.cam_xpos.as_flattened(),
+            "cam_xmat" => s.cam_xmat.as_flattened(),
+            "subtree_com" => s.subtree_com.as_flattened(),
+            "xfrc_applied" => s.xfrc_applied.as_flattened(),
+            _ => return None,
+        }))
+    }
+
+    /// Returns kind, address and length.
+    fn place(&self) -> [u32; 3] {
+        let (kind, address, len) = match self {
+            Self::U8(v) => (1, v.as_ptr().addr(), v.len()),
+            Self::F32(v) => (4, v.as_ptr().addr(), v.len()),
+            Self::F64(v) => (8, v.as_ptr().addr(), v.len()),
+        };
+        [kind, address as u32, len as u32]
+    }
+}
+
+/// Forgets what a call returns; its error becomes an `Error`.
+fn done<T>(result: Result<T, babybench::EnvError>) -> Result<(), JsValue> {
+    result.map(drop).map_err(|e| js::env_error(&e))
+}
+
+/// Reads a part, such as `hands`, or the name of a joint.
+fn lock_target(text: &str) -> LockTarget<'_> {
+    let part = Part::ALL.into_iter().find(|p| p.name() == text);
+    part.map_or(LockTarget::Name(text), LockTarget::Part)
+}
+
+fn three(what: &str, values: &[f64]) -> Result<[f64; 3], JsValue> {
+    let found = values.len();
+    <[f64; 3]>::try_from(values).map_err(|_| js::error(format!("{what} has {found} values but needs 3")))
+}

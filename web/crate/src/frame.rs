@@ -1,0 +1,51 @@
+//! What a page draws of the present moment, in single precision.
+
+use babybench::math::mat_t_vec;
+use babybench::model::Model;
+use babybench::physics::State;
+use babybench::render::{Element, Visual};
+use babybench::sensors::Touch;
+
+/// Poses, feelings and contacts of one moment.
+#[derive(Default)]
+pub struct Frame {
+    /// For each thing that is drawn (12): position, m, and rotation matrix, row by row.
+    pub poses: Vec<f32>,
+    /// For each body (7): position, m, and quaternion, w first.
+    pub bodies: Vec<f32>,
+    /// For each touch sensor the size of what it feels, N.
+    pub felt: Vec<f32>,
+    /// For each contact (8): point, m, force on the second body, N, the two bodies.
+    pub contacts: Vec<f32>,
+}
+
+impl Frame {
+    /// Takes the poses at the start of the last physics step, and what was felt there.
+    pub fn update(&mut self, model: &Model, visual: &Visual, s: &State, touch: Option<&Touch>) {
+        self.poses.clear();
+        for d in &visual.drawables {
+            let (pos, mat) = match d.element {
+                Element::Geom(g) => (&s.geom_xpos[g], &s.geom_xmat[g]),
+                Element::Site(i) => (&s.site_xpos[i], &s.site_xmat[i]),
+            };
+            self.poses.extend(pos.iter().chain(mat).map(|&v| v as f32));
+        }
+        self.bodies.clear();
+        for (pos, quat) in s.xpos.iter().zip(&s.xquat) {
+            self.bodies.extend(pos.iter().chain(quat).map(|&v| v as f32));
+        }
+        self.felt.clear();
+        if let Some(touch) = touch {
+            let sizes = touch.values().chunks_exact(touch.width());
+            self.felt
+                .extend(sizes.map(|v| v.iter().map(|x| x * x).sum::<f32>().sqrt()));
+        }
+        self.contacts.clear();
+        for c in s.contact.iter().filter(|c| c.efc_address.is_some()) {
+            let force = mat_t_vec(&c.frame, [c.force[0], c.force[1], c.force[2]]);
+            let bodies = c.geom.map(|g| model.geom_bodyid[g] as f64);
+            let row = c.pos.into_iter().chain(force).chain(bodies);
+            self.contacts.extend(row.map(|v| v as f32));
+        }
+    }
+}

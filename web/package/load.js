@@ -1,0 +1,36 @@
+// How a module of WebAssembly is found and started, in browsers and in node.
+
+/** @typedef {string | URL | Request | Response | BufferSource | WebAssembly.Module} Source */
+
+/**
+ * Finds the bytes of a module: what the caller hands over, or the file beside this one.
+ * @param {Source | undefined} source
+ * @param {URL} beside where the file is, unless the caller says otherwise
+ * @returns {Promise<Request | Response | URL | BufferSource | WebAssembly.Module>}
+ */
+export async function locate(source, beside) {
+  if (typeof source !== "string" && source !== undefined && !(source instanceof URL)) return source;
+  const url = source === undefined ? beside : new URL(source, beside);
+  if (url.protocol !== "file:") return url;
+  // node's fetch does not read files
+  const { readFile } = await import("node:fs/promises");
+  return readFile(url);
+}
+
+/**
+ * Starts a module once; a start that failed can be tried again.
+ * @template T
+ * @param {(source?: Source) => Promise<T>} start
+ * @returns {(source?: Source) => Promise<T>}
+ */
+export function once(start) {
+  /** @type {Promise<T> | undefined} */
+  let started;
+  return (source) => {
+    started ??= start(source).catch((/** @type {unknown} */ error) => {
+      started = undefined;
+      throw error;
+    });
+    return started;
+  };
+}

@@ -1,0 +1,136 @@
+// The types of what goes in and comes out.
+
+/** @typedef {Record<string, string | number | boolean | undefined>} Settings values of a configuration by key */
+
+/**
+ * One key of a configuration.
+ * @typedef {object} ConfigKey
+ * @property {string} name
+ * @property {string} section
+ * @property {"boolean" | "integer" | "number" | "choice" | "text"} kind
+ * @property {string[] | null} options of a choice
+ * @property {number | null} min
+ * @property {number | null} max
+ * @property {string} expected what is allowed, in words
+ * @property {string | number | boolean} default
+ * @property {string} doc what it means
+ */
+
+/**
+ * What MIMo senses. Views on the module's memory: they change with the next step; copy what is to stay.
+ * @typedef {object} Observation
+ * @property {Float64Array} proprioception Gymnasium's key `observation`
+ * @property {Float32Array | null} touch what the skin feels, N
+ * @property {Uint8Array | null} eye_left rows from the top; red, green, blue
+ * @property {Uint8Array | null} eye_right
+ * @property {Float64Array | null} vestibular acceleration, m/s^2, and angular velocity, rad/s, of the head
+ */
+
+/**
+ * @template T
+ * @typedef {{ right_hand: T, left_hand: T }} PerHand
+ */
+
+/**
+ * What a step reports.
+ * @typedef {object} Info
+ * @property {number} steps of the episode
+ * @property {"none" | "self_touch" | "hand_regard"} behavior
+ * @property {PerHand<number[]> | null} touches geoms that each palm has touched
+ * @property {PerHand<string[]> | null} touched_parts their names
+ * @property {number[] | null} regards steps in which each eye saw each hand: right eye with right and left hand, left eye
+ * @property {number[] | null} gaze_angles between the axis of each eye and each hand, rad
+ * @property {number | null} score that the episode would have alone
+ */
+
+/**
+ * The result of a step, in Gymnasium's words.
+ * @typedef {object} Step
+ * @property {Observation} observation
+ * @property {number} reward always 0
+ * @property {boolean} terminated always false
+ * @property {boolean} truncated whether the episode has reached `max_episode_steps`
+ * @property {Info} info
+ */
+
+/**
+ * A camera anywhere, as MuJoCo's `mjvCamera`.
+ * @typedef {object} FreeCamera
+ * @property {[number, number, number]} lookat the point in the middle of the picture, m
+ * @property {number} distance from it, m
+ * @property {number} azimuth degrees, about the vertical
+ * @property {number} elevation degrees, negative from above
+ */
+
+/**
+ * What is drawn of a moment; views on the module's memory.
+ * @typedef {object} Frame
+ * @property {Float32Array} poses 12 for each drawable: position, m, and rotation matrix, row by row
+ * @property {Float32Array} bodies 7 for each body: position, m, and quaternion, w first
+ * @property {Float32Array} felt size of the force at each touch sensor, N
+ * @property {Float32Array} contacts 8 for each contact: point, m, force on the second body, N, the two bodies
+ */
+
+/**
+ * @typedef {object} Joint
+ * @property {string} name
+ * @property {number} body
+ * @property {"free" | "slide" | "hinge"} type
+ * @property {number} qposadr
+ * @property {number} dofadr
+ * @property {[number, number] | null} range
+ * @property {string | null} part of MIMo, as in the keys `lock_*`
+ */
+
+/**
+ * The compiled scene.
+ * @typedef {object} Model
+ * @property {{ name: string, parent: number, mass: number, subtreemass: number, invweight0: [number, number] }[]} bodies
+ * @property {Joint[]} joints
+ * @property {{ name: string, body: number }[]} geoms
+ * @property {{ name: string, body: number, fovy: number }[]} cameras
+ * @property {{ name: string, actuator: number, joint: number, part: string | null, low: number, high: number }[]} actions
+ * @property {number} timestep of the physics, s
+ * @property {number} frame_skip
+ * @property {number} nq
+ * @property {number} nv
+ * @property {number} nu
+ */
+
+/**
+ * @typedef {object} Drawable
+ * @property {string} name
+ * @property {number | null} geom
+ * @property {number} body
+ * @property {"plane" | "sphere" | "capsule" | "cylinder" | "box"} shape
+ * @property {[number, number, number]} size half sizes, m; a capsule's are radius, radius, half length of its cylinder
+ * @property {[number, number, number, number]} rgba
+ * @property {number} emission
+ * @property {number} specular
+ * @property {number} exponent of highlights
+ * @property {number | null} texture
+ * @property {[number, number, number]} texture_scale
+ * @property {number} texture_offset
+ */
+
+/**
+ * How the scene looks.
+ * @typedef {object} Look
+ * @property {Drawable[]} drawables
+ * @property {{ width: number, height: number }[][]} textures one image, or the six sides of a cube
+ * @property {number | null} sky
+ * @property {{ body: number, pos: [number, number, number] | null, dir: [number, number, number], ambient: [number, number, number], diffuse: [number, number, number], specular: [number, number, number] }[]} lights
+ * @property {{ ambient: [number, number, number], diffuse: [number, number, number], specular: [number, number, number] } | null} headlight
+ * @property {number} near
+ * @property {number} far
+ */
+
+/**
+ * What locking changed, by names of joints.
+ * @typedef {object} LockReport
+ * @property {string[]} changed
+ * @property {string[]} held by another constraint of the scene
+ * @property {string[]} beyond_limits
+ */
+
+export {};

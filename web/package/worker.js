@@ -1,0 +1,70 @@
+// A worker that holds environments, so that no step freezes the page. `remote.js` is its other end.
+import init, { Env } from "./babybench.js";
+
+/** @type {Map<number, Env>} */
+const environments = new Map();
+let next = 0;
+
+/** What may be asked of an environment by name. */
+const METHODS = new Set([
+  "reset", "resetTo", "setState", "setActivity", "step", "sampleAction", "seedActionSpace", "update", "texturePixels",
+  "lock", "unlock", "snapshot", "restore", "applyForce", "releaseForces", "draw", "deferVision", "drawEyes", "checksum", "view",
+]);
+const PROPERTIES = new Set(["config", "yaml", "observation", "info", "time", "model", "look", "skin", "proprioceptionNames", "locked"]);
+
+/**
+ * Copies views on the module's memory, which must not leave the worker.
+ * @param {unknown} value
+ * @param {Transferable[]} moved buffers that go along
+ * @returns {unknown}
+ */
+function copied(value, moved) {
+  if (ArrayBuffer.isView(value)) {
+    const copy = /** @type {Uint8Array} */ (value).slice();
+    moved.push(/** @type {ArrayBuffer} */ (copy.buffer));
+    return copy;
+  }
+  if (Array.isArray(value)) return value.map((v) => copied(v, moved));
+  if (value !== null && typeof value === "object") {
+    return Object.fromEntries(Object.entries(value).map(([key, v]) => [key, copied(v, moved)]));
+  }
+  return value;
+}
+
+/**
+ * @param {{ env?: number, what: string, args: any[] }} call
+ * @returns {Promise<unknown>}
+ */
+async function answer({ env: id, what, args }) {
+  if (what === "create") {
+    await init(args[2]);
+    environments.set(next, new Env(args[0], args[1]));
+    return next++;
+  }
+  const env = environments.get(/** @type {number} */ (id));
+  if (!env) throw new Error(`there is no environment ${id}; it may have been freed`);
+  if (what === "free") {
+    environments.delete(/** @type {number} */ (id));
+    return env.free();
+  }
+  const any = /** @type {any} */ (env);
+  if (METHODS.has(what)) return any[what](...args);
+  if (PROPERTIES.has(what)) return any[what];
+  throw new Error(`an environment has no ${what}`);
+}
+
+const scope = /** @type {any} */ (globalThis);
+
+/** @param {any} data */
+async function receive(data) {
+  /** @type {Transferable[]} */
+  const moved = [];
+  try {
+    const value = copied(await answer(data), moved);
+    scope.postMessage({ call: data.call, value }, moved);
+  } catch (error) {
+    const { name, message, key, line, column } = /** @type {any} */ (error);
+    scope.postMessage({ call: data.call, error: { name, message, key, line, column } });
+  }
+}
+scope.onmessage = (/** @type {MessageEvent} */ event) => receive(event.data);

@@ -1,0 +1,54 @@
+// Makes the page's files: `node build.mjs OUT_DIR`. Sources are plain modules; esbuild joins and minifies them, and
+// drops what the page does not use of three.js.
+import { build } from "esbuild";
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
+import { dirname, join, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { lean } from "./lean.mjs";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const out = process.argv[2];
+if (!out) throw new Error("Say where the page goes: node build.mjs OUT_DIR");
+mkdirSync(out, { recursive: true });
+
+/** The package lies beside the page and is not joined to it: it loads its module from where it is. */
+const packageBeside = {
+  name: "package beside the page",
+  setup(b) {
+    b.onResolve({ filter: /^babybench\// }, ({ path }) => ({ path: `./${path}`, external: true }));
+  },
+};
+await build({
+  entryPoints: { main: join(here, "src/main.js"), worker: join(here, "src/worker/main.js") },
+  outdir: out,
+  bundle: true,
+  minify: true,
+  format: "esm",
+  target: "es2022",
+  legalComments: "none",
+  plugins: [lean(join(here, "../node_modules/three")), packageBeside],
+  logLevel: "warning",
+});
+const css = ["tokens", "layout", "controls"].map((name) => readFileSync(join(here, `css/${name}.css`), "utf8")).join("\n");
+await build({ stdin: { contents: css, loader: "css" }, outfile: join(out, "page.css"), minify: true, logLevel: "warning" });
+copyFileSync(join(here, "index.html"), join(out, "index.html"));
+const font = join(here, "../node_modules/@fontsource-variable/inter");
+copyFileSync(join(font, "files/inter-latin-wght-normal.woff2"), join(out, "inter.woff2"));
+const licenses = { "three.js": "three/LICENSE", Inter: "@fontsource-variable/inter/LICENSE" };
+const texts = Object.entries(licenses).map(([name, file]) => `${name}\n\n${readFileSync(join(here, "../node_modules", file), "utf8")}`);
+writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
+
+// what a visit needs is kept for the next one; the module for models only after it was wanted
+const files = readdirSync(out, { recursive: true, withFileTypes: true })
+  .filter((f) => f.isFile())
+  .map((f) => relative(out, join(f.parentPath, f.name)))
+  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2)$|^babybench\/(?!onnx|remote|worker)\w+\.(js|wasm)$/.test(f));
+const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = [];", `const FILES = ${JSON.stringify(["./", ...files])};`);
+await build({ stdin: { contents: sw }, outfile: join(out, "sw.js"), minify: true, logLevel: "warning" });
+
+const scripts = ["main.js", "worker.js", "sw.js"].map((name) => ({ name, raw: statSync(join(out, name)).size, gzip: gzipSync(readFileSync(join(out, name)), { level: 9 }).length }));
+for (const s of scripts) console.log(`${s.name}: ${s.raw} bytes, ${s.gzip} gzip`);
+const total = scripts.reduce((n, s) => n + s.gzip, 0);
+console.log(`JavaScript of the page: ${total} bytes gzip`);
+if (total > 160 * 1024) throw new Error("The page's JavaScript is larger than 160 KB gzip.");

@@ -1,0 +1,145 @@
+// The door of the page: puts its parts together and starts the world.
+import { App } from "./app.js";
+import { $, calm } from "./dom.js";
+import { help } from "./panels/help.js";
+import { move } from "./panels/move.js";
+import { fatal, hideVeil, notices, veil } from "./panels/notices.js";
+import { setup } from "./panels/setup.js";
+import { replay, share } from "./panels/share.js";
+import { tabs } from "./panels/tabs.js";
+import { caption, transport } from "./panels/transport.js";
+import { watch } from "./panels/watch.js";
+import { fromFile } from "./recording.js";
+import { HEAT, heatGradient, place, SCALE } from "./stage/heat.js";
+import { Pointer } from "./stage/pointer.js";
+import { Stage } from "./stage/stage.js";
+import { el } from "./dom.js";
+
+/** Milliseconds between looks through MIMo's eyes. */
+const GLANCE = 100;
+
+function stageOrExplain() {
+  if (typeof WebAssembly !== "object") {
+    fatal("WebAssembly is missing", "MIMo's simulation is a WebAssembly module. Allow WebAssembly in this browser, or open the page in a current Firefox, Chrome, Edge or Safari.");
+    return null;
+  }
+  try {
+    return new Stage(/** @type {HTMLCanvasElement} */ ($("scene")));
+  } catch {
+    fatal("WebGL is missing", "The scene is drawn with WebGL 2. Turn on hardware acceleration in the browser's settings, or open the page in a current Firefox, Chrome, Edge or Safari.");
+    return null;
+  }
+}
+
+/** @param {Stage} stage */
+function theme(stage) {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  let chosen = /** @type {"light" | "dark" | null} */ (null);
+  const apply = () => {
+    const name = chosen ?? (dark.matches ? "dark" : "light");
+    document.documentElement.dataset.theme = name;
+    stage.theme = name;
+  };
+  dark.addEventListener("change", apply);
+  $("theme").addEventListener("click", () => {
+    chosen = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    apply();
+  });
+  apply();
+}
+
+function legend() {
+  $("ramp").style.background = heatGradient();
+  $("ticks").append(...SCALE.map((f, i) => {
+    const tick = el("span", {}, i === SCALE.length - 1 ? `${f} N` : String(f));
+    tick.style.left = `${100 * place(f)}%`;
+    return tick;
+  }));
+  return HEAT.length;
+}
+
+/**
+ * Asks for what the eyes see, as often as one can follow, while somebody looks.
+ * @param {App} app
+ */
+function glances(app) {
+  let waiting = false;
+  let seen = -1;
+  setInterval(async () => {
+    const m = app.moment;
+    if (waiting || !m || document.hidden || $("panel-watch").hidden || m.time === seen || !app.world.alive) return;
+    waiting = true;
+    seen = m.time;
+    try {
+      app.emit("eyes", await app.world.ask("eyes"));
+    } catch (e) {
+      if (app.world.alive) app.notice(`The eyes cannot be drawn: ${/** @type {Error} */ (e).message}`, true);
+      return;
+    }
+    waiting = false;
+  }, GLANCE);
+  app.on("scene", () => {
+    seen = -1;
+    waiting = false;
+  });
+}
+
+/**
+ * Files may be dropped anywhere.
+ * @param {App} app
+ */
+function drops(app) {
+  document.addEventListener("dragover", (e) => e.preventDefault());
+  document.addEventListener("drop", (e) => {
+    e.preventDefault();
+    const file = e.dataTransfer?.files[0];
+    if (!file) return;
+    app.attempt(async () => {
+      if (/\.npz$/i.test(file.name)) await replay(app, await fromFile(new Uint8Array(await file.arrayBuffer())));
+      else if (/\.ya?ml$/i.test(file.name)) await app.make({}, null, await file.text());
+      else if (/\.onnx$/i.test(file.name)) {
+        const about = await app.world.ask("model", await file.arrayBuffer());
+        app.state.policy = "model";
+        app.move();
+        app.notice(`${file.name} moves MIMo now. ${about}`);
+      } else throw new Error(`${file.name} is no recording (.npz), model (.onnx) or configuration (.yml).`);
+    });
+  });
+}
+
+async function main() {
+  const stage = stageOrExplain();
+  if (!stage) return hideVeil();
+  const app = new App(stage, new URL("./worker.js", import.meta.url));
+  theme(stage);
+  stage.compile();
+  legend();
+  notices(app);
+  const openHelp = help();
+  transport(app);
+  caption(app);
+  new Pointer(stage, { pull: (p) => app.pull(p), release: () => app.letGo(), mayPull: (b) => app.movable(b) });
+  tabs({ Watch: watch(app), Move: move(app), Setup: setup(app), Share: share(app) }, () => app.moment && app.emit("tick", app.moment));
+  $("home").addEventListener("click", () => stage.home());
+  stage.canvas.addEventListener("webglcontextlost", (e) => {
+    e.preventDefault();
+    app.notice("The graphics were reset. The picture returns in a moment.", true);
+  });
+  drops(app);
+  document.addEventListener("visibilitychange", () => app.world.tell("asleep", document.hidden));
+  // for the console, and for those who test the page
+  Object.assign(globalThis, { mimo: app, mimoHelp: openHelp });
+  try {
+    const continued = await app.start();
+    glances(app);
+    stage.after.push(hideVeil, () => performance.mark("first frame"));
+    stage.invalidate();
+    if (!continued && !calm() && !new URLSearchParams(location.search).has("paused")) app.play(true);
+  } catch (e) {
+    app.emit("fault", e instanceof Error ? e.message : String(e));
+  }
+  if ("serviceWorker" in navigator && location.protocol !== "file:") navigator.serviceWorker.register("./sw.js").catch(() => {});
+}
+
+veil("Loading MIMo");
+main();

@@ -1,0 +1,41 @@
+// "What am I seeing?"
+import { $, el } from "../dom.js";
+import { button } from "./controls.js";
+
+const link = (/** @type {string} */ href, /** @type {string} */ text) => el("a", { href, rel: "noopener", target: "_blank" }, text);
+
+export function help() {
+  const dialog = /** @type {HTMLDialogElement} */ ($("help"));
+  const close = button("Close", () => dialog.close(), "close tiny");
+  dialog.append(
+    close,
+    el("h2", { id: "help-title" }, "What am I seeing?"),
+    el("p", {}, "MIMo is a model of an infant of about 18 months, built to ask how a mind begins: what can be learned from one’s own body, before words, tasks or rewards? Everything here is computed in this tab, 200 times a simulated second: joints, muscles, contacts, skin, balance and what the eyes see."),
+    el("h3", {}, "The skin"),
+    el("p", {}, "Thousands of sensors cover the body, dense on the fingertips and sparse on the back. Each reports the force upon it. The heat map shows these forces on a logarithmic scale, from a tenth of a newton to ten. What lies hidden under the body shines through faintly."),
+    el("h3", {}, "The eyes"),
+    el("p", {}, "Both eyes move and see in colour. The pictures beside the scene are what MIMo sees, drawn by the library itself, pixel by pixel as a learning program receives them."),
+    el("h3", {}, "The score"),
+    el("p", {}, "BabyBench asks for two behaviors that infants discover on their own. Nobody rewards MIMo for them; a score only counts."),
+    el("ul", {},
+      el("li", {}, "Self-touch: how many parts of the body have the palms found, of all they can reach?"),
+      el("li", {}, "Hand regard: how much of the time is a hand in the centre of an eye’s view?")),
+    el("h3", {}, "What one can do"),
+    el("ul", {},
+      el("li", {}, "Drag any part: a spring pulls it. Drag beside MIMo to turn, scroll or pinch to come closer, hold Shift to move."),
+      el("li", {}, "Take over single joints with sliders, lock others, or drop a trained network (ONNX) on the page."),
+      el("li", {}, "Send a link: it carries this very moment, and goes on with the same bits on another machine.")),
+    el("p", { style: "margin-top:10px" }, el("kbd", {}, "Space"), " play or pause  ", el("kbd", {}, "."), " one step  ", el("kbd", {}, "R"), " reset  ", el("kbd", {}, "?"), " this panel"),
+    el("h3", {}, "Read on"),
+    el("ul", {},
+      el("li", {}, link("https://doi.org/10.1109/ICDL53763.2022.9962192", "Mattern, López, Ernst, Aubret and Triesch: MIMo, a multi-modal infant model for studying cognitive development in humans and AIs"), " (ICDL 2022)"),
+      el("li", {}, link("https://arxiv.org/abs/2312.04318", "Mattern, Schumacher, López, Raabe, Ernst, Aubret and Triesch: MIMo, a multi-modal infant model for studying cognitive development"), " (IEEE TCDS 2024)"),
+      el("li", {}, link("https://babybench.github.io/2025", "BabyBench: the competition at IEEE ICDL 2025")),
+    ),
+  );
+  dialog.addEventListener("click", (e) => {
+    if (e.target === dialog) dialog.close();
+  });
+  $("help-open").addEventListener("click", () => dialog.showModal());
+  return () => dialog.showModal();
+}

@@ -1,0 +1,162 @@
+// The configuration: scene, behavior, body, muscles, seed; and every key of the file, from the library's own table.
+import { download, el, say } from "../dom.js";
+import { capital } from "../names.js";
+import { button, card, check, choice, drop } from "./controls.js";
+
+/** @typedef {import("../types").Key} Key */
+/** @typedef {import("../types").Scene} Scene */
+
+/** @type {[string, string][]} */
+const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"]];
+/** @type {[string, string][]} */
+const BEHAVIORS = [["self_touch", "Self-touch"], ["hand_regard", "Hand regard"], ["none", "None"]];
+/** @type {[string, string][]} */
+const BODIES = [["v1", "Mitten hands (v1)"], ["v2", "Five fingers (v2)"]];
+/** @type {[string, string][]} */
+const ACTUATION = [["spring_damper", "Torque"], ["muscle", "Muscles"], ["positional", "Angles"]];
+
+/** @param {import("../app.js").App} app */
+export function setup(app) {
+  return el("div", {}, scene(app), start(app), file(app), all(app));
+}
+
+/** @param {import("../app.js").App} app */
+function scene(app) {
+  const error = el("p", { className: "error", role: "alert" });
+  const change = async (/** @type {import("../types").Settings} */ settings) => {
+    say(error, "");
+    try {
+      await app.change(settings);
+    } catch (e) {
+      say(error, /** @type {Error} */ (e).message);
+      app.emit("state");
+    }
+  };
+  const places = choice("Scene", SCENES, (v) => change({ scene: v }));
+  const behaviors = choice("Behavior", BEHAVIORS, (v) => change({ behavior: v }));
+  const bodies = choice("Body", BODIES, (v) => change({ behavior: v === "v2" ? "hand_regard" : "self_touch" }));
+  const actuation = choice("Actuation", ACTUATION, (v) => change({ actuation_model: v }));
+  app.on("state", () => {
+    const s = app.state.settings;
+    places.set(String(s.scene));
+    behaviors.set(String(s.behavior));
+    bodies.set(s.behavior === "hand_regard" ? "v2" : "v1");
+    actuation.set(String(s.actuation_model));
+  });
+  const line = (/** @type {string} */ title, /** @type {HTMLElement} */ control, /** @type {string} */ hint) =>
+    el("div", { style: "display:grid;gap:5px" }, el("div", { className: "small" }, title), control, hint ? el("p", { className: "soft small" }, hint) : null);
+  return card(
+    "World",
+    line("Scene", places, ""),
+    line("Behavior", behaviors, ""),
+    line("Body", bodies, "Hand regard has the body with fingers, all else the one with mittens."),
+    line("Actuation", actuation, "Torques, pairs of opposing muscles, or desired angles."),
+    error,
+  );
+}
+
+/** @param {import("../app.js").App} app */
+function start(app) {
+  const seed = el("input", { type: "number", min: 0, max: 2 ** 32 - 1, step: 1, value: 0, "aria-label": "Seed" });
+  const read = () => Math.min(2 ** 32 - 1, Math.max(0, Math.floor(seed.valueAsNumber) || 0));
+  const again = () => app.attempt(() => app.reset(read()));
+  seed.addEventListener("change", again);
+  app.on("state", () => {
+    if (document.activeElement !== seed) seed.valueAsNumber = app.state.seed;
+  });
+  const next = button("Next seed", () => {
+    seed.valueAsNumber = read() + 1;
+    again();
+  });
+  const revive = button("Start the simulation again", () => app.attempt(() => app.revive()), "tiny");
+  seed.style.width = "112px";
+  return card("Start", el("div", { className: "row" }, seed, button("Reset", again), next), el("p", { className: "soft small" }, "Equal seeds give equal runs, here and in every other build of the library."), el("div", {}, revive));
+}
+
+/** @param {import("../app.js").App} app */
+function file(app) {
+  const text = el("textarea", { spellcheck: false, "aria-label": "Configuration as YAML" });
+  const error = el("p", { className: "error", role: "alert" });
+  const use = async () => {
+    say(error, "");
+    try {
+      app.state.locks = [];
+      await app.make({}, null, text.value);
+      app.notice("The configuration is in use.");
+    } catch (e) {
+      say(error, /** @type {Error} */ (e).message);
+    }
+  };
+  app.on("scene", (/** @type {Scene} */ s) => {
+    text.value = s.yaml;
+    say(error, "");
+  });
+  const save = button("Save file", () => download("babybench.yml", new Blob([text.value], { type: "text/yaml" })));
+  const place = drop("Drop a configuration (.yml) here, or choose one", ".yml,.yaml", async (f) => {
+    text.value = await f.text();
+    details.open = true;
+    use();
+  });
+  const details = el("details", { className: "part" }, el("summary", {}, "As a file"), el("div", {}, text, error, el("div", { className: "row", style: "margin-top:8px" }, button("Use", use, "main"), save)));
+  return card("Configuration", place, details);
+}
+
+/** @param {import("../app.js").App} app */
+function all(app) {
+  const list = el("div", { className: "keys" });
+  const error = el("p", { className: "error", role: "alert" });
+  let filled = false;
+  /** @type {Map<string, (value: string | number | boolean) => void>} */
+  const fields = new Map();
+  const set = async (/** @type {string} */ name, /** @type {string | number | boolean} */ value) => {
+    say(error, "");
+    try {
+      await app.change({ [name]: value });
+    } catch (e) {
+      say(error, /** @type {Error} */ (e).message);
+      refresh();
+    }
+  };
+  const refresh = () => {
+    for (const [name, show] of fields) if (name in app.state.settings) show(app.state.settings[name]);
+  };
+  const details = el("details", { className: "part" }, el("summary", {}, "Every setting"), el("div", {}, error, list));
+  details.addEventListener("toggle", async () => {
+    if (!details.open || filled) return refresh();
+    filled = true;
+    /** @type {Key[]} */
+    const keys = await app.world.ask("keys");
+    let section = "";
+    for (const key of keys) {
+      if (key.section !== section) list.append(el("h3", {}, (section = key.section)));
+      const made = field(key, (v) => set(key.name, v));
+      fields.set(key.name, made.show);
+      list.append(made.root);
+    }
+    refresh();
+  });
+  app.on("state", refresh);
+  return card("Advanced", details);
+}
+
+/**
+ * @param {Key} key
+ * @param {(value: string | number | boolean) => void} changed
+ * @returns {{ root: HTMLElement, show: (value: string | number | boolean) => void }}
+ */
+function field(key, changed) {
+  if (key.kind === "boolean") {
+    const box = check(key.name, changed);
+    return { root: el("div", {}, box, el("p", { className: "soft small" }, key.doc)), show: (v) => (box.input.checked = v === true) };
+  }
+  const id = `key-${key.name}`;
+  const hint = el("small", {}, capital(key.doc));
+  if (key.options) {
+    const select = el("select", { id, onchange: () => changed(select.value) }, ...key.options.map((c) => el("option", { value: c }, c)));
+    return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), select, hint), show: (v) => (select.value = String(v)) };
+  }
+  const number = key.kind !== "text";
+  const input = el("input", { id, type: number ? "number" : "text", step: "any", min: key.min, max: key.max });
+  input.addEventListener("change", () => changed(number ? input.valueAsNumber : input.value));
+  return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), input, hint), show: (v) => (input.value = String(v)) };
+}

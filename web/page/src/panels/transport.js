@@ -1,0 +1,56 @@
+// Time: play, one step, reset, speed, the clock; and their keys.
+import { $, el, say } from "../dom.js";
+
+/** @type {[number, string][]} */
+const SPEEDS = [[0.1, "0.1 ×"], [0.25, "0.25 ×"], [0.5, "0.5 ×"], [1, "1 ×"], [2, "2 ×"], [4, "4 ×"], [16, "16 ×"]];
+
+/** @param {import("../app.js").App} app */
+export function transport(app) {
+  const play = $("play");
+  const speed = /** @type {HTMLSelectElement} */ ($("speed"));
+  const clock = $("clock");
+  speed.append(...SPEEDS.map(([value, text]) => el("option", { value, selected: value === 1 }, text)));
+  const toggle = () => app.play(!app.playing);
+  const step = () => {
+    app.play(false);
+    app.attempt(() => app.world.ask("step", 1));
+  };
+  const reset = () => app.attempt(() => app.reset());
+  play.addEventListener("click", toggle);
+  $("step").addEventListener("click", step);
+  $("reset").addEventListener("click", reset);
+  speed.addEventListener("change", () => {
+    app.state.speed = Number(speed.value);
+    app.move();
+  });
+  app.on("state", () => {
+    play.setAttribute("aria-pressed", String(app.playing));
+    play.setAttribute("aria-label", app.playing ? "Pause" : "Play");
+    speed.value = String(app.state.speed);
+  });
+  app.on("tick", (/** @type {import("../types").Moment} */ m) => {
+    const pace = m.playing ? ` ${m.pace.toFixed(2)} × real time` : "";
+    const small = el("small", {}, pace);
+    clock.replaceChildren(`${m.time.toFixed(2)} s`, ...(pace ? [small] : []));
+  });
+  document.addEventListener("keydown", (e) => {
+    const on = /** @type {HTMLElement} */ (e.target);
+    if (e.ctrlKey || e.metaKey || e.altKey || on.closest("input, select, textarea, dialog")) return;
+    const pressable = on.closest("button, a, summary");
+    if (e.key === " " && !pressable) toggle();
+    else if (e.key === ".") step();
+    else if (e.key === "r" || e.key === "R") reset();
+    else if (e.key === "?") $("help-open").click();
+    else return;
+    e.preventDefault();
+  });
+}
+
+/** @param {import("../app.js").App} app */
+export function caption(app) {
+  /** @type {Record<string, string>} */
+  const scenes = { crib: "in its crib", cubes: "among cubes", base: "on the floor" };
+  app.on("scene", (/** @type {import("../types").Scene} */ s) => {
+    say($("where"), `A virtual infant ${scenes[String(s.settings.scene)] ?? ""}: skin, eyes and muscles, alive`);
+  });
+}

@@ -1,0 +1,123 @@
+// What one watches: both eyes, the score of the behavior, the skin, signals over time.
+import { el, say } from "../dom.js";
+import { capital, readable } from "../names.js";
+import { card, check } from "./controls.js";
+import { signals } from "./signals.js";
+
+/** @typedef {import("../types").Score} Score */
+
+/** @param {import("../app.js").App} app */
+export function watch(app) {
+  return el("div", {}, eyes(app), score(app), skin(app), signals(app));
+}
+
+/** @param {import("../app.js").App} app */
+function eyes(app) {
+  // as one faces MIMo, its right eye is on the left
+  const sides = ["right", "left"].map((side) => {
+    const canvas = el("canvas", { width: 64, height: 64, role: "img", "aria-label": `What the ${side} eye sees` });
+    return { canvas, figure: el("figure", {}, canvas, el("figcaption", {}, `${capital(side)} eye`)) };
+  });
+  app.on("eyes", ({ pixels, side }) => {
+    const size = 4 * side * side;
+    sides.forEach(({ canvas }, i) => {
+      if (canvas.width !== side) canvas.width = canvas.height = side;
+      const start = size * (1 - i);
+      canvas.getContext("2d")?.putImageData(new ImageData(pixels.subarray(start, start + size), side), 0, 0);
+    });
+  });
+  return card("What MIMo sees", el("div", { className: "eyes" }, ...sides.map((s) => s.figure)));
+}
+
+/** @type {Record<string, string>} */
+const TITLES = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "No behavior" };
+
+/** @param {import("../app.js").App} app */
+function score(app) {
+  const number = el("strong", {}, "0");
+  const unit = el("span", { className: "soft small" });
+  const fill = el("i");
+  const bar = el("div", { className: "bar", role: "progressbar", "aria-label": "Score", "aria-valuemin": 0, "aria-valuemax": 100 }, fill);
+  const detail = el("div");
+  const section = card("Score so far", el("div", { className: "value" }, number, unit), bar, detail);
+  const heading = /** @type {HTMLElement} */ (section.querySelector("h2"));
+  let drawn = "";
+  app.on("tick", (/** @type {import("../types").Moment} */ moment) => {
+    const s = moment.score;
+    say(heading, s.behavior === "none" ? "Score" : `${TITLES[s.behavior] ?? s.behavior}: score so far`);
+    const percent = s.value === null ? 0 : 100 * s.value;
+    say(number, s.value === null ? "–" : `${percent.toFixed(1)} %`);
+    fill.style.width = `${Math.min(100, percent)}%`;
+    bar.setAttribute("aria-valuenow", percent.toFixed(0));
+    bar.hidden = s.value === null;
+    say(unit, caption(s, moment.truncated));
+    const key = JSON.stringify([s.hands, s.regards]);
+    if (key !== drawn) {
+      drawn = key;
+      detail.replaceChildren(...(s.hands ? [hands(s.hands)] : s.regards ? [regards(s.regards, s.steps)] : []));
+    }
+  });
+  return section;
+}
+
+/**
+ * @param {Score} s
+ * @param {boolean} truncated
+ */
+function caption(s, truncated) {
+  const over = truncated ? " · episode complete" : "";
+  if (s.behavior === "self_touch") return `of the parts both palms can touch${over}`;
+  if (s.behavior === "hand_regard") return `of the time, hands in view${over}`;
+  return "Choose a behavior in Setup to count";
+}
+
+/** @param {NonNullable<Score["hands"]>} h */
+function hands(h) {
+  const side = (/** @type {string} */ title, /** @type {string[]} */ list) =>
+    el("dl", {}, el("dt", {}, title), el("dd", {}, el("span", { className: "number" }, `${list.length} of ${h.reachable} parts`), el("div", { className: "parts" }, ...list.slice(-6).map((t) => el("span", {}, readable(t))))));
+  return el("div", { className: "hands" }, side("Right palm", h.right), side("Left palm", h.left));
+}
+
+/**
+ * @param {NonNullable<Score["regards"]>} counts
+ * @param {number} steps
+ */
+function regards(counts, steps) {
+  const share = (/** @type {number} */ i) => el("td", {}, steps ? `${((100 * counts[i]) / steps).toFixed(1)} %` : "–");
+  const head = el("tr", {}, el("th", { scope: "col" }, "In view of"), el("th", { scope: "col" }, "right hand"), el("th", { scope: "col" }, "left hand"));
+  const row = (/** @type {string} */ eye, /** @type {number} */ i) => el("tr", {}, el("th", { scope: "row" }, eye), share(i), share(i + 1));
+  return el("table", { className: "matrix" }, el("thead", {}, head), el("tbody", {}, row("Right eye", 0), row("Left eye", 2)));
+}
+
+/** @param {import("../app.js").App} app */
+function skin(app) {
+  const { stage } = app;
+  const glow = check("Heat map of touch", (on) => {
+    if (stage.skin) stage.skin.visible = on && app.scene !== null && app.scene.skin.of.length > 0;
+    stage.glow = on;
+    stage.invalidate();
+  }, true);
+  const dots = check("All sensors as dots", (on) => {
+    stage.dots = on;
+    if (stage.skin) stage.skin.dots = on;
+    stage.invalidate();
+  }, true);
+  const arrows = check("Contact forces as arrows", (on) => {
+    stage.arrows.visible = on;
+    if (app.moment) stage.show(app.frame, app.moment, 0);
+  });
+  const shadows = check("Shadows", (on) => {
+    stage.studio.key.castShadow = on;
+    stage.invalidate();
+  }, true);
+  const follow = check("Camera follows MIMo", (on) => {
+    stage.orbit.follow = on;
+  }, true);
+  const count = el("p", { className: "soft small" });
+  app.on("scene", (/** @type {import("../types").Scene} */ scene) => {
+    const n = scene.skin.of.length;
+    say(count, n ? `${n.toLocaleString("en")} sensors. Each glows with the force upon it and fades when it ends.` : "This configuration has no sense of touch. Turn on touch_active in Setup.");
+    follow.input.checked = stage.orbit.follow;
+  });
+  return card("In the scene", count, glow, dots, arrows, shadows, follow);
+}

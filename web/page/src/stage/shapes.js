@@ -1,0 +1,83 @@
+// Geometry of the model's shapes, in true size where stretching would deform them.
+import { BoxGeometry, CapsuleGeometry, CylinderGeometry, PlaneGeometry, SphereGeometry } from "three";
+
+/** @typedef {import("../types").Drawable} Drawable */
+
+/** Planes reach further than one sees; the renderer needs an end. */
+const FAR = 12;
+
+/**
+ * Returns what instances of a drawable are scaled by: its size, or nothing where the geometry has it already.
+ * @param {Drawable} d
+ * @returns {[number, number, number]}
+ */
+export function stretch(d) {
+  if (d.shape === "capsule") return [1, 1, 1];
+  if (d.shape === "plane") return [Math.min(d.size[0] || FAR, FAR), Math.min(d.size[1] || FAR, FAR), 1];
+  return d.size;
+}
+
+/**
+ * Returns a word that is equal for drawables which one geometry can show.
+ * @param {Drawable} d
+ */
+export function shapeKey(d) {
+  return d.shape === "capsule" ? `capsule ${d.size.map((v) => v.toFixed(5)).join(" ")}` : d.shape;
+}
+
+/**
+ * @param {Drawable} d
+ * @returns {import("three").BufferGeometry}
+ */
+export function geometry(d) {
+  const small = Math.max(...d.size) < 0.02;
+  switch (d.shape) {
+    case "plane":
+      return new PlaneGeometry(2, 2);
+    case "sphere":
+      return new SphereGeometry(1, 40, 24);
+    case "cylinder":
+      return new CylinderGeometry(1, 1, 2, 64).rotateX(Math.PI / 2);
+    case "box":
+      return new BoxGeometry(2, 2, 2);
+    case "capsule":
+      return new CapsuleGeometry(d.size[0], 2 * d.size[2], small ? 6 : 12, small ? 14 : 32).rotateX(Math.PI / 2);
+  }
+}
+
+/**
+ * Distance of a point to the surface of a drawable, and the way out of it there; both in the drawable's frame.
+ * @param {Drawable} d
+ * @param {import("three").Vector3} p
+ * @param {import("three").Vector3} out the unit normal
+ * @returns {number}
+ */
+export function surface(d, p, out) {
+  const [x, y, z] = d.size;
+  if (d.shape === "capsule") {
+    out.set(p.x, p.y, p.z - Math.max(-z, Math.min(z, p.z)));
+    const r = out.length();
+    out.divideScalar(r || 1);
+    return Math.abs(r - x);
+  }
+  if (d.shape === "sphere") {
+    const r = Math.hypot(p.x / x, p.y / y, p.z / z);
+    out.set(p.x / (x * x), p.y / (y * y), p.z / (z * z)).normalize();
+    return Math.abs(r - 1) * Math.min(x, y, z);
+  }
+  if (d.shape === "cylinder") {
+    const side = Math.hypot(p.x, p.y);
+    const [toSide, toCap] = [Math.abs(side - x), Math.abs(Math.abs(p.z) - z)];
+    if (toSide <= toCap) out.set(p.x, p.y, 0).normalize();
+    else out.set(0, 0, Math.sign(p.z));
+    return Math.min(toSide, toCap) + Math.max(0, side - x) + Math.max(0, Math.abs(p.z) - z);
+  }
+  if (d.shape === "box") {
+    const over = [Math.abs(p.x) - x, Math.abs(p.y) - y, Math.abs(p.z) - z];
+    const axis = over.indexOf(Math.max(...over));
+    out.set(0, 0, 0).setComponent(axis, Math.sign(p.getComponent(axis)) || 1);
+    return Math.abs(over[axis]) + over.reduce((sum, v, i) => sum + (i === axis ? 0 : Math.max(0, v)), 0);
+  }
+  out.set(0, 0, 1);
+  return Infinity;
+}

@@ -1,0 +1,213 @@
+// The scene on the page: draws when something changed, and only then.
+import { NeutralToneMapping, Scene as Root, Vector3, WebGLRenderer } from "three";
+import { CONTACT } from "../frame.js";
+import { Arrows } from "./arrows.js";
+import { Bodies } from "./bodies.js";
+import { Studio, THEMES } from "./lights.js";
+import { Orbit } from "./orbit.js";
+import { rehearsal } from "./rehearsal.js";
+import { Skin, toWorld } from "./skin.js";
+import { Spring } from "./spring.js";
+
+/** @typedef {import("../types").Scene} Scene */
+/** @typedef {import("../types").Moment} Moment */
+
+/** Starting views: azimuth, elevation, distance. */
+/** @type {Record<string, [number, number, number]>} */
+const VIEWS = { crib: [-0.98, 0.8, 1.72], cubes: [-0.42, 0.26, 1.7], base: [-0.8, 0.5, 1.7] };
+
+export class Stage {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.info.autoReset = false;
+    // asking for errors waits for the compiler of the graphics card
+    this.renderer.debug.checkShaderErrors = false;
+    this.root = new Root();
+    this.orbit = new Orbit();
+    this.studio = new Studio(this.renderer);
+    this.arrows = new Arrows();
+    this.spring = new Spring();
+    this.root.add(this.studio, this.arrows, this.spring);
+    /** @type {Bodies | null} */
+    this.bodies = null;
+    /** @type {Skin | null} */
+    this.skin = null;
+    /** @type {Scene | null} */
+    this.scene = null;
+    this.bodyPoses = new Float32Array(0);
+    /** @type {[number, number, number] | null} where the pointer pulls to */
+    this.target = null;
+    /** Milliseconds of script of the last frames, for those who measure. */
+    this.cost = new Float32Array(120);
+    this.frames = 0;
+    this.busy = false;
+    this.pending = 0;
+    /** @type {(() => void)[]} */
+    this.after = [];
+    this.dots = true;
+    this.glow = true;
+    this.jump = true;
+    this.shown = 0;
+    this.followed = new Vector3();
+    /** How far away the camera looks, m. */
+    this.focus = { value: 2 };
+    this.shared = { rim: this.studio.rim, focus: this.focus };
+    /** Whether the shaders are there; before, nothing is drawn. */
+    this.compiled = false;
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+  }
+
+  /** @param {"light" | "dark"} name */
+  set theme(name) {
+    this.studio.paint(this.root, THEMES[name]);
+    this.invalidate();
+  }
+
+  /** Compiles the shaders while the world is loaded. */
+  async compile() {
+    // kept, so that what was compiled is
+    this.rehearsed = rehearsal(this.shared).add(this.studio.ground.clone());
+    await this.renderer.compileAsync(this.rehearsed, this.orbit.camera, this.root);
+    this.compiled = true;
+    this.invalidate();
+  }
+
+  /** @param {Scene} scene */
+  build(scene) {
+    const fresh = this.scene?.settings.scene !== scene.settings.scene;
+    this.bodies?.dispose();
+    this.skin?.dispose();
+    this.root.remove(...[this.bodies, this.skin].filter((o) => o !== null));
+    this.scene = scene;
+    // the page has its own ground
+    const drawables = scene.drawables.map((d) => (d.shape === "plane" && d.body === 0 ? { ...d, rgba: /** @type {[number, number, number, number]} */ ([0, 0, 0, 0]) } : d));
+    this.bodies = new Bodies({ ...scene, drawables }, this.shared);
+    this.skin = new Skin(scene);
+    this.skin.dots = this.dots;
+    this.skin.visible &&= this.glow;
+    this.root.add(this.bodies, this.skin);
+    this.jump = true;
+    if (fresh) this.home();
+  }
+
+  /** Returns to the view with which the scene starts. */
+  home() {
+    const [azimuth, elevation, distance] = VIEWS[String(this.scene?.settings.scene)] ?? VIEWS.base;
+    const narrow = Math.max(1, 1.15 / (this.orbit.camera.aspect || 1));
+    this.orbit.view = [azimuth, elevation, distance * narrow, 0, 0, 0, 1];
+    this.jump = true;
+    this.invalidate();
+  }
+
+  /**
+   * Shows a frame.
+   * @param {Float32Array} frame
+   * @param {Moment} moment
+   * @param {number} seconds since the last frame
+   */
+  show(frame, moment, seconds) {
+    const start = performance.now();
+    const { scene, bodies, skin } = this;
+    if (!scene || !bodies || !skin) return;
+    const l = scene.layout;
+    const poses = frame.subarray(l.poses, l.bodies);
+    const bodyPoses = frame.subarray(l.bodies, l.felt);
+    if (this.bodyPoses.length !== bodyPoses.length) this.bodyPoses = new Float32Array(bodyPoses.length);
+    this.bodyPoses.set(bodyPoses);
+    bodies.place(poses);
+    skin.feel(poses, bodyPoses, frame.subarray(l.felt, l.action), this.jump ? 1e3 : seconds);
+    this.arrows.show(frame.subarray(l.contacts, l.contacts + CONTACT * moment.contacts), moment.contacts);
+    this.centre(this.followed);
+    this.orbit.track(this.followed, this.jump ? 0 : seconds);
+    this.jump = false;
+    this.stretch(moment);
+    this.shown = performance.now() - start;
+    this.invalidate();
+  }
+
+  /** @param {Moment} moment */
+  stretch(moment) {
+    const { pull } = moment;
+    if (!pull || !this.target) {
+      this.spring.visible = false;
+      return;
+    }
+    const from = new Vector3(...pull.at);
+    toWorld(from, this.bodyPoses, 7 * pull.body);
+    this.spring.stretch(from, new Vector3(...this.target));
+  }
+
+  /**
+   * The centre of MIMo's mass.
+   * @param {Vector3} out
+   */
+  centre(out) {
+    const { scene, bodyPoses } = this;
+    if (!scene) return;
+    const first = scene.bodies.findIndex((b) => b.name === "hip");
+    out.set(0, 0, 0);
+    let mass = 0;
+    scene.bodies.forEach((b, i) => {
+      if (i < first || b.mass === 0) return;
+      if (i !== first && !descends(scene, i, first)) return;
+      mass += b.mass;
+      out.x += b.mass * bodyPoses[7 * i];
+      out.y += b.mass * bodyPoses[7 * i + 1];
+      out.z += b.mass * bodyPoses[7 * i + 2];
+    });
+    out.divideScalar(mass || 1);
+  }
+
+  /** @param {import("three").Raycaster} ray */
+  pick(ray) {
+    return this.bodies?.pick(ray) ?? null;
+  }
+
+  resize() {
+    const { clientWidth: w, clientHeight: h } = this.canvas;
+    if (!w || !h) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(w, h, false);
+    this.orbit.camera.aspect = w / h;
+    this.orbit.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  /** Draws in the next frame of the screen. */
+  invalidate() {
+    if (this.pending || !this.scene || !this.compiled) return;
+    this.pending = requestAnimationFrame(() => {
+      this.pending = 0;
+      this.draw();
+    });
+  }
+
+  draw() {
+    const start = performance.now();
+    const { orbit, skin, renderer } = this;
+    orbit.update();
+    this.studio.aim(orbit.at);
+    this.focus.value = orbit.distance;
+    skin?.uniforms.eyePoint.value.copy(orbit.camera.position);
+    renderer.info.reset();
+    renderer.render(this.root, orbit.camera);
+    this.cost[this.frames % this.cost.length] = performance.now() - start + this.shown;
+    this.shown = 0;
+    this.frames++;
+    for (const done of this.after.splice(0)) done();
+  }
+}
+
+/**
+ * @param {Scene} scene
+ * @param {number} body
+ * @param {number} ancestor
+ */
+function descends(scene, body, ancestor) {
+  for (let b = body; b > 0; b = scene.bodies[b].parent) if (b === ancestor) return true;
+  return false;
+}

@@ -1,0 +1,146 @@
+// What the page and its worker say to each other, and what both keep.
+
+/** A visible geom or site; `size` scales the unit shape, m. */
+export interface Drawable {
+  body: number;
+  shape: "plane" | "sphere" | "capsule" | "cylinder" | "box";
+  size: [number, number, number];
+  rgba: [number, number, number, number];
+  specular: number;
+  exponent: number;
+  emission: number;
+  texture: number | null;
+  textureScale: [number, number, number];
+  textureOffset: number;
+}
+
+/** One image of a texture: RGBA, rows from the top. */
+export interface TextureFace {
+  width: number;
+  height: number;
+  pixels: Uint8Array<ArrayBuffer>;
+}
+
+export interface Joint {
+  name: string;
+  part: string | null;
+  qpos: number;
+  dof: number;
+  low: number;
+  high: number;
+  locked: boolean;
+}
+
+export interface Action {
+  name: string;
+  part: string | null;
+  low: number;
+  high: number;
+}
+
+/** One entry of the table of configuration keys. */
+export interface Key {
+  name: string;
+  section: string;
+  kind: "boolean" | "integer" | "number" | "choice" | "text";
+  options: string[] | null;
+  min: number | null;
+  max: number | null;
+  doc: string;
+  default: string | number | boolean;
+}
+
+export type Settings = Record<string, string | number | boolean>;
+
+/** What the page learns once about a world. */
+export interface Scene {
+  /** Every key. */
+  settings: Settings;
+  /** The keys that differ from their defaults. */
+  changed: Settings;
+  yaml: string;
+  drawables: Drawable[];
+  textures: TextureFace[][];
+  bodies: { name: string; parent: number; mass: number; invweight: number; movable: boolean }[];
+  joints: Joint[];
+  actions: Action[];
+  cameras: string[];
+  skin: { at: Float32Array; of: Uint16Array };
+  layout: Layout;
+  /** Seconds of a step. */
+  timestep: number;
+}
+
+/** Where the parts of a frame start, in numbers of 4 bytes. */
+export interface Layout {
+  poses: number;
+  bodies: number;
+  felt: number;
+  action: number;
+  angles: number;
+  torques: number;
+  balance: number;
+  contacts: number;
+  length: number;
+}
+
+/** What the behavior counts, for people. */
+export interface Score {
+  behavior: string;
+  value: number | null;
+  steps: number;
+  hands: { right: string[]; left: string[]; reachable: number } | null;
+  regards: [number, number, number, number] | null;
+}
+
+/** What comes with the numbers of a frame. */
+export interface Moment {
+  time: number;
+  steps: number;
+  /** Milliseconds of a step, smoothed. */
+  cost: number;
+  /** Simulated seconds per second. */
+  pace: number;
+  playing: boolean;
+  truncated: boolean;
+  contacts: number;
+  score: Score;
+  recorded: number | null;
+  replay: { done: number; of: number } | null;
+  memory: number;
+  pull: { body: number; at: [number, number, number]; force: number } | null;
+}
+
+export type PolicyName = "babbling" | "random" | "sine" | "zero" | "model" | "replay";
+
+/** What makes a page: enough to continue with the same bits. */
+export interface PageState {
+  settings: Settings;
+  seed: number;
+  policy: PolicyName;
+  /** Sliders that are held, by index of the action. */
+  held: Record<number, number>;
+  /** How strongly babbling and sine move, 0 to 1. */
+  vigour: number;
+  speed: number;
+  view?: number[];
+  locks: string[];
+}
+
+/** A request to the worker: a name, an id to answer with, and its arguments. */
+export interface Request {
+  id: number;
+  name: string;
+  args: unknown[];
+}
+
+/** A recording as `babybench replay` reads it. */
+export interface Recording {
+  qpos0: Float64Array;
+  qvel0: Float64Array;
+  activity0: Float64Array;
+  actions: Float32Array;
+  steps: number;
+  yaml: string | null;
+  end: Float64Array | null;
+}

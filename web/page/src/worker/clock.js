@@ -1,0 +1,66 @@
+// The pace of a world: as many steps as the time that has passed asks for, and never more than a frame can bear.
+
+/** Longest stretch of steps without a look at messages, ms. */
+const BUDGET = 24;
+/** Milliseconds between looks at the time. */
+const BEAT = 8;
+
+export class Clock {
+  /**
+   * @param {() => void} step one step of the world
+   * @param {() => number} seconds simulated seconds of a step
+   * @param {(stepped: number) => void} show
+   * @param {() => boolean} ready whether another frame may be made
+   * @param {(error: unknown) => void} fail
+   */
+  constructor(step, seconds, show, ready, fail) {
+    this.step = step;
+    this.seconds = seconds;
+    this.show = show;
+    this.ready = ready;
+    this.fail = fail;
+    this.playing = false;
+    this.speed = 1;
+    this.debt = 0;
+    this.last = 0;
+    /** Milliseconds of a step and simulated seconds per second, smoothed. */
+    this.cost = 0;
+    this.pace = 0;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.timer = undefined;
+  }
+
+  /** @param {boolean} on */
+  play(on) {
+    if (on === this.playing) return;
+    this.playing = on;
+    clearTimeout(this.timer);
+    this.debt = this.pace = 0;
+    this.last = performance.now();
+    if (on) this.timer = setTimeout(() => this.beat(), 0);
+  }
+
+  beat() {
+    this.timer = setTimeout(() => this.beat(), BEAT);
+    if (!this.ready()) return;
+    const now = performance.now();
+    const passed = (now - this.last) / 1000;
+    this.last = now;
+    this.debt = Math.min(this.debt + passed * this.speed, 0.25 * this.speed + this.seconds());
+    let done = 0;
+    try {
+      while (this.playing && this.debt >= this.seconds() && performance.now() - now < BUDGET) {
+        this.debt -= this.seconds();
+        this.step();
+        done++;
+      }
+      if (!done) return;
+      this.cost += 0.1 * ((performance.now() - now) / done - this.cost);
+      this.pace += 0.05 * ((done * this.seconds()) / Math.max(passed, 1e-3) - this.pace);
+      this.show(done);
+    } catch (e) {
+      this.play(false);
+      this.fail(e);
+    }
+  }
+}

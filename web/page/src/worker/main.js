@@ -1,0 +1,134 @@
+// The worker: it owns the world, and answers the page.
+import { load, PageEnv } from "./env.js";
+import { Model } from "./model.js";
+import { LiveWorld } from "./world.js";
+
+/** @typedef {import("./world.js").Movement} Movement */
+
+/** @type {LiveWorld | null} */
+let live = null;
+let wanted = false;
+
+const post = (/** @type {any} */ message, /** @type {Transferable[]} */ transfer = []) => postMessage(message, { transfer });
+const event = (/** @type {string} */ name, /** @type {unknown} */ data) => post({ event: name, data });
+
+function world() {
+  if (!live) throw new Error("There is no world yet.");
+  return live;
+}
+
+/**
+ * Makes a network the policy of the world.
+ * @param {Uint8Array} bytes
+ */
+async function bring(bytes) {
+  const w = world();
+  const model = await Model.load(bytes, w.env);
+  w.model?.free();
+  w.model = model;
+  return model.about;
+}
+
+/**
+ * Whether the module is past using: it trapped, or got no memory.
+ * @param {unknown} e
+ */
+const deadly = (e) => e instanceof WebAssembly.RuntimeError || e instanceof RangeError || (e instanceof Error && e.name === "ModuleError");
+
+/** @param {unknown} e */
+function failed(e) {
+  if (deadly(e)) post({ fatal: String(e) });
+  else event("error", e instanceof Error ? e.message : String(e));
+}
+
+/**
+ * Makes an environment and brings it to where it starts.
+ * @param {{ settings: import("../types").Settings | string, seed: number, locks: string[], snapshot: Uint8Array | null }} d
+ */
+function build(d) {
+  const env = new PageEnv(d.settings);
+  try {
+    env.reset(d.seed);
+    for (const joint of d.locks) env.lock(joint, true);
+    if (d.snapshot) env.restore(d.snapshot);
+    return env;
+  } catch (e) {
+    env.free();
+    throw e;
+  }
+}
+
+/** What the page can ask for, by name. */
+/** @type {Record<string, (...args: any[]) => unknown>} */
+const answers = {
+  load: () => load(),
+
+  /** @param {{ settings: import("../types").Settings | string, locks: string[], snapshot: Uint8Array | null } & Movement} d */
+  async make(d) {
+    live?.clock.play(false);
+    const last = live && { settings: live.env.yaml, snapshot: live.env.snapshot(), seed: 0, locks: [] };
+    // two worlds at once would take twice the memory, and leave it in pieces
+    live?.env.free();
+    /** @type {PageEnv} */
+    let env;
+    try {
+      env = build(d);
+    } catch (e) {
+      if (live && last) live.env = build(last);
+      live?.clock.play(wanted);
+      throw e;
+    }
+    const bytes = live?.model?.bytes;
+    live?.model?.free();
+    const strength = live?.spring.strength;
+    live = new LiveWorld(env, d, { frame: (buffer, moment) => post({ frame: buffer, moment }, [buffer]), event, fail: failed });
+    if (strength !== undefined) live.spring.strength = strength;
+    if (bytes) await bring(bytes).catch((e) => event("error", `The model does not fit this configuration: ${e.message}`));
+    live.clock.play(wanted);
+    return { ...env.scene(), layout: live.layout };
+  },
+  look: () => world().show(),
+  play(/** @type {boolean} */ on) {
+    wanted = on;
+    world().clock.play(on);
+    if (!on) world().show();
+  },
+  asleep(/** @type {boolean} */ asleep) {
+    live?.clock.play(wanted && !asleep);
+  },
+  step(/** @type {number} */ n) {
+    world().steps(n);
+  },
+  reset: (/** @type {number} */ seed) => world().reset(seed),
+  move: (/** @type {Movement} */ m) => world().move(m),
+  strength: (/** @type {number} */ v) => void (world().spring.strength = v),
+  pull(/** @type {any} */ held) {
+    const w = world();
+    w.spring.hold(held);
+    if (!held) w.env.clearForces();
+    if (!w.clock.playing) w.show();
+  },
+  lock: (/** @type {string} */ part, /** @type {boolean} */ on) => world().env.lock(part, on),
+  snapshot: () => world().env.snapshot(),
+  eyes: () => world().env.eyes(),
+  keys: () => PageEnv.keys(),
+  record: () => world().record(),
+  endRecording: () => world().endRecording(),
+  replay: (/** @type {import("../types").Recording} */ r) => world().startReplay(r),
+  model: async (/** @type {ArrayBuffer} */ bytes) => bring(new Uint8Array(bytes)),
+  checksum: () => world().env.checksum(),
+};
+
+onmessage = async ({ data }) => {
+  if (data.back) return live?.back(data.back);
+  const { id, name, args } = data;
+  try {
+    const value = await answers[name](...args);
+    if (id) post({ id, value });
+  } catch (e) {
+    const fatal = deadly(e);
+    const error = e instanceof Error ? e.message : String(e);
+    if (id) post({ id, error, fatal });
+    else failed(e);
+  }
+};

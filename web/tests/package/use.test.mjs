@@ -1,0 +1,170 @@
+// The package as its users meet it.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { setFlagsFromString } from "node:v8";
+import { runInNewContext } from "node:vm";
+import { gzipSync } from "node:zlib";
+import init, { Blueprint, configKeys, Env, memoryBytes } from "../../dist/babybench/babybench.js";
+
+const folder = fileURLToPath(new URL("../../dist/babybench", import.meta.url));
+const crib = { behavior: "self_touch", scene: "crib", vision_active: false };
+
+before(() => init());
+
+test("the module is small", () => {
+  const bytes = readFileSync(join(folder, "core_bg.wasm"));
+  const gzip = gzipSync(bytes, { level: 9 }).length;
+  console.log(`core_bg.wasm: ${bytes.length} bytes, ${gzip} gzip`);
+  assert.ok(bytes.length <= 2.8e6 && gzip <= 1.25e6, `${bytes.length}, ${gzip}`);
+});
+
+test("a program elsewhere installs and runs it", () => {
+  const place = mkdtempSync(join(tmpdir(), "babybench-"));
+  const run = (/** @type {string} */ program, /** @type {string[]} */ args) => execFileSync(program, args, { cwd: place, encoding: "utf8" });
+  try {
+    run("npm", ["pack", folder, "--pack-destination", place]);
+    const [archive] = readdirSync(place).filter((file) => file.endsWith(".tgz"));
+    writeFileSync(join(place, "package.json"), '{ "type": "module" }');
+    run("npm", ["install", "--offline", "--no-audit", "--no-fund", join(place, archive)]);
+    writeFileSync(join(place, "main.js"), `
+      import init, { Env } from "babybench";
+      await init();
+      const env = new Env({ behavior: "self_touch", scene: "crib", vision_active: false });
+      env.reset(7);
+      let felt = 0;
+      for (let k = 0; k < 50; k++) {
+        const { observation } = env.step(env.sampleAction());
+        felt += observation.touch.reduce((sum, force) => sum + force, 0);
+      }
+      console.log(env.info.steps, felt > 0);`);
+    assert.equal(run("node", ["main.js"]), "50 true\n");
+  } finally {
+    rmSync(place, { recursive: true });
+  }
+});
+
+test("errors tell key and place", () => {
+  assert.throws(() => new Env("scene: crib\nbehaviour: none\n", "my.yml"), { name: "ConfigError", message: "my.yml:2:1: unknown key `behaviour`; did you mean `behavior`?", key: "behaviour", line: 2, column: 1 });
+  assert.throws(() => new Env({ engine: "rapier" }), /--features rapier/);
+  const env = new Env(crib);
+  assert.throws(() => env.step(), /call reset before step/);
+  env.reset(0);
+  assert.throws(() => env.step([0]), /the action has 1 values/);
+  assert.throws(() => env.step(env.action.map(() => NaN)), /actions must be finite/);
+  assert.throws(() => env.lock("robot:third_elbow"), /no joint "robot:third_elbow"/);
+  assert.throws(() => env.applyForce(9999, [0, 0, 1], [0, 0, 0], [0, 0, 0]), /there is no body 9999/);
+  assert.throws(() => env.draw("moon", 8, 8), /camera named "moon"/);
+  assert.throws(() => env.draw("corner", 0, 8), /0 x 8 pixels/);
+  assert.throws(() => env.restore(new Uint8Array(3)), /not a snapshot/);
+  env.free();
+});
+
+test("what is described fits the numbers", () => {
+  const env = new Env({ behavior: "hand_regard", scene: "cubes" });
+  const seen = env.reset(0);
+  const { poses, bodies, felt } = env.update();
+  assert.equal(poses.length, 12 * env.look.drawables.length);
+  assert.equal(bodies.length, 7 * env.model.bodies.length);
+  assert.equal(felt.length, env.skin.bodies.length);
+  assert.equal(seen.eye_left?.length, 3 * 64 * 64, "though the memory has grown");
+  assert.equal(env.model.actions.length, env.action.length);
+  assert.equal(env.proprioceptionNames.at(-1)?.end, seen.proprioception.length);
+  assert.deepEqual(configKeys().map((key) => key.name), Object.keys(env.config));
+  for (const [t, faces] of env.look.textures.entries()) {
+    faces.forEach(({ width, height }, f) => assert.equal(env.texturePixels(t, f).length, 4 * width * height));
+  }
+  const picture = env.draw({ lookat: [0, 0, 0.3], distance: 1.5, azimuth: 120, elevation: -20 }, 40, 30);
+  assert.ok(picture.length === 4 * 40 * 30 && new Set(picture).size > 20);
+  assert.ok(Array.from({ length: 1200 }, (_, k) => picture[4 * k + 3]).every((alpha) => alpha === 255));
+  env.free();
+});
+
+test("a configuration goes round as text", () => {
+  const one = new Blueprint({ ...crib, save_dir: "some place: #1", touch_scale: 2 });
+  const other = new Blueprint(one.yaml);
+  assert.deepEqual(other.config, one.config);
+  assert.equal(one.config.save_dir, "some place: #1");
+  const [a, b] = [one.env(), new Env(other)];
+  a.reset(3), b.reset(3);
+  a.step(a.sampleAction()), b.step(b.sampleAction());
+  assert.equal(a.checksum(), b.checksum());
+  for (const x of [a, b, one, other]) x.free();
+});
+
+test("a snapshot continues with the same bits, in another environment too", () => {
+  const [env, other] = [new Env(crib), new Env(crib)];
+  env.reset(1);
+  env.lock("head", 0.1);
+  env.applyForce(10, [0, 0, 2]);
+  for (let k = 0; k < 30; k++) env.step(env.sampleAction());
+  const { contacts, poses } = env.update();
+  const there = [contacts.length > 0, poses.length];
+  const snapshot = env.snapshot();
+  other.restore(snapshot);
+  const drawn = other.update();
+  assert.deepEqual([drawn.contacts.length > 0, drawn.poses.length], there);
+  assert.deepEqual(other.locked, env.locked);
+  for (let k = 0; k < 30; k++) {
+    env.step(env.sampleAction());
+    other.step(other.sampleAction());
+  }
+  assert.equal(other.checksum(), env.checksum());
+  env.free(), other.free();
+});
+
+test("a force moves a hand, and its release leaves none", () => {
+  const env = new Env(crib);
+  env.reset(0);
+  const hand = env.model.bodies.findIndex((body) => body.name === "left_hand");
+  const height = () => Number(env.view("xpos")?.[3 * hand + 2]);
+  const started = height();
+  for (let k = 0; k < 40; k++) {
+    env.releaseForces();
+    env.applyForce(hand, [0, 0, 6]);
+    env.step(env.action.fill(0));
+  }
+  assert.ok(height() > started + 0.1, `${started} to ${height()}`);
+  env.releaseForces();
+  assert.ok(env.view("xfrc_applied")?.every((v) => v === 0));
+  env.free();
+});
+
+test("resets and scenes take no more memory", () => {
+  const env = new Env(crib);
+  const scenes = /** @type {const} */ (["base", "crib", "cubes"]);
+  const change = (/** @type {number} */ k) => {
+    const other = new Env({ scene: scenes[k % 3], behavior: k % 2 ? "none" : "hand_regard" });
+    other.reset(k);
+    other.step(other.sampleAction());
+    other.draw("corner", 64, 64);
+    other.free();
+  };
+  for (let k = 0; k < 20; k++) env.reset(k);
+  for (let k = 0; k < 6; k++) change(k);
+  const settled = memoryBytes();
+  for (let k = 0; k < 1000; k++) env.reset(k);
+  for (let k = 0; k < 50; k++) change(k);
+  console.log(`memory: ${(memoryBytes() / 1e6).toFixed(1)} MB`);
+  assert.equal(memoryBytes(), settled);
+  assert.ok(settled <= 64e6, `${settled}`);
+  env.free();
+});
+
+test("environments that nobody holds are freed", async () => {
+  setFlagsFromString("--expose-gc");
+  const collect = runInNewContext("gc");
+  const abandon = async () => {
+    new Env(crib).reset(0);
+    collect();
+    await new Promise((done) => setTimeout(done, 5)); // registries are told between tasks
+  };
+  for (let k = 0; k < 5; k++) await abandon();
+  const settled = memoryBytes();
+  for (let k = 0; k < 40; k++) await abandon();
+  assert.ok(memoryBytes() <= settled + 4e6, `${settled} to ${memoryBytes()}`);
+});

@@ -1,0 +1,191 @@
+// Every control of the page, used once.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { start, steps, tab, until } from "./browser.mjs";
+
+let host;
+let page;
+before(async () => {
+  host = await start();
+  page = await host.open();
+});
+after(() => host.stop());
+
+const look = (read) => page.evaluate(read);
+
+test("play, pause, step, reset and speed", async () => {
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, () => mimo.moment.playing && mimo.moment.steps > 3);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await until(page, () => !mimo.moment.playing);
+  const before = await look(() => mimo.moment.steps);
+  await page.getByRole("button", { name: "One step" }).click();
+  await until(page, (n) => mimo.moment.steps === n + 1, before);
+  await page.locator("#reset").click();
+  await until(page, () => mimo.moment.steps === 0);
+  await page.getByLabel("Speed").selectOption("0.25");
+  assert.equal(await look(() => mimo.state.speed), 0.25);
+});
+
+test("theme, view and help", async () => {
+  await page.locator("#theme").click();
+  assert.equal(await look(() => document.documentElement.dataset.theme), "dark");
+  await page.locator("#theme").click();
+  await look(() => mimo.stage.orbit.zoom(0.5));
+  await page.locator("#home").click();
+  assert.ok(await look(() => mimo.stage.orbit.distance > 1));
+  await page.locator("#help-open").click();
+  assert.equal(await page.locator("#help a").count(), 3);
+  await page.locator("#help").getByRole("button", { name: "Close" }).click();
+});
+
+test("the pointer turns, moves and zooms the view", async () => {
+  const box = await page.locator("#scene").boundingBox();
+  const view = () => look(() => mimo.stage.orbit.view);
+  const first = await view();
+  const [x, y] = [box.x + box.width - 40, box.y + box.height / 2]; // beside MIMo and what lies over the picture
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x - 100, y - 30, { steps: 4 });
+  await page.mouse.up();
+  await until(page, (azimuth) => mimo.stage.orbit.view[0] !== azimuth, first[0]);
+  const turned = await view();
+  await page.mouse.wheel(0, 100);
+  await until(page, (d) => mimo.stage.orbit.distance !== d, turned[2]);
+  await page.keyboard.down("Shift");
+  await page.mouse.down();
+  await page.mouse.move(x - 140, y - 60, { steps: 4 });
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+  await until(page, (at) => String(mimo.stage.orbit.view.slice(3, 6)) !== at, String(turned.slice(3, 6)));
+});
+
+test("what the scene shows", async () => {
+  await tab(page, "Watch");
+  const toggled = { "Heat map of touch": () => mimo.stage.skin.visible, "All sensors as dots": () => mimo.stage.skin.uniforms.dot0.value > 0, "Contact forces as arrows": () => mimo.stage.arrows.visible, Shadows: () => mimo.stage.studio.key.castShadow, "Camera follows MIMo": () => mimo.stage.orbit.follow };
+  for (const [name, read] of Object.entries(toggled)) {
+    const before = await look(read);
+    await page.getByLabel(name).click();
+    assert.equal(await look(read), !before, name);
+    await page.getByLabel(name).click();
+  }
+  await page.getByLabel("Contact forces as arrows").click();
+  await steps(page, 30);
+  assert.ok(await look(() => mimo.stage.arrows.shafts.count) > 0, "arrows are drawn");
+});
+
+test("both eyes see", async () => {
+  await steps(page, 1);
+  await until(page, () => [...document.querySelectorAll(".eyes canvas")].every((c) => c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v, i) => i % 4 < 3 && v > 0)));
+});
+
+test("signals come and go", async () => {
+  const plots = page.locator(".plot");
+  const before = await plots.count();
+  await page.getByLabel("Add a signal").selectOption({ label: "Left elbow" });
+  assert.equal(await plots.count(), before + 1);
+  await steps(page, 3);
+  assert.match(await plots.last().locator("output").innerText(), /°/);
+  await page.getByRole("button", { name: "Remove Left elbow" }).click();
+  assert.equal(await plots.count(), before);
+});
+
+test("every policy moves MIMo, and vigour", async () => {
+  await tab(page, "Move");
+  for (const [name, policy] of [["Random", "random"], ["Sine", "sine"], ["Still", "zero"], ["Babbling", "babbling"]]) {
+    await page.getByLabel(name, { exact: true }).check({ force: true });
+    assert.equal(await look(() => mimo.state.policy), policy);
+    await steps(page, 2);
+    const size = await look(() => Math.hypot(...mimo.frame.subarray(mimo.scene.layout.action, mimo.scene.layout.angles)));
+    assert.equal(size > 0, policy !== "zero", name);
+  }
+  await page.getByLabel("Vigour").press("ArrowRight");
+  assert.ok(await look(() => mimo.state.vigour > 0.6));
+});
+
+test("each slider takes its actuator, shows it, and lets it go", async () => {
+  await look(() => document.querySelectorAll("#panel-move details").forEach((d) => (d.open = true)));
+  const sliders = page.locator("#panel-move details input[type=range]");
+  const count = await sliders.count();
+  assert.equal(count, await look(() => mimo.scene.actions.length));
+  for (let i = 0; i < count; i++) {
+    await sliders.nth(i).focus();
+    await page.keyboard.press("ArrowRight");
+  }
+  assert.equal(await look(() => Object.keys(mimo.state.held).length), count);
+  await steps(page, 1);
+  assert.ok(await look(() => Object.entries(mimo.state.held).every(([i, v]) => Math.abs(mimo.frame[mimo.scene.layout.action + Number(i)] - v) < 1e-6)));
+  await sliders.first().press("Delete");
+  assert.equal(await look(() => Object.keys(mimo.state.held).length), count - 1);
+  await page.getByRole("button", { name: "Let all go" }).click();
+  assert.equal(await look(() => Object.keys(mimo.state.held).length), 0);
+});
+
+test("locks hold a part", async () => {
+  await page.getByRole("button", { name: "Lock arms" }).click();
+  await page.getByRole("button", { name: "Unlock arms" }).waitFor();
+  assert.ok(await look(() => mimo.scene.joints.filter((j) => j.part === "arms").every((j) => j.locked)));
+  await page.getByRole("button", { name: "Unlock arms" }).click();
+  await page.getByRole("button", { name: "Lock arms" }).waitFor();
+});
+
+test("a part is pulled without a pointer, at the strength that one sets", async () => {
+  await page.getByLabel("Strength").press("ArrowRight");
+  await page.getByLabel("Part to pull").selectOption({ label: "Left hand" });
+  await page.getByRole("button", { name: "Pull up" }).click();
+  await steps(page, 20);
+  assert.ok(await look(() => mimo.moment.pull.force > 0));
+  await page.getByRole("button", { name: "Let go" }).click();
+  await until(page, () => mimo.moment.pull === null);
+});
+
+test("scene, behavior, body, actuation, seed and settings", async () => {
+  await tab(page, "Setup");
+  for (const [group, name, key, value] of [["Scene", "Cubes", "scene", "cubes"], ["Scene", "Floor", "scene", "base"], ["Behavior", "None", "behavior", "none"], ["Body", "Five fingers (v2)", "behavior", "hand_regard"], ["Body", "Mitten hands (v1)", "behavior", "self_touch"], ["Behavior", "Hand regard", "behavior", "hand_regard"], ["Actuation", "Muscles", "actuation_model", "muscle"], ["Actuation", "Angles", "actuation_model", "positional"], ["Actuation", "Torque", "actuation_model", "spring_damper"], ["Scene", "Crib", "scene", "crib"], ["Behavior", "Self-touch", "behavior", "self_touch"]]) {
+    await page.getByRole("group", { name: group }).getByLabel(name, { exact: true }).check({ force: true });
+    await until(page, ([k, v]) => mimo.scene.settings[k] === v, [key, value]);
+  }
+  await page.getByLabel("Seed", { exact: true }).fill("7");
+  await page.getByRole("button", { name: "Reset", exact: true }).last().click();
+  await until(page, () => mimo.state.seed === 7);
+  await page.getByRole("button", { name: "Next seed" }).click();
+  await until(page, () => mimo.state.seed === 8);
+  await page.getByText("Every setting").click();
+  await page.getByLabel("touch_scale").fill("2");
+  await page.getByLabel("touch_scale").press("Enter");
+  await until(page, () => mimo.scene.settings.touch_scale === 2 && mimo.scene.skin.of.length < 3000);
+  await page.getByLabel("touch_eyes").check();
+  await until(page, () => mimo.scene.settings.touch_eyes === true);
+  await page.getByText("As a file").click();
+  const saved = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save file" }).click();
+  assert.match(readFileSync(await (await saved).path(), "utf8"), /touch_scale: 2/);
+  await page.locator("#panel-setup input[type=file]").setInputFiles({ name: "a.yml", mimeType: "text/yaml", buffer: Buffer.from("scene: crib\nbehavior: self_touch\n") });
+  await until(page, () => mimo.scene.settings.touch_scale === 1);
+  await page.getByRole("button", { name: "Start the simulation again" }).click();
+  await until(page, () => mimo.world.alive && mimo.moment.steps === 0);
+});
+
+test("picture and video are saved", async () => {
+  await tab(page, "Share");
+  const picture = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save picture" }).click();
+  const bytes = readFileSync(await (await picture).path());
+  assert.deepEqual([...bytes.subarray(1, 4)], [...Buffer.from("PNG")]);
+  assert.ok(bytes.length > 20_000, "the picture is not empty");
+  await page.getByRole("button", { name: "Record video" }).click();
+  await steps(page, 5);
+  await page.waitForTimeout(1500);
+  const video = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Stop and save" }).click();
+  const clip = readFileSync(await (await video).path());
+  assert.ok(clip.length > 1000);
+});
+
+test("a link to the settings, without a moment", async () => {
+  await page.getByRole("button", { name: "Link to the settings" }).click();
+  await until(page, () => /^#s=/.test(location.hash) && !location.hash.includes("m="));
+});
+
+test("nothing went wrong on the way", () => assert.deepEqual(page.errors, []));
