@@ -4,6 +4,7 @@
 mod allocations;
 mod common;
 
+use babybench::config::Example;
 use common::*;
 
 const WARM_UP: usize = 200;
@@ -14,8 +15,10 @@ const STRICT: usize = 100;
 #[test]
 fn invariant_4_a_step_allocates_nothing_after_warm_up() {
     let mut failed = Vec::new();
-    for (name, _) in EXAMPLES {
-        let mut env = env(example(name));
+    let tasks = Example::TASKS.map(|task| (task.name, task.config().expect("valid")));
+    let examples = EXAMPLES.map(|(name, _)| (name, example(name)));
+    for (name, config) in examples.into_iter().chain(tasks).chain([("infant", infant())]) {
+        let mut env = env(config);
         env.reset(Some(0)).expect("no divergence");
         random_steps(&mut env, WARM_UP);
         let mut action = Vec::new();

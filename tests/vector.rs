@@ -99,8 +99,7 @@ fn memory(name: &str) {
         found < 1.3 * each as f64 && each as f64 <= 1.3 * found,
         "{name}: {found} {each}"
     );
-    // measured: 1.33 (no vision), 2.95 and 1.47 (vision)
-    // measured: 1.33 (no vision), 2.95 and 1.47 (vision)
+    // measured: 1.34 (no vision), 2.95 and 1.47 (vision)
     let goal = if blueprint.config().vision_active { 3.0e6 } else { 1.5e6 };
     assert!(found <= goal, "{name}: {found}");
 }

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use babybench::config::MAX_AGE;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 /// Parses a whole number from 0.
@@ -20,6 +21,14 @@ fn from<T: FromStr + PartialOrd + Display>(text: &str, least: T) -> Result<T, St
     match text.parse() {
         Ok(n) if n >= least => Ok(n),
         _ => Err(format!("expected a whole number of at least {least}")),
+    }
+}
+
+/// Parses an age that MIMo can have, months.
+pub fn age(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(age) if (0.0..=MAX_AGE).contains(&age) => Ok(age),
+        _ => Err(format!("expected an age in months, 0 to {MAX_AGE}")),
     }
 }
 

@@ -13,7 +13,7 @@ use babybench::runs::logs::evaluation_path;
 use babybench::runs::{
     EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, read_training, start_training_from,
 };
-use babybench::{Blueprint, Config};
+use babybench::{Blueprint, Config, make_env};
 use common::*;
 use program::*;
 
@@ -357,6 +357,25 @@ fn scenes_are_kept_or_refused() {
 }
 
 /// Ctrl-C.
+#[test]
+fn a_second_training_is_refused_while_the_first_goes_on() {
+    let folder = Folder::new("two_trainings");
+    let config = short_config(&folder);
+    let first = make_env(
+        Config {
+            save_dir: folder.path().join("run").display().to_string(),
+            ..short()
+        },
+        true,
+    )
+    .expect("a training");
+    let train = ["train", "--config", &config, "--train-for", "20", "--quiet"];
+    let owner = format!("process {} trains into this folder", std::process::id());
+    refused(folder.path(), &train, &[&owner, "choose another save_dir"]);
+    drop(first);
+    assert!(works(folder.path(), &train).contains("20 steps"));
+}
+
 #[cfg(target_os = "linux")]
 mod interrupts {
     use std::process::{Command, Stdio};
@@ -463,8 +482,14 @@ fn all_behaviors_and_actuation_models_run_from_the_command_line() {
         for &kind in ActuationModel::ALL {
             let config = Config {
                 actuation_model: kind,
+                touch_active: behavior == Behavior::SelfBody, // it is about touch
                 ..free(behavior, Scene::Base)
             };
+            if config.validate().is_err() {
+                // tasks have no servos
+                assert_eq!(kind, ActuationModel::Positional, "{behavior}");
+                continue;
+            }
             let path = folder.file(&format!("{behavior}_{kind}.yml"), config.to_yaml());
             let file = path.to_str().expect("a path of ours");
             let ran = works(folder.path(), &["run", "--quiet", "--steps", "5", "--config", file]);

@@ -1,6 +1,7 @@
 """Compiles the assembled scenes with MuJoCo 3.3.0 and writes what the loader is compared with.
 
 usage: python compiled_model.py [ASSETS] [OUT]      (needs mujoco==3.3.0 and numpy)
+       python compiled_model.py --tasks KIT [OUT]
 
 ASSETS holds `babybench/*.xml` and the textures they name (default: the repository's assets; the data in the repository
 come from the original files, which hold the same physics and looks). Textures are replaced by tiny ones in a temporary
@@ -10,6 +11,9 @@ Writes one file per MIMo version and scene, `compiled_<v1|v2>_<base|crib|cubes>.
 document of its own: every numeric array under MuJoCo's name, names as newline-joined UTF-8 bytes under `<kind>_name`,
 the actuators of the position variant under `position_*`, and the scene text under `xml` and `position_xml`, so that the
 comparison compiles the very same document.
+
+With --tasks it writes `compiled_<task>.npz` from the scenes of MIMo's tasks in the kit, `KIT/MIMo/mimoEnv/assets/<task>_scene.xml`. Their text
+is not kept: the comparison compiles the repository's own scene of the task.
 """
 
 import pathlib
@@ -49,7 +53,7 @@ pair_geom1 pair_geom2 pair_dim pair_solref pair_solreffriction pair_solimp pair_
 exclude_signature
 eq_type eq_obj1id eq_obj2id eq_data eq_active0 eq_solref eq_solimp
 tendon_adr tendon_num tendon_limited tendon_range tendon_margin tendon_solref_lim tendon_solimp_lim wrap_objid wrap_prm
-tendon_invweight0
+tendon_lengthspring tendon_stiffness tendon_damping tendon_invweight0
 sensor_type sensor_objid sensor_adr
 """.split()
 ACTUATOR = """
@@ -104,7 +108,7 @@ FEATURES = """
       <light cutoff="20" exponent="3" attenuation="1 .1 .2"/>
       <pair condim="4" friction=".5 .6" solref=".01"/>
       <equality solref=".03 .9" active="false"/>
-      <tendon margin=".02" solimplimit=".7"/>
+      <tendon margin=".02" solimplimit=".7" stiffness="2"/>
       <position kp="5" kv=".5" ctrlrange="-2 2"/>
       <material specular=".25"/>
     </default>
@@ -169,6 +173,8 @@ FEATURES = """
   <tendon>
     <fixed name="t0" class="outer" range="-1 2"><joint joint="a0" coef=".5"/><joint joint="d0" coef="-2"/></fixed>
     <fixed name="t1"><joint joint="a1" coef="1"/></fixed>
+    <fixed name="t2" springlength="-.5" stiffness="3"><joint joint="a0" coef="2"/></fixed>
+    <fixed name="t3" class="outer" springlength=".1 .2" damping=".5"><joint joint="b0" coef="1"/></fixed>
   </tendon>
   <actuator>
     <position name="p0" joint="a0" class="outer" user="1 2"/>
@@ -244,8 +250,21 @@ def dump(model):
     return out
 
 
+def tasks(kit, out):
+    """Compiles the kit's scenes of tasks."""
+    for task in ["reach", "standup", "selfbody", "catch"]:
+        model = mujoco.MjModel.from_xml_path(str(kit / "MIMo/mimoEnv/assets" / f"{task}_scene.xml"))
+        path = out / f"compiled_{task}.npz"
+        np.savez_compressed(path, **dump(model))
+        print(path.name, path.stat().st_size)
+
+
 def main():
     assert mujoco.__version__ == "3.3.0", mujoco.__version__
+    if sys.argv[1:2] == ["--tasks"]:
+        here = pathlib.Path(__file__).resolve().parent
+        out = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else here.parent / "data"
+        return tasks(pathlib.Path(sys.argv[2]), out)
     here = pathlib.Path(__file__).resolve().parent
     assets = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here.parent.parent / "assets"
     out = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else here.parent / "data"

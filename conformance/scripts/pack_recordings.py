@@ -2,6 +2,7 @@
 
     pip install numpy zopfli
     python conformance/scripts/pack_recordings.py RECORDED conformance/data
+    python conformance/scripts/pack_recordings.py --tasks RECORDINGS conformance/data
 
 RECORDED holds what was written while the reference ran (`conformance/data/README.md` names the files). Numbers stay the
 same to the bit. Columns of `observation` that are columns of another array are stored once: `observation_from` has the
@@ -10,6 +11,7 @@ number of the array, of those in SOURCES, and the column; the remaining columns 
 
 import gzip
 import io
+import json
 import shutil
 import sys
 import zipfile
@@ -111,7 +113,24 @@ def plain(files, out):
         shutil.copyfile(source, out / source.name)
 
 
+TASKS = """actions qpos qvel qacc activity reward terminated achieved_goal desired_goal ctor_qpos reset_row reset_qpos reset_qvel
+reset_warm reset_activity reset_desired_goal reset_ball reset_set_qpos reset_actions""".split()
+
+
+def tasks(recorded, out):
+    """Recordings of tasks: states, rewards and goals, and where their episodes start."""
+    out.mkdir(parents=True, exist_ok=True)
+    for path in sorted(recorded.glob("*.npz")):
+        with np.load(path) as npz:
+            arrays = {key: npz[key] for key in TASKS if key in npz.files and npz[key].size}
+        info = json.loads(path.with_suffix(".json").read_text())["info"]
+        arrays["is_success"] = np.array([row["is_success"] for row in info])
+        write_npz(out / path.name, arrays)
+
+
 def main():
+    if sys.argv[1] == "--tasks":
+        return tasks(Path(sys.argv[2]), Path(sys.argv[3]) / "tasks")
     recorded, data = map(Path, sys.argv[1:])
     golden, tables, touch = recorded / "golden", recorded / "mimo_tables", recorded / "touch_examples"
     recordings(golden, data / "recordings")

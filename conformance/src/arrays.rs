@@ -250,6 +250,9 @@ fn of_tendons(m: &Model) -> Named {
         ("tendon_margin", m.tendon_margin.clone()),
         ("tendon_solref_lim", flat(&m.tendon_solref_lim)),
         ("tendon_solimp_lim", flat(&m.tendon_solimp_lim)),
+        ("tendon_lengthspring", flat(&m.tendon_lengthspring)),
+        ("tendon_stiffness", m.tendon_stiffness.clone()),
+        ("tendon_damping", m.tendon_damping.clone()),
         ("wrap_objid", wraps.iter().map(|&(joint, _)| joint as f64).collect()),
         ("wrap_prm", wraps.iter().map(|&(_, coef)| coef).collect()),
     ]

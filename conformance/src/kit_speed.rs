@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
-use babybench::config::Compat;
+use babybench::config::{Behavior, Compat};
 use babybench::{Config, Env, EnvError};
 use conformance::live::example_configs;
 use conformance::live::speed::{cpu_time, quartiles};
@@ -47,6 +47,24 @@ impl Task {
             },
         })
     }
+
+    /// Returns MIMo's tasks with goals that the kit has, under their names in Gymnasium.
+    fn with_goals() -> impl Iterator<Item = Self> {
+        let tasks = [
+            (Behavior::Reach, "MIMoReach-v0"),
+            (Behavior::Standup, "MIMoStandup-v0"),
+            (Behavior::SelfBody, "MIMoSelfBody-v0"),
+            (Behavior::Catch, "MIMoCatch-v0"),
+        ];
+        tasks.into_iter().map(|(behavior, id)| Self {
+            name: behavior.name(),
+            theirs: json!({ "id": id, "seed": SEED }),
+            ours: Config {
+                compat: Compat::Reference,
+                ..Config::of(behavior)
+            },
+        })
+    }
 }
 
 /// Prints the CPU time of whole steps of the kit and of ours for the tasks whose name contains `filter`.
@@ -54,7 +72,8 @@ impl Task {
 /// # Errors
 /// The folder is not the kit; its Python is missing or fails; our environment fails.
 pub fn print(kit: &Path, python: &Path, filter: &str) -> Result<(), String> {
-    let mut tasks = Task::examples().filter(|t| t.name.contains(filter)).peekable();
+    let all = Task::examples().chain(Task::with_goals());
+    let mut tasks = all.filter(|t| t.name.contains(filter)).peekable();
     if tasks.peek().is_none() {
         return Ok(());
     }

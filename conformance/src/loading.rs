@@ -32,13 +32,16 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::UnknownElement(_) | ErrorKind::UnknownAttribute(_) => {
             Some("elements and attributes that are not supported")
         }
-        ErrorKind::OutOfRange { .. } => Some("numbers outside their physical range, such as negative damping"),
+        ErrorKind::OutOfRange { .. } | ErrorKind::OutOfBounds { .. } => {
+            Some("numbers outside their physical range, such as negative damping")
+        }
         ErrorKind::BadNumber { .. } => Some("not a number, infinity and hexadecimal numbers"),
         ErrorKind::WrongCount { found: 0, .. } => Some("attributes without a value, which MuJoCo takes for absent"),
         ErrorKind::WrongCount { attribute: "gear", .. } => {
             Some("gears beyond the first, which scalar joints do not use")
         }
         ErrorKind::UnknownName { name, .. } if name.is_empty() => Some("references without a name"),
+        ErrorKind::MissingAttribute("geom1" | "geom2") => Some("contact pairs of a single geom"),
         ErrorKind::MissingAttribute("target") => Some("cameras without the target of their mode"),
         ErrorKind::Invalid(r#"only a camera with mode="targetbody" has a target"#) => {
             Some("cameras with a target that their mode does not use")

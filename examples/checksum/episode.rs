@@ -1,5 +1,6 @@
 //! Checksums of episodes: the same bits on every target.
 
+use babybench::env::Snapshot;
 use babybench::{Blueprint, Config, Env, VectorEnv, VectorOptions};
 use fold::Hash;
 
@@ -7,13 +8,14 @@ use fold::Hash;
 mod fold;
 
 /// The example configurations.
-pub const CONFIGURATIONS: [(&str, &str); 3] = [
+pub const CONFIGURATIONS: [(&str, &str); 4] = [
     ("self_touch", include_str!("../../configs/config_selftouch.yml")),
     ("hand_regard", include_str!("../../configs/config_handregard.yml")),
     (
         "test_installation",
         include_str!("../../configs/config_test_installation.yml"),
     ),
+    ("infant", include_str!("../../configs/config_infant.yml")),
 ];
 
 /// Lengths of the episodes.
@@ -89,4 +91,35 @@ fn run_vector(index: usize, steps: usize, threads: usize) -> Option<u64> {
     let mut all = Hash::new();
     hashes.iter().for_each(|hash| all.fold(hash.0));
     Some(all.0)
+}
+
+/// Steps before a snapshot, and after it.
+const SNAPSHOT_STEPS: [usize; 2] = [30, 10];
+
+/// Takes a snapshot of configuration `index`, restores its bytes in another environment and goes on; folds the bytes and what
+/// follows into a number. Equal bytes on two machines are a snapshot that each restores from the other. 0 when something fails.
+pub fn snapshot_checksum(index: usize) -> u64 {
+    run_snapshot(index).unwrap_or(0)
+}
+
+fn run_snapshot(index: usize) -> Option<u64> {
+    let (name, text) = CONFIGURATIONS.get(index)?;
+    let blueprint = Blueprint::new(Config::from_yaml(text, name).ok()?).ok()?;
+    let (mut env, mut other) = (blueprint.env().ok()?, blueprint.env().ok()?);
+    let mut action = Vec::new();
+    env.reset(Some(0)).ok()?;
+    for _ in 0..SNAPSHOT_STEPS[0] {
+        env.sample_action(&mut action);
+        env.step(&action).ok()?;
+    }
+    let bytes = env.snapshot().as_bytes().to_vec();
+    let mut hash = Hash::new();
+    bytes.iter().for_each(|&byte| hash.fold(u64::from(byte)));
+    other.restore(&Snapshot::from_bytes(bytes).ok()?).ok()?;
+    for _ in 0..SNAPSHOT_STEPS[1] {
+        other.sample_action(&mut action);
+        other.step(&action).ok()?;
+    }
+    hash.fold(fold::bits(&other));
+    Some(hash.0)
 }

@@ -35,6 +35,10 @@ impl Hash {
         dense.concat().iter().for_each(|v| self.fold(v.to_bits()));
         let touch = seen.touch.unwrap_or_default().iter();
         touch.for_each(|v| self.fold(u64::from(v.to_bits())));
+        let pooled = seen.touch_pooled.unwrap_or_default().iter();
+        pooled.for_each(|v| self.fold(v.to_bits()));
+        let pain = seen.pain.unwrap_or_default().iter();
+        pain.for_each(|v| self.fold(u64::from(v.to_bits())));
         for image in [seen.eye_left, seen.eye_right] {
             image.unwrap_or_default().iter().for_each(|&v| self.fold(u64::from(v)));
         }

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from babybench_core.records import LockReport, TouchBody
 
 __all__ = [
+    "Blocks",
     "Blueprint",
     "Env",
     "Parts",
@@ -104,14 +105,21 @@ class Env:
         """Puts the scene at positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
     def forward(self) -> dict[str, _Array]:
         """Computes everything that follows from the present positions, velocities and controls, without advancing."""
-    def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], bool]:
-        """Applies an action; returns the observation and whether the episode has reached its last step."""
+    def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
+        """Applies an action; returns observation, reward, terminated and truncated."""
     def run(self, actions: npt.ArrayLike) -> None:
         """Applies actions, (K, action size), one after the other, and returns nothing: to replay, and to time the core."""
     def observe(self) -> dict[str, _Array]:
         """Returns the observation of the last reset or step."""
     def info(self, details: bool = True) -> dict[str, Any]:
         """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
+    def set_goal(self, desired: npt.ArrayLike) -> dict[str, _Array]:
+        """Changes the desired goal of the episode; returns the observation with it."""
+    def compute_reward(self, achieved: npt.ArrayLike, desired: npt.ArrayLike, terms: npt.ArrayLike) -> _Floats:
+        """Returns the reward of each row of goals, (K, goal) twice, and terms, (K, reward_terms)."""
+    @property
+    def reward_terms(self) -> int:
+        """Number of values that the reward depends on beside goals."""
     def accumulate_info(self, on: bool) -> None:
         """Sets whether resets leave the counters and lists of the behavior as they are."""
     def close(self) -> None:
@@ -198,7 +206,8 @@ class Env:
 class VectorEnv:
     """Many environments at once, on threads, with arrays over them.
 
-    The arrays that resets, steps and :meth:`recv` return are read-only, stay the same and change with the next call.
+    The arrays that resets, steps and :meth:`recv` return are read-only, stay the same and change with the next call; with
+    ``copy`` they are the caller's own.
     """
 
     def __new__(
@@ -214,15 +223,18 @@ class VectorEnv:
         self,
         seeds: int | Sequence[int | None] | None = None,
         mask: Sequence[bool] | npt.NDArray[np.bool_] | None = None,
+        copy: bool = False,
     ) -> dict[str, _Array]:
         """Starts an episode in all environments, or in those of the mask; with one seed, environment i gets it plus i."""
-    def step(self, actions: npt.ArrayLike) -> dict[str, _Array]:
+    def step(self, actions: npt.ArrayLike, copy: bool = False) -> dict[str, _Array]:
         """Applies an action in each environment, (N, action size), and waits for all."""
     def run(self, actions: npt.ArrayLike) -> None:
         """Applies actions, (K, N, action size), one after the other, and returns nothing."""
     def send(self, actions: npt.ArrayLike, ids: Sequence[int] | npt.NDArray[np.integer[Any]]) -> None:
         """Hands actions, (K, action size), to K environments and returns at once."""
-    def recv(self, n: int) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
+    def recv(
+        self, n: int, copy: bool = False
+    ) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
         """Waits for ``n`` environments: observations, rewards, terminated, truncated, and which they are."""
     def close(self) -> None:
         """Ends the threads and frees the environments."""
@@ -236,7 +248,7 @@ class VectorEnv:
         """Returns fresh arrays, a row for each of the last rows.
 
         ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0; ``regards``
-        (N, 4), how often hands were in view.
+        (N, 4), how often hands were in view; for tasks ``is_success`` and ``is_failure`` (N) and ``reward_terms`` (N, terms).
         """
     def failures(self) -> list[tuple[int, str]]:
         """Returns the environments that could not go on in the last step, and why."""
@@ -246,6 +258,13 @@ class VectorEnv:
         """Returns the information of one environment."""
     def final_info(self, env: int, details: bool = True) -> dict[str, Any] | None:
         """Returns the information of the end of the episode that ended in the last step, with ``same_step``."""
+    def compute_reward(
+        self, env: int, achieved: npt.ArrayLike, desired: npt.ArrayLike, terms: npt.ArrayLike
+    ) -> _Floats:
+        """Returns what one environment's task rewards: see :meth:`Env.compute_reward`."""
+    @property
+    def reward_terms(self) -> int:
+        """Number of values that rewards depend on beside goals."""
     @property
     def num_envs(self) -> int:
         """Number of environments."""
@@ -344,6 +363,15 @@ class Parts:
         """Writes what is known of the state into arrays of the same lengths, in the order of ``FILLED``."""
     def differences(self, arrays: Sequence[_Floats]) -> int:
         """Tells which of ``qpos``, ``qvel``, ``ctrl``, ``act`` and ``qfrc_applied`` differ from the state: bits 0 to 4."""
+
+@final
+class Blocks:
+    """What a sense felt last, as arrays by key: touch (sensors, 1 or 3), N, or parts of the proprioception."""
+
+    def __new__(cls, env: Env, touch: bool, blocks: Sequence[tuple[Any, int, int]]) -> Blocks:
+        """Takes keys, each with its first sensor or number and the one after its last."""
+    def felt(self, moment: int) -> dict[Any, _Array]:
+        """Returns what was felt last; the same arrays while ``moment`` stays the same."""
 
 def scene_file(
     config: Mapping[str, Any] | str | os.PathLike[str], assets: str | os.PathLike[str] | None = None

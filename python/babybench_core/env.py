@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from babybench_core import _native, scenes, spaces
+from babybench_core.goals import Infos, compute_reward
 from babybench_core.records import LockReport
 from babybench_core.senses import Proprioception, Touch
 from babybench_core.window import Window
@@ -23,25 +24,30 @@ Observation = dict[str, npt.NDArray[Any]]
 class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     """MIMo in a room: an environment of BabyBench.
 
-    The action is a vector of motor commands (``action_space``, float32); values out of bounds are clipped. There is no
-    extrinsic reward (always 0), and no end but truncation after ``max_episode_steps``. The observation has an entry for
-    each sense that the configuration turns on:
+    The action is a vector of motor commands (``action_space``, float32); values out of bounds are clipped. BabyBench's
+    behaviors have no extrinsic reward (always 0), and no end but truncation after ``max_episode_steps``; tasks (``reach``,
+    ``standup``, ``selfbody``, ``catch``, ``roll_over``) have both. The observation has an entry for each sense that the
+    configuration turns on:
 
-    ============= ======== ====================================================================================
-    entry         type     meaning
-    ============= ======== ====================================================================================
-    observation   float64  proprioception: rad, rad/s, N m (``env.proprioception`` says what stands where)
-    touch         float32  forces on the skin, N (``env.touch``)
-    eye_left      uint8    what the left eye sees, (resolution, resolution, 3), red, green, blue, from the top
-    eye_right     uint8    what the right eye sees
-    vestibular    float64  linear acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of the head
-    ============= ======== ====================================================================================
+    | entry           | type    | meaning                                                                              |
+    |-----------------|---------|--------------------------------------------------------------------------------------|
+    | `observation`   | float64 | proprioception: rad, rad/s, N m (`env.proprioception` says what stands where)        |
+    | `touch`         | float32 | forces on the skin, N (`env.touch`)                                                  |
+    | `touch_pooled`  | float64 | for each body normal force, N, active sensors, and force, N, (bodies, 5)             |
+    | `pain`          | float32 | what hurts, a number for each touch sensor                                           |
+    | `eye_left`      | uint8   | what the left eye sees, (resolution, resolution, 3), red, green, blue, from the top  |
+    | `eye_right`     | uint8   | what the right eye sees                                                              |
+    | `vestibular`    | float64 | linear acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of the head           |
+    | `achieved_goal` | float64 | of tasks with goals: what is achieved                                                |
+    | `desired_goal`  | float64 | what is to be achieved                                                               |
 
     Arrays are fresh with every step, unless ``views`` is set.
 
     The information has ``steps`` and, by behavior, ``right_hand_touches`` and ``left_hand_touches`` (ids of the geoms that
     the palm has touched in this episode) with their names in ``right_hand_parts`` and ``left_hand_parts``; or how many
-    steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad).
+    steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad). That of a task has
+    ``is_success``, ``is_failure``, the ``return`` of the episode so far and ``reward_terms``, what the reward depends on
+    beside goals: :meth:`compute_reward` takes them.
 
     Example:
         >>> import babybench
@@ -64,7 +70,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         config: scenes.ConfigLike = None,
         *,
         render_mode: Optional[str] = None,
-        camera: str = "corner",
+        camera: Optional[str] = None,
         assets: Optional[Union[str, os.PathLike[str]]] = None,
         views: bool = False,
         **keys: object,
@@ -74,7 +80,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         Args:
             config: A mapping, the name of an example, the path of a YAML file, or nothing for the defaults.
             render_mode: ``None``, ``"rgb_array"``, ``"depth_array"`` (m) or ``"human"`` (a window, by pygame).
-            camera: The camera of :meth:`render`.
+            camera: The camera of :meth:`render`; by default ``corner``, or the left eye in the scene of a task.
             assets: A folder with MJCF and textures laid out like the kit's, instead of those that come with the package.
             views: Observations are read-only arrays that stay the same and change with the next step or reset: nothing
                 is allocated. Copy what is to be kept.
@@ -88,7 +94,6 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         if render_mode is not None and render_mode not in modes:
             raise ValueError(f"render_mode is {render_mode!r}, expected None or one of {', '.join(modes)}")
         self.render_mode = render_mode
-        self.camera = camera
         self.config: dict[str, Any] = scenes.read_config(config, **keys)
         """All keys of the configuration with their values."""
         self._assets = None if assets is None else os.fspath(assets)
@@ -98,7 +103,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self.action_space = spaces.action_space(self._core.action_bounds)
         self.observation_space = spaces.observation_space(self._core)
         options = self._core.blueprint.model_options
-        self._check_camera(camera)
+        self.camera = scenes.camera_of(self._core.blueprint, camera)
         self.metadata = {**self.metadata, "render_fps": round(1 / (options["timestep"] * self.config["frame_skip"]))}
 
     def _build(self) -> None:
@@ -127,15 +132,42 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """Applies an action for ``frame_skip`` physics steps of 5 ms.
 
         Returns:
-            Observation, reward (0), terminated (False), truncated, information.
+            Observation, reward (0 without a task), terminated (False without a task), truncated, information.
 
         Raises:
             ValueError: An action of another shape, or with numbers that are not finite; nothing has happened then.
             RuntimeError: The simulation diverged, or there was no reset; reset it.
         """
-        observation, truncated = self._core.step(action)
+        observation, reward, terminated, truncated = self._core.step(action)
         self._show()
-        return observation, 0.0, False, truncated, self._core.info()
+        return observation, reward, terminated, truncated, self._core.info()
+
+    def compute_reward(
+        self, achieved_goal: npt.ArrayLike, desired_goal: npt.ArrayLike, info: Infos
+    ) -> Union[float, npt.NDArray[np.float64]]:
+        """Computes what goals would have earned, as Gymnasium-Robotics does; for those of a step, the reward of the step.
+
+        Args:
+            achieved_goal: What was achieved, (goal,) or (K, goal).
+            desired_goal: What was to be achieved, of the same shape.
+            info: The information of the step, or of the K steps.
+
+        Returns:
+            The reward, or K of them.
+
+        Raises:
+            KeyError: Information without ``reward_terms``.
+            ValueError: Goals of another shape.
+        """
+        return compute_reward(self._core.compute_reward, achieved_goal, desired_goal, info, self._core.reward_terms)
+
+    def set_goal(self, desired_goal: npt.ArrayLike) -> Observation:
+        """Changes the desired goal of this episode; returns the observation with it.
+
+        Raises:
+            ValueError: A goal of another shape, or with numbers that are not finite.
+        """
+        return self._core.set_goal(desired_goal)
 
     def render(self) -> Optional[npt.NDArray[Any]]:  # type: ignore[override, unused-ignore]
         """Draws the room from ``camera``: ``render_size`` by ``render_size`` pixels.
@@ -289,11 +321,6 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             self._core.close()
         else:
             self._core.restore(snapshot)
-
-    def _check_camera(self, camera: str) -> None:
-        cameras = self._core.blueprint.model_names["camera"]
-        if camera not in cameras:
-            raise ValueError(f"camera is {camera!r}, expected one of {', '.join(cameras)}")
 
     def __repr__(self) -> str:
         return f"<babybench.Env {self.config['behavior']} in {self.config['scene']}>"

@@ -10,6 +10,11 @@ IDS = {
     "babybench/SelfTouch-v0": "self_touch",
     "babybench/HandRegard-v0": "hand_regard",
     "babybench/Installation-v0": "test_installation",
+    "babybench/Reach-v0": "reach",
+    "babybench/Standup-v0": "standup",
+    "babybench/SelfBody-v0": "selfbody",
+    "babybench/Catch-v0": "catch",
+    "babybench/RollOver-v0": "roll_over",
 }
 """Gymnasium's names of the example configurations."""
 

@@ -24,6 +24,10 @@ from babybench_core.vector import AutoresetMode, VectorEnv
 
 Indices = Union[None, int, Iterable[int]]
 
+_OUTCOME = ("is_success", "is_failure", "reward_terms")
+"""What a task tells of a step."""
+_KEYS = ("steps", "touches", "regards", *_OUTCOME)
+
 
 class VecEnv(BaseVecEnv):
     """A vector of environments behind Stable-Baselines3's interface, on all cores and in one process.
@@ -62,16 +66,20 @@ class VecEnv(BaseVecEnv):
         observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
         self._actions = None
         dones = terminated | truncated
-        return observations, rewards.astype(np.float32), dones, self._split(infos, dones)
+        return observations, rewards.astype(np.float32), dones, self._split(infos, dones, truncated & ~terminated)
 
-    def _split(self, infos: dict[str, Any], dones: npt.NDArray[np.bool_]) -> list[dict[str, Any]]:
-        """Returns the information of each environment."""
-        keys = [key for key in ("steps", "touches", "regards") if key in infos]
+    def _split(
+        self, infos: dict[str, Any], dones: npt.NDArray[np.bool_], cut: npt.NDArray[np.bool_]
+    ) -> list[dict[str, Any]]:
+        """Returns the information of each environment; of an episode that has ended, that of its end."""
+        keys = [key for key in _KEYS if key in infos]
         split: list[dict[str, Any]] = [{key: infos[key][env] for key in keys} for env in range(self.num_envs)]
         for env in np.flatnonzero(dones):
-            split[env]["TimeLimit.truncated"] = True
+            last = infos["final_info"][env]
+            split[env].update({key: last[key] for key in _OUTCOME if key in last})
+            split[env]["TimeLimit.truncated"] = bool(cut[env])
             split[env]["terminal_observation"] = infos["final_obs"][env]
-            split[env]["final_info"] = infos["final_info"][env]
+            split[env]["final_info"] = last
         for env in np.flatnonzero(infos.get("_failure", ())):
             split[env]["failure"] = infos["failure"][env]
         return split

@@ -64,3 +64,17 @@ def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathL
     if found is None:
         found = _shared[key] = Blueprint(full, where)
     return found
+
+
+def camera_of(blueprint: Blueprint, camera: Optional[str]) -> str:
+    """Returns the camera that was asked for, or that of the room; tasks have none, and show what the left eye sees.
+
+    Raises:
+        ValueError: There is no such camera.
+    """
+    cameras = blueprint.model_names["camera"]
+    if camera is None:
+        return "corner" if "corner" in cameras else cameras[0]
+    if camera not in cameras:
+        raise ValueError(f"camera is {camera!r}, expected one of {', '.join(cameras)}")
+    return camera

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Mapping, Sequence
 from enum import Enum
@@ -13,6 +14,7 @@ import numpy.typing as npt
 from gymnasium.vector.utils import batch_space
 
 from babybench_core import _native, scenes, spaces
+from babybench_core.goals import Infos, compute_reward
 from babybench_core.records import LockReport
 
 try:
@@ -76,7 +78,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         threads: int = 0,
         copy: bool = True,
         render_mode: Optional[str] = None,
-        camera: str = "corner",
+        camera: Optional[str] = None,
         assets: Optional[Union[str, os.PathLike[str]]] = None,
         max_memory: Optional[int] = None,
         **keys: object,
@@ -93,7 +95,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             copy: Whether observations, rewards and flags are fresh arrays. Otherwise they are read-only views of the
                 arrays that threads write into: nothing is copied, and the next step or reset changes them.
             render_mode: ``None`` or ``"rgb_array"``.
-            camera: The camera of :meth:`render`.
+            camera: The camera of :meth:`render`; by default ``corner``, or the left eye in the scene of a task.
             assets: A folder with MJCF and textures laid out like the kit's.
             max_memory: How much memory the environments may take, bytes; by default what the system has available.
             **keys: Keys that replace those of every configuration.
@@ -121,7 +123,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self._core = _native.VectorEnv(blueprints, _MODES[mode], threads, max_memory)
         self._blueprints = tuple(blueprints)  # as long as this lives, others may share them
         self._copy = copy
-        self._camera = camera
+        self._camera = scenes.camera_of(blueprints[0], camera)
         self._everyone: Mask = np.ones(num_envs, np.bool_)
         self.autoreset_mode = mode
         self.num_envs = num_envs
@@ -159,25 +161,22 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             if mask.shape != (self.num_envs,) or mask.dtype != np.bool_:
                 expected = f"bool of shape ({self.num_envs},)"
                 raise ValueError(f"reset_mask is {mask.dtype} of shape {mask.shape}, expected {expected}")
-        observations = self._core.reset(seed, mask)
-        return self._given(observations), self._infos()
+        return self._core.reset(seed, mask, self._copy), self._infos()
 
     def step(self, actions: npt.ArrayLike) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
         """Applies an action in each environment, (N, action size), and waits for all of them.
 
         Returns:
-            Observations, rewards (0), terminated (False), truncated, information; a row for each environment. With
+            Observations, rewards, terminated, truncated, information; a row for each environment. Without a task rewards
+            are 0 and nothing terminates. With
             ``SAME_STEP``, the ends of episodes are in ``final_obs`` and ``final_info``.
 
         Raises:
             ValueError: Actions of another shape, or with numbers that are not finite; nothing has happened then.
             RuntimeError: Environments that need a reset, or are in flight.
         """
-        observations = self._core.step(actions)
-        rewards, terminated, truncated = self._core.flags
-        if self._copy:
-            rewards, terminated, truncated = rewards.copy(), terminated.copy(), truncated.copy()
-        return self._given(observations), rewards, terminated, truncated, self._infos()
+        observations = self._core.step(actions, self._copy)
+        return observations, *self._given(*self._core.flags), self._infos()
 
     def step_async(self, actions: npt.ArrayLike) -> None:
         """Hands all environments an action and returns at once; :meth:`step_wait` waits for them."""
@@ -244,17 +243,21 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             RuntimeError: Fewer are under way.
         """
         wanted = self._core.in_flight if batch_size is None else batch_size
-        received, rewards, terminated, truncated, ids = self._core.recv(wanted)
-        infos = self._infos(ids)
-        if self._copy:
-            rewards, terminated, truncated = rewards.copy(), terminated.copy(), truncated.copy()
-        return self._given(received), rewards, terminated, truncated, infos
+        received, rewards, terminated, truncated, ids = self._core.recv(wanted, self._copy)
+        return received, *self._given(rewards, terminated, truncated), self._infos(ids)
 
     # --- one environment ---
 
     def info(self, env: int) -> dict[str, Any]:
         """Returns the information of one environment as :class:`babybench.Env` gives it, with lists and names."""
         return self._core.info(env)
+
+    def compute_reward(
+        self, env: int, achieved_goal: npt.ArrayLike, desired_goal: npt.ArrayLike, info: Infos
+    ) -> Union[float, npt.NDArray[np.float64]]:
+        """Computes what goals would have earned in one environment: see :meth:`babybench.Env.compute_reward`."""
+        reward = functools.partial(self._core.compute_reward, env)
+        return compute_reward(reward, achieved_goal, desired_goal, info, self._core.reward_terms)
 
     def snapshot(self, env: int) -> bytes:
         """Returns the present moment of one environment; it fits :meth:`restore`, and that of an :class:`Env` alone."""
@@ -283,11 +286,11 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
     # --- inside ---
 
-    def _given(self, observations: Observations) -> Observations:
+    def _given(
+        self, rewards: npt.NDArray[np.float64], terminated: Mask, truncated: Mask
+    ) -> tuple[npt.NDArray[np.float64], Mask, Mask]:
         """Returns what the caller gets: copies or views."""
-        if self._copy:
-            return {key: rows.copy() for key, rows in observations.items()}
-        return dict(observations)
+        return (rewards.copy(), terminated.copy(), truncated.copy()) if self._copy else (rewards, terminated, truncated)
 
     def _infos(self, ids: Optional[npt.NDArray[np.int64]] = None) -> dict[str, Any]:
         """Returns the information of the last rows in Gymnasium's layout: each array with a mask of who has it."""

@@ -9,8 +9,11 @@ import argparse
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
+import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -66,6 +69,53 @@ def one_environment(example: str, rounds: int) -> None:
     for name, seconds in found.items():
         more = "" if name == "core" else f"   core + {1e6 * (seconds - found['core']):.1f}"
         print(f"{example:12} {name:18} {1e6 * seconds:9.1f} us{more}")
+
+
+def scripts(example: str, rounds: int) -> None:
+    """Prints what scripts written for the starter kit pay for what they look at."""
+    import babybench.utils as bb_utils
+
+    steps = 100 if example == "self_touch" else 20
+    config = scenes.read_config(example, max_episode_steps=10**9, compat="reference")
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        made = {who: bb_utils.make_env({**config, "save_dir": f"{folder}/{who}"}) for who in range(4)}
+    for env in made.values():
+        env.action_space.seed(0)
+        env.reset()
+    actions = np.random.default_rng(0).uniform(-1, 1, (steps, *made[0].action_space.shape)).astype(np.float32)
+    start = made[0].unwrapped._core.engine.snapshot()
+
+    def outputs(u: Any) -> None:
+        for sense in (u.touch, u.proprioception, u.vestibular, u.vision):
+            if sense is not None:
+                sense.sensor_outputs  # noqa: B018
+
+    def work(who: int, look: Callable[[Any], object]) -> Callable[[], None]:
+        env = made[who]
+        core = env.unwrapped._core
+
+        def run() -> None:
+            core.engine.restore(start)
+            core.changed()
+            for action in actions:
+                env.step(action)
+                look(env.unwrapped)
+
+        return run
+
+    held = [made[2].unwrapped.data, made[3].unwrapped.data]
+    pieces = {
+        "env.step": work(0, lambda u: None),
+        "all sensor_outputs": work(1, outputs),
+        "held data": work(2, lambda u: None),
+        "held data, contacts": work(3, lambda u: u.data.ncon),
+    }
+    found = alternate(pieces, steps, time.process_time, rounds)
+    for name, seconds in found.items():
+        more = "" if name == "env.step" else f"   step + {1e6 * (seconds - found['env.step']):.1f}"
+        print(f"{example:12} {name:20} {1e6 * seconds:9.1f} us{more}")
+    print(f"{example:12} data is {type(held[0]).__module__}")
 
 
 def vectors(rounds: int) -> None:
@@ -149,6 +199,8 @@ def main() -> None:
     rounds = ROUNDS // 10 if parser.parse_args().quick else ROUNDS
     one_environment("self_touch", rounds)
     one_environment("hand_regard", max(3, rounds // 4))
+    scripts("self_touch", rounds)
+    scripts("hand_regard", max(3, rounds // 4))
     vectors(rounds)
     processes()
 

@@ -160,7 +160,7 @@ pub fn config_from_yaml<'py>(py: Python<'py>, text: &str, file: &str) -> PyResul
 #[pyfunction]
 pub fn config_examples(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let examples = PyDict::new(py);
-    for example in Example::ALL {
+    for example in Example::ALL.into_iter().chain(Example::TASKS) {
         let config = example.config().map_err(IntoException::into_exception)?;
         examples.set_item(example.name, to_dict(py, &config)?)?;
     }

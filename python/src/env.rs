@@ -1,90 +1,27 @@
 //! One environment.
 
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use babybench::assets::DirAssets;
-use babybench::config::Part;
-use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Snapshot, Viewer};
-use babybench::mimo::{LockReport, LockTarget};
-use babybench::render::{Poses, RenderRequest, Renderer, View};
-use babybench::spaces::Dtype;
+use babybench::env::Snapshot;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError, PyValueError};
-use pyo3::intern;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::arrays::{Pair, read, shaped};
-use crate::config::{config_of, to_dict};
+use crate::arrays::{Pair, read};
+use crate::blueprint::Blueprint;
 use crate::errors::{IntoException, detached};
+use crate::info::{Space, info_dict, report_dict, spaces, target_of};
 use crate::observation::{Views, fresh};
-use crate::{model, state, touch};
-
-/// A compiled scene with its configuration, which environments share.
-#[pyclass(frozen, weakref, module = "babybench_core._native")]
-pub struct Blueprint {
-    pub inner: babybench::Blueprint,
-}
-
-#[pymethods]
-impl Blueprint {
-    #[new]
-    #[pyo3(signature = (config, assets=None))]
-    fn new(py: Python<'_>, config: &Bound<'_, PyAny>, assets: Option<PathBuf>) -> PyResult<Self> {
-        let config = config_of(py, config)?;
-        let assets = assets.map(DirAssets::new).transpose();
-        let assets = assets.map_err(IntoException::into_exception)?;
-        let inner = detached(py, || match assets {
-            Some(assets) => babybench::Blueprint::with_kept_assets(config, Arc::new(assets)),
-            None => babybench::Blueprint::new(config),
-        })?;
-        Ok(Self { inner })
-    }
-
-    #[getter]
-    fn config<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(py, self.inner.config())
-    }
-
-    #[getter]
-    fn init_qpos<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.inner.init_qpos())
-    }
-
-    #[getter]
-    fn init_qvel<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.inner.init_qvel())
-    }
-
-    #[getter]
-    fn model_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        model::names(py, self.inner.model())
-    }
-
-    #[getter]
-    fn model_options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        model::options(py, self.inner.model())
-    }
-
-    #[classattr]
-    #[allow(non_snake_case)]
-    fn MODEL_ARRAYS() -> Vec<&'static str> {
-        model::ARRAYS.to_vec()
-    }
-
-    fn model_array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        model::array(py, self.inner.model(), name)
-    }
-}
+use crate::pictures::{self, Painters};
+use crate::{state, task, touch};
 
 /// What an environment of Python's holds.
 pub struct Inner {
     pub env: babybench::Env,
     /// What it was made from, which others may share as long as it lives.
     blueprint: Py<Blueprint>,
-    viewer: Option<Viewer>,
-    renderer: Option<Renderer>,
+    pub painters: Painters,
     action: Vec<f32>,
     views: Option<Views>,
 }
@@ -119,6 +56,22 @@ impl Env {
         }
     }
 
+    /// Puts the scene at positions and velocities, and returns the observation.
+    fn placed<'py>(
+        &self,
+        py: Python<'py>,
+        [qpos, qvel]: [&Bound<'py, PyAny>; 2],
+        work: impl FnOnce(&mut babybench::Env, &[f64], &[f64]) -> Result<(), babybench::EnvError> + Send,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let inner = guard.open()?;
+        let (mut q, mut v) = (Vec::new(), Vec::new());
+        read("qpos", qpos, &[inner.env.model().nq], &mut q)?;
+        read("qvel", qvel, &[inner.env.model().nv], &mut v)?;
+        detached(py, || work(&mut inner.env, &q, &v))?;
+        Self::observed(py, inner)
+    }
+
     /// Returns the present observation.
     fn observed<'py>(py: Python<'py>, inner: &mut Inner) -> PyResult<Bound<'py, PyDict>> {
         let Some(views) = &mut inner.views else {
@@ -140,8 +93,7 @@ impl Env {
         let inner = Box::new(Inner {
             env,
             blueprint,
-            viewer: None,
-            renderer: None,
+            painters: Painters::default(),
             action: Vec::new(),
             views,
         });
@@ -176,11 +128,7 @@ impl Env {
         qpos: &Bound<'py, PyAny>,
         qvel: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let mut guard = self.guard()?;
-        let inner = guard.open()?;
-        let (qpos, qvel) = positions(&inner.env, qpos, qvel)?;
-        detached(py, || inner.env.reset_to(&qpos, &qvel).map(|_| ()))?;
-        Self::observed(py, inner)
+        self.placed(py, [qpos, qvel], |env, qpos, qvel| env.reset_to(qpos, qvel).map(drop))
     }
 
     fn set_state<'py>(
@@ -189,11 +137,7 @@ impl Env {
         qpos: &Bound<'py, PyAny>,
         qvel: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let mut guard = self.guard()?;
-        let inner = guard.open()?;
-        let (qpos, qvel) = positions(&inner.env, qpos, qvel)?;
-        detached(py, || inner.env.set_state(&qpos, &qvel).map(|_| ()))?;
-        Self::observed(py, inner)
+        self.placed(py, [qpos, qvel], |env, qpos, qvel| env.set_state(qpos, qvel).map(drop))
     }
 
     fn forward<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -204,14 +148,21 @@ impl Env {
         Self::observed(py, inner)
     }
 
-    fn step<'py>(&self, py: Python<'py>, action: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyDict>, bool)> {
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyDict>, f64, bool, bool)> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
         let width = inner.env.action_space().len();
         read("action", action, &[width], &mut inner.action)?;
         let Inner { env, action, .. } = &mut *inner;
-        let truncated = detached(py, || env.step(action).map(|step| step.truncated))?;
-        Ok((Self::observed(py, inner)?, truncated))
+        let (reward, terminated, truncated) = detached(py, || {
+            env.step(action)
+                .map(|step| (step.reward, step.terminated, step.truncated))
+        })?;
+        Ok((Self::observed(py, inner)?, reward, terminated, truncated))
     }
 
     fn run(&self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -235,7 +186,32 @@ impl Env {
     #[pyo3(signature = (details=true))]
     fn info<'py>(&self, py: Python<'py>, details: bool) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
-        info_dict(py, guard.open()?.env.info(), details)
+        let env = &guard.open()?.env;
+        let dict = info_dict(py, env.info(), details)?;
+        task::add_terms(&dict, env, details)?;
+        Ok(dict)
+    }
+
+    fn set_goal<'py>(&self, py: Python<'py>, desired: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let inner = guard.open()?;
+        task::set_goal(&mut inner.env, desired)?;
+        Self::observed(py, inner)
+    }
+
+    fn compute_reward<'py>(
+        &self,
+        py: Python<'py>,
+        achieved: &Bound<'py, PyAny>,
+        desired: &Bound<'py, PyAny>,
+        terms: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        task::compute_reward(py, &self.guard()?.open()?.env, [achieved, desired, terms])
+    }
+
+    #[getter]
+    fn reward_terms(&self) -> PyResult<usize> {
+        Ok(self.guard()?.open()?.env.goal().terms.len())
     }
 
     fn accumulate_info(&self, on: bool) -> PyResult<()> {
@@ -398,31 +374,11 @@ impl Env {
     // --- pictures ---
 
     fn render<'py>(&self, py: Python<'py>, camera: &str, width: usize, height: usize) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = self.guard()?;
-        let Inner { env, viewer, .. } = guard.open()?;
-        let picture = detached(py, || -> Result<Vec<u8>, babybench::EnvError> {
-            if viewer.is_none() {
-                *viewer = Some(Viewer::new(env.blueprint())?);
-            }
-            match viewer {
-                Some(viewer) => Ok(viewer.draw(env, camera, width, height)?.to_vec()),
-                None => Ok(Vec::new()),
-            }
-        })?;
-        shaped(py, &picture, &[height, width, 3])
+        pictures::colour(py, self.guard()?.open()?, camera, [width, height])
     }
 
     fn depth<'py>(&self, py: Python<'py>, camera: &str, width: usize, height: usize) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = self.guard()?;
-        let picture = draw(
-            py,
-            guard.open()?,
-            camera,
-            [width, height],
-            0.0_f32,
-            |r, requests, out| r.depth(requests, [out]),
-        )?;
-        shaped(py, &picture, &[height, width])
+        pictures::depth(py, self.guard()?.open()?, camera, [width, height])
     }
 
     fn segmentation<'py>(
@@ -432,131 +388,11 @@ impl Env {
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut guard = self.guard()?;
-        let picture = draw(py, guard.open()?, camera, [width, height], 0_i32, |r, requests, out| {
-            r.segmentation(requests, [out])
-        })?;
-        shaped(py, &picture, &[height, width])
+        pictures::segmentation(py, self.guard()?.open()?, camera, [width, height])
     }
-}
-
-/// Key, shape, number type, lower and upper bound.
-pub type Space = (&'static str, Vec<usize>, &'static str, f64, f64);
-
-/// Describes observation spaces.
-pub fn spaces(spaces: &[babybench::spaces::ObservationSpace]) -> Vec<Space> {
-    let dtype = |dtype| match dtype {
-        Dtype::F64 => "float64",
-        Dtype::F32 => "float32",
-        Dtype::U8 => "uint8",
-        Dtype::I32 => "int32",
-    };
-    let describe = |s: &babybench::spaces::ObservationSpace| (s.key, s.shape.clone(), dtype(s.dtype), s.low, s.high);
-    spaces.iter().map(describe).collect()
-}
-
-fn positions(env: &babybench::Env, qpos: &Bound<'_, PyAny>, qvel: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<f64>)> {
-    let (mut q, mut v) = (Vec::new(), Vec::new());
-    read("qpos", qpos, &[env.model().nq], &mut q)?;
-    read("qvel", qvel, &[env.model().nv], &mut v)?;
-    Ok((q, v))
 }
 
 fn felt(inner: &Inner) -> PyResult<&babybench::sensors::Touch> {
     let off = "touch is off: set touch_active to True";
     inner.env.touch().ok_or_else(|| PyValueError::new_err(off))
-}
-
-/// A method of a renderer that draws numbers of one kind.
-type Draw<T> = fn(&mut Renderer, &[RenderRequest], &mut [T]) -> Result<(), babybench::render::RenderError>;
-
-/// Draws a picture of numbers, (height, width).
-fn draw<T: Clone + Send>(
-    py: Python<'_>,
-    inner: &mut Inner,
-    camera: &str,
-    [width, height]: [usize; 2],
-    zero: T,
-    method: Draw<T>,
-) -> PyResult<Vec<T>> {
-    let Inner { env, renderer, .. } = inner;
-    let camera = env.model().camera(camera).ok_or_else(|| {
-        let cameras = env.model().cam_name.join(", ");
-        PyKeyError::new_err(format!("there is no camera {camera:?}; there are {cameras}"))
-    })?;
-    detached(py, || -> Result<Vec<T>, babybench::EnvError> {
-        let view = View { camera, width, height };
-        view.check()?;
-        let mut picture = vec![zero; view.pixels()];
-        let poses = Poses::from(env.state());
-        let renderer = match renderer {
-            Some(renderer) => renderer,
-            None => renderer.insert(env.blueprint().renderer()?),
-        };
-        method(renderer, &[RenderRequest { poses, view }], &mut picture)?;
-        Ok(picture)
-    })
-}
-
-/// Calls with what is to be locked or unlocked: a joint's number or name, or the name of a part.
-pub fn target_of<R>(target: &Bound<'_, PyAny>, call: impl FnOnce(LockTarget<'_>) -> PyResult<R>) -> PyResult<R> {
-    if let Ok(joint) = target.extract::<usize>() {
-        return call(LockTarget::Joint(joint));
-    }
-    let Ok(name) = target.extract::<String>() else {
-        return Err(PyTypeError::new_err(format!(
-            "{target} is neither the name nor the number of a joint, nor the name of a part"
-        )));
-    };
-    match Part::ALL.into_iter().find(|part| part.name() == name) {
-        Some(part) => call(LockTarget::Part(part)),
-        None => call(LockTarget::Name(&name)),
-    }
-}
-
-/// Returns what a lock came to, with the names of joints.
-pub fn report_dict<'py>(py: Python<'py>, env: &babybench::Env, report: &LockReport) -> PyResult<Bound<'py, PyDict>> {
-    let name = |joint: &usize| env.model().jnt_name[*joint].clone();
-    let dict = PyDict::new(py);
-    dict.set_item("changed", report.changed.iter().map(name).collect::<Vec<_>>())?;
-    dict.set_item(
-        "held",
-        report.held.iter().map(|(joint, _)| name(joint)).collect::<Vec<_>>(),
-    )?;
-    let beyond: Vec<_> = report.beyond_limits.iter().map(name).collect();
-    dict.set_item("beyond_limits", beyond)?;
-    Ok(dict)
-}
-
-/// Returns information under the keys of the reference, in its order, and the details, if wanted.
-pub fn info_dict<'py>(py: Python<'py>, info: &Info, details: bool) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    match &info.behavior {
-        BehaviorInfo::None => {}
-        BehaviorInfo::SelfTouch { touches } => {
-            dict.set_item(intern!(py, "right_hand_touches"), &touches.right_hand)?;
-            dict.set_item(intern!(py, "left_hand_touches"), &touches.left_hand)?;
-        }
-        BehaviorInfo::HandRegard { counts } => {
-            for (name, count) in EYE_HAND_PAIRS.iter().zip(counts.to_array()) {
-                dict.set_item(*name, count)?;
-            }
-        }
-    }
-    if details {
-        if let Some(parts) = &info.details.touched_parts {
-            let names = |parts: &[std::sync::Arc<str>]| parts.iter().map(|p| p.to_string()).collect::<Vec<_>>();
-            dict.set_item(intern!(py, "right_hand_parts"), names(&parts.right_hand))?;
-            dict.set_item(intern!(py, "left_hand_parts"), names(&parts.left_hand))?;
-        }
-        if let Some(angles) = info.details.gaze_angles {
-            let gaze = PyDict::new(py);
-            for (name, angle) in EYE_HAND_PAIRS.iter().zip(angles.to_array()) {
-                gaze.set_item(*name, angle)?;
-            }
-            dict.set_item(intern!(py, "gaze_angles"), gaze)?;
-        }
-    }
-    dict.set_item(intern!(py, "steps"), info.steps)?;
-    Ok(dict)
 }

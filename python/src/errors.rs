@@ -33,11 +33,13 @@ impl IntoException for EnvError {
             Self::Lock(e) => e.into_exception(),
             Self::Snapshot(_)
             | Self::Load(_)
+            | Self::Growth(_)
             | Self::Skin(_)
             | Self::Render(_)
             | Self::Actuation(_)
             | Self::OtherActuators { .. }
             | Self::NoVision
+            | Self::SenseOff { .. }
             | Self::Rapier(_)
             | Self::ActionLength { .. }
             | Self::ActionNotFinite { .. }
@@ -99,9 +101,11 @@ impl IntoException for VectorError {
             }
             Self::Memory { .. } => PyMemoryError::new_err(text),
             Self::Unknown { .. } => pyo3::exceptions::PyIndexError::new_err(text),
-            Self::NoEnvironments | Self::Spaces { .. } | Self::Shape { .. } | Self::NoSense { .. } => {
-                PyValueError::new_err(text)
-            }
+            Self::NoEnvironments
+            | Self::Spaces { .. }
+            | Self::Grown { .. }
+            | Self::Shape { .. }
+            | Self::NoSense { .. } => PyValueError::new_err(text),
             _ => PyRuntimeError::new_err(text),
         }
     }

@@ -4,14 +4,21 @@
 #![deny(missing_docs, unsafe_code)]
 
 mod arrays;
+mod blocks;
+mod blueprint;
 mod config;
 mod env;
 mod errors;
+mod info;
 mod model;
 mod observation;
 mod parts;
+mod pictures;
+mod recycled;
+mod rows;
 mod scene;
 mod state;
+mod task;
 mod touch;
 mod vector;
 mod video;
@@ -21,9 +28,13 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use super::blocks::Blocks;
+    #[pymodule_export]
+    use super::blueprint::Blueprint;
+    #[pymodule_export]
     use super::config::{config_examples, config_from_mapping, config_from_yaml, config_keys};
     #[pymodule_export]
-    use super::env::{Blueprint, Env};
+    use super::env::Env;
     #[pymodule_export]
     use super::parts::Parts;
     #[pymodule_export]

@@ -2,21 +2,40 @@
 
 use babybench::Env;
 use babybench::env::Observation;
-use babybench::sensors::{EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, Touch};
+use babybench::sensors::touch::POOLED;
+use babybench::sensors::{EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, SkinValues};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadwriteArray1};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::shaped;
-use crate::env::Space;
+use crate::info::Space;
+use crate::recycled::Recycled;
+
+/// The goal that a step achieved, and the one to be achieved.
+pub const GOALS: [&str; 2] = ["achieved_goal", "desired_goal"];
+
+/// Returns the goals of an observation, if it has any.
+fn goals<'a>(o: &Observation<'a>) -> Option<[&'a [f64]; 2]> {
+    Some([o.achieved_goal?, o.desired_goal?])
+}
 
 /// Returns a fresh dictionary of fresh arrays.
 pub fn fresh<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDict>> {
     let (dict, o) = (PyDict::new(py), env.observation());
     dict.set_item(intern!(py, "observation"), PyArray1::from_slice(py, o.proprioception))?;
-    if let Some(touch) = env.touch() {
+    if let Some(touch) = env.touch_observed() {
         dict.set_item(intern!(py, "touch"), sparse(py, touch)?)?;
+    }
+    if let (Some(pool), Some(pooled)) = (env.touch_pool(), o.touch_pooled) {
+        dict.set_item(
+            intern!(py, "touch_pooled"),
+            shaped(py, pooled, &[pool.bodies().len(), POOLED])?,
+        )?;
+    }
+    if let Some(pain) = env.pain_observed() {
+        dict.set_item(intern!(py, "pain"), sparse(py, pain)?)?;
     }
     if let (Some(vision), Some(left), Some(right)) = (env.vision(), o.eye_left, o.eye_right) {
         dict.set_item(intern!(py, "eye_left"), shaped(py, left, &vision.shape())?)?;
@@ -30,6 +49,9 @@ pub fn fresh<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDict>> {
     }
     if let Some(vestibular) = o.vestibular {
         dict.set_item(intern!(py, "vestibular"), PyArray1::from_slice(py, vestibular))?;
+    }
+    for (key, goal) in GOALS.into_iter().zip(goals(&o).into_iter().flatten()) {
+        dict.set_item(key, PyArray1::from_slice(py, goal))?;
     }
     Ok(dict)
 }
@@ -54,6 +76,8 @@ pub fn dict_of_row<'py>(py: Python<'py>, o: &Observation<'_>, spaces: &[Space]) 
         let array = match *key {
             "observation" => shaped(py, o.proprioception, shape),
             "touch" => shaped(py, o.touch.unwrap_or_default(), shape),
+            "touch_pooled" => shaped(py, o.touch_pooled.unwrap_or_default(), shape),
+            "pain" => shaped(py, o.pain.unwrap_or_default(), shape),
             "eye_left" => shaped(py, o.eye_left.unwrap_or_default(), shape),
             "eye_right" => shaped(py, o.eye_right.unwrap_or_default(), shape),
             "eye_left_gray" => shaped(py, o.eye_gray.unwrap_or_default()[0], shape),
@@ -62,6 +86,8 @@ pub fn dict_of_row<'py>(py: Python<'py>, o: &Observation<'_>, spaces: &[Space]) 
             "eye_right_depth" => shaped(py, o.eye_depth.unwrap_or_default()[1], shape),
             "eye_left_segmentation" => shaped(py, o.eye_segmentation.unwrap_or_default()[0], shape),
             "eye_right_segmentation" => shaped(py, o.eye_segmentation.unwrap_or_default()[1], shape),
+            "achieved_goal" => shaped(py, o.achieved_goal.unwrap_or_default(), shape),
+            "desired_goal" => shaped(py, o.desired_goal.unwrap_or_default(), shape),
             _ => shaped(py, o.vestibular.unwrap_or_default(), shape),
         };
         dict.set_item(*key, array?)?;
@@ -69,15 +95,15 @@ pub fn dict_of_row<'py>(py: Python<'py>, o: &Observation<'_>, spaces: &[Space]) 
     Ok(dict)
 }
 
-/// Returns touch as a fresh array, of which only what feels something is written.
-pub fn sparse<'py>(py: Python<'py>, touch: &Touch) -> PyResult<Bound<'py, PyArray1<f32>>> {
-    let array = PyArray1::zeros(py, touch.len(), false);
+/// Returns touch or pain as a fresh array, of which only what feels something is written.
+pub fn sparse<'py>(py: Python<'py>, touch: &SkinValues) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    let array = PyArray1::zeros(py, touch.values().len(), false);
     write_touched(array.readwrite().as_slice_mut()?, touch);
     Ok(array)
 }
 
 /// Writes what is felt into zeros.
-fn write_touched(out: &mut [f32], touch: &Touch) {
+pub fn write_touched(out: &mut [f32], touch: &SkinValues) {
     let (width, values) = (touch.width(), touch.values());
     for &sensor in touch.touched() {
         let of = width * sensor as usize..width * (sensor as usize + 1);
@@ -88,8 +114,10 @@ fn write_touched(out: &mut [f32], touch: &Touch) {
 /// An array that Rust writes and Python reads.
 pub struct Slab<T> {
     array: Py<PyArray1<T>>,
+    shape: Vec<usize>,
     /// What Python sees: the same memory, in its shape, read-only.
     pub view: Py<PyAny>,
+    copies: Recycled<T>,
 }
 
 impl<T: Element> Slab<T> {
@@ -101,7 +129,9 @@ impl<T: Element> Slab<T> {
             .setattr(intern!(py, "writeable"), false)?;
         Ok(Self {
             array: array.unbind(),
+            shape: shape.to_vec(),
             view: view.unbind(),
+            copies: Recycled::default(),
         })
     }
 
@@ -109,6 +139,13 @@ impl<T: Element> Slab<T> {
     pub fn lend<'py>(&self, py: Python<'py>) -> PyReadwriteArray1<'py, T> {
         // nobody else borrows it: Python has the view only
         self.array.bind(py).readwrite()
+    }
+
+    /// Returns an array of Python's own, written by a function of this one; it writes all of it.
+    pub fn copy<'py>(&mut self, py: Python<'py>, write: impl FnOnce(&[T], &mut [T])) -> PyResult<Bound<'py, PyAny>> {
+        let array = self.array.bind(py).readonly();
+        let values = array.as_slice()?;
+        self.copies.array(py, &self.shape, |out| write(values, out))
     }
 
     /// Lends the array to a function.
@@ -124,9 +161,12 @@ pub struct Views {
     touch: Option<Slab<f32>>,
     /// Touch sensors that are not zero in the array.
     touched: Vec<u32>,
+    pooled: Option<Slab<f64>>,
+    pain: Option<Slab<f32>>,
     eyes: Option<[Slab<u8>; 2]>,
     maps: Maps,
     vestibular: Option<Slab<f64>>,
+    goals: Option<[Slab<f64>; 2]>,
 }
 
 /// Images of both eyes with one number for each pixel, those that are observed.
@@ -182,10 +222,16 @@ impl Views {
     pub fn new(py: Python<'_>, env: &Env) -> PyResult<Self> {
         let Observation {
             proprioception,
+            touch_pooled,
+            pain,
             eye_left,
             vestibular,
             ..
         } = env.observation();
+        let goals = match goals(&env.observation()) {
+            Some([goal, _]) => Some([Slab::new(py, &[goal.len()])?, Slab::new(py, &[goal.len()])?]),
+            None => None,
+        };
         let eyes = match env.vision().filter(|_| eye_left.is_some()) {
             Some(vision) => Some([Slab::new(py, &vision.shape())?, Slab::new(py, &vision.shape())?]),
             None => None,
@@ -196,14 +242,25 @@ impl Views {
             proprioception: Slab::new(py, &[proprioception.len()])?,
             touch: env.touch().map(|t| Slab::new(py, &[t.len()])).transpose()?,
             touched: Vec::new(),
+            pooled: touch_pooled
+                .map(|v| Slab::new(py, &[v.len() / POOLED, POOLED]))
+                .transpose()?,
+            pain: pain.map(|v| Slab::new(py, &[v.len()])).transpose()?,
             eyes,
             maps: Maps::default(),
             vestibular: vestibular.map(|v| Slab::new(py, &[v.len()])).transpose()?,
+            goals,
         };
         let dict = views.dict.bind(py);
         dict.set_item("observation", &views.proprioception.view)?;
         if let Some(touch) = &views.touch {
             dict.set_item("touch", &touch.view)?;
+        }
+        if let Some(pooled) = &views.pooled {
+            dict.set_item("touch_pooled", &pooled.view)?;
+        }
+        if let Some(pain) = &views.pain {
+            dict.set_item("pain", &pain.view)?;
         }
         if let Some([left, right]) = &views.eyes {
             dict.set_item("eye_left", &left.view)?;
@@ -216,6 +273,9 @@ impl Views {
         if let Some(vestibular) = &views.vestibular {
             dict.set_item("vestibular", &vestibular.view)?;
         }
+        for (key, slab) in GOALS.into_iter().zip(views.goals.iter().flatten()) {
+            dict.set_item(key, &slab.view)?;
+        }
         views.update(py, env)?;
         Ok(views)
     }
@@ -225,7 +285,13 @@ impl Views {
         let o = env.observation();
         self.proprioception
             .write(py, |out| out.copy_from_slice(o.proprioception))?;
-        if let (Some(slab), Some(touch)) = (&self.touch, env.touch()) {
+        if let (Some(slab), Some(pooled)) = (&self.pooled, o.touch_pooled) {
+            slab.write(py, |out| out.copy_from_slice(pooled))?;
+        }
+        if let (Some(slab), Some(pain)) = (&self.pain, o.pain) {
+            slab.write(py, |out| out.copy_from_slice(pain))?;
+        }
+        if let (Some(slab), Some(touch)) = (&self.touch, env.touch_observed()) {
             let (width, touched) = (touch.width(), &mut self.touched);
             slab.write(py, |out| {
                 for &sensor in &*touched {
@@ -243,6 +309,9 @@ impl Views {
         self.maps.update(py, &o)?;
         if let (Some(slab), Some(vestibular)) = (&self.vestibular, o.vestibular) {
             slab.write(py, |out| out.copy_from_slice(vestibular))?;
+        }
+        for (slab, goal) in self.goals.iter().flatten().zip(goals(&o).into_iter().flatten()) {
+            slab.write(py, |out| out.copy_from_slice(goal))?;
         }
         Ok(())
     }

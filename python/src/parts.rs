@@ -175,7 +175,7 @@ impl Parts {
     /// Returns the touch of the last observation.
     #[getter]
     fn touch<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f32>>>> {
-        self.with(|env, _| env.touch().map(|touch| sparse(py, touch)).transpose())
+        self.with(|env, _| env.touch_observed().map(|touch| sparse(py, touch)).transpose())
     }
 
     /// Returns which equality constraints hold now.

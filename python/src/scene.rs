@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::ToArray;
+use crate::blueprint::Blueprint;
 use crate::config::config_of;
-use crate::env::Blueprint;
 use crate::errors::{IntoException, detached};
 
 impl IntoException for SceneFileError {

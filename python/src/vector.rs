@@ -3,132 +3,28 @@
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use babybench::env::Snapshot;
-use babybench::vector::{Buffers, Seeds};
+use babybench::vector::Seeds;
 use babybench::{AutoresetMode, VectorOptions};
-use numpy::{PyArray1, PyReadwriteArray1};
+use numpy::PyArray1;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::{read, shaped};
+use crate::blueprint::Blueprint;
 use crate::config::to_dict;
-use crate::env::{Blueprint, Space, info_dict, report_dict, spaces, target_of};
 use crate::errors::{IntoException, detached};
-use crate::observation::{Maps, Slab, dict_of_row};
-
-/// Arrays over environments, which Rust writes and Python reads.
-struct Arrays {
-    rows: usize,
-    /// Observations by key, as Python sees them.
-    dict: Py<PyDict>,
-    proprioception: Slab<f64>,
-    touch: Option<Slab<f32>>,
-    /// For each row the touch sensors that are not zero.
-    touched: Vec<Vec<u32>>,
-    eyes: Option<[Slab<u8>; 2]>,
-    maps: Maps,
-    vestibular: Option<Slab<f64>>,
-    rewards: Slab<f64>,
-    terminated: Slab<bool>,
-    truncated: Slab<bool>,
-}
-
-impl Arrays {
-    fn new(py: Python<'_>, rows: usize, spaces: &[Space]) -> PyResult<Self> {
-        let shape = |key: &str| {
-            let of = spaces.iter().find(|space| space.0 == key)?;
-            Some([&[rows], &of.1[..]].concat())
-        };
-        fn slab<T: numpy::Element>(py: Python<'_>, shape: Option<Vec<usize>>) -> PyResult<Option<Slab<T>>> {
-            shape.map(|shape| Slab::new(py, &shape)).transpose()
-        }
-        let touch = slab(py, shape("touch"))?;
-        let eyes = slab(py, shape("eye_left"))?.zip(slab(py, shape("eye_right"))?);
-        let dict = PyDict::new(py);
-        let arrays = Self {
-            rows,
-            maps: Maps::new(&dict, shape)?,
-            dict: dict.unbind(),
-            proprioception: Slab::new(py, &shape("observation").unwrap_or_default())?,
-            touched: touch.iter().flat_map(|_| vec![Vec::new(); rows]).collect(),
-            touch,
-            eyes: eyes.map(|(left, right)| [left, right]),
-            vestibular: slab(py, shape("vestibular"))?,
-            rewards: Slab::new(py, &[rows])?,
-            terminated: Slab::new(py, &[rows])?,
-            truncated: Slab::new(py, &[rows])?,
-        };
-        let dict = arrays.dict.bind(py);
-        dict.set_item("observation", &arrays.proprioception.view)?;
-        if let Some(touch) = &arrays.touch {
-            dict.set_item("touch", &touch.view)?;
-        }
-        if let Some([left, right]) = &arrays.eyes {
-            dict.set_item("eye_left", &left.view)?;
-            dict.set_item("eye_right", &right.view)?;
-        }
-        if let Some(vestibular) = &arrays.vestibular {
-            dict.set_item("vestibular", &vestibular.view)?;
-        }
-        Ok(arrays)
-    }
-
-    /// Lends all arrays to work that fills them.
-    fn fill<R>(&mut self, py: Python<'_>, work: impl FnOnce(Buffers<'_>) -> PyResult<R>) -> PyResult<R> {
-        let mut proprioception = self.proprioception.lend(py);
-        let mut touch = self.touch.as_ref().map(|slab| slab.lend(py));
-        let (left, right) = match &self.eyes {
-            Some([left, right]) => (Some(left), Some(right)),
-            None => (None, None),
-        };
-        let (mut left, mut right) = (left.map(|slab| slab.lend(py)), right.map(|slab| slab.lend(py)));
-        let mut gray = lend(py, &self.maps.gray);
-        let mut depth = lend(py, &self.maps.depth);
-        let mut geoms = lend(py, &self.maps.segmentation);
-        let mut vestibular = self.vestibular.as_ref().map(|slab| slab.lend(py));
-        let mut rewards = self.rewards.lend(py);
-        let (mut terminated, mut truncated) = (self.terminated.lend(py), self.truncated.lend(py));
-        let touched = touch.is_some().then_some(&mut self.touched[..]);
-        work(Buffers {
-            proprioception: Some(proprioception.as_slice_mut()?),
-            touch: slice(&mut touch)?,
-            eye_left: slice(&mut left)?,
-            eye_right: slice(&mut right)?,
-            eye_gray: slices(&mut gray)?,
-            eye_depth: slices(&mut depth)?,
-            eye_segmentation: slices(&mut geoms)?,
-            vestibular: slice(&mut vestibular)?,
-            rewards: Some(rewards.as_slice_mut()?),
-            terminated: Some(terminated.as_slice_mut()?),
-            truncated: Some(truncated.as_slice_mut()?),
-            touched,
-        })
-    }
-}
-
-fn slice<'a, T: numpy::Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyResult<Option<&'a mut [T]>> {
-    Ok(array.as_mut().map(|array| array.as_slice_mut()).transpose()?)
-}
-
-fn lend<'py, T: numpy::Element>(
-    py: Python<'py>,
-    slabs: &Option<[Slab<T>; 2]>,
-) -> Option<[PyReadwriteArray1<'py, T>; 2]> {
-    slabs.as_ref().map(|pair| pair.each_ref().map(|slab| slab.lend(py)))
-}
-
-fn slices<'a, T: numpy::Element>(
-    arrays: &'a mut Option<[PyReadwriteArray1<'_, T>; 2]>,
-) -> PyResult<Option<[&'a mut [T]; 2]>> {
-    let Some([left, right]) = arrays else { return Ok(None) };
-    Ok(Some([left.as_slice_mut()?, right.as_slice_mut()?]))
-}
+use crate::info::{Space, info_dict, report_dict, spaces, target_of};
+use crate::observation::dict_of_row;
+use crate::rows::Arrays;
+use crate::task;
 
 /// What a vector of Python's holds.
 struct Inner {
     envs: babybench::VectorEnv,
     spaces: Vec<Space>,
+    touch_width: usize,
     /// Rows of all environments, for steps.
     all: Arrays,
     /// Rows of those that were received last.
@@ -213,8 +109,14 @@ impl VectorEnv {
         let blueprints: Vec<_> = blueprints.iter().map(|b| b.get().inner.clone()).collect();
         let envs = detached(py, || babybench::VectorEnv::from_blueprints(&blueprints, options))?;
         let spaces = spaces(envs.single_observation_space());
+        let touch_width = envs
+            .env(0)
+            .ok()
+            .and_then(|env| env.touch())
+            .map_or(0, |touch| touch.width());
         let inner = Box::new(Inner {
-            all: Arrays::new(py, envs.len(), &spaces)?,
+            all: Arrays::new(py, envs.len(), &spaces, touch_width)?,
+            touch_width,
             some: None,
             actions: Vec::new(),
             spaces,
@@ -228,12 +130,13 @@ impl VectorEnv {
 
     // --- life ---
 
-    #[pyo3(signature = (seeds=None, mask=None))]
+    #[pyo3(signature = (seeds=None, mask=None, copy=false))]
     fn reset<'py>(
         &self,
         py: Python<'py>,
         seeds: Option<&Bound<'py, PyAny>>,
         mask: Option<Vec<bool>>,
+        copy: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let list: Option<Vec<Option<u64>>> = match seeds {
             Some(seeds) if seeds.hasattr("__len__")? => Some(seeds.extract().map_err(|_| bad_seeds(seeds))?),
@@ -249,17 +152,18 @@ impl VectorEnv {
         all.fill(py, |buffers| {
             detached(py, || envs.reset_into(mask.as_deref(), seeds, buffers))
         })?;
-        Ok(all.dict.bind(py).clone())
+        all.observations(py, copy)
     }
 
-    fn step<'py>(&self, py: Python<'py>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    #[pyo3(signature = (actions, copy=false))]
+    fn step<'py>(&self, py: Python<'py>, actions: &Bound<'py, PyAny>, copy: bool) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
         let shape = [inner.envs.len(), inner.envs.single_action_space().len()];
         read("actions", actions, &shape, &mut inner.actions)?;
         let Inner { envs, all, actions, .. } = inner;
         all.fill(py, |buffers| detached(py, || envs.step_into(actions, buffers)))?;
-        Ok(all.dict.bind(py).clone())
+        all.observations(py, copy)
     }
 
     fn run(&self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -283,13 +187,20 @@ impl VectorEnv {
         detached(py, || envs.send(actions, &ids))
     }
 
-    fn recv<'py>(&self, py: Python<'py>, n: usize) -> PyResult<Received<'py>> {
+    #[pyo3(signature = (n, copy=false))]
+    fn recv<'py>(&self, py: Python<'py>, n: usize, copy: bool) -> PyResult<Received<'py>> {
         let mut guard = self.guard()?;
-        let Inner { envs, some, spaces, .. } = guard.open()?;
+        let Inner {
+            envs,
+            some,
+            spaces,
+            touch_width,
+            ..
+        } = guard.open()?;
         let arrays = match some {
             Some(arrays) if arrays.rows == n => arrays,
             // more than there are is refused below, without room for them
-            _ => some.insert(Arrays::new(py, n.min(envs.len()), spaces)?),
+            _ => some.insert(Arrays::new(py, n.min(envs.len()), spaces, *touch_width)?),
         };
         let ids = arrays.fill(py, |buffers| {
             detached(py, || envs.recv_into(n, buffers).map(<[usize]>::to_vec))
@@ -297,7 +208,7 @@ impl VectorEnv {
         let ids = PyArray1::from_iter(py, ids.into_iter().map(|id| id as i64));
         let of = |view: &Py<PyAny>| view.bind(py).clone();
         Ok((
-            arrays.dict.bind(py).clone(),
+            arrays.observations(py, copy)?,
             of(&arrays.rewards.view),
             of(&arrays.terminated.view),
             of(&arrays.truncated.view),
@@ -338,6 +249,14 @@ impl VectorEnv {
             let counts: Vec<i64> = regards.iter().map(|&r| r as i64).collect();
             dict.set_item(intern!(py, "regards"), shaped(py, &counts, &[n, 4])?)?;
         }
+        if let (Some(outcomes), Some(terms)) = (infos.outcomes, infos.reward_terms) {
+            let success = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_success));
+            let failure = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_failure));
+            dict.set_item(intern!(py, "is_success"), success)?;
+            dict.set_item(intern!(py, "is_failure"), failure)?;
+            let shape = [n, terms.len() / n.max(1)];
+            dict.set_item(intern!(py, "reward_terms"), shaped(py, terms, &shape)?)?;
+        }
         Ok(dict)
     }
 
@@ -362,18 +281,46 @@ impl VectorEnv {
     fn info<'py>(&self, py: Python<'py>, env: usize, details: bool) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let env = guard.open()?.envs.env(env).map_err(IntoException::into_exception)?;
-        info_dict(py, env.info(), details)
+        let dict = info_dict(py, env.info(), details)?;
+        task::add_terms(&dict, env, details)?;
+        Ok(dict)
+    }
+
+    fn compute_reward<'py>(
+        &self,
+        py: Python<'py>,
+        env: usize,
+        achieved: &Bound<'py, PyAny>,
+        desired: &Bound<'py, PyAny>,
+        terms: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut guard = self.guard()?;
+        let env = guard.open()?.envs.env(env).map_err(IntoException::into_exception)?;
+        task::compute_reward(py, env, [achieved, desired, terms])
+    }
+
+    #[getter]
+    fn reward_terms(&self) -> PyResult<usize> {
+        let mut guard = self.guard()?;
+        let env = guard.open()?.envs.env(0).map_err(IntoException::into_exception)?;
+        Ok(env.goal().terms.len())
     }
 
     #[pyo3(signature = (env, details=true))]
     fn final_info<'py>(&self, py: Python<'py>, env: usize, details: bool) -> PyResult<Option<Bound<'py, PyDict>>> {
         let mut guard = self.guard()?;
-        let info = guard
-            .open()?
-            .envs
-            .final_info(env)
-            .map_err(IntoException::into_exception)?;
-        info.map(|info| info_dict(py, info, details)).transpose()
+        let envs = &guard.open()?.envs;
+        let Some(info) = envs.final_info(env).map_err(IntoException::into_exception)? else {
+            return Ok(None);
+        };
+        let dict = info_dict(py, info, details)?;
+        let terms = envs.finals().and_then(|finals| finals.infos.reward_terms);
+        let (ids, row) = (envs.batch().ids, envs.batch().ids.iter().position(|&id| id == env));
+        if let (Some(terms), Some(row), true) = (terms, row, details) {
+            let width = terms.len() / ids.len().max(1);
+            task::put_terms(&dict, &terms[row * width..(row + 1) * width])?;
+        }
+        Ok(Some(dict))
     }
 
     // --- the vector ---

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+from kit_scripts import Make, maker
 
 import babybench
 
@@ -33,3 +36,9 @@ def env() -> babybench.Env:
     env.action_space.seed(1)
     env.reset(seed=0)
     return env
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Make:
+    """Makes an environment as scripts for the starter kit do, with changes of the configuration."""
+    return maker(tmp_path / "run")

@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,24 @@ def test_plot_touch(tmp_path):
     said = run("plot_touch.py", "--steps", 30, cwd=tmp_path)
     assert re.search(r"shows \d+ sensors that feel something", said)
     assert (tmp_path / "touch.png").stat().st_size > 30_000
+
+
+@pytest.mark.parametrize("notebook", ["quick_start", "touch_on_the_body"])
+def test_notebooks(notebook, tmp_path):
+    nbclient = pytest.importorskip("nbclient", reason="notebooks need nbclient and ipykernel")
+    pytest.importorskip("ipykernel", reason="notebooks need nbclient and ipykernel")
+    pytest.importorskip("matplotlib", reason="the pictures need matplotlib")
+    import nbformat
+
+    cells = nbformat.read(EXAMPLES / f"{notebook}.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in cells.cells), "notebooks are kept without output"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of Jupyter's own
+        client = nbclient.NotebookClient(cells, timeout=300, resources={"metadata": {"path": str(tmp_path)}})
+        client.execute(env={**os.environ, "MPLBACKEND": "module://matplotlib_inline.backend_inline"})
+    kinds = [kind for cell in cells.cells for out in cell.get("outputs", []) for kind in out.get("data", {})]
+    assert "image/png" in kinds
+    assert "text/plain" in kinds
 
 
 def test_ray_on_two_workers(tmp_path):

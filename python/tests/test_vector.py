@@ -48,6 +48,26 @@ def test_each_environment_goes_as_if_it_were_alone(config, threads):
     envs.close()
 
 
+def test_copies_stay_with_who_holds_them():
+    envs, views = babybench.VectorEnv(SMALL, 3), babybench.VectorEnv(SMALL, 3, copy=False)
+    kept = []
+    for k, actions in enumerate([None, *actions_of(envs, 12)]):
+        both = [e.reset(seed=0)[0] if actions is None else e.step(actions)[0] for e in (envs, views)]
+        for key in both[0]:
+            np.testing.assert_array_equal(both[0][key], both[1][key], err_msg=key)
+        mine = both[0]["touch"]
+        mine += 1  # the caller's own: later ones know nothing of it
+        if k % 4 == 0:
+            kept.append((both[0]["observation"], both[0]["observation"].copy()))
+            kept.append((mine[1:, 5:9], mine[1:, 5:9].copy()))
+            kept.append((memoryview(mine), mine.copy()))
+        del both, mine
+    for held, values in kept:
+        np.testing.assert_array_equal(np.asarray(held), values)
+    envs.close()
+    views.close()
+
+
 @pytest.mark.parametrize("mode", MODES, ids=[mode.name for mode in MODES])
 def test_episodes_follow_each_other_as_the_mode_says(mode):
     envs = babybench.VectorEnv(SMALL, 2, autoreset_mode=mode)

@@ -39,7 +39,10 @@ impl DirAssets {
                 limit: limits.asset_bytes,
             })
         } else {
-            Err(AssetError::NotFound(root.display().to_string()))
+            Err(AssetError::Io {
+                path: root.display().to_string(),
+                message: "this is not a folder".to_owned(),
+            })
         }
     }
 
@@ -51,12 +54,12 @@ impl DirAssets {
             .canonicalize()
             .map_err(|e| io_error(path, &e))?;
         if !real.starts_with(&self.root) {
-            return Err(AssetError::BadPath(path.to_owned()));
+            return Err(AssetError::Io {
+                path: path.to_owned(),
+                message: "this is a link that leads out of the folder".to_owned(),
+            });
         }
-        match real.is_dir() {
-            true => Err(AssetError::NotFound(path.to_owned())),
-            false => Ok(real),
-        }
+        Ok(real)
     }
 }
 

@@ -22,18 +22,20 @@ pub use directory::DirAssets;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use crate::text::quoted;
+
 /// An error in reading a file from a source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AssetError {
     /// The source has no such file.
-    #[error("file \"{0}\" does not exist")]
+    #[error("file \"{}\" does not exist", quoted(.0))]
     NotFound(String),
     /// A path that is empty, absolute, leads out of the source or uses characters other than `/` to separate.
-    #[error("path \"{0}\" is not a relative path inside the asset source")]
+    #[error("path \"{}\" is not a relative path inside the asset source", quoted(.0))]
     BadPath(String),
     /// The file is larger than [`crate::Limits::asset_bytes`].
-    #[error("file \"{path}\" is larger than {limit} bytes")]
+    #[error("file \"{}\" is larger than {limit} bytes", quoted(.path))]
     TooLarge {
         /// The path.
         path: String,
@@ -41,7 +43,7 @@ pub enum AssetError {
         limit: u64,
     },
     /// The file system failed.
-    #[error("file \"{path}\": {message}")]
+    #[error("file \"{}\": {message}", quoted(.path))]
     Io {
         /// The path.
         path: String,

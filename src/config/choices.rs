@@ -50,7 +50,7 @@ macro_rules! choices {
 }
 
 choices! {
-    /// The behavior that is trained and scored (`behavior`).
+    /// The behavior that is trained and scored, or the task with a goal and a reward (`behavior`).
     Behavior {
         /// No score; MIMo v1.
         #[default]
@@ -59,6 +59,27 @@ choices! {
         SelfTouch = "self_touch",
         /// Looking at one's own hands; MIMo v2.
         HandRegard = "hand_regard",
+        /// Reaching for a hovering ball with the right hand; MIMo v1.
+        Reach = "reach",
+        /// Standing up at the railing of a crib; MIMo v1.
+        Standup = "standup",
+        /// Touching a part of one's own body with the right hand; MIMo v1.
+        SelfBody = "selfbody",
+        /// Catching a falling ball with the right hand; MIMo v2.
+        Catch = "catch",
+        /// Rolling over on the floor; MIMo v1.
+        RollOver = "roll_over",
+    }
+}
+
+choices! {
+    /// How MIMo lies at the start of `roll_over` (`starting_position`).
+    StartingPosition {
+        /// On his back.
+        #[default]
+        Supine = "supine",
+        /// On his belly.
+        Prone = "prone",
     }
 }
 
@@ -72,6 +93,17 @@ choices! {
         Crib = "crib",
         /// Loose cubes and balls, with MIMo sitting among them.
         Cubes = "cubes",
+    }
+}
+
+choices! {
+    /// The unit of delays (`delay_unit`).
+    DelayUnit {
+        /// Steps of the environment.
+        #[default]
+        Steps = "steps",
+        /// Milliseconds, rounded to whole steps of the environment.
+        Ms = "ms",
     }
 }
 

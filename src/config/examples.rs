@@ -1,11 +1,11 @@
-//! The three example configurations of BabyBench.
+//! The example configurations: the three of BabyBench, and one for each task.
 
 use super::{Config, ConfigError};
 
 /// An example configuration, as it stands in `configs/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
-    /// Name: `self_touch`, `hand_regard` or `test_installation`.
+    /// Name: `self_touch`, `hand_regard`, `test_installation`, or that of a task.
     pub name: &'static str,
     /// Text of the file.
     pub yaml: &'static str,
@@ -27,8 +27,31 @@ impl Example {
         name: "test_installation",
         yaml: include_str!("../../configs/config_test_installation.yml"),
     };
-    /// All three examples.
+    /// BabyBench's three examples.
     pub const ALL: [Self; 3] = [Self::SELF_TOUCH, Self::HAND_REGARD, Self::TEST_INSTALLATION];
+    /// An example for each task, by the name of its behavior.
+    pub const TASKS: [Self; 5] = [
+        Self {
+            name: "reach",
+            yaml: include_str!("../../configs/config_reach.yml"),
+        },
+        Self {
+            name: "standup",
+            yaml: include_str!("../../configs/config_standup.yml"),
+        },
+        Self {
+            name: "selfbody",
+            yaml: include_str!("../../configs/config_selfbody.yml"),
+        },
+        Self {
+            name: "catch",
+            yaml: include_str!("../../configs/config_catch.yml"),
+        },
+        Self {
+            name: "roll_over",
+            yaml: include_str!("../../configs/config_roll_over.yml"),
+        },
+    ];
 
     /// Parses the example.
     ///

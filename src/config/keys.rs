@@ -1,231 +1,13 @@
 //! The table of keys, from which reading, writing, defaults, ranges and documentation all follow.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, Scene, StartingPosition, TouchFunction,
+    TouchResponse, VisionOutput,
 };
+use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
-use super::{Config, MAX_AGE, error};
+use super::{Config, MAX_AGE};
 use crate::spaces::MAX_IMAGE_SIZE;
-
-/// The value of a key.
-#[derive(Clone, Debug, PartialEq)]
-pub enum KeyValue {
-    /// `true` or `false`.
-    Bool(bool),
-    /// An integer.
-    Whole(u64),
-    /// A number.
-    Number(f64),
-    /// One of a few names.
-    Choice(&'static str),
-    /// Some of a few names.
-    List(Vec<&'static str>),
-    /// Any text.
-    Text(String),
-    /// No value: the key is not used.
-    None,
-}
-
-impl KeyValue {
-    /// Writes the value as YAML.
-    pub fn to_yaml(&self) -> String {
-        match self {
-            Self::Bool(on) => on.to_string(),
-            Self::Whole(number) => number.to_string(),
-            Self::Number(number) => format!("{number:?}"),
-            Self::Choice(name) => (*name).to_string(),
-            Self::List(names) => format!("[{}]", names.join(", ")),
-            Self::Text(text) => quoted(text),
-            Self::None => NONE.to_string(),
-        }
-    }
-}
-
-/// The word for a key that is not used.
-const NONE: &str = "none";
-/// YAML's words for no value.
-const NULL: [&str; 5] = ["", "~", "null", "Null", "NULL"];
-
-/// The values that a key accepts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum KeyKind {
-    /// `true` or `false`.
-    Bool,
-    /// An integer in a closed range.
-    Whole {
-        /// Smallest value.
-        min: u64,
-        /// Largest value.
-        max: u64,
-    },
-    /// A finite number: 0, or at least the given one.
-    ZeroOrAtLeast(f64),
-    /// A number in a closed range, or none.
-    NoneOr {
-        /// Smallest value.
-        min: f64,
-        /// Largest value.
-        max: f64,
-    },
-    /// One of the given names.
-    Choice(&'static [&'static str]),
-    /// A list of one or more of the given names, each once.
-    List(&'static [&'static str]),
-    /// Text of at least one character, without control characters.
-    Text,
-}
-
-/// A reason why a value does not fit its key.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Misfit {
-    Missing,
-    WrongType,
-    OutOfRange { nearest: Option<&'static str> },
-}
-
-const OUT_OF_RANGE: Misfit = Misfit::OutOfRange { nearest: None };
-
-impl KeyKind {
-    /// Describes in words what is allowed.
-    pub fn expected(&self) -> String {
-        match self {
-            Self::Bool => "true or false".to_string(),
-            Self::Whole { min, max } => format!("a whole number from {min} to {max}"),
-            Self::ZeroOrAtLeast(least) => format!("0 or a finite number of at least {least}"),
-            Self::NoneOr { min, max } => format!("none or a number from {min} to {max}"),
-            Self::Choice(names) => format!("one of {}", names.join(", ")),
-            Self::List(names) => format!("a list in brackets of one or more of {}, each once", names.join(", ")),
-            Self::Text => {
-                "text, at least one character and no control characters (in quotes if it looks like a number, a \
-                           boolean or null)"
-                    .to_string()
-            }
-        }
-    }
-
-    /// Parses a YAML scalar: `plain` is false for text in quotes, which is text whatever it looks like.
-    pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, Misfit> {
-        if matches!(self, Self::NoneOr { .. }) && (text == NONE || plain && NULL.contains(&text)) {
-            return Ok(KeyValue::None);
-        }
-        if plain && NULL.contains(&text) {
-            return Err(Misfit::Missing);
-        }
-        let value = match self {
-            Self::Bool if plain => KeyValue::Bool(boolean(text).ok_or(Misfit::WrongType)?),
-            Self::Whole { .. } if plain => KeyValue::Whole(whole(text)?),
-            Self::ZeroOrAtLeast(_) | Self::NoneOr { .. } if plain => KeyValue::Number(number(text)?),
-            Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) | Self::NoneOr { .. } | Self::List(_) => {
-                return Err(Misfit::WrongType);
-            }
-            Self::Choice(names) => KeyValue::Choice(named(text, names)?),
-            Self::Text if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) => {
-                return Err(Misfit::WrongType);
-            }
-            Self::Text => KeyValue::Text(text.to_string()),
-        };
-        self.check(&value).map(|()| value)
-    }
-
-    /// Parses the next name of a list, after those in `list`.
-    pub(super) fn parse_item(&self, text: &str, list: &mut Vec<&'static str>) -> Result<(), Misfit> {
-        let Self::List(names) = self else {
-            return Err(Misfit::WrongType);
-        };
-        let name = named(text, names)?;
-        if list.contains(&name) {
-            return Err(OUT_OF_RANGE);
-        }
-        list.push(name);
-        Ok(())
-    }
-
-    /// Checks that a value of the right type is allowed.
-    pub(super) fn check(&self, value: &KeyValue) -> Result<(), Misfit> {
-        let fits = match (self, value) {
-            (Self::Bool, KeyValue::Bool(_)) => true,
-            (Self::Whole { min, max }, KeyValue::Whole(number)) => (min..=max).contains(&number),
-            (Self::ZeroOrAtLeast(least), KeyValue::Number(number)) => {
-                number.is_finite() && (*number == 0.0 || number >= least)
-            }
-            (Self::NoneOr { .. }, KeyValue::None) => true,
-            (Self::NoneOr { min, max }, KeyValue::Number(number)) => (min..=max).contains(&number),
-            (Self::Choice(names), KeyValue::Choice(name)) => names.contains(name),
-            (Self::List(names), KeyValue::List(list)) => {
-                let once = |(at, name): (usize, &&str)| names.contains(name) && !list[..at].contains(name);
-                !list.is_empty() && list.iter().enumerate().all(once)
-            }
-            (Self::Text, KeyValue::Text(text)) => !text.is_empty() && !text.chars().any(char::is_control),
-            _ => return Err(Misfit::WrongType),
-        };
-        if fits { Ok(()) } else { Err(OUT_OF_RANGE) }
-    }
-}
-
-/// Finds one of some names.
-fn named(text: &str, names: &[&'static str]) -> Result<&'static str, Misfit> {
-    let nearest = || error::nearest(text, names.iter().copied());
-    let found = names.iter().find(|name| **name == text).copied();
-    found.ok_or_else(|| Misfit::OutOfRange { nearest: nearest() })
-}
-
-/// Parses YAML 1.1's words for true and false, which PyYAML reads; `y` and `n` are text to it and so here.
-fn boolean(text: &str) -> Option<bool> {
-    match text {
-        "true" | "True" | "TRUE" | "yes" | "Yes" | "YES" | "on" | "On" | "ON" => Some(true),
-        "false" | "False" | "FALSE" | "no" | "No" | "NO" | "off" | "Off" | "OFF" => Some(false),
-        _ => None,
-    }
-}
-
-/// Parses decimal digits with an optional sign and `_` between digits. A leading zero is refused: YAML 1.1 and 1.2 read
-/// it as different numbers.
-fn whole(text: &str) -> Result<u64, Misfit> {
-    let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
-    let decimal = digits.starts_with(|c: char| c.is_ascii_digit())
-        && digits.bytes().all(|b| b.is_ascii_digit() || b == b'_')
-        && (digits.len() == 1 || !digits.starts_with('0'));
-    if !decimal {
-        return Err(Misfit::WrongType);
-    }
-    let number = digits.replace('_', "").parse().map_err(|_| OUT_OF_RANGE)?;
-    if text.starts_with('-') && number != 0 {
-        Err(OUT_OF_RANGE)
-    } else {
-        Ok(number)
-    }
-}
-
-/// Parses an integer, or digits with a point or an exponent.
-fn number(text: &str) -> Result<f64, Misfit> {
-    let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
-    if matches!(unsigned, ".inf" | ".Inf" | ".INF" | ".nan" | ".NaN" | ".NAN") {
-        return Err(OUT_OF_RANGE);
-    }
-    let float = unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-        && unsigned.bytes().all(|b| b.is_ascii_digit() || b"._eE+-".contains(&b))
-        && unsigned.bytes().any(|b| b".eE".contains(&b));
-    if !float && whole(text) == Err(Misfit::WrongType) {
-        return Err(Misfit::WrongType);
-    }
-    let number: f64 = text.replace('_', "").parse().map_err(|_| Misfit::WrongType)?;
-    Ok(number + 0.0) // -0 becomes 0
-}
-
-/// Writes text in YAML's double quotes, with everything unusual escaped.
-fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => out.extend(['\\', c]),
-            ' '..='~' => out.push(c),
-            _ if c.is_alphanumeric() => out.push(c),
-            _ => out.push_str(&format!("\\U{:08X}", u32::from(c))),
-        }
-    }
-    out.push('"');
-    out
-}
 
 /// A field of [`Config`] that converts to and from a [`KeyValue`].
 trait Field: Sized {
@@ -258,12 +40,14 @@ field! {
     String, Text, v => Some(v.clone()), |f| f.clone();
     Behavior, Choice, v => Self::from_name(v), |f| f.name();
     Scene, Choice, v => Self::from_name(v), |f| f.name();
+    StartingPosition, Choice, v => Self::from_name(v), |f| f.name();
     ActuationModel, Choice, v => Self::from_name(v), |f| f.name();
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();
     TouchResponse, Choice, v => Self::from_name(v), |f| f.name();
     Compat, Choice, v => Self::from_name(v), |f| f.name();
     EngineKind, Choice, v => Self::from_name(v), |f| f.name();
     RendererKind, Choice, v => Self::from_name(v), |f| f.name();
+    DelayUnit, Choice, v => Self::from_name(v), |f| f.name();
     VisionOutputs, List, v => Self::from_names(v), |f| f.iter().map(VisionOutput::name).collect();
 }
 
@@ -312,7 +96,7 @@ impl Key {
     }
 
     /// Sets the field; `false` if the value is of another type.
-    pub(super) fn assign(&self, config: &mut Config, value: &KeyValue) -> bool {
+    pub(crate) fn assign(&self, config: &mut Config, value: &KeyValue) -> bool {
         (self.set)(config, value)
     }
 }
@@ -343,6 +127,21 @@ const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the in
 
 const AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: MAX_AGE };
 const CENTIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
+const DELAY: KeyKind = KeyKind::Number {
+    min: 0.0,
+    max: 10_000.0,
+};
+const OWN_DELAY: KeyKind = KeyKind::NoneOr {
+    min: 0.0,
+    max: 10_000.0,
+};
+const DEVIATION: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
+const ACUITY_AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: 36.0 };
+const STRENGTH: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
+const OWN_STRENGTH: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1000.0 };
+const SHARE: KeyKind = KeyKind::Number { min: 0.0, max: 1.0 };
+const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
+const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
 const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 
 use KeyKind::{Bool, Choice, List, Text};
@@ -354,7 +153,7 @@ pub(super) const GROWTH: &str = "Growth";
 pub(super) static KEYS: &[Key] = keys! {
     "General" {
         save_dir = save_dir, Text, "The folder of logs, videos and results.";
-        behavior = behavior, Choice(Behavior::NAMES), "The behavior that is trained and scored.";
+        behavior = behavior, Choice(Behavior::NAMES), "The behavior that is trained and scored, or a task with a goal and a reward, whose other keys have defaults of their own.";
         scene = scene, Choice(Scene::NAMES), "MIMo's surroundings.";
         max_episode_steps = max_episode_steps, COUNT, "Number of steps after which an episode is truncated.";
         frame_skip = frame_skip, FRAMES, "Physics steps of 5 ms per action.";
@@ -366,6 +165,13 @@ pub(super) static KEYS: &[Key] = keys! {
         engine = engine, Choice(EngineKind::NAMES), "The physics engine.";
         renderer = renderer, Choice(RendererKind::NAMES), "The renderer of images.";
         seed = seed, SEED, "The seed of all random choices until a reset is given another.";
+    }
+    "Tasks" {
+        done_active = done_active, Bool, "Success and failure of a task terminate the episode.";
+        action_penalty = action_penalty, Bool, "The task catch subtracts the cost of an action from the reward.";
+        jitter = jitter, Bool, "The task catch disturbs actions, by factors that change now and then.";
+        position_inaccurate = position_inaccurate, Bool, "The eyes of the task catch follow a point beside the ball.";
+        starting_position = starting_position, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
     }
     GROWTH {
         age = age, AGE, "The age of MIMo's body, months; none for the proportions of the original.";
@@ -390,6 +196,21 @@ pub(super) static KEYS: &[Key] = keys! {
         thumb_diameter = measurements.thumb_diameter, MILLIMETRES, "The diameter of the thumb, mm; none for that of the age.";
         upper_arm_circumference = measurements.upper_arm_circumference, CENTIMETRES, "The circumference of the upper arm, cm; none for that of the age.";
     }
+    "Delays" {
+        delay_unit = delays.unit, Choice(DelayUnit::NAMES), "The unit of delays; milliseconds are rounded to whole steps.";
+        delay_sensory = delays.sensory, DELAY, "The delay of senses that have none of their own.";
+        delay_motor = delays.motor, DELAY, "The delay of actions.";
+        delay_proprioception = delays.proprioception, OWN_DELAY, "The delay of proprioception; none for that of all senses.";
+        delay_touch = delays.touch, OWN_DELAY, "The delay of touch and pain; none for that of all senses.";
+        delay_vestibular = delays.vestibular, OWN_DELAY, "The delay of the head's motion; none for that of all senses.";
+        delay_vision = delays.vision, OWN_DELAY, "The delay of both eyes; none for that of all senses.";
+    }
+    "Noise" {
+        noise_proprioception = noise.proprioception, DEVIATION, "Standard deviation of the noise of proprioception, in the unit of each number.";
+        noise_touch = noise.touch, DEVIATION, "Standard deviation of the noise of touch sensors that feel something, N.";
+        noise_vestibular = noise.vestibular, DEVIATION, "Standard deviation of the noise of the head's motion, m/s^2 and rad/s.";
+        noise_vision = noise.vision, DEVIATION, "Standard deviation of the noise of images, of 255.";
+    }
     "Proprioception" {
         proprio_velocity = proprio_velocity, Bool, "Joint velocities are observed.";
         proprio_torque = proprio_torque, Bool, "Joint torques are observed.";
@@ -403,6 +224,12 @@ pub(super) static KEYS: &[Key] = keys! {
         vision_active = vision_active, Bool, "The images of both eyes are observed.";
         vision_resolution = vision_resolution, PIXELS, "Width and height of an eye's image, pixels.";
         vision_outputs = vision_outputs, List(VisionOutput::NAMES), "The images of each eye that are observed.";
+        vision_acuity = eyes.acuity, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
+        vision_acuity_left = eyes.acuity_left, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";
+        vision_acuity_right = eyes.acuity_right, ACUITY_AGE, "The age of the right eye's acuity, months; none for that of both eyes.";
+        vision_foveation = eyes.foveation, STRENGTH, "How much the middle of images is enlarged: 10 is usual, 0 not at all.";
+        vision_foveation_left = eyes.foveation_left, OWN_STRENGTH, "The foveation of the left eye; none for that of both eyes.";
+        vision_foveation_right = eyes.foveation_right, OWN_STRENGTH, "The foveation of the right eye; none for that of both eyes.";
     }
     "Touch" {
         touch_active = touch_active, Bool, "Touch is observed.";
@@ -417,6 +244,15 @@ pub(super) static KEYS: &[Key] = keys! {
         touch_body = touch.body, Bool, "The trunk has touch sensors.";
         touch_head = touch.head, Bool, "The head has touch sensors.";
         touch_eyes = touch.eyes, Bool, "The eyes have touch sensors.";
+        touch_pooled = touch_pooled, Bool, "Touch pooled over each body is observed.";
+    }
+    "Pain" {
+        pain_active = pain_active, Bool, "Pain is observed.";
+        pain_threshold = pain.threshold, PAIN, "The force on a sensor from which on it hurts, N.";
+        pain_slope = pain.slope, PAIN, "The pain for each newton beyond.";
+        pain_limit = pain.limit, MOST_PAIN, "The greatest pain of a sensor; none for no limit.";
+        pain_decay_old = pain.decay_old, SHARE, "The share of the last step's pain that stays.";
+        pain_decay_new = pain.decay_new, SHARE, "The factor on new pain.";
     }
     "Actuation" {
         actuation_model = actuation_model, Choice(ActuationModel::NAMES), "How actions become torques.";

@@ -20,12 +20,16 @@
 //! checks.
 
 mod choices;
+mod conflicts;
+mod defaults;
 mod error;
 mod examples;
 mod keys;
+mod kinds;
 mod measurements;
 mod outputs;
 mod parts;
+mod senses;
 #[cfg(feature = "serde")]
 mod serial;
 mod yaml;
@@ -34,14 +38,17 @@ mod yaml;
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, EngineKind, RendererKind, Scene, TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, Scene, StartingPosition, TouchFunction,
+    TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
 pub use examples::Example;
-pub use keys::{Key, KeyKind, KeyValue};
+pub use keys::Key;
+pub use kinds::{KeyKind, KeyValue};
 pub use measurements::Measurements;
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
+pub use senses::{Delays, EyeOptions, NoiseLevels, PainOptions};
 
 use std::path::Path;
 
@@ -79,6 +86,16 @@ pub struct Config {
     pub renderer: RendererKind,
     /// Seed of every random choice, until a reset is given another.
     pub seed: u64,
+    /// Whether success or failure terminates an episode of a task.
+    pub done_active: bool,
+    /// Whether `catch` subtracts the cost of an action from the reward.
+    pub action_penalty: bool,
+    /// Whether `catch` disturbs actions, by factors that change now and then.
+    pub jitter: bool,
+    /// Whether the eyes of `catch` follow a point beside the ball.
+    pub position_inaccurate: bool,
+    /// How MIMo lies at the start of `roll_over`.
+    pub starting_position: StartingPosition,
     /// Age of MIMo's body, months, 0 to [`MAX_AGE`]; `None` for the proportions of the original, an 18-month-old.
     pub age: Option<f64>,
     /// Age of MIMo's strength, months, where it differs from [`Config::age`].
@@ -87,6 +104,10 @@ pub struct Config {
     pub touch_grows: bool,
     /// Measurements that replace those of the age.
     pub measurements: Measurements,
+    /// Delays of senses and actions (`delay_sensory` ...).
+    pub delays: Delays,
+    /// Noise of senses (`noise_touch` ...).
+    pub noise: NoiseLevels,
     /// Whether joint velocities are observed.
     pub proprio_velocity: bool,
     /// Whether joint torques are observed.
@@ -103,6 +124,8 @@ pub struct Config {
     pub vision_resolution: u32,
     /// Images of each eye that are observed.
     pub vision_outputs: VisionOutputs,
+    /// How sharp the eyes see, and where (`vision_acuity` ...).
+    pub eyes: EyeOptions,
     /// Whether touch is observed; see [`Config::touch_enabled`].
     pub touch_active: bool,
     /// Factor on the distance between touch sensors, 0 (touch is off) or >= 0.01.
@@ -113,6 +136,12 @@ pub struct Config {
     pub touch_response: TouchResponse,
     /// Parts that have touch sensors (`touch_hands` ...).
     pub touch: BodyParts<bool>,
+    /// Whether touch pooled over each body is observed.
+    pub touch_pooled: bool,
+    /// Whether pain is observed.
+    pub pain_active: bool,
+    /// What hurts (`pain_threshold` ...).
+    pub pain: PainOptions,
     /// Model that turns actions into joint torques.
     pub actuation_model: ActuationModel,
     /// Parts that are actuated (`act_hands` ...).
@@ -135,10 +164,17 @@ impl Default for Config {
             engine: EngineKind::Soft,
             renderer: RendererKind::Cpu,
             seed: 0,
+            done_active: true,
+            action_penalty: true,
+            jitter: false,
+            position_inaccurate: false,
+            starting_position: StartingPosition::Supine,
             age: None,
             strength_age: None,
             touch_grows: false,
             measurements: Measurements::default(),
+            delays: Delays::default(),
+            noise: NoiseLevels::default(),
             proprio_velocity: true,
             proprio_torque: true,
             proprio_limits: true,
@@ -147,6 +183,7 @@ impl Default for Config {
             vision_active: true,
             vision_resolution: 64,
             vision_outputs: VisionOutputs::default(),
+            eyes: EyeOptions::default(),
             touch_active: true,
             touch_scale: 1.0,
             touch_function: TouchFunction::Normal,
@@ -155,6 +192,9 @@ impl Default for Config {
                 eyes: false,
                 ..BodyParts::all(true)
             },
+            touch_pooled: false,
+            pain_active: false,
+            pain: PainOptions::default(),
             actuation_model: ActuationModel::SpringDamper,
             act: BodyParts::all(true),
             lock: BodyParts::all(false),
@@ -201,7 +241,11 @@ impl Config {
             };
             return Err(ConfigError::TooLarge { location, limit });
         }
+        let before = self.behavior;
         let positions = yaml::read(text, file_name, &mut self)?;
+        if self.behavior != before {
+            self.take_defaults(|key| positions[key].is_some());
+        }
         let position = |name: &str| {
             let index = keys::KEYS.iter().position(|key| key.name == name)?;
             positions[index]
@@ -286,6 +330,25 @@ impl Config {
         keys::KEYS
     }
 
+    /// Returns the configuration that a file with this behavior alone has: a task has defaults of its own.
+    ///
+    /// ```
+    /// use babybench::config::{Behavior, Config};
+    ///
+    /// let reach = Config::of(Behavior::Reach);
+    /// assert_eq!((reach.frame_skip, reach.vision_active), (2, false));
+    /// assert_eq!(reach, Config::from_yaml("behavior: reach", "reach.yml")?);
+    /// # Ok::<(), babybench::config::ConfigError>(())
+    /// ```
+    pub fn of(behavior: Behavior) -> Self {
+        let mut config = Self {
+            behavior,
+            ..Self::default()
+        };
+        config.take_defaults(|_| false);
+        config
+    }
+
     /// Returns whether touch is observed: it is active and its scale is not 0.
     pub fn touch_enabled(&self) -> bool {
         self.touch_active && self.touch_scale > 0.0
@@ -324,54 +387,10 @@ impl Config {
                     location,
                     key,
                     value,
-                    reason: reason.to_string(),
+                    reason,
                 })
             }
             None => Ok(()),
-        }
-    }
-
-    /// Returns the first value that another one excludes: key, value, and why.
-    fn conflict(&self) -> Option<(&'static str, String, &'static str)> {
-        let touch = self.touch_enabled();
-        let function = self.touch_function;
-        if self.age.is_none() {
-            let unused = Self::keys().iter().filter(|key| key.section == keys::GROWTH);
-            let unused = unused
-                .map(|key| (key, key.value(self)))
-                .find(|(key, value)| *value != key.default_value());
-            if let Some((key, value)) = unused {
-                let reason = "it changes MIMo at an age, and `age` is none; set `age`, 0 to 24 months";
-                return Some((key.name, value.to_yaml(), reason));
-            }
-        }
-        match self.compat {
-            Compat::Api if function == TouchFunction::NormalForce => Some((
-                "touch_function",
-                function.to_string(),
-                "that is the Python code's name for another quantity; use normal, force_vector or \
-                 force_vector_global, or set `compat: reference`",
-            )),
-            Compat::Api => None,
-            Compat::Reference if touch && function == TouchFunction::Normal => Some((
-                "touch_function",
-                function.to_string(),
-                "the Python code that `compat: reference` follows does not have it; use force_vector, \
-                 force_vector_global or normal_force",
-            )),
-            // The Python code places touch sensors by the one-finger table, whose fingers MIMo v2 does not have.
-            Compat::Reference if touch && self.touch.fingers && self.behavior == Behavior::HandRegard => Some((
-                "touch_fingers",
-                self.touch.fingers.to_string(),
-                "the Python code that `compat: reference` follows has no finger touch with `behavior: hand_regard`; \
-                 set `touch_fingers: false` or `touch_active: false`",
-            )),
-            Compat::Reference if self.vision_active && self.vision_resolution > self.render_size => Some((
-                "vision_resolution",
-                self.vision_resolution.to_string(),
-                "under `compat: reference` an eye's image cannot be larger than `render_size`; raise `render_size`",
-            )),
-            Compat::Reference => None,
         }
     }
 }

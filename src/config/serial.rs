@@ -7,7 +7,8 @@ use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{self, Location};
-use super::keys::{KEYS, Key, KeyKind, KeyValue, Misfit};
+use super::keys::{KEYS, Key};
+use super::kinds::{KeyKind, KeyValue, Misfit};
 use super::{Config, ConfigError, yaml};
 
 /// What errors call a configuration that is no file.
@@ -33,7 +34,11 @@ impl Serialize for Config {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(KEYS.len()))?;
         for key in KEYS {
-            map.serialize_entry(key.name, &key.value(self))?;
+            match (key.kind, key.value(self)) {
+                // formats that do not describe themselves write whether there is a number
+                (KeyKind::NoneOr { .. }, KeyValue::Number(number)) => map.serialize_entry(key.name, &Some(number))?,
+                (_, value) => map.serialize_entry(key.name, &value)?,
+            }
         }
         map.end()
     }
@@ -77,6 +82,9 @@ impl<'de> Visitor<'de> for ConfigVisitor {
                 return Err(A::Error::custom(refusal));
             }
         }
+        if config.behavior != Config::default().behavior {
+            config.take_defaults(|key| seen[key]);
+        }
         config.validate().map_err(A::Error::custom)?;
         Ok(config)
     }
@@ -89,7 +97,10 @@ impl<'de> DeserializeSeed<'de> for KeySeed {
     type Value = usize;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<usize, D::Error> {
-        deserializer.deserialize_identifier(self)
+        match deserializer.is_human_readable() {
+            true => deserializer.deserialize_identifier(self),
+            false => deserializer.deserialize_str(self), // binary formats have no other names
+        }
     }
 }
 
@@ -141,7 +152,7 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
         match self.key.kind {
             KeyKind::Bool => deserializer.deserialize_bool(self),
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
-            KeyKind::ZeroOrAtLeast(_) => deserializer.deserialize_f64(self),
+            KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } => deserializer.deserialize_f64(self),
             KeyKind::NoneOr { .. } => deserializer.deserialize_option(self),
             KeyKind::Choice(_) | KeyKind::Text => deserializer.deserialize_str(self),
             KeyKind::List(_) => deserializer.deserialize_seq(self),
@@ -162,7 +173,9 @@ impl<'de> Visitor<'de> for ValueSeed {
 
     fn visit_u64<E: serde::de::Error>(self, number: u64) -> Result<KeyValue, E> {
         self.checked(match self.key.kind {
-            KeyKind::ZeroOrAtLeast(_) | KeyKind::NoneOr { .. } => KeyValue::Number(number as f64),
+            KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } | KeyKind::NoneOr { .. } => {
+                KeyValue::Number(number as f64)
+            }
             _ => KeyValue::Whole(number),
         })
     }
@@ -251,6 +264,24 @@ mod tests {
         assert_eq!(read(&json), Ok(config));
         assert_eq!(read("{}"), Ok(Config::default()));
         assert_eq!(read(r#"{"touch_scale": 2}"#).map(|c| c.touch_scale), Ok(2.0));
+    }
+
+    #[test]
+    fn a_configuration_comes_back_from_a_binary_format() {
+        let mut config = Config {
+            age: Some(4.5),
+            seed: u64::MAX,
+            ..Config::default()
+        };
+        config.measurements.foot_length = Some(7.25);
+        config.delays.vision = Some(3.0);
+        config.eyes.foveation_left = Some(2.0);
+        for config in [Config::default(), config] {
+            let bytes = postcard::to_stdvec(&config).expect("bytes");
+            assert_eq!(postcard::from_bytes(&bytes), Ok(config));
+        }
+        let bytes = postcard::to_stdvec(&[("age", Some(99.0))]).expect("bytes");
+        assert!(postcard::from_bytes::<Config>(&bytes).is_err());
     }
 
     #[test]

@@ -45,11 +45,12 @@ fn check_error(input: &str, expect: &str) {
 #[test]
 fn defaults_are_those_of_the_api_page() {
     let page = "save_dir=\"results/test_installation\" behavior=none scene=base max_episode_steps=1000 frame_skip=1 \
-                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu seed=0 GROWTH proprio_velocity=true \
+                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu seed=0 done_active=true action_penalty=true jitter=false position_inaccurate=false \
+                starting_position=supine GROWTH DELAYS proprio_velocity=true \
                 proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
-                vision_active=true vision_resolution=64 vision_outputs=[rgb] touch_active=true touch_scale=1.0 touch_function=normal \
+                vision_active=true vision_resolution=64 vision_outputs=[rgb] EYES touch_active=true touch_scale=1.0 touch_function=normal \
                 touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
-                touch_legs=true touch_body=true touch_head=true touch_eyes=false actuation_model=spring_damper \
+                touch_legs=true touch_body=true touch_head=true touch_eyes=false PAIN actuation_model=spring_damper \
                 act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \
                 act_eyes=true lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
                 lock_body=false lock_head=false lock_eyes=false";
@@ -58,11 +59,22 @@ fn defaults_are_those_of_the_api_page() {
                   forearm_circumference=none hand_breadth=none hand_length=none head_circumference=none \
                   hip_breadth=none knee_sole_length=none middle_finger_diameter=none rump_knee_length=none \
                   shoulder_elbow_length=none thigh_circumference=none thumb_diameter=none upper_arm_circumference=none";
+    let delays = "delay_unit=steps delay_sensory=0.0 delay_motor=0.0 delay_proprioception=none delay_touch=none \
+                  delay_vestibular=none delay_vision=none noise_proprioception=0.0 noise_touch=0.0 \
+                  noise_vestibular=0.0 noise_vision=0.0";
+    let eyes = "vision_acuity=false vision_acuity_left=none vision_acuity_right=none vision_foveation=0.0 \
+                vision_foveation_left=none vision_foveation_right=none";
+    let pain = "touch_pooled=false pain_active=false pain_threshold=20.0 pain_slope=0.1 pain_limit=none \
+                pain_decay_old=0.0 pain_decay_new=1.0";
     let ours: Vec<String> = Config::keys()
         .iter()
         .map(|key| format!("{}={}", key.name, key.default_value().to_yaml()))
         .collect();
-    assert_eq!(ours.join(" "), page.replace("GROWTH", growth));
+    let sections = [("GROWTH", growth), ("DELAYS", delays), ("EYES", eyes), ("PAIN", pain)];
+    let all = sections
+        .iter()
+        .fold(page.to_string(), |all, (name, keys)| all.replace(name, keys));
+    assert_eq!(ours.join(" "), all);
     check("{}", "");
     assert!(Config::default().validate().is_ok());
 }
@@ -239,6 +251,71 @@ fn compat_reference_refuses_what_the_reference_cannot_do() {
         &format!("compat: reference\n{touch}behavior: hand_regard\ntouch_fingers: off"),
         "behavior=hand_regard compat=reference touch_function=force_vector touch_fingers=false",
     );
+}
+
+#[test]
+fn what_shapes_a_sense_that_is_off_is_refused() {
+    for (input, expect) in [
+        (
+            "vision_active: no\nvision_acuity: yes",
+            ":2:16: `vision_acuity` is true, but it shapes what the eyes see, and they are off; set `vision_active: true`",
+        ),
+        (
+            "vision_outputs: [depth]\nnoise_vision: 3",
+            ":2:15: `noise_vision` is 3.0, but it changes images in colour and grey, and neither is observed; add rgb or gray \
+             to `vision_outputs`",
+        ),
+        (
+            "touch_scale: 0\npain_active: yes",
+            ":2:14: `pain_active` is true, but it needs touch, which is off; set `touch_active: true` and a `touch_scale` \
+             above 0",
+        ),
+        (
+            "vestibular_active: no\ndelay_vestibular: 2",
+            ":2:19: `delay_vestibular` is 2.0, but it shapes the sense of balance, which is off; set `vestibular_active: true`",
+        ),
+        (
+            "pain_slope: 2",
+            ":1:13: `pain_slope` is 2.0, but it shapes pain, which is off; set `pain_active: true`",
+        ),
+        (
+            "delay_motor: 2.5",
+            ":1:14: `delay_motor` is 2.5, but it is counted in whole steps; use a whole number, or set `delay_unit: ms`",
+        ),
+        (
+            "delay_touch: 1001",
+            ":1:14: `delay_touch` is 1001.0, but that is 1001 steps of 5 ms, and a delay has at most 1000",
+        ),
+        (
+            "delay_sensory: 100\nvision_resolution: 4096",
+            ":1:16: `delay_sensory` is 100.0, but the images that wait would take 10066 MB, and may take 1073; lower it, or \
+             `vision_resolution`",
+        ),
+    ] {
+        check_error(input, expect);
+    }
+    check(
+        "delay_unit: ms\ndelay_motor: 2.5\nframe_skip: 2",
+        "frame_skip=2 delay_unit=ms delay_motor=2.5",
+    );
+}
+
+#[test]
+fn milliseconds_are_rounded_to_steps() {
+    let delays = Delays {
+        unit: DelayUnit::Ms,
+        ..Delays::default()
+    };
+    for (ms, frame_skip, steps) in [
+        (0.0, 1, 0),
+        (2.4, 1, 0),
+        (2.5, 1, 1),
+        (100.0, 1, 20),
+        (100.0, 2, 10),
+        (104.9, 2, 10),
+    ] {
+        assert_eq!(delays.steps(ms, frame_skip), steps, "{ms} ms, frame_skip {frame_skip}");
+    }
 }
 
 #[test]

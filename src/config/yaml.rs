@@ -4,7 +4,8 @@
 //! reading at once, so neither nesting nor aliases can grow.
 
 use super::error::{self, Location};
-use super::keys::{KEYS, Key, KeyKind, KeyValue, Misfit};
+use super::keys::{KEYS, Key};
+use super::kinds::{KeyKind, KeyValue, Misfit};
 use super::{Config, ConfigError};
 use granit_parser::{Event, Marker, Options, Parser, ScalarStyle, ScanError};
 

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::config::Config;
-use crate::env::{Blueprint, Env, Info, PerEyeAndHand};
+use crate::env::senses::vector;
+use crate::env::task::rewards;
+use crate::env::{Blueprint, Env, EnvError, Goal, GoalError, Info, PerEyeAndHand, Task, check_vector};
 use crate::model::Model;
 use crate::physics::{Engine, State};
 use crate::render::RenderRequest;
@@ -19,7 +21,13 @@ impl Env {
 
     /// Returns keys, shapes, types and bounds of the observation.
     pub fn observation_space(&self) -> Vec<ObservationSpace> {
-        self.senses.spaces()
+        let mut spaces = self.senses.spaces();
+        for key in ["achieved_goal", "desired_goal"] {
+            if !self.goals.desired.is_empty() {
+                spaces.push(vector(key, self.goals.desired.len()));
+            }
+        }
+        spaces
     }
 
     /// Returns the information of the last step.
@@ -31,7 +39,53 @@ impl Env {
     /// [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the behavior is `hand_regard`. Less than 15 degrees
     /// count.
     pub fn gaze_angles(&self) -> Option<PerEyeAndHand<f64>> {
-        self.tracker.gaze_angles(&self.physics.state)
+        let mut now = Info::default();
+        self.task.describe(Some(&self.physics.state), &mut now);
+        now.details.gaze_angles
+    }
+
+    /// Returns the task.
+    pub fn task(&self) -> &dyn Task {
+        &*self.task
+    }
+
+    /// Returns what reward, success and failure of the last step follow from.
+    pub fn goal(&self) -> Goal<'_> {
+        self.goals.row()
+    }
+
+    /// Sets the desired goal; reward and outcome are computed anew.
+    ///
+    /// # Errors
+    /// A wrong length, numbers that are not finite; nothing is changed then.
+    pub fn set_goal(&mut self, desired: &[f64]) -> Result<(), EnvError> {
+        check_vector("desired_goal", desired, self.goals.desired.len())?;
+        self.goals.desired.copy_from_slice(desired);
+        self.judge();
+        Ok(())
+    }
+
+    /// Computes what each row of goals would have earned: Gymnasium-Robotics' `compute_reward`, for as many rows as `out` has, with
+    /// the desired goals of a program's choice. `terms` ([`Goal::terms`]) are those of the steps in which the goals were achieved. For
+    /// the goals of a step it is the reward of the step, to the bit.
+    ///
+    /// ```
+    /// use babybench::config::{Behavior, Config};
+    /// use babybench::{Env, env::Goal};
+    ///
+    /// let mut env = Env::new(Config::of(Behavior::Standup))?;
+    /// env.reset(Some(0))?;
+    /// let reward = env.step(&vec![0.5; env.action_space().len()])?.reward;
+    /// let mut found = [0.0];
+    /// env.compute_reward(env.goal(), &mut found)?;
+    /// assert_eq!(found, [reward]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Arrays that do not have a row of the task's length for each reward.
+    pub fn compute_reward(&self, goals: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
+        rewards(&*self.task, goals, out)
     }
 
     /// Returns the configuration.

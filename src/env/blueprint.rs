@@ -6,8 +6,9 @@ use crate::actuation;
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
 use crate::env::snapshot::fingerprint;
-use crate::env::{Env, EnvError};
-use crate::mimo::{build_model, embedded, lock};
+use crate::env::task::{TaskScene, of_config};
+use crate::env::{Env, EnvError, Task};
+use crate::mimo::{build_scene, embedded, lock};
 use crate::model::Model;
 use crate::physics::{Engine, Params, SoftModel, SoftOptions};
 #[cfg(feature = "rapier")]
@@ -16,9 +17,7 @@ use crate::render::{RenderError, Renderer, Visual};
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use crate::render::{SharedGpu, gpu::GpuRenderer};
 use crate::sensors::SkinLayout;
-
-/// Physics steps in which the scene settles before it is used.
-const SETTLING_STEPS: usize = 100;
+use crate::spaces::NumpyRng;
 
 /// A configuration, its compiled model and its settled initial state. Made once; environments from it are cheap.
 ///
@@ -35,6 +34,8 @@ const SETTLING_STEPS: usize = 100;
 #[derive(Clone, Debug)]
 pub struct Blueprint {
     config: Arc<Config>,
+    /// The task, which knows the model.
+    task: Box<dyn Task>,
     model: Arc<Model>,
     engines: Engines,
     init_qpos: Arc<Vec<f64>>,
@@ -77,23 +78,68 @@ impl Blueprint {
     /// # Errors
     /// As [`Blueprint::with_assets`]; textures that cannot be read are an error when something is drawn.
     pub fn with_kept_assets(config: Config, assets: Arc<dyn AssetSource + Send + Sync>) -> Result<Self, EnvError> {
-        let mut blueprint = Self::build(config, &*assets, true)?;
+        let task = of_config(&config);
+        Self::with_task_and_assets(config, task, assets)
+    }
+
+    /// Builds the scene of a task of a program's own, from the embedded assets. The key `behavior` is not used.
+    ///
+    /// ```
+    /// use babybench::env::{Goal, Task};
+    /// use babybench::{Blueprint, Config};
+    ///
+    /// #[derive(Clone, Debug)]
+    /// struct Wait;
+    ///
+    /// impl Task for Wait {
+    ///     fn name(&self) -> &str {
+    ///         "wait"
+    ///     }
+    ///     fn reward(&self, _goal: Goal<'_>) -> f64 {
+    ///         1.0
+    ///     }
+    /// }
+    ///
+    /// let config = Config { touch_active: false, vision_active: false, ..Config::default() };
+    /// let mut env = Blueprint::with_task(config, Wait)?.env()?;
+    /// env.reset(Some(0))?;
+    /// assert_eq!(env.step(&vec![0.0; env.action_space().len()])?.reward, 1.0);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Blueprint::new`]; whatever the task refuses.
+    pub fn with_task(config: Config, task: impl Task + 'static) -> Result<Self, EnvError> {
+        Self::with_task_and_assets(config, Box::new(task), Arc::new(embedded()))
+    }
+
+    /// Builds the scene of a task from assets, which stay at hand.
+    ///
+    /// # Errors
+    /// As [`Blueprint::with_task`].
+    pub fn with_task_and_assets(
+        config: Config,
+        task: Box<dyn Task>,
+        assets: Arc<dyn AssetSource + Send + Sync>,
+    ) -> Result<Self, EnvError> {
+        let mut blueprint = Self::build(config, task, &*assets, true)?;
         blueprint.assets = Some(Assets(assets));
         Ok(blueprint)
     }
 
     /// Builds the scene from other assets, laid out like the embedded ones.
     ///
-    /// Builds the scene, applies the locks (under `compat: reference` after settling) and lets the scene settle for 100
-    /// steps from `qpos0` with the action 0.
+    /// Builds the scene, applies the locks (under `compat: reference` after settling) and lets the task settle the scene: for BabyBench's
+    /// behaviors 100 steps from `qpos0` with the action 0.
     ///
     /// # Errors
     /// A configuration that is not allowed, assets that do not load, a scene that the engine cannot simulate or that diverges.
     pub fn with_assets(config: Config, assets: &dyn AssetSource) -> Result<Self, EnvError> {
-        Self::build(config, assets, false)
+        let task = of_config(&config);
+        Self::build(config, task, assets, false)
     }
 
-    fn build(config: Config, assets: &dyn AssetSource, lazy: bool) -> Result<Self, EnvError> {
+    fn build(config: Config, mut task: Box<dyn Task>, assets: &dyn AssetSource, lazy: bool) -> Result<Self, EnvError> {
         config.validate()?;
         if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
             return Err(RenderError::NoWgpu.into());
@@ -101,13 +147,14 @@ impl Blueprint {
         if config.engine == EngineKind::Rapier && cfg!(not(feature = "rapier")) {
             return Err(EnvError::NoRapier);
         }
-        let model = Arc::new(build_model(&config, assets)?);
+        let model = Arc::new(task_model(&config, &*task, assets)?);
         let skin = match config.touch_enabled() {
-            true => Some(Arc::new(make_skin(&model, &config, assets)?)),
+            true => Some(Arc::new(make_skin(&model, &config, &*task, assets)?)),
             false => None,
         };
         let engines = Engines::new(&config, &model)?;
-        let settled = Settled::new(&config, &engines, &model)?;
+        task.bind(&config, &model)?;
+        let settled = Settled::new(&config, &*task, &engines, &model)?;
         let visual = OnceLock::new();
         if config.vision_active || !lazy {
             let _ = visual.set(Arc::new(Visual::new(&model, assets)?));
@@ -115,6 +162,7 @@ impl Blueprint {
         Ok(Self {
             fingerprint: fingerprint(&model, &config),
             config: Arc::new(config),
+            task,
             model,
             engines,
             init_qpos: Arc::new(settled.qpos),
@@ -145,16 +193,19 @@ impl Blueprint {
         let model = if servos(present) == servos(actuation_model) {
             self.model.clone()
         } else if let Some(Assets(assets)) = &self.assets {
-            Arc::new(build_model(&config, &**assets)?)
+            Arc::new(task_model(&config, &*self.task, &**assets)?)
         } else {
             let wanted = actuation_model;
             return Err(EnvError::OtherActuators { present, wanted });
         };
         let engines = Engines::new(&config, &model)?;
-        let settled = Settled::new(&config, &engines, &model)?;
+        let mut task = self.task.clone();
+        task.bind(&config, &model)?;
+        let settled = Settled::new(&config, &*task, &engines, &model)?;
         Ok(Self {
             fingerprint: fingerprint(&model, &config),
             config: Arc::new(config),
+            task,
             model,
             engines,
             init_qpos: Arc::new(settled.qpos),
@@ -177,7 +228,12 @@ impl Blueprint {
         };
         let mut config = Config::clone(&self.config);
         config.age = age;
-        Self::with_kept_assets(config, assets.clone())
+        Self::with_task_and_assets(config, self.task.clone(), assets.clone())
+    }
+
+    /// Returns the task, which environments copy.
+    pub fn task(&self) -> &dyn Task {
+        &*self.task
     }
 
     /// Creates an environment.
@@ -206,11 +262,6 @@ impl Blueprint {
     /// Returns what a snapshot must fit to be restored.
     pub(super) fn fingerprint(&self) -> u64 {
         self.fingerprint
-    }
-
-    /// Returns the settled positions and velocities, shared.
-    pub(crate) fn settled(&self) -> (Arc<Vec<f64>>, Arc<Vec<f64>>) {
-        (self.init_qpos.clone(), self.init_qvel.clone())
     }
 
     /// Returns the settled positions (nq), from which episodes start.
@@ -280,15 +331,37 @@ impl Blueprint {
     }
 }
 
+/// Compiles the scene of a task.
+fn task_model(config: &Config, task: &dyn Task, assets: &dyn AssetSource) -> Result<Model, EnvError> {
+    Ok(build_scene(
+        &task.document(config),
+        task.version(config),
+        config,
+        assets,
+    )?)
+}
+
 /// Places the sensors of the skin.
-fn make_skin(model: &Model, config: &Config, assets: &dyn AssetSource) -> Result<SkinLayout, EnvError> {
+fn make_skin(
+    model: &Model,
+    config: &Config,
+    task: &dyn Task,
+    assets: &dyn AssetSource,
+) -> Result<SkinLayout, EnvError> {
+    let layout = |model: &Model| match task.touch_spacing() {
+        [] => SkinLayout::new(model, config),
+        own => SkinLayout::with_spacing(model, |body| {
+            let found = own.iter().find(|(name, _)| *name == body);
+            found.map(|(_, distance)| distance * config.touch_scale)
+        }),
+    };
     if !config.touch_grows {
-        return Ok(SkinLayout::new(model, config)?);
+        return Ok(layout(model)?);
     }
     let mut original = config.clone();
     original.age = None;
-    let original_model = build_model(&original, assets)?;
-    Ok(SkinLayout::new(&original_model, config)?.scaled(&original_model, model))
+    let original_model = task_model(&original, task, assets)?;
+    Ok(layout(&original_model)?.scaled(&original_model, model))
 }
 
 /// A maker of engines of one kind for one model.
@@ -340,8 +413,9 @@ struct Settled {
 }
 
 impl Settled {
-    /// Settles the scene: 100 steps from `qpos0` with the controls of the action 0, whose muscle forces are those at `qpos0` throughout.
-    fn new(config: &Config, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
+    /// Lets a task settle the scene, with the locks of the configuration; under `compat: reference` they hold from the first
+    /// reset on.
+    fn new(config: &Config, task: &dyn Task, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
         let actuation = actuation::build(model, config)?;
         let mut engine = engines.make();
         let mut state = engine.new_state();
@@ -355,16 +429,19 @@ impl Settled {
         if config.compat == Compat::Api {
             state.params.clone_from(&params);
         }
-        // the step that the reference makes before it looks at its sensors: it leaves the warm start of the solver
-        engine.step(&mut state)?;
-        state.qpos.copy_from_slice(&model.qpos0);
-        state.qvel.fill(0.0);
-        engine.forward(&mut state)?;
-        let zero = vec![0.0; actuation.action_space().len()];
-        actuation.set_action(model, &mut state, &zero);
-        for _ in 0..SETTLING_STEPS {
-            engine.step(&mut state)?;
-        }
+        let still = vec![0.0; model.nv];
+        task.settle(&mut TaskScene {
+            config,
+            model,
+            state: &mut state,
+            rng: &mut NumpyRng::seed(config.seed),
+            engine: &mut *engine,
+            base: &mut params,
+            actuation: &*actuation,
+            motor: None,
+            start: [&model.qpos0, &still],
+            action: &mut Vec::new(),
+        })?;
         Ok(Self {
             qpos: state.qpos,
             qvel: state.qvel,

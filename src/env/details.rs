@@ -58,7 +58,7 @@ impl InfoDetails {
 /// The names of MIMo's geoms as parts of the body, such as `right_foot 2/3`.
 ///
 /// A name is that of the body, with the number of the geom among the body's if there are several.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PartNames(Arc<[Arc<str>]>);
 
 impl PartNames {

@@ -12,6 +12,7 @@ use crate::physics::EngineError;
 use crate::physics::RapierError;
 use crate::render::RenderError;
 use crate::sensors::touch::SkinError;
+use crate::sensors::transform::Sense;
 
 /// An error in building, resetting or stepping an environment.
 #[derive(Debug, Error)]
@@ -35,6 +36,12 @@ pub enum EnvError {
     /// The eyes are asked for while vision is off.
     #[error("vision is off: set vision_active to True")]
     NoVision,
+    /// A transform is to be added to a sense that is not observed.
+    #[error("{} is off, so nothing can transform it: set `{}` to True", .sense.key(), .sense.switch())]
+    SenseOff {
+        /// The sense.
+        sense: Sense,
+    },
     /// An actuator does not fit the actuation model.
     #[error(transparent)]
     Actuation(#[from] ActuationError),

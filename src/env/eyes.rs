@@ -54,7 +54,8 @@ impl Env {
     }
 
     /// Draws several images of what both eyes see, left and right, those for which there are buffers. On the CPU all images
-    /// of an eye come from one pass, each with the bytes that it has alone.
+    /// of an eye come from one pass, each with the bytes that it has alone. They are what is before the eyes, without the
+    /// transforms of the observation.
     ///
     /// ```
     /// use babybench::render::ImageBuffers;
@@ -85,7 +86,7 @@ impl Env {
         Ok((vision, &self.physics.state))
     }
 
-    /// Sets whether resets and steps leave the eyes' images as they are, for [`Env::draw_eyes`] to draw.
+    /// Sets whether resets and steps leave the eyes' images as they are, for [`Env::draw_eyes`] to draw, once for each.
     pub fn defer_vision(&mut self, deferred: bool) {
         self.senses.vision_deferred = deferred;
     }
@@ -95,7 +96,7 @@ impl Env {
         self.senses.vision_deferred
     }
 
-    /// Draws what the eyes of many environments see into their observations. With `renderer: wgpu`, all environments of a
+    /// Draws what the eyes of many environments see into their observations, and transforms it. With `renderer: wgpu`, all environments of a
     /// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other.
     ///
     /// ```
@@ -119,30 +120,50 @@ impl Env {
     /// As the renderers.
     pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Result<(), EnvError> {
         #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-        let mut batches: Vec<Batch> = Vec::new();
+        let mut on_gpus: Vec<&mut Env> = Vec::new();
         for env in environments {
             let state = &env.physics.state;
             let Some(vision) = &mut env.senses.vision else { continue };
-            let eyes = env.senses.eyes.each_mut().map(EyeImages::buffers);
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-            if let Some(gpu) = vision.renderer().shared_gpu() {
-                let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
-                let index = known.unwrap_or(batches.len());
-                if known.is_none() {
-                    batches.push(Batch::new(gpu.clone()));
-                }
-                batches[index].requests.extend(vision.requests(state));
-                batches[index].images.extend(eyes);
+            if vision.renderer().shared_gpu().is_some() {
+                on_gpus.push(env);
                 continue;
             }
-            vision.draw(state, eyes)?;
+            vision.draw(state, env.senses.eyes.each_mut().map(EyeImages::buffers))?;
+            env.senses.transform_eyes(&mut env.rng);
         }
         #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-        for batch in batches {
-            draw_on(&batch.gpu, &batch.requests, batch.images)?;
-        }
+        draw_on_gpus(&mut on_gpus)?;
         Ok(())
     }
+}
+
+/// Draws what the eyes of environments see that GPUs draw, in one submission for each.
+#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
+    let mut batches: Vec<Batch> = Vec::new();
+    for env in &mut *environments {
+        let state = &env.physics.state;
+        let Some(vision) = &env.senses.vision else { continue };
+        let Some(gpu) = vision.renderer().shared_gpu() else {
+            continue;
+        };
+        let known = batches.iter().position(|b| Arc::ptr_eq(&b.gpu, gpu));
+        let index = known.unwrap_or(batches.len());
+        if known.is_none() {
+            batches.push(Batch::new(gpu.clone()));
+        }
+        batches[index].requests.extend(vision.requests(state));
+        let eyes = env.senses.eyes.each_mut().map(EyeImages::buffers);
+        batches[index].images.extend(eyes);
+    }
+    for batch in batches {
+        draw_on(&batch.gpu, &batch.requests, batch.images)?;
+    }
+    for env in environments {
+        env.senses.transform_eyes(&mut env.rng);
+    }
+    Ok(())
 }
 
 /// The pictures that one GPU draws.

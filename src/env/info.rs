@@ -1,6 +1,7 @@
 //! What an environment reports with each step.
 
-use crate::env::InfoDetails;
+use crate::config::Behavior;
+use crate::env::{InfoDetails, Outcome};
 
 /// One value for each hand.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -104,7 +105,7 @@ pub struct Info {
 }
 
 /// The part of [`Info`] that depends on the behavior.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum BehaviorInfo {
     /// Nothing.
     #[default]
@@ -119,6 +120,19 @@ pub enum BehaviorInfo {
         /// Number of steps for each eye and hand.
         counts: PerEyeAndHand<u64>,
     },
+    /// What came of a task with a goal.
+    Task(TaskInfo),
+}
+
+/// What a task with a goal reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TaskInfo {
+    /// Which task it is; `none` for one of a program's own.
+    pub task: Behavior,
+    /// Success and failure in the last step.
+    pub outcome: Outcome,
+    /// Sum of the rewards in this episode.
+    pub episode_return: f64,
 }
 
 impl BehaviorInfo {
@@ -128,6 +142,15 @@ impl BehaviorInfo {
             Self::None => "none",
             Self::SelfTouch { .. } => "self_touch",
             Self::HandRegard { .. } => "hand_regard",
+            Self::Task(info) => info.task.name(),
+        }
+    }
+
+    /// Returns what a task with a goal reports.
+    pub fn task(&self) -> Option<&TaskInfo> {
+        match self {
+            Self::Task(info) => Some(info),
+            _ => None,
         }
     }
 
@@ -146,13 +169,13 @@ impl BehaviorInfo {
             return None;
         }
         match self {
-            Self::None => None,
+            Self::None | Self::Task(_) => None,
             Self::SelfTouch { touches } => {
-                let touched: usize = touches.each_ref().map(Vec::len).iter().sum();
+                let touched: usize = touches.each_ref().map(|t| t.len().min(SCORED_PARTS)).iter().sum();
                 Some(touched as f64 / (2 * SCORED_PARTS) as f64)
             }
             Self::HandRegard { counts } => {
-                let seen: f64 = counts.to_array().iter().map(|&c| c as f64).sum();
+                let seen: f64 = counts.to_array().iter().map(|&c| c.min(steps) as f64).sum();
                 Some(seen / (4.0 * steps as f64))
             }
         }

@@ -1,19 +1,24 @@
 //! The environment: Gymnasium's reset and step.
 
 mod access;
+mod age;
 mod blueprint;
 mod details;
 mod error;
 mod eyes;
 mod info;
+mod motor;
+mod outcome;
 mod parts;
 mod physics;
+mod pipeline;
 mod senses;
 #[cfg(feature = "serde")]
 mod serial;
 mod snapshot;
 mod stage;
-mod tracker;
+pub mod task;
+mod transforms;
 mod viewer;
 
 pub use blueprint::Blueprint;
@@ -21,33 +26,40 @@ pub use details::{InfoDetails, PartNames};
 pub use error::EnvError;
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
-pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand};
+pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand, TaskInfo};
 #[cfg(feature = "serde")]
 pub use serial::Detailed;
 pub use snapshot::{Snapshot, SnapshotError, SnapshotInfo};
 pub use stage::{EnvProbe, EnvStage};
+pub use task::{Goal, GoalError, Outcome, Task};
+#[cfg(feature = "eval")]
+pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
 
 use crate::actuation::{self, Actuation};
-use crate::config::{Behavior, Compat, Config};
+use crate::config::{Compat, Config};
 use crate::mimo::{LockReport, LockTarget};
 use crate::physics::EngineError;
 use crate::sensors::EyeImages;
 use crate::spaces::NumpyRng;
+use motor::Motor;
+use outcome::clear;
 use physics::Physics;
 use senses::Senses;
-use tracker::BehaviorTracker;
-
-/// Steps with random actions at the start of an episode of `self_touch` and `hand_regard`.
-const START_ACTIONS: usize = 10;
+use task::{Goals, TaskScene};
 
 /// The observation: what MIMo senses. The vectors belong to the environment and change with the next step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observation<'a> {
-    /// Proprioception, Gymnasium's key `observation`; [`Env::proprioception`] tells what stands where.
+    /// Proprioception, Gymnasium's key `observation`; [`Env::proprioception`] tells what stands where. A task may append to it: the
+    /// last number of `catch` is the radius of the ball, m.
     pub proprioception: &'a [f64],
     /// What the skin feels, N, if `touch_active`; [`Env::touch`] tells what stands where.
     pub touch: Option<&'a [f32]>,
+    /// What each body with skin feels, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
+    pub touch_pooled: Option<&'a [f64]>,
+    /// What hurts, a number for each touch sensor, if `pain_active`: see [`Pain`](crate::sensors::Pain).
+    pub pain: Option<&'a [f32]>,
     /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active` and `vision_outputs` has `rgb`.
     pub eye_left: Option<&'a [u8]>,
     /// What the right eye sees.
@@ -61,6 +73,10 @@ pub struct Observation<'a> {
     pub eye_segmentation: Option<[&'a [i32]; 2]>,
     /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
     pub vestibular: Option<&'a [f64]>,
+    /// The goal that is achieved, of tasks whose goals have numbers.
+    pub achieved_goal: Option<&'a [f64]>,
+    /// The goal that is desired, as long.
+    pub desired_goal: Option<&'a [f64]>,
 }
 
 impl<'a> Observation<'a> {
@@ -71,14 +87,12 @@ impl<'a> Observation<'a> {
         }
         let [eye_left, eye_right] = [left, right].map(|eye| (!eye.rgb.is_empty()).then_some(&eye.rgb[..]));
         Self {
-            proprioception: &[],
-            touch: None,
             eye_left,
             eye_right,
             eye_gray: pair(&left.gray, &right.gray),
             eye_depth: pair(&left.depth, &right.depth),
             eye_segmentation: pair(&left.segmentation, &right.segmentation),
-            vestibular: None,
+            ..Self::default()
         }
     }
 }
@@ -88,9 +102,9 @@ impl<'a> Observation<'a> {
 pub struct Step<'a> {
     /// The observation.
     pub observation: Observation<'a>,
-    /// Always 0: there is no extrinsic reward.
+    /// The reward of the task; 0 for BabyBench's behaviors, which have no extrinsic reward.
     pub reward: f64,
-    /// Always false.
+    /// Whether the task has succeeded or failed, if `done_active`; false for BabyBench's behaviors.
     pub terminated: bool,
     /// Whether the episode has reached `max_episode_steps`.
     pub truncated: bool,
@@ -121,13 +135,17 @@ pub struct Env {
     blueprint: Blueprint,
     physics: Physics,
     actuation: Box<dyn Actuation>,
+    motor: Motor,
     senses: Senses,
-    tracker: BehaviorTracker,
+    task: Box<dyn Task>,
+    goals: Goals,
     info: Info,
     episode: Episode,
     rng: NumpyRng,
     /// Room for the random actions at the start of an episode.
     action: Vec<f32>,
+    /// The action of the present step, as the task has changed it.
+    applied: Vec<f32>,
     probe: Option<EnvProbe>,
 }
 
@@ -140,6 +158,10 @@ struct Episode {
     ready: bool,
     /// Whether information goes on from episode to episode.
     accumulate: bool,
+    /// Reward of the last step.
+    reward: f64,
+    /// Whether the last step ended the episode in success or failure.
+    terminated: bool,
 }
 
 impl std::fmt::Debug for Env {
@@ -163,24 +185,27 @@ impl Env {
     fn from_blueprint(blueprint: &Blueprint) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
         let actuation = actuation::build(model, config)?;
-        let tracker = BehaviorTracker::new(model, config.behavior, config.compat)?;
+        let task = blueprint.task().clone_task();
         let mut info = Info::default();
-        tracker.reset(&mut info);
+        clear(&*task, config, &mut info);
         Ok(Self {
             physics: Physics::new(blueprint, &*actuation),
-            senses: Senses::new(blueprint, &*actuation)?,
+            motor: Motor::new(blueprint, &*actuation),
+            senses: Senses::new(blueprint, &*actuation, task.sizes())?,
+            goals: Goals::new(task.sizes()),
             rng: NumpyRng::seed(config.seed),
             action: Vec::with_capacity(actuation.action_space().len()),
+            applied: Vec::with_capacity(actuation.action_space().len()),
             episode: Episode::default(),
             probe: None,
             blueprint: blueprint.clone(),
             actuation,
-            tracker,
+            task,
             info,
         })
     }
 
-    /// Starts an episode: the settled state, then, for `self_touch` and `hand_regard`, ten physics steps with random
+    /// Starts an episode as the task says: for `self_touch` and `hand_regard` the settled state, then ten physics steps with random
     /// actions. The information of a reset is empty.
     ///
     /// Under `compat: api` a seed reseeds every random choice. Under `compat: reference` it is ignored, as the start
@@ -192,17 +217,28 @@ impl Env {
         if let (Some(seed), Compat::Api) = (seed, self.config().compat) {
             self.seed_action_space(seed);
         }
-        let (qpos, qvel) = self.blueprint.settled();
-        self.place(&qpos, &qvel)?;
-        if self.blueprint.config().behavior != Behavior::None {
-            for _ in 0..START_ACTIONS {
-                self.actuation.action_space().sample(&mut self.rng, &mut self.action);
-                let model = self.blueprint.model();
-                self.physics.step(model, &*self.actuation, &self.action, 1)?;
-            }
-        }
+        self.end_episode();
+        let (mut scene, task) = self.play();
+        task.reset(&mut scene)?;
         self.begin_episode()?;
         Ok(self.observation())
+    }
+
+    /// Returns the scene and the task that plays in it.
+    fn play(&mut self) -> (TaskScene<'_>, &mut dyn Task) {
+        let scene = TaskScene {
+            config: self.blueprint.config(),
+            model: self.blueprint.model(),
+            state: &mut self.physics.state,
+            rng: &mut self.rng,
+            engine: &mut *self.physics.engine,
+            base: &mut self.physics.base,
+            actuation: &*self.actuation,
+            motor: Some(&mut self.motor),
+            start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
+            action: &mut self.action,
+        };
+        (scene, &mut *self.task)
     }
 
     /// Starts an episode as [`Env::reset`] does, with start actions of the caller's, (any number, len), instead of random
@@ -235,55 +271,26 @@ impl Env {
         }
         let actions = actions.chunks_exact(len.max(1));
         actions.clone().try_for_each(|action| self.check_action(action))?;
-        let (qpos, qvel) = self.blueprint.settled();
-        self.place(&qpos, &qvel)?;
+        self.end_episode();
+        let (mut scene, _) = self.play();
+        scene.restart()?;
         for action in actions {
-            let model = self.blueprint.model();
-            self.physics.step(model, &*self.actuation, action, 1)?;
+            scene.act(action, 1)?;
         }
         self.begin_episode()?;
         Ok(self.observation())
     }
 
-    /// Lets MIMo grow, between two episodes, to an age in months; `None` gives him the original proportions. The next call is
-    /// a reset. Locks, the generator of random choices and the probe stay; names and ids are the same at every age.
-    ///
-    /// # Errors
-    /// As [`Blueprint::with_age`]; nothing is changed then.
-    pub fn set_age(&mut self, age: Option<f64>) -> Result<(), EnvError> {
-        let mut grown = self.blueprint.with_age(age)?.env()?;
-        let (old, new) = (&self.physics.base, &mut grown.physics.base);
-        new.eq_active.clone_from(&old.eq_active);
-        new.eq_offset.clone_from(&old.eq_offset);
-        std::mem::swap(&mut grown.rng, &mut self.rng);
-        grown.probe = self.probe.take();
-        grown.episode.accumulate = self.episode.accumulate;
-        *self = grown;
-        Ok(())
-    }
-
-    /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions.
+    /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
+    /// chooses a goal.
     ///
     /// # Errors
     /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges; the episode is then over.
     pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
-        self.place(qpos, qvel)?;
+        self.end_episode();
+        self.play().0.place(qpos, qvel)?;
         self.begin_episode()?;
         Ok(self.observation())
-    }
-
-    /// Forgets the past and computes everything at the given positions and velocities.
-    fn place(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        let model = self.blueprint.model();
-        for (what, found, expected) in [("qpos", qpos.len(), model.nq), ("qvel", qvel.len(), model.nv)] {
-            if found != expected {
-                return Err(EnvError::StateLength { what, found, expected });
-            }
-        }
-        self.end_episode();
-        let (model, compat) = (self.blueprint.model(), self.blueprint.config().compat);
-        self.physics.place(model, compat, &*self.actuation, qpos, qvel)?;
-        Ok(())
     }
 
     /// Puts the scene at positions (nq) and velocities (nv) in the middle of an episode, with everything computed there.
@@ -298,6 +305,7 @@ impl Env {
             return Err(e.into());
         }
         self.sense()?;
+        self.judge();
         Ok(self.observation())
     }
 
@@ -368,11 +376,20 @@ impl Env {
     fn begin_episode(&mut self) -> Result<(), EnvError> {
         self.episode.steps = 0;
         self.info.steps = 0;
-        if !self.episode.accumulate {
-            self.tracker.reset(&mut self.info);
+        if !self.episode.accumulate || self.task.reports_outcome() {
+            clear(&*self.task, self.blueprint.config(), &mut self.info);
         }
+        let mut goals = std::mem::take(&mut self.goals);
+        let (mut scene, task) = self.play();
+        task.begin(&mut scene, &mut goals.desired);
+        self.goals = goals;
+        self.motor.rest();
+        self.senses.reset();
         self.episode.ready = true;
-        self.sense()
+        self.sense()?;
+        self.judge();
+        (self.episode.reward, self.episode.terminated) = (0.0, false);
+        Ok(())
     }
 
     /// Applies an action for `frame_skip` physics steps.
@@ -388,15 +405,27 @@ impl Env {
         }
         self.check_action(action)?;
         self.mark(Some(EnvStage::Actuation));
-        let (model, config) = (self.blueprint.model(), self.blueprint.config());
-        let stepped = self.physics.step(model, &*self.actuation, action, config.frame_skip);
+        let frame_skip = self.blueprint.config().frame_skip;
+        let mut applied = std::mem::take(&mut self.applied);
+        applied.clear();
+        applied.extend_from_slice(action);
+        let (mut scene, task) = self.play();
+        task.before_step(&mut applied);
+        let stepped = scene
+            .step(&applied, frame_skip)
+            .and_then(|()| task.after_step(&mut scene));
+        self.applied = applied;
         if let Err(e) = stepped {
             self.episode.ready = false;
-            return Err(e.into());
+            return Err(e);
         }
         self.mark(Some(EnvStage::Senses));
         self.sense()?;
-        self.tracker.update(&self.physics.state, &mut self.info);
+        self.judge();
+        if let BehaviorInfo::Task(info) = &mut self.info.behavior {
+            info.episode_return += self.episode.reward;
+        }
+        self.track();
         let steps = &mut self.episode.steps;
         self.info.steps = match self.blueprint.config().compat {
             Compat::Api => *steps + 1,
@@ -407,8 +436,8 @@ impl Env {
         self.mark(None);
         Ok(Step {
             observation: self.observation(),
-            reward: 0.0,
-            terminated: false,
+            reward: self.episode.reward,
+            terminated: self.episode.terminated,
             truncated,
             info: &self.info,
         })
@@ -433,12 +462,22 @@ impl Env {
 
     fn sense(&mut self) -> Result<(), EnvError> {
         let model = self.blueprint.model();
-        self.senses.observe(model, &self.physics.state, &*self.actuation)
+        let (state, task) = (&self.physics.state, &*self.task);
+        let append = |out: &mut [f64]| task.observe(state, out);
+        self.senses
+            .observe(model, state, &*self.actuation, append, &mut self.rng)
     }
 
     /// Returns the observation of the last reset or step.
     pub fn observation(&self) -> Observation<'_> {
-        self.senses.observation()
+        fn goal(values: &[f64]) -> Option<&[f64]> {
+            (!values.is_empty()).then_some(values)
+        }
+        Observation {
+            achieved_goal: goal(&self.goals.achieved),
+            desired_goal: goal(&self.goals.desired),
+            ..self.senses.observation()
+        }
     }
 
     /// Fills `action` with a random action, the same that Gymnasium's `action_space.sample()` draws from the same seed.

@@ -1,17 +1,21 @@
 //! The parts of a reset and of a step, one by one, for environments that put them together in another way.
 
 use super::check_vector;
+use super::outcome::clear;
 use crate::env::{Env, EnvError};
 
 impl Env {
     /// Forgets the past as MuJoCo's `mj_resetData` does: time and controls are 0, positions are `qpos0`, velocities are 0 and the
-    /// actuators rest. Nothing is computed there: [`Env::forward`] does that. Counters and information stay.
+    /// actuators rest. Nothing is computed there: [`Env::forward`] does that. Delays and pain forget the past. Counters and
+    /// information stay.
     ///
     /// Under `compat: reference` a reset of the environment is this, [`Env::forward`] at the settled state, and the start actions.
     pub fn reset_data(&mut self) {
-        let model = self.blueprint.model();
-        self.physics.reset(model);
-        self.actuation.reset(model, &mut self.physics.state);
+        let (mut scene, _) = self.play();
+        scene.forget();
+        scene.reset_actuators();
+        self.motor.rest();
+        self.senses.reset();
     }
 
     /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the
@@ -39,13 +43,14 @@ impl Env {
         Ok(())
     }
 
-    /// Gives an action, clipped to the action space, to the actuators.
+    /// Gives an action, clipped to the action space, to the actuators, or to the delay on their way.
     ///
     /// # Errors
     /// An action of wrong length or with numbers that are not finite, which changes nothing.
     pub fn set_action(&mut self, action: &[f32]) -> Result<(), EnvError> {
         self.check_action(action)?;
         let model = self.blueprint.model();
+        let action = self.motor.pass(action);
         self.actuation.set_action(model, &mut self.physics.state, action);
         Ok(())
     }
@@ -66,7 +71,7 @@ impl Env {
         Ok(stepped?)
     }
 
-    /// Senses the state: computes [`Env::observation`] anew.
+    /// Senses the state: computes [`Env::observation`] anew. Noise is drawn anew, and delays take it for a further step.
     ///
     /// # Errors
     /// As the renderer.
@@ -76,11 +81,12 @@ impl Env {
 
     /// Counts what the behavior counts, in [`Env::info`].
     pub fn track(&mut self) {
-        self.tracker.update(&self.physics.state, &mut self.info);
+        self.task.count(&self.physics.state, &mut self.info);
+        self.task.describe(Some(&self.physics.state), &mut self.info);
     }
 
     /// Clears what the behavior has counted.
     pub fn clear_info(&mut self) {
-        self.tracker.reset(&mut self.info);
+        clear(&*self.task, self.blueprint.config(), &mut self.info);
     }
 }

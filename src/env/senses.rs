@@ -2,13 +2,18 @@
 
 use crate::actuation::Actuation;
 use crate::config::{VisionOutput, VisionOutputs};
+use crate::env::pipeline::Pipeline;
+use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
 use crate::model::Model;
 use crate::physics::State;
+use crate::sensors::touch::POOLED;
+use crate::sensors::transform::{Sense, Signal, Transform};
 use crate::sensors::{
-    EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Proprioception, Touch, Vestibular, Vision,
+    EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Pain, Proprioception, SkinValues, Touch, TouchPool,
+    Vestibular, Vision,
 };
-use crate::spaces::{Dtype, ObservationSpace};
+use crate::spaces::{Dtype, NumpyRng, ObservationSpace};
 
 /// The senses that the configuration turns on, with the vectors of the present observation.
 pub(super) struct Senses {
@@ -16,16 +21,23 @@ pub(super) struct Senses {
     pub touch: Option<Touch>,
     pub vision: Option<Vision>,
     pub vestibular: Option<Vestibular>,
+    pub pool: Option<TouchPool>,
+    pub pain: Option<Pain>,
     pub proprioception_values: Vec<f64>,
+    pub pooled_values: Vec<f64>,
     pub vestibular_values: Vec<f64>,
     pub eyes: [EyeImages; 2],
+    pub pipeline: Pipeline,
+    /// Touch and pain after their transforms, where they have any.
+    touch_values: SkinValues,
+    pain_values: SkinValues,
     outputs: VisionOutputs,
     /// Whether [`super::Env::draw_eyes`] draws what the eyes see, instead of each step.
     pub vision_deferred: bool,
 }
 
 impl Senses {
-    pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Result<Self, EnvError> {
+    pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation, sizes: TaskSizes) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
         let proprioception = Proprioception::new(model, config, actuation.observation_len());
         let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
@@ -37,40 +49,190 @@ impl Senses {
         };
         let pixels = vision.as_ref().map_or(0, |v| v.shape()[0] * v.shape()[1]);
         let images = || EyeImages::new(config.vision_outputs, pixels);
-        Ok(Self {
-            proprioception_values: vec![0.0; proprioception.len()],
+        let skin = blueprint.skin();
+        let pool = skin.filter(|_| config.touch_pooled).map(|skin| TouchPool::new(skin));
+        let pain = skin.filter(|_| config.pain_active);
+        let pain = pain.map(|skin| Pain::new(model, skin.clone(), config));
+        let touch = skin.map(|skin| Touch::configured(skin.clone(), config));
+        let empty =
+            |felt: Option<&SkinValues>| felt.map_or(SkinValues::new(0, 1), |v| SkinValues::new(v.sensors(), v.width()));
+        let mut senses = Self {
+            proprioception_values: vec![0.0; proprioception.len() + sizes.observation],
+            pooled_values: vec![0.0; pool.as_ref().map_or(0, TouchPool::len)],
             vestibular_values: vec![0.0; vestibular.as_ref().map_or(0, Vestibular::len)],
             eyes: [images(), images()],
-            touch: blueprint.skin().map(|skin| Touch::configured(skin.clone(), config)),
             outputs: config.vision_outputs,
             vision_deferred: false,
+            pipeline: Pipeline::default(),
+            touch_values: empty(touch.as_ref().map(Touch::felt)),
+            pain_values: empty(pain.as_ref().map(Pain::felt)),
+            touch,
             proprioception,
             vision,
             vestibular,
-        })
+            pool,
+            pain,
+        };
+        for sense in Sense::ALL {
+            if !senses.is_on(sense) {
+                continue;
+            }
+            let mut pipeline = std::mem::take(&mut senses.pipeline);
+            pipeline.configure(config, sense, &senses.signal(sense));
+            senses.pipeline = pipeline;
+        }
+        senses.make_room();
+        Ok(senses)
     }
 
-    /// Observes a state.
-    pub fn observe(&mut self, model: &Model, state: &State, actuation: &dyn Actuation) -> Result<(), EnvError> {
-        self.proprioception
-            .observe(model, state, actuation, &mut self.proprioception_values);
-        if let Some(t) = &mut self.touch {
-            t.observe(model, state);
+    /// Returns whether a sense is observed.
+    pub fn is_on(&self, sense: Sense) -> bool {
+        match sense {
+            Sense::Proprioception => true,
+            Sense::Touch => self.touch.is_some(),
+            Sense::TouchPooled => self.pool.is_some(),
+            Sense::Pain => self.pain.is_some(),
+            Sense::Vestibular => self.vestibular.is_some(),
+            Sense::EyeLeft | Sense::EyeRight => self.vision.is_some(),
         }
+    }
+
+    /// Adds a transform to a sense that is on.
+    pub fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) {
+        self.pipeline.add(sense, transform);
+        self.make_room();
+    }
+
+    /// Takes over the transforms that were added to other senses of the same kinds.
+    pub fn take_added(&mut self, other: &mut Self) {
+        self.pipeline.take_added(&mut other.pipeline);
+        self.make_room();
+    }
+
+    /// Makes room for touch and pain apart from what the skin feels, where they have transforms.
+    fn make_room(&mut self) {
+        let like = |felt: Option<&SkinValues>, changed| match felt {
+            Some(felt) if changed => {
+                let mut values = SkinValues::new(felt.sensors(), felt.width());
+                values.copy_from(felt);
+                values
+            }
+            _ => SkinValues::new(0, 1),
+        };
+        let changed = [Sense::Touch, Sense::Pain].map(|sense| self.pipeline.changes(sense));
+        self.touch_values = like(self.touch.as_ref().map(Touch::felt), changed[0]);
+        self.pain_values = like(self.pain.as_ref().map(Pain::felt), changed[1]);
+    }
+
+    /// Returns the values of a sense, to be transformed.
+    fn signal(&mut self, sense: Sense) -> Signal<'_> {
+        let [height, width, _] = self.vision.as_ref().map_or([0; 3], Vision::shape);
+        let [left, right] = &mut self.eyes;
+        let eye = |images| Signal::Eye { images, height, width };
+        match sense {
+            Sense::Proprioception => Signal::Numbers(&mut self.proprioception_values),
+            Sense::Touch => Signal::Skin(&mut self.touch_values),
+            Sense::TouchPooled => Signal::Numbers(&mut self.pooled_values),
+            Sense::Pain => Signal::Skin(&mut self.pain_values),
+            Sense::Vestibular => Signal::Numbers(&mut self.vestibular_values),
+            Sense::EyeLeft => eye(left),
+            Sense::EyeRight => eye(right),
+        }
+    }
+
+    /// Transforms what a sense reports.
+    fn transform(&mut self, sense: Sense, rng: &mut NumpyRng) {
+        if self.pipeline.changes(sense) {
+            let mut pipeline = std::mem::take(&mut self.pipeline);
+            pipeline.apply(sense, self.signal(sense), rng);
+            self.pipeline = pipeline;
+        }
+    }
+
+    /// Forgets the last episode.
+    pub fn reset(&mut self) {
+        if let Some(pain) = &mut self.pain {
+            pain.reset();
+        }
+        self.pipeline.reset();
+    }
+
+    /// Observes a state: each sense, then its transforms. `append` writes what the task adds to proprioception.
+    pub fn observe(
+        &mut self,
+        model: &Model,
+        state: &State,
+        actuation: &dyn Actuation,
+        append: impl FnOnce(&mut [f64]),
+        rng: &mut NumpyRng,
+    ) -> Result<(), EnvError> {
+        let (own, appended) = self.proprioception_values.split_at_mut(self.proprioception.len());
+        self.proprioception.observe(model, state, actuation, own);
+        append(appended);
+        self.transform(Sense::Proprioception, rng);
+        self.observe_skin(model, state, rng);
         if let Some(v) = &self.vestibular {
             v.observe(state, &mut self.vestibular_values);
+            self.transform(Sense::Vestibular, rng);
         }
         if let (Some(v), false) = (&mut self.vision, self.vision_deferred) {
             v.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
+            self.transform_eyes(rng);
         }
         Ok(())
+    }
+
+    /// Observes touch and what follows from it.
+    fn observe_skin(&mut self, model: &Model, state: &State, rng: &mut NumpyRng) {
+        let Some(touch) = &mut self.touch else { return };
+        touch.observe(model, state);
+        if self.pipeline.changes(Sense::Touch) {
+            self.touch_values.copy_from(touch.felt());
+        }
+        if let Some(pool) = &self.pool {
+            pool.observe(touch, &mut self.pooled_values);
+        }
+        if let Some(pain) = &mut self.pain {
+            pain.observe(model, touch);
+            if self.pipeline.changes(Sense::Pain) {
+                self.pain_values.copy_from(pain.felt());
+            }
+        }
+        for sense in [Sense::Touch, Sense::TouchPooled, Sense::Pain] {
+            self.transform(sense, rng);
+        }
+    }
+
+    /// Transforms the images that have just been drawn.
+    pub fn transform_eyes(&mut self, rng: &mut NumpyRng) {
+        for sense in Sense::EYES {
+            self.transform(sense, rng);
+        }
+    }
+
+    /// Returns touch as it is observed, if it is.
+    pub fn touch_observed(&self) -> Option<&SkinValues> {
+        match self.pipeline.changes(Sense::Touch) {
+            true => Some(&self.touch_values),
+            false => self.touch.as_ref().map(Touch::felt),
+        }
+    }
+
+    /// Returns pain as it is observed, if it is.
+    pub fn pain_observed(&self) -> Option<&SkinValues> {
+        match self.pipeline.changes(Sense::Pain) {
+            true => Some(&self.pain_values),
+            false => self.pain.as_ref().map(Pain::felt),
+        }
     }
 
     /// Returns what was observed last.
     pub fn observation(&self) -> Observation<'_> {
         Observation {
             proprioception: &self.proprioception_values,
-            touch: self.touch.as_ref().map(Touch::values),
+            touch: self.touch_observed().map(SkinValues::values),
+            touch_pooled: self.pool.as_ref().map(|_| &self.pooled_values[..]),
+            pain: self.pain_observed().map(SkinValues::values),
             vestibular: self.vestibular.as_ref().map(|_| &self.vestibular_values[..]),
             ..Observation::of_eyes(&self.eyes)
         }
@@ -78,19 +240,26 @@ impl Senses {
 
     /// Returns keys, shapes, types and bounds of the observation.
     pub fn spaces(&self) -> Vec<ObservationSpace> {
-        let vector = |key, len| ObservationSpace {
-            key,
-            shape: vec![len],
-            dtype: Dtype::F64,
-            low: f64::NEG_INFINITY,
-            high: f64::INFINITY,
-        };
-        let mut spaces = vec![vector("observation", self.proprioception.len())];
+        let mut spaces = vec![vector("observation", self.proprioception_values.len())];
         if let Some(t) = &self.touch {
             let dtype = Dtype::F32;
             spaces.push(ObservationSpace {
                 dtype,
                 ..vector("touch", t.len())
+            });
+        }
+        if let Some(pool) = &self.pool {
+            let shape = vec![pool.bodies().len(), POOLED];
+            spaces.push(ObservationSpace {
+                shape,
+                ..vector("touch_pooled", 0)
+            });
+        }
+        if let Some(pain) = &self.pain {
+            spaces.push(ObservationSpace {
+                dtype: Dtype::F32,
+                low: 0.0,
+                ..vector("pain", pain.felt().values().len())
             });
         }
         if let Some(v) = &self.vision {
@@ -102,6 +271,17 @@ impl Senses {
             spaces.push(vector("vestibular", v.len()));
         }
         spaces
+    }
+}
+
+/// Returns the space of a vector of numbers.
+pub(super) fn vector(key: &'static str, len: usize) -> ObservationSpace {
+    ObservationSpace {
+        key,
+        shape: vec![len],
+        dtype: Dtype::F64,
+        low: f64::NEG_INFINITY,
+        high: f64::INFINITY,
     }
 }
 

@@ -6,7 +6,8 @@ use serde::de::Error as _;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, PerEyeAndHand, PerHand};
+use super::{BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Outcome, PerEyeAndHand, PerHand, TaskInfo};
+use crate::config::Behavior;
 
 impl Serialize for Info {
     /// Serializes the keys of the reference, in its order; the details are a value of their own
@@ -109,6 +110,12 @@ fn behavior<M: SerializeMap>(map: &mut M, behavior: &BehaviorInfo) -> Result<(),
                 map.serialize_entry(name, &count)?;
             }
         }
+        BehaviorInfo::Task(info) => {
+            map.serialize_entry("task", &info.task)?;
+            map.serialize_entry("is_success", &info.outcome.is_success)?;
+            map.serialize_entry("is_failure", &info.outcome.is_failure)?;
+            map.serialize_entry("return", &info.episode_return)?;
+        }
     }
     Ok(())
 }
@@ -143,6 +150,11 @@ struct Keys {
     right_eye_left_hand: Option<u64>,
     left_eye_right_hand: Option<u64>,
     left_eye_left_hand: Option<u64>,
+    task: Option<Behavior>,
+    is_success: Option<bool>,
+    is_failure: Option<bool>,
+    #[serde(rename = "return")]
+    episode_return: Option<f64>,
 }
 
 impl<'de> Deserialize<'de> for Info {
@@ -168,6 +180,15 @@ impl<'de> Deserialize<'de> for Info {
                 counts: PerEyeAndHand::from([a, b, c, d]),
             },
             _ => return Err(D::Error::custom("expected all keys of one behavior, or none")),
+        };
+        let behavior = match (keys.task, keys.is_success, keys.is_failure, keys.episode_return) {
+            (Some(task), Some(is_success), Some(is_failure), Some(episode_return)) => BehaviorInfo::Task(TaskInfo {
+                task,
+                outcome: Outcome { is_success, is_failure },
+                episode_return,
+            }),
+            (None, None, None, None) => behavior,
+            _ => return Err(D::Error::custom("expected all keys of one task, or none")),
         };
         Ok(Self {
             steps: keys.steps,

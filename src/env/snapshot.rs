@@ -1,12 +1,12 @@
 //! Snapshots: everything a continuation depends on, as bytes.
 
 mod format;
+mod memory;
 
 pub(super) use format::fingerprint;
 pub use format::{Snapshot, SnapshotError, SnapshotInfo};
 
-use crate::config::Behavior;
-use crate::env::{BehaviorInfo, Env, PerHand};
+use crate::env::{BehaviorInfo, Env, PerHand, TaskInfo};
 use crate::spaces::NumpyRng;
 use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
 
@@ -35,9 +35,23 @@ impl Env {
             &p.jnt_stiffness,
             &p.dof_damping,
             &p.actuator_gear,
+            &p.gravity,
+            &p.dof_invweight0,
+            &p.body_mass,
+            &p.body_subtreemass,
+            p.body_inertia.as_flattened(),
+            p.body_invweight0.as_flattened(),
+            p.geom_size.as_flattened(),
+            &p.geom_rbound,
             &self.physics.base.eq_offset,
             &self.senses.proprioception_values,
             &self.senses.vestibular_values,
+            &self.goals.achieved,
+            &self.goals.desired,
+            &self.goals.terms,
+            self.task.memory(),
+            std::slice::from_ref(&self.episode.reward),
+            &self.senses.pooled_values,
         ]
     }
 
@@ -61,9 +75,23 @@ impl Env {
             &mut p.jnt_stiffness,
             &mut p.dof_damping,
             &mut p.actuator_gear,
+            &mut p.gravity,
+            &mut p.dof_invweight0,
+            &mut p.body_mass,
+            &mut p.body_subtreemass,
+            p.body_inertia.as_flattened_mut(),
+            p.body_invweight0.as_flattened_mut(),
+            p.geom_size.as_flattened_mut(),
+            &mut p.geom_rbound,
             &mut self.physics.base.eq_offset,
             &mut self.senses.proprioception_values,
             &mut self.senses.vestibular_values,
+            &mut self.goals.achieved,
+            &mut self.goals.desired,
+            &mut self.goals.terms,
+            self.task.memory_mut(),
+            std::slice::from_mut(&mut self.episode.reward),
+            &mut self.senses.pooled_values,
         ]
     }
 
@@ -96,6 +124,7 @@ impl Env {
                 ([r.len() as u64, l.len() as u64, 0, 0], [r, l])
             }
             BehaviorInfo::HandRegard { counts } => (counts.to_array(), [&[], &[]]),
+            BehaviorInfo::Task(info) => ([info.episode_return.to_bits(), 0, 0, 0], [&[], &[]]),
         };
         let numbers = self.numbers();
         let length = HEADER + 8 * WHOLE + 8 * numbers.iter().map(|n| n.len()).sum::<usize>();
@@ -123,6 +152,7 @@ impl Env {
         for &geom in lists.into_iter().flatten() {
             bytes.extend_from_slice(&(geom as u32).to_le_bytes());
         }
+        self.save_memory(&mut bytes);
         let sum = checksum(&bytes[HEADER..]);
         bytes[HEADER - 8..HEADER].copy_from_slice(&sum.to_le_bytes());
         Snapshot { bytes }
@@ -144,10 +174,18 @@ impl Env {
         }
         let [step, steps, info_steps, ready, seed, drawn, counts @ ..] = whole;
         // room to count on
-        if [step, steps, info_steps].iter().chain(&counts).any(|c| *c > MAX_COUNT) || ready > 1 {
+        // what tasks have in the place of counters is a number
+        let counts_checked = if self.task.reports_outcome() { &[][..] } else { &counts };
+        if [step, steps, info_steps]
+            .iter()
+            .chain(counts_checked)
+            .any(|c| *c > MAX_COUNT)
+            || ready > 1
+        {
             return Err(damaged("a counter is out of range"));
         }
-        let behavior = self.parse(&r, counts)?;
+        let (behavior, memory) = self.parse(&r, counts)?;
+        self.load_memory(memory)?;
 
         for numbers in self.numbers_mut() {
             r.fill(numbers);
@@ -165,14 +203,18 @@ impl Env {
         self.info.steps = info_steps;
         self.info.behavior = behavior;
         self.info.details.clear();
-        self.tracker.describe(None, &mut self.info);
+        self.task.describe(None, &mut self.info);
+        let reward = self.episode.reward;
+        self.conclude();
+        (self.episode.reward, self.episode.terminated) = (reward, self.episode.terminated && steps > 0);
         self.episode.ready = ready == 1;
         self.rng = NumpyRng::at(seed, drawn);
         Ok(())
     }
 
-    /// Checks everything that follows the whole numbers, and reads the information of the behavior.
-    fn parse(&self, r: &Reader, counts: [u64; 4]) -> Result<BehaviorInfo, SnapshotError> {
+    /// Checks everything that follows the whole numbers but for the memory of senses, and reads the information of the
+    /// behavior. Returns the memory, too.
+    fn parse<'b>(&self, r: &Reader<'b>, counts: [u64; 4]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
         let mut r = Reader(r.0);
         let numbers: usize = self.numbers().iter().map(|n| n.len()).sum();
         let flags: usize = self.flags().iter().map(|f| f.len()).sum();
@@ -200,20 +242,23 @@ impl Env {
             Ok(geoms)
         };
         let [right, left, ..] = counts;
-        let behavior = match self.config().behavior {
-            Behavior::None => BehaviorInfo::None,
-            Behavior::SelfTouch => BehaviorInfo::SelfTouch {
+        let behavior = match self.info.behavior {
+            BehaviorInfo::None => BehaviorInfo::None,
+            BehaviorInfo::SelfTouch { .. } => BehaviorInfo::SelfTouch {
                 touches: PerHand {
                     right_hand: list(right)?,
                     left_hand: list(left)?,
                 },
             },
-            Behavior::HandRegard => BehaviorInfo::HandRegard { counts: counts.into() },
+            BehaviorInfo::HandRegard { .. } => BehaviorInfo::HandRegard { counts: counts.into() },
+            BehaviorInfo::Task(info) => {
+                let episode_return = f64::from_bits(counts[0]);
+                if !episode_return.is_finite() {
+                    return Err(damaged("a number is not finite"));
+                }
+                BehaviorInfo::Task(TaskInfo { episode_return, ..info })
+            }
         };
-        if r.0.is_empty() {
-            Ok(behavior)
-        } else {
-            Err(damaged("it is too long"))
-        }
+        Ok((behavior, r.0))
     }
 }

@@ -1,6 +1,8 @@
 //! Pictures of environments for people.
 
 use crate::env::{Blueprint, Env, EnvError, missing_camera};
+use crate::math::Vec3;
+use crate::model::Model;
 use crate::render::{FreeCamera, Poses, RenderRequest, Renderer, View};
 
 /// The camera of a picture.
@@ -10,6 +12,38 @@ pub enum ViewFrom<'a> {
     Camera(&'a str),
     /// A camera anywhere.
     Free(FreeCamera),
+}
+
+impl<'a> ViewFrom<'a> {
+    /// Returns a camera of the scene, or, if the scene has none of that name, one that looks at MIMo from where it would stand: those
+    /// of tasks have eyes only.
+    pub fn room(env: &Env, name: &'a str) -> Self {
+        match room_camera(env.model(), &env.state().xpos, name) {
+            Some(camera) => Self::Free(camera),
+            None => Self::Camera(name),
+        }
+    }
+}
+
+/// Returns where a camera of the room would stand, if the scene has none of that name.
+pub(crate) fn room_camera(model: &Model, xpos: &[Vec3], name: &str) -> Option<FreeCamera> {
+    let (distance, azimuth, elevation) = match name {
+        "corner" => (1.8, 135.0, -25.0),
+        "top" => (1.8, 90.0, -90.0),
+        "side1" => (1.8, 180.0, -5.0),
+        "side2" => (1.8, -90.0, -5.0),
+        "closeup" => (1.0, 150.0, -30.0),
+        _ => return None,
+    };
+    if model.camera(name).is_some() {
+        return None;
+    }
+    Some(FreeCamera {
+        lookat: *xpos.get(model.body("hip")?)?,
+        distance,
+        azimuth,
+        elevation,
+    })
 }
 
 impl<'a> From<&'a str> for ViewFrom<'a> {
@@ -57,13 +91,14 @@ impl Viewer {
         })
     }
 
-    /// Draws the room from the camera `corner`, `render_size` by `render_size` pixels: Gymnasium's `render`.
+    /// Draws the room from the camera `corner`, or from where [`ViewFrom::room`] says, `render_size` by `render_size` pixels: Gymnasium's
+    /// `render`.
     ///
     /// # Errors
     /// As [`Viewer::draw`].
     pub fn render(&mut self, env: &Env) -> Result<&[u8], EnvError> {
         let size = env.config().render_size as usize;
-        self.draw(env, "corner", size, size)
+        self.draw(env, ViewFrom::room(env, "corner"), size, size)
     }
 
     /// Draws an environment from a camera of its scene, by name, or from a [`FreeCamera`]. Returns red, green and blue of

@@ -160,13 +160,14 @@ fn episodes(
         evaluation.reset();
         for _ in 0..plan.duration {
             policy.act(&mut env, &mut action)?;
-            let truncated = env.step(&action).map_err(env_error(episode))?.truncated;
+            env.step(&action).map_err(env_error(episode))?;
+            let over = env.over();
             evaluation.eval_step(&env)?;
             if (schedule.step)().is_break() {
                 let (done, planned) = (0, plan.episodes);
                 return Err(EpisodeError::Stopped { done, planned });
             }
-            if truncated {
+            if over {
                 break;
             }
         }

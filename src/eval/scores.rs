@@ -36,9 +36,7 @@ pub enum ScoreError {
         records: usize,
     },
     /// The log is of no behavior that has a score.
-    #[error(
-        "the training log is for behavior none, which is not scored; train with behavior self_touch or hand_regard"
-    )]
+    #[error("the training log is not of a behavior with a score: self_touch or hand_regard")]
     NoBehavior,
 }
 
@@ -80,7 +78,7 @@ impl Score {
         let chosen = Self::counted(records);
         let (episodes, steps) = (chosen.len(), steps(chosen));
         let (value, parts) = match first.behavior {
-            BehaviorInfo::None => return Err(ScoreError::NoBehavior),
+            BehaviorInfo::None | BehaviorInfo::Task(_) => return Err(ScoreError::NoBehavior),
             BehaviorInfo::SelfTouch { .. } => {
                 let touched = PerHand::from_fn(|hand| {
                     let lists = chosen.iter().filter_map(|r| r.behavior.touches());
@@ -96,7 +94,8 @@ impl Score {
                 }
                 let counts = [0, 1, 2, 3].map(|k| {
                     let all = chosen.iter().filter_map(|r| r.behavior.regards());
-                    all.map(|c| c[k]).fold(0_u64, u64::saturating_add)
+                    // a hand cannot be in view for longer than there are steps
+                    all.map(|c| c[k]).fold(0_u64, u64::saturating_add).min(steps)
                 });
                 let number: f64 = counts.iter().map(|&c| c as f64).sum();
                 let counts = PerEyeAndHand::from(counts);

@@ -29,6 +29,8 @@ pub use writer::{Element, NpzWriter};
 
 use std::io;
 
+use crate::text::quoted;
+
 /// An error in reading or writing an archive; every message names the file and the array.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -50,7 +52,7 @@ pub enum NpzError {
         reason: String,
     },
     /// There is no such array.
-    #[error("{file}: has no array `{array}`")]
+    #[error("{file}: has no array `{}`", quoted(.array))]
     Missing {
         /// The file.
         file: String,
@@ -58,7 +60,7 @@ pub enum NpzError {
         array: String,
     },
     /// The array is damaged, too large or of a kind that is not read.
-    #[error("{file}: array `{array}`: {reason}")]
+    #[error("{file}: array `{}`: {}", quoted(.array), quoted(.reason))]
     Array {
         /// The file.
         file: String,
@@ -68,7 +70,7 @@ pub enum NpzError {
         reason: String,
     },
     /// The array's numbers do not fit the type asked for.
-    #[error("{file}: array `{array}` of {dtype} cannot be read as {wanted}")]
+    #[error("{file}: array `{}` of {} cannot be read as {wanted}", quoted(.array), quoted(.dtype))]
     Type {
         /// The file.
         file: String,

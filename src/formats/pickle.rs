@@ -31,7 +31,10 @@ use std::sync::Arc;
 pub use machine::{from_bytes, from_bytes_with};
 pub(crate) use records::{Node, Root, visit_records};
 use thiserror::Error;
+pub(crate) use writer::ListWriter;
 pub use writer::to_bytes;
+
+use crate::text::quoted;
 
 /// An error in reading or writing a pickle.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -52,7 +55,7 @@ pub enum PickleError {
         opcode: u8,
     },
     /// A class or function that logs have no use for. It was not looked up.
-    #[error("byte {at}: {name} is not supported: only what logs need is read")]
+    #[error("byte {at}: {} is not supported: only what logs need is read", quoted(.name))]
     Global {
         /// Where it stands.
         at: usize,

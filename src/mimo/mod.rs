@@ -2,6 +2,7 @@
 
 mod anatomy;
 mod assets;
+mod figures;
 mod growth;
 mod locks;
 mod parts;
@@ -10,7 +11,11 @@ mod scene;
 
 pub use anatomy::{BodyKind, body_kind};
 pub use assets::embedded;
+pub use figures::BodyFigures;
+#[cfg(feature = "report")]
+pub(crate) use figures::upright_extent;
 pub use growth::{Growth, GrowthError};
 pub use locks::{LockError, LockReport, LockTarget, held_by, lock, lock_of, unlock};
 pub use parts::{MimoJoints, joint_part};
-pub use scene::{DOCUMENT, SceneError, Version, build_model, scene_xml};
+pub use placement::held_posture;
+pub use scene::{DOCUMENT, SceneError, Version, build_model, build_scene, scene_xml};

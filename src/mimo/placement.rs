@@ -2,28 +2,82 @@
 
 use std::sync::Arc;
 
-use crate::math::Mat3;
-use crate::model::{GeomType, Model};
-use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions};
+use crate::math::Vec3;
+use crate::model::{EqualityKind, GeomType, Model};
+use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions, State};
 
-/// Returns the height of MIMo's lowest point at `qpos0`, m.
-pub(super) fn lowest_point(model: &Arc<Model>) -> Result<f64, EngineError> {
+/// Two geoms of MIMo in each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Overlap {
+    pub geoms: [usize; 2],
+    /// How deep, m.
+    pub depth: f64,
+}
+
+/// Returns the positions (nq) of a scene with its joints where its active constraints hold them: `qpos0`, but among the cubes
+/// MIMo sits.
+pub fn held_posture(model: &Model) -> Vec<f64> {
+    let mut qpos = model.qpos0.clone();
+    for (kind, _) in model
+        .eq_kind
+        .iter()
+        .zip(&model.eq_active0)
+        .filter(|(_, active)| **active)
+    {
+        if let &EqualityKind::Joint {
+            joint1,
+            joint2: None,
+            polycoef,
+        } = kind
+        {
+            qpos[model.jnt_qposadr[joint1]] += polycoef[0];
+        }
+    }
+    qpos
+}
+
+/// Returns the state at the held posture.
+fn at_rest(model: &Arc<Model>) -> Result<State, EngineError> {
     let mut engine = SoftEngine::new(model.clone(), SoftOptions::default());
     let mut state = engine.new_state();
+    state.qpos = held_posture(model);
     engine.forward(&mut state)?;
+    Ok(state)
+}
+
+/// Returns whether a geom is MIMo's.
+fn own(model: &Model) -> impl Fn(&usize) -> bool {
     let hip = model.body("hip");
-    let own = |g: &usize| hip.is_some_and(|hip| model.in_subtree(model.geom_bodyid[*g], hip));
+    move |g| hip.is_some_and(|hip| model.in_subtree(model.geom_bodyid[*g], hip))
+}
+
+/// Lists the geoms of MIMo that are in each other at the held posture.
+pub(super) fn overlaps(model: &Arc<Model>) -> Result<Vec<Overlap>, EngineError> {
+    let (state, own) = (at_rest(model)?, own(model));
+    let inside = state.contact.iter().filter(|c| c.dist < 0.0 && c.geom.iter().all(&own));
+    Ok(inside
+        .map(|c| Overlap {
+            geoms: c.geom,
+            depth: -c.dist,
+        })
+        .collect())
+}
+
+/// Returns the height of MIMo's lowest point at the held posture, m.
+pub(super) fn lowest_point(model: &Arc<Model>) -> Result<f64, EngineError> {
+    let (state, own) = (at_rest(model)?, own(model));
     let bottom = |g: usize| {
-        let down = reach_down(model.geom_type[g], model.geom_size[g], &state.geom_xmat[g]);
+        let mat = &state.geom_xmat[g];
+        let down = reach(model.geom_type[g], model.geom_size[g], [mat[6], mat[7], mat[8]]);
         state.geom_xpos[g][2] - down
     };
     Ok((0..model.ngeom()).filter(own).map(bottom).fold(f64::INFINITY, f64::min))
 }
 
-/// Returns how far a shape reaches below its centre, given its orientation in the world, m.
-fn reach_down(kind: GeomType, size: [f64; 3], mat: &Mat3) -> f64 {
+/// Returns how far a shape reaches from its centre along a direction in its own frame, m.
+pub(super) fn reach(kind: GeomType, size: [f64; 3], direction: Vec3) -> f64 {
     let [a, b, c] = size;
-    let [x, y, z] = [mat[6].abs(), mat[7].abs(), mat[8].abs()];
+    let [x, y, z] = direction.map(f64::abs);
     match kind {
         GeomType::Plane => 0.0,
         GeomType::Sphere => a,

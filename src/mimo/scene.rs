@@ -1,12 +1,11 @@
 //! The top MJCF document of an environment.
 
-use std::fmt::Write as _;
-
 use thiserror::Error;
 
 use crate::assets::AssetSource;
-use crate::config::{ActuationModel, Behavior, Config, Part, Scene};
-use crate::mimo::placement::lowest_point;
+use crate::config::{ActuationModel, Behavior, Config, Measurements, Part, Scene};
+use crate::mimo::growth::blame;
+use crate::mimo::placement::{Overlap, lowest_point, overlaps};
 use crate::mimo::{Growth, GrowthError};
 use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
@@ -28,11 +27,16 @@ pub enum Version {
 }
 
 impl Version {
-    /// Returns the version for a behavior: hand regard has fingers to look at, everything else is faster without.
+    /// Returns the version for a behavior: hand regard has fingers to look at, catching needs them, everything else is faster without.
     pub fn of(behavior: Behavior) -> Self {
         match behavior {
-            Behavior::HandRegard => Self::V2,
-            Behavior::None | Behavior::SelfTouch => Self::V1,
+            Behavior::HandRegard | Behavior::Catch => Self::V2,
+            Behavior::None
+            | Behavior::SelfTouch
+            | Behavior::Reach
+            | Behavior::Standup
+            | Behavior::SelfBody
+            | Behavior::RollOver => Self::V1,
         }
     }
 
@@ -57,30 +61,34 @@ const ACTUATOR_GROUPS: [Part; 8] = [
     Part::Feet,
 ];
 
-/// Writes the top document of an environment: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
-/// active groups, the scene. Element order fixes all ids, and is the reference's.
+/// Writes the top document of an environment: that of its task, or that of BabyBench's scenes.
 pub fn scene_xml(config: &Config) -> String {
+    let name = match config.age {
+        None => "MIMo".to_string(),
+        Some(age) => format!("MIMo at {age} months"),
+    };
+    let content = match config.behavior {
+        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard => babybench_scene(config),
+        task => include(task.name()),
+    };
+    format!("<mujoco model=\"{name}\">\n{content}</mujoco>\n")
+}
+
+/// Writes what a BabyBench environment consists of: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
+/// active groups, the scene. Element order fixes all ids, and is the reference's.
+fn babybench_scene(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     let pose = match config.scene {
         Scene::Base => r#"pos="0 0 0.1" euler="0 -90 0""#,
         Scene::Crib => r#"pos="0 0 0.3" euler="0 -90 0""#,
         Scene::Cubes => r#"pos="0 0 0.0467196" quat="0.885453 -0.000184209 -0.464728 -0.000527509""#,
     };
-    let name = match config.age {
-        None => "MIMo".to_string(),
-        Some(age) => format!("MIMo at {age} months"),
-    };
     let mut xml = format!(
-        "<mujoco model=\"{name}\">\n  <worldbody>\n    <body name=\"{MIMO}\" {pose}>\n      \
-         <freejoint name=\"{MIMO}\"/>\n      <include file=\"mimo_{version}.xml\"/>\n    </body>\n  \
-         </worldbody>\n"
+        "  <worldbody>\n    <body name=\"{MIMO}\" {pose}>\n      <freejoint name=\"{MIMO}\"/>\n      \
+         <include file=\"mimo_{version}.xml\"/>\n    </body>\n  </worldbody>\n"
     );
-    let mut include = |file: &str| {
-        // writing to a string cannot fail
-        let _ = writeln!(xml, "  <include file=\"{file}.xml\"/>");
-    };
-    include("base");
-    include(&format!("meta_{version}"));
+    xml += &include("base");
+    xml += &include(&format!("meta_{version}"));
     let kind = match config.actuation_model {
         ActuationModel::SpringDamper | ActuationModel::Muscle => "motor",
         ActuationModel::Positional => "position",
@@ -91,16 +99,20 @@ pub fn scene_xml(config: &Config) -> String {
                 Part::Fingers | Part::Feet => format!("_{version}"),
                 _ => String::new(),
             };
-            include(&format!("{kind}_{}{suffix}", part.name()));
+            xml += &include(&format!("{kind}_{}{suffix}", part.name()));
         }
     }
     match config.scene {
         Scene::Base => {}
-        Scene::Crib => include("crib"),
-        Scene::Cubes => include("cubes"),
+        Scene::Crib => xml += &include("crib"),
+        Scene::Cubes => xml += &include("cubes"),
     }
-    xml.push_str("</mujoco>\n");
     xml
+}
+
+/// Writes the line that includes a file of the assets.
+fn include(file: &str) -> String {
+    format!("  <include file=\"{file}.xml\"/>\n")
 }
 
 /// An error in making a scene.
@@ -120,16 +132,61 @@ pub enum SceneError {
 
 /// Loads and compiles the scene of a configuration from `assets`, with MIMo at his age.
 ///
-/// A MIMo of another size than the original's is moved up or down until his lowest point is where the original's is.
+/// A MIMo of another size than the original's is moved up or down until his lowest point is where the original's is, both in
+/// the posture in which the scene holds them.
 ///
 /// # Errors
-/// Fails if the assets cannot be read or compiled, and then names file, line and element; if MIMo cannot grow to the age.
+/// Fails if the assets cannot be read or compiled, and then names file, line and element; if MIMo cannot grow to the age, or
+/// measurements make a body whose parts vanish or are in each other, and then names the keys.
 pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, SceneError> {
-    let document = scene_xml(config);
-    let original = || Draft::read_str(&document, DOCUMENT, assets);
-    let Some(growth) = Growth::of(config)? else {
-        return Ok(compile(original()?.compile(assets)?)?);
+    build_scene(&scene_xml(config), Version::of(config.behavior), config, assets)
+}
+
+/// Compiles a document with a MIMo of some version, at the age of a configuration; see [`build_model`].
+///
+/// # Errors
+/// As [`build_model`].
+pub fn build_scene(
+    document: &str,
+    version: Version,
+    config: &Config,
+    assets: &dyn AssetSource,
+) -> Result<Model, SceneError> {
+    let Some(growth) = Growth::of(config, version)? else {
+        let draft = Draft::read_str(document, DOCUMENT, assets)?;
+        return Ok(compile(draft.compile(assets)?)?);
     };
+    let made = grow(&growth, document, assets);
+    if config.measurements == Measurements::default() {
+        return made;
+    }
+    // measurements of the caller's may be of nobody
+    let age = growth.age();
+    let ordinary = Config {
+        measurements: Measurements::default(),
+        ..config.clone()
+    };
+    let usual = overlaps(&build_scene(document, version, &ordinary, assets)?.into())?;
+    let fault = |made: &Result<Model, SceneError>| -> Option<String> {
+        match made {
+            Ok(model) => {
+                let found = overlaps(&model.clone().into()).ok()?;
+                deeper(model, &found, &usual)
+            }
+            Err(e) => Some(format!("the body cannot be made ({e})")),
+        }
+    };
+    let Some(reason) = fault(&made) else { return made };
+    let works = |other: &Config| {
+        let growth = Growth::of(other, version).ok().flatten();
+        growth.is_some_and(|growth| fault(&grow(&growth, document, assets)).is_none())
+    };
+    Err(blame(config, age, reason, works).into())
+}
+
+/// Compiles the scene with a MIMo that has grown, his lowest point where the original's is.
+fn grow(growth: &Growth, document: &str, assets: &dyn AssetSource) -> Result<Model, SceneError> {
+    let original = || Draft::read_str(document, DOCUMENT, assets);
     let grown = |up: f64| -> Result<Model, SceneError> {
         let mut draft = original()?;
         growth.apply(&mut draft)?;
@@ -141,4 +198,18 @@ pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, S
     let before = lowest_point(&compile(original()?.compile(assets)?)?.into())?;
     let after = lowest_point(&grown(0.0)?.into())?;
     grown(before - after)
+}
+
+/// How much deeper than at the same age without measurements two parts may be in each other, m.
+const OVERLAP: f64 = 0.003;
+
+/// Says which two parts of MIMo are deeper in each other than usual, if any are.
+fn deeper(model: &Model, found: &[Overlap], usual: &[Overlap]) -> Option<String> {
+    let name = |geom: usize| &model.body_name[model.geom_bodyid[geom]];
+    found.iter().find_map(|o| {
+        let before = usual.iter().find(|u| u.geoms == o.geoms).map_or(0.0, |u| u.depth);
+        let (a, b, depth) = (name(o.geoms[0]), name(o.geoms[1]), 1e3 * o.depth);
+        let text = || format!("{a:?} and {b:?} are {depth:.1} mm in each other at rest");
+        (o.depth > before + OVERLAP).then(text)
+    })
 }

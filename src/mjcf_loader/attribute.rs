@@ -234,15 +234,11 @@ fn whole(attribute: &'static str, text: &str, min: i64, max: i64) -> Result<i64,
     if value >= min && value <= max {
         return Ok(value);
     }
-    let want = if value < min && min == 0 {
-        "at least 0"
-    } else {
-        "within the limits of the loader"
-    };
-    Err(ErrorKind::OutOfRange {
+    Err(ErrorKind::OutOfBounds {
         attribute,
-        value: value as f64,
-        want,
+        value,
+        min,
+        max,
     })
 }
 

@@ -25,7 +25,7 @@ impl fmt::Display for Place {
             write!(f, ":{}:{}", self.line, self.column)?;
         }
         if !self.element.is_empty() {
-            write!(f, ": {}", self.element)?;
+            write!(f, ": {}", quoted(&self.element))?;
         }
         Ok(())
     }
@@ -139,6 +139,18 @@ pub enum ErrorKind {
         value: f64,
         /// What is allowed.
         want: &'static str,
+    },
+    /// A whole number that is out of bounds.
+    #[error("{attribute}: {value} must be from {min} to {max}")]
+    OutOfBounds {
+        /// The attribute.
+        attribute: &'static str,
+        /// The number.
+        value: i64,
+        /// Smallest number.
+        min: i64,
+        /// Largest number.
+        max: i64,
     },
     /// A number above [`crate::Limits::real`] in magnitude.
     #[error("{attribute}: {value} must be at most {limit:e} in magnitude")]

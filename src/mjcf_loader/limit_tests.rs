@@ -85,7 +85,7 @@ fn limits_are_the_callers() {
         (
             "<size nuser_actuator='2'/>",
             |l| l.user = 1,
-            "nuser_actuator: 2 must be within the limits of the loader",
+            "nuser_actuator: 2 must be from -1 to 1",
         ),
         (
             "<option timestep='11'/>",

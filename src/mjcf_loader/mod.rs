@@ -46,6 +46,7 @@ mod tests;
 mod words;
 mod xml;
 
+pub(crate) use compile::bounding_radius;
 use compile::volume as geom_volume;
 pub use draft::{Draft, DraftActuator, DraftGeom};
 pub use error::{ErrorKind, LoadError, Place};

@@ -4,7 +4,7 @@ use crate::math::Vec3;
 use crate::model::{BiasType, SensorType};
 
 use super::attribute::Sign::{Any, NonNegative};
-use super::attribute::{FLAG, Kind, TEXT, int, real, reals, some};
+use super::attribute::{FLAG, Kind, Store, TEXT, Value, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{SOLIMP, SOLREF, TRI, Tri};
@@ -91,6 +91,31 @@ table! {
     }
 }
 
+/// The lengths between which a tendon's spring is slack.
+#[derive(Clone, Copy)]
+pub(super) struct SpringLength(pub [f64; 2]);
+
+impl SpringLength {
+    /// The length in the springs' rest configuration.
+    pub const AT_REST: Self = Self([-1.0; 2]);
+}
+
+impl Store for SpringLength {
+    /// Stores both lengths; a single one is both.
+    fn store(&mut self, value: &Value) {
+        if let Value::Reals(lengths) = value {
+            match lengths[..] {
+                [length] => self.0 = [length; 2],
+                _ => self.0.store(value),
+            }
+        }
+    }
+
+    fn show(&self) -> String {
+        self.0.show()
+    }
+}
+
 table! {
     /// `<tendon><fixed>`.
     element Tendon {
@@ -101,6 +126,9 @@ table! {
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
         "solreflimit" solref_limit: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the limit.";
         "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";
+        "springlength" springlength: SpringLength = SpringLength::AT_REST, some(1, 2, Any), "Shortest and longest length without a spring force; a single one is both. -1 for that of the springs' rest configuration.";
+        "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring.";
+        "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
     }
 }
 

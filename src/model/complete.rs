@@ -49,6 +49,8 @@ pub(crate) struct Constants {
     pub dof_invweight0: Vec<f64>,
     /// See [`Arrays::dof_m0`].
     pub dof_m0: Vec<f64>,
+    /// See [`Arrays::tendon_lengthspring`].
+    pub tendon_lengthspring: Vec<[f64; 2]>,
     /// See [`Arrays::tendon_invweight0`].
     pub tendon_invweight0: Vec<f64>,
     /// The statistics, given or computed.
@@ -84,6 +86,7 @@ impl Model {
         arrays.body_invweight0 = constants.body_invweight0;
         arrays.dof_invweight0 = constants.dof_invweight0;
         arrays.dof_m0 = constants.dof_m0;
+        arrays.tendon_lengthspring = constants.tendon_lengthspring;
         arrays.tendon_invweight0 = constants.tendon_invweight0;
         arrays.stat = constants.stat;
         for pose in constants.weld_poses {

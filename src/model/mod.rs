@@ -274,6 +274,12 @@ arrays! {
     tendon_solref_lim: Vec<[f64; 2]>,
     /// `solimp` of the limit.
     tendon_solimp_lim: Vec<[f64; 5]>,
+    /// Lengths between which the spring is slack; that of `qpos_spring` where none is given.
+    tendon_lengthspring: Vec<[f64; 2]>,
+    /// Stiffness of the spring.
+    tendon_stiffness: Vec<f64>,
+    /// Damping.
+    tendon_damping: Vec<f64>,
     /// Inverse weight at `qpos0`.
     tendon_invweight0: Vec<f64>,
 

@@ -151,6 +151,37 @@ pub enum EngineError {
         /// Number of bodies.
         count: usize,
     },
+    /// The mass or the size of a body that something holds cannot change.
+    #[error(
+        "the body {body:?} is not free: mass, inertia and size can change for bodies of the world with a free joint that carry \
+         no other body"
+    )]
+    NotFree {
+        /// Name of the body.
+        body: String,
+    },
+    /// A body without geoms has no size.
+    #[error("the body {body:?} has no geom whose size could change")]
+    NoGeom {
+        /// Name of the body.
+        body: String,
+    },
+    /// A mass, an inertia or a size is not a positive number.
+    #[error("{what}[{index}] is {value}: it must be finite and > 0")]
+    NotPositive {
+        /// Quantity.
+        what: &'static str,
+        /// Position in it.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// An engine has the parameters of the model built in.
+    #[error("the engine cannot change params.{what}: use engine: soft")]
+    FixedParameter {
+        /// Field of the parameters.
+        what: &'static str,
+    },
     /// A force applied to a body is not finite.
     #[error("{what}[{index}] is {value}: only finite forces, torques and points can be applied")]
     Applied {
@@ -193,13 +224,14 @@ pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
     let p = &s.params;
     // empty without muscles
     let muscles = if s.muscle_torque.is_empty() { 0 } else { m.nu() };
-    let fields: [(&'static str, &[f64], usize); 10] = [
+    let fields: [(&'static str, &[f64], usize); 11] = [
         ("qpos", &s.qpos, m.nq),
         ("qvel", &s.qvel, m.nv),
         ("ctrl", &s.ctrl, m.nu()),
         ("muscle_torque", &s.muscle_torque, muscles),
         ("qfrc_applied", &s.qfrc_applied, m.nv),
         ("xfrc_applied", s.xfrc_applied.as_flattened(), 6 * m.nbody()),
+        ("params.gravity", &p.gravity, 3),
         ("params.eq_offset", &p.eq_offset, m.neq()),
         ("params.jnt_stiffness", &p.jnt_stiffness, m.njnt()),
         ("params.dof_damping", &p.dof_damping, m.nv),
@@ -210,6 +242,13 @@ pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
         ("qacc_warmstart", s.qacc_warmstart.len(), m.nv),
         ("params.eq_active", p.eq_active.len(), m.neq()),
         ("params.actuator_forcelimited", p.actuator_forcelimited.len(), m.nu()),
+        ("params.dof_invweight0", p.dof_invweight0.len(), m.nv),
+        ("params.body_mass", p.body_mass.len(), m.nbody()),
+        ("params.body_subtreemass", p.body_subtreemass.len(), m.nbody()),
+        ("params.body_inertia", p.body_inertia.len(), m.nbody()),
+        ("params.body_invweight0", p.body_invweight0.len(), m.nbody()),
+        ("params.geom_size", p.geom_size.len(), m.ngeom()),
+        ("params.geom_rbound", p.geom_rbound.len(), m.ngeom()),
     ];
     for (what, found, expected) in lengths {
         if found != expected {

@@ -8,6 +8,7 @@ mod constraint;
 pub mod contact;
 mod dynamics;
 mod engine;
+mod free_body;
 mod params;
 #[cfg(feature = "rapier")]
 pub mod rapier;
@@ -23,9 +24,11 @@ pub use compile::compile;
 pub use constraint::{ConstraintType, EfcRow};
 pub use dynamics::{cameras, kinematics};
 pub use engine::{Engine, EngineError, Probe, Stage};
+pub use free_body::FreeBody;
 pub use params::Params;
 #[cfg(feature = "rapier")]
 pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions};
 pub use soft::{SoftEngine, SoftModel, SoftOptions};
 pub use state::{Contact, State};
 pub use topology::Topology;
+pub(crate) use vectorize::vectorize;

@@ -133,7 +133,7 @@ impl SoftEngine {
             || bodies.update(model, s),
         );
         self.mark(Some(Stage::Scene));
-        self.scene.sync(s);
+        self.scene.sync(&self.model, s);
         self.mark(Some(Stage::Collision));
         if self.options.disable_contacts {
             s.contact.clear();

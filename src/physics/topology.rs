@@ -1,6 +1,7 @@
 //! What the dynamics derives from a model's tree once: ancestor chains, trees, the layout of the inertia.
 
 use crate::model::Arrays;
+use crate::physics::params::Params;
 use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 
 /// What the dynamics derives from the tree of a [`crate::Model`]: ancestor chains, trees, the layout of matrices.
@@ -127,8 +128,8 @@ impl Topology {
 
     /// Returns the trace of a tree's inverse inertia at `qpos0`, a bound on its acceleration under unit forces.
     #[inline]
-    pub(crate) fn mobility(&self, model: &Arrays, tree: usize) -> f64 {
-        model.dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
+    pub(crate) fn mobility(&self, params: &Params, tree: usize) -> f64 {
+        params.dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
             .iter()
             .sum()
     }

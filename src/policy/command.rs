@@ -17,14 +17,14 @@ pub const DEFAULT_LIMIT: Duration = Duration::from_secs(60);
 /// The time a command has to exit after the end of its input.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// What is wrong with an answer that comes without a question.
-const EARLY: &str = "it wrote this without being asked, so that its answers no longer belong to the observations";
+/// What is wrong with an answer that comes without a question, or not alone.
+const UNASKED: &str = "more lines came than observations went, so that its answers no longer belong to them";
 
 /// A policy in another program, in any language: a line of JSON with the observation goes to its standard input, a line
 /// with a JSON list of numbers, the action, comes back from its standard output. Its standard error is passed through.
 ///
 /// The line is an object with the number of the `episode` and of the `step` in it (both from 0), and the keys of the
-/// active senses: `observation`, `touch` and `vestibular` are lists of numbers, `eye_left` and `eye_right` are objects
+/// active senses: `observation`, `touch`, `touch_pooled`, `pain`, `vestibular`, `achieved_goal` and `desired_goal` are lists of numbers, `eye_left` and `eye_right` are objects
 /// `{"shape": [height, width, 3], "data": "..."}` with the bytes of the image in base64 (red, green, blue of each
 /// pixel, rows from the top), and what else `vision_outputs` asks for, such as `eye_left_depth`, are objects `{"shape":
 /// [height, width], "dtype": "float32", "data": "..."}`, the lowest byte of a number first. At step 0 of an episode there is also `action_space`, an object with the lists `low` and
@@ -158,7 +158,7 @@ impl CommandPolicy {
             Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
             Ok(Err(e)) => return Err(self.ended(e.to_string())),
             Ok(Ok(early)) => {
-                let fault = Some(EARLY.to_string());
+                let fault = Some(UNASKED.to_string());
                 return Ok(Answer { fault, ..early });
             }
         }
@@ -228,12 +228,34 @@ fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Res
         let fault = match line.len() > longest {
             true => Some(format!("it has more than {longest} bytes")),
             false if output.buffer().is_empty() => None,
-            false => Some("more than one line came for one observation".to_string()),
+            false => Some(UNASKED.to_string()),
         };
         if matches!(read, Ok(0)) || lines.send(read.map(|_| Answer { line, fault })).is_err() || last {
             return;
         }
     }
+}
+
+/// Reads what a program wrote as answers of `expected` numbers and at most `longest` bytes, for fuzzing.
+#[cfg(fuzzing)]
+pub fn answers(output: &[u8], expected: usize, longest: usize) -> Vec<Result<Vec<f32>, String>> {
+    let (sender, lines) = sync_channel(output.len() + 1);
+    read_lines(output, longest, &sender);
+    drop(sender);
+    let read = |answer: Answer| {
+        let mut action = Vec::new();
+        let read = read_answer(&answer, expected, &mut action);
+        read.map(|()| action)
+    };
+    lines.into_iter().filter_map(Result::ok).map(read).collect()
+}
+
+/// Reads an action from a line, or says what is wrong with it.
+fn read_answer(answer: &Answer, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
+    let text = String::from_utf8_lossy(&answer.line);
+    let fault = answer.fault.clone();
+    let read = fault.map_or_else(|| parse(text.trim(), expected, action), Err);
+    read.map_err(|reason| quoted(&reason))
 }
 
 /// Waits for a program to end, at most for a while.
@@ -265,14 +287,12 @@ impl Policy for CommandPolicy {
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
         let mut line = json::text(&Line::new(env, self.now)).into_bytes();
         line.push(b'\n');
-        let Answer { line, fault } = self.ask(line)?;
-        let answer = String::from_utf8_lossy(&line);
+        let answer = self.ask(line)?;
         let expected = env.action_space().len();
-        let parsed = fault.map_or_else(|| parse(answer.trim(), expected, action), Err);
-        parsed.map_err(|reason| PolicyError::Answer {
+        read_answer(&answer, expected, action).map_err(|reason| PolicyError::Answer {
             command: self.command.clone(),
-            answer: start(answer.trim()),
-            reason: quoted(&reason),
+            answer: start(String::from_utf8_lossy(&answer.line).trim()),
+            reason,
             expected,
             when: self.now,
         })?;
@@ -313,10 +333,7 @@ mod tests {
         );
         let twice = read(b"[1]\n[1]\n", 10);
         assert_eq!(twice.len(), 2);
-        assert_eq!(
-            twice[0].fault.as_deref(),
-            Some("more than one line came for one observation")
-        );
+        assert_eq!(twice[0].fault.as_deref(), Some(UNASKED));
         let long = read(&[b'1'; 100], 10);
         assert_eq!(long[0].fault.as_deref(), Some("it has more than 10 bytes"));
         assert_eq!(long[0].line.len(), 11);

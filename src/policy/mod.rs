@@ -8,6 +8,8 @@ mod protocol;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+#[cfg(fuzzing)]
+pub use command::answers;
 pub use command::{CommandPolicy, DEFAULT_LIMIT};
 #[cfg(feature = "onnx")]
 pub use onnx::{OnnxError, OnnxPolicy};

@@ -1,6 +1,7 @@
 //! Policies that are ONNX models.
 
 mod bounds;
+mod wire;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -88,7 +89,7 @@ pub enum OnnxError {
 
 /// A policy that is an ONNX model, such as one exported from Stable-Baselines3 or PyTorch.
 ///
-/// Inputs: one for each sense that the model uses, named after its key (`observation`, `touch`, `vestibular`,
+/// Inputs: one for each sense that the model uses, named after its key (`observation`, `touch`, `touch_pooled`, `pain`, `vestibular`,
 /// `eye_left`, `eye_right`, and those with `_gray`, `_depth` or `_segmentation` behind), or a single one of any other name for all active senses, flattened and in the
 /// alphabetical order of their keys, as Gymnasium's `FlattenObservation` makes it. Vectors have shape `[n]` or `[1,
 /// n]`; images `[height, width, 3]` or `[3, height, width]`, with or without a 1 in front, and values of 0 to 255
@@ -377,7 +378,11 @@ impl Input {
         let values = |sense: &&str| match *sense {
             "observation" => single(o.proprioception),
             "touch" => o.touch.unwrap_or_default().to_vec(),
+            "touch_pooled" => single(o.touch_pooled.unwrap_or_default()),
+            "pain" => o.pain.unwrap_or_default().to_vec(),
             "vestibular" => single(o.vestibular.unwrap_or_default()),
+            "achieved_goal" => single(o.achieved_goal.unwrap_or_default()),
+            "desired_goal" => single(o.desired_goal.unwrap_or_default()),
             key if EYES_DEPTH.contains(&key) => o.eye_depth.unwrap_or_default()[eye(key)].to_vec(),
             key if EYES_SEGMENTATION.contains(&key) => {
                 let ids = o.eye_segmentation.unwrap_or_default()[eye(key)];

@@ -22,6 +22,10 @@ pub(super) struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     touch: Option<&'a [f32]>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    touch_pooled: Option<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pain: Option<&'a [f32]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     eye_left: Option<Image<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     eye_right: Option<Image<'a>>,
@@ -29,6 +33,10 @@ pub(super) struct Line<'a> {
     eyes: Eyes<'a>,
     #[serde(skip_serializing_if = "Option::is_none")]
     vestibular: Option<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    achieved_goal: Option<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    desired_goal: Option<&'a [f64]>,
 }
 
 /// The limits of each number of an action.
@@ -116,10 +124,14 @@ impl<'a> Line<'a> {
             }),
             observation: observation.proprioception,
             touch: observation.touch,
+            touch_pooled: observation.touch_pooled,
+            pain: observation.pain,
             eye_left: observation.eye_left.map(image),
             eye_right: observation.eye_right.map(image),
             eyes: Eyes::new(&observation, [shape[0], shape[1]]),
             vestibular: observation.vestibular,
+            achieved_goal: observation.achieved_goal,
+            desired_goal: observation.desired_goal,
         }
     }
 }
@@ -242,6 +254,8 @@ mod tests {
             }),
             observation: &[f64::NAN, 1e-300, -0.0],
             touch: Some(&[]),
+            touch_pooled: Some(&[0.5]),
+            pain: None,
             eye_left: Some(Image {
                 shape: [1, 1, 3],
                 data: &[255, 254, 0],
@@ -256,11 +270,13 @@ mod tests {
                 ..Eyes::default()
             },
             vestibular: None,
+            achieved_goal: None,
+            desired_goal: None,
         };
         assert_eq!(
             json::text(&line),
             "{\"episode\": 0, \"step\": 0, \"action_space\": {\"low\": [null], \"high\": [1.5]}, \
-             \"observation\": [null, 1e-300, -0.0], \"touch\": [], \
+             \"observation\": [null, 1e-300, -0.0], \"touch\": [], \"touch_pooled\": [0.5], \
              \"eye_left\": {\"shape\": [1, 1, 3], \"data\": \"//4A\"}, \
              \"eye_right_depth\": {\"shape\": [1, 1], \"dtype\": \"float32\", \"data\": \"AADAPw==\"}}"
         );

@@ -4,6 +4,7 @@
 
 use std::f64::consts::PI;
 
+use super::patch::Patch;
 use super::strip::{STRIP_LANES, Strip};
 
 const SLICES: usize = 28;
@@ -39,10 +40,14 @@ pub struct Band {
     pub loose: usize,
     /// Strips of the other triangles, in order.
     pub strips: Vec<Strip>,
+    /// Patches of these.
+    pub patches: std::ops::Range<usize>,
     /// Least coordinates of its vertices.
     pub low: [f32; 3],
     /// Greatest coordinates of its vertices.
     pub high: [f32; 3],
+    /// Greatest differences between coordinates of two corners of a triangle.
+    pub edge: [f32; 3],
 }
 
 /// A triangle mesh of a unit shape, counterclockwise from outside.
@@ -62,6 +67,8 @@ pub struct Mesh {
     pub bands: Vec<Band>,
     /// Indices of the vertices of each triangle.
     pub triangles: Vec<[u16; 3]>,
+    /// Patches of the strips, in order.
+    pub patches: Vec<Patch>,
 }
 
 /// Corners of the first of a row of quadrilaterals: along the lower row and back along the upper one.
@@ -118,13 +125,15 @@ impl Mesh {
             triangles: triangles..triangles,
             loose: 0,
             strips: Vec::new(),
+            patches: self.patches.len()..self.patches.len(),
             low: [f32::INFINITY; 3],
             high: [f32::NEG_INFINITY; 3],
+            edge: [0.0; 3],
         });
     }
 
     /// Adds a strip of vertices of the current band, with its triangles.
-    fn add(&mut self, strip: Strip) {
+    fn add(&mut self, mut strip: Strip) {
         for j in 0..strip.count {
             let [a, b, c, d] = strip.corners(j);
             self.triangles.push([a, b, d]);
@@ -133,8 +142,22 @@ impl Mesh {
             }
         }
         if let Some(band) = self.bands.last_mut() {
+            for t in &self.triangles[band.triangles.end..] {
+                for (edge, v) in band.edge.iter_mut().zip([&self.x, &self.y, &self.z]) {
+                    let [a, b, c] = t.map(|i| v[usize::from(i)]);
+                    *edge = edge.max((a - b).abs()).max((b - c).abs()).max((c - a).abs());
+                }
+            }
             band.triangles.end = self.triangles.len();
             if strip.count.is_multiple_of(STRIP_LANES) {
+                strip.patch = self.patches.len();
+                let at = |i: u16| [self.x[usize::from(i)], self.y[usize::from(i)], self.z[usize::from(i)]];
+                self.patches.extend(
+                    (0..strip.count)
+                        .step_by(STRIP_LANES)
+                        .map(|first| Patch::new(&strip, first, at)),
+                );
+                band.patches.end = self.patches.len();
                 band.strips.push(strip);
             } else {
                 band.loose = band.triangles.len();
@@ -165,6 +188,7 @@ impl Mesh {
             step: [1; 4],
             count,
             fan: false,
+            patch: 0,
         });
     }
 
@@ -182,6 +206,7 @@ impl Mesh {
             step,
             count,
             fan: true,
+            patch: 0,
         });
     }
 

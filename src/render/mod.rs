@@ -29,6 +29,8 @@ mod cpu;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod mesh;
+mod patch;
+mod plain;
 mod renderer;
 mod strip;
 mod texture;
@@ -49,6 +51,7 @@ pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
 pub use visual::{Aim, Camera, Drawable, Element, Light, Shape, Visual};
 
 use crate::assets::AssetError;
+use crate::text::quoted;
 
 pub use crate::spaces::MAX_IMAGE_SIZE as MAX_SIZE;
 
@@ -60,7 +63,7 @@ pub enum RenderError {
     #[error(transparent)]
     Asset(#[from] AssetError),
     /// An image cannot be decoded.
-    #[error("image \"{path}\": {message}")]
+    #[error("image \"{}\": {message}", quoted(.path))]
     Image {
         /// Path of the image.
         path: String,
@@ -68,7 +71,7 @@ pub enum RenderError {
         message: String,
     },
     /// A texture cannot be made.
-    #[error("texture \"{name}\": {message}")]
+    #[error("texture \"{}\": {message}", quoted(.name))]
     Texture {
         /// Name of the texture.
         name: String,

@@ -14,6 +14,8 @@ pub struct Strip {
     pub count: usize,
     /// Whether it is a fan.
     pub fan: bool,
+    /// Index of its first patch.
+    pub patch: usize,
 }
 
 impl Strip {

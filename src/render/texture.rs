@@ -7,7 +7,7 @@ use crate::assets::AssetSource;
 use crate::formats::png::decode_png;
 use crate::limits::Limits;
 use crate::model::{Builtin, Mark, Texture as Recipe, TextureType};
-use crate::render::RenderError;
+use crate::render::{RenderError, plain};
 
 /// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
 /// of 2500 and 5000 pixels stay small.
@@ -15,14 +15,14 @@ pub const MAX_TEXTURE: usize = 1024;
 /// Largest side of a builtin pattern, pixels.
 const MAX_PATTERN: usize = Limits::DEFAULT.picture_side as usize;
 
-/// One mip level of an image: red, green, blue and an unused byte for each pixel.
+/// One mip level of an image: red, green, blue and a mark for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Level {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
-    /// Pixels, rows from the top.
+    /// Pixels, rows from the top. The fourth byte is 255, or less where a texel and its neighbours have one colour.
     pub pixels: Vec<[u8; 4]>,
 }
 
@@ -99,6 +99,7 @@ impl Level {
         while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > 1) {
             levels.push(last.halved());
         }
+        plain::mark(&mut levels);
         Arc::new(levels)
     }
 }

@@ -29,8 +29,25 @@ struct Chart {
     dots: Vec<f64>,
     /// A height to be reached, with what it is.
     goal: Option<(f64, String)>,
+    /// Ends of the axis of values.
+    bottom: f64,
     top: f64,
+    /// What a dot is.
+    dot: &'static str,
 }
+
+impl Chart {
+    /// Makes room for values.
+    fn include(&mut self, values: &[f64]) {
+        for v in values {
+            self.top = self.top.max(1.1 * v);
+            self.bottom = self.bottom.min(1.1 * v);
+        }
+    }
+}
+
+/// What a dot of a behavior is.
+const BOTH_HANDS: &str = "each episode alone, mean of both hands";
 
 /// Draws the learning curve of the records that count, if there are any and they have a score.
 ///
@@ -38,19 +55,22 @@ struct Chart {
 pub(super) fn curve(records: &[Info], baseline: Option<&Baseline>, reachable: usize) -> Option<Markup> {
     let touch = records.first()?.behavior.touches().is_some();
     let regard = records.first()?.behavior.regards().is_some();
-    let mut chart = match (touch, regard) {
-        (true, _) => touches(records, reachable),
-        (_, true) => regards(records),
+    let task = records.first()?.behavior.task().is_some();
+    let mut chart = match (touch, regard, task) {
+        (true, ..) => touches(records, reachable),
+        (_, true, _) => regards(records),
+        (.., true) => returns(records),
         _ => return None,
     };
     if let Some(Baseline { name, records: other }) = baseline {
         let other = &other[..other.len().min(records.len())];
-        let values: Vec<f64> = other
-            .iter()
-            .map(if touch { touched_alone } else { seen_alone })
-            .collect();
-        let values = smooth(&values);
-        chart.top = values.iter().fold(chart.top, |top, v| top.max(1.1 * v));
+        let alone = match (touch, task) {
+            (true, _) => touched_alone,
+            (_, true) => return_alone,
+            _ => seen_alone,
+        };
+        let values = smooth(&other.iter().map(alone).collect::<Vec<f64>>());
+        chart.include(&values);
         chart
             .lines
             .push(line("base", format!("{name}: moving mean of single episodes"), values));
@@ -92,7 +112,9 @@ fn touches(records: &[Info], reachable: usize) -> Chart {
         ],
         dots,
         goal: Some((reachable as f64, format!("{reachable} can be reached"))),
+        bottom: 0.0,
         top: reachable as f64 * 1.05,
+        dot: BOTH_HANDS,
     }
 }
 
@@ -120,8 +142,38 @@ fn regards(records: &[Info]) -> Chart {
         lines,
         dots,
         goal: None,
+        bottom: 0.0,
         top: (most * 1.1).max(1.0),
+        dot: BOTH_HANDS,
     }
+}
+
+/// Returns the return of an episode.
+fn return_alone(record: &Info) -> f64 {
+    record.behavior.task().map_or(0.0, |info| info.episode_return)
+}
+
+/// Charts the return of each episode, and the share of successes, which 100 % of the axis's upper end stands for.
+fn returns(records: &[Info]) -> Chart {
+    let dots: Vec<f64> = records.iter().map(return_alone).collect();
+    let success = |r: &Info| r.behavior.task().is_some_and(|info| info.outcome.is_success);
+    let successes: Vec<f64> = records.iter().map(|r| f64::from(u8::from(success(r)))).collect();
+    let share = 100.0 * successes.iter().sum::<f64>() / records.len().max(1) as f64;
+    let mut chart = Chart {
+        unit: "return",
+        lines: vec![line("both", "moving mean of single episodes", smooth(&dots))],
+        bottom: 0.0,
+        top: 1e-3,
+        goal: None,
+        dot: "each episode alone",
+        dots: Vec::new(),
+    };
+    chart.include(&dots);
+    let top = chart.top;
+    let label = format!("successes, moving mean; the upper end is 100 % ({share:.1} % in all)");
+    let values = smooth(&successes).iter().map(|v| v * top).collect();
+    chart.lines.push(line("right", label, values));
+    Chart { dots, ..chart }
 }
 
 fn line(class: &'static str, label: impl Into<String>, values: Vec<f64>) -> Line {
@@ -138,7 +190,7 @@ fn smooth(values: &[f64]) -> Vec<f64> {
         if k >= window {
             sum -= values[k - window];
         }
-        (sum / (k + 1).min(window) as f64).max(0.0)
+        sum / (k + 1).min(window) as f64
     };
     values.iter().enumerate().map(mean).collect()
 }
@@ -162,12 +214,23 @@ fn marks(top: f64, n: f64) -> impl Iterator<Item = f64> {
         .take(50)
 }
 
+/// Returns the marks of an axis that may reach below 0.
+fn marks_between(bottom: f64, top: f64) -> Vec<f64> {
+    let step = step(top - bottom, 5.0);
+    let mut all: Vec<f64> = (1..50)
+        .map(|k| -f64::from(k) * step)
+        .take_while(|v| *v >= bottom)
+        .collect();
+    all.extend((0..50).map(|k| f64::from(k) * step).take_while(|v| *v <= top * 1.0001));
+    all
+}
+
 fn draw(chart: &Chart, episodes: usize) -> Markup {
     let [left, top, right, bottom] = MARGIN;
     let inner = [SIZE[0] - left - right, SIZE[1] - top - bottom];
     let last = episodes.max(2) as f64;
     let x = |episode: f64| left + (episode - 1.0) / (last - 1.0) * inner[0];
-    let y = |value: f64| top + (1.0 - value / chart.top) * inner[1];
+    let y = |value: f64| top + (1.0 - (value - chart.bottom) / (chart.top - chart.bottom)) * inner[1];
     let stride = episodes.div_ceil(MAX_POINTS).max(1);
     let chosen = || (0..episodes).filter(move |k| k % stride == 0 || k + 1 == episodes);
     let path = |line: &Line| {
@@ -182,7 +245,7 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
     let whole = |v: &f64| *v >= 1.0 && v.fract() == 0.0;
     html! {
         svg viewBox=(format!("0 0 {} {}", SIZE[0], SIZE[1])) role="img" aria-label="learning curve over episodes" {
-            @for v in marks(chart.top, 5.0) {
+            @for v in marks_between(chart.bottom, chart.top) {
                 line class="grid" x1=(left) x2=(SIZE[0] - right) y1=(format!("{:.1}", y(v))) y2=(format!("{:.1}", y(v))) {}
                 text class="tick" x=(left - 6.0) y=(format!("{:.1}", y(v) + 4.0)) text-anchor="end" { (tidy(v)) }
             }
@@ -205,7 +268,7 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
         }
         p.legend {
             @for line in &chart.lines { span.key.(line.class) { (line.label) } }
-            span.key.dots { "each episode alone, mean of both hands" }
+            span.key.dots { (chart.dot) }
         }
     }
 }

@@ -5,6 +5,7 @@ use image::ExtendedColorType;
 use crate::assets::AssetSource;
 use crate::formats::png::png;
 use crate::math::*;
+use crate::mimo::upright_extent;
 use crate::model::Model;
 use crate::physics::{State, Topology, cameras, kinematics};
 use crate::render::{Aim, CpuRenderer, Element, Light, Poses, View, Visual};
@@ -17,10 +18,12 @@ pub(super) const HEIGHT: usize = 600;
 const FOVY: f64 = 9.0;
 /// Free space around MIMo, as a share of the picture's height.
 const MARGIN: f64 = 0.05;
-/// Posture in which every part can be seen, rad; joints that are not here are at 0.
-const POSTURE: [(&str, f64); 8] = [
-    ("robot:right_shoulder_ad_ab", 0.45),
-    ("robot:left_shoulder_ad_ab", 0.45),
+/// How far the arms are away from the body, rad: so that every part can be seen, or so that there is room beside him.
+const ARMS: [f64; 2] = [0.45, 0.12];
+/// The joints that move the arms away from the body.
+const SHOULDERS: [&str; 2] = ["robot:right_shoulder_ad_ab", "robot:left_shoulder_ad_ab"];
+/// Posture, rad; joints that are not here are at 0.
+const POSTURE: [(&str, f64); 6] = [
     ("robot:right_elbow", -0.3),
     ("robot:left_elbow", -0.3),
     ("robot:right_hip2", -0.12),
@@ -46,13 +49,52 @@ pub(super) struct Doll {
     hip: usize,
     center: Vec3,
     distance: f64,
+    size: [usize; 2],
     renderer: CpuRenderer,
 }
 
 impl Doll {
-    /// Takes MIMo out of a scene; returns `None` if there is no MIMo or no camera. MIMo has a face if its textures are
-    /// in `assets`.
+    /// Takes MIMo out of a scene, without clothes, as large as the picture; returns `None` if there is no MIMo or no
+    /// camera. MIMo has a face if its textures are in `assets`.
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Option<Self> {
+        let mut doll = Self::posed(model, assets, [WIDTH, HEIGHT], ARMS[0])?;
+        for drawable in &mut doll.visual.drawables {
+            let face = |g: usize| FACE.contains(&model.body_name[model.geom_bodyid[g]].as_str());
+            if !matches!(drawable.element, Element::Geom(g) if face(g)) {
+                drawable.texture = None;
+            }
+        }
+        // the box around MIMo along the axes of the hip
+        let frame = doll.state.xmat[doll.hip];
+        let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
+        for d in &doll.visual.drawables {
+            let Element::Geom(g) = d.element else { continue };
+            let at = mat_t_vec(&frame, doll.state.geom_xpos[g]);
+            let radius = model.geom_size[g].iter().fold(0.0, |m: f64, s| m.max(*s));
+            for k in 0..3 {
+                low[k] = low[k].min(at[k] - radius);
+                high[k] = high[k].max(at[k] + radius);
+            }
+        }
+        let size = sub(high, low);
+        let half_height = size[2].max(size[1] * HEIGHT as f64 / WIDTH as f64) * (0.5 + MARGIN);
+        doll.aim(mat_vec(&frame, scale(add(low, high), 0.5)), half_height);
+        Some(doll)
+    }
+
+    /// Takes MIMo out of a scene as he is, with his soles at the lower edge of a picture of `size` (width and height,
+    /// pixels) that is `span` m high.
+    pub fn dressed(model: &Model, assets: &dyn AssetSource, size: [usize; 2], span: f64) -> Option<Self> {
+        let mut doll = Self::posed(model, assets, size, ARMS[1])?;
+        let [soles, _] = upright_extent(model, &doll.state, doll.hip);
+        let (frame, hip) = (doll.state.xmat[doll.hip], doll.state.xpos[doll.hip]);
+        let mut center = mat_t_vec(&frame, hip);
+        center[2] = soles + 0.5 * span;
+        doll.aim(mat_vec(&frame, center), 0.5 * span);
+        Some(doll)
+    }
+
+    fn posed(model: &Model, assets: &dyn AssetSource, size: [usize; 2], arms: f64) -> Option<Self> {
         let hip = model.body("hip")?;
         if model.ncam() == 0 {
             return None;
@@ -66,60 +108,37 @@ impl Doll {
             .retain(|d| matches!(d.element, Element::Geom(g) if own(g)));
         for drawable in &mut visual.drawables {
             (drawable.specular, drawable.exponent, drawable.emission) = (0.15, 20.0, 0.0);
-            let face = |g: usize| FACE.contains(&model.body_name[model.geom_bodyid[g]].as_str());
-            if !matches!(drawable.element, Element::Geom(g) if face(g)) {
-                drawable.texture = None;
-            }
         }
         visual.cameras[0].fovy = FOVY;
         let mut state = State::new(model, &Topology::new(model));
-        for (joint, angle) in POSTURE {
+        let shoulders = SHOULDERS.map(|joint| (joint, arms));
+        for (joint, angle) in POSTURE.into_iter().chain(shoulders) {
             if let Some(j) = model.joint(joint) {
                 state.qpos[model.jnt_qposadr[j]] = angle;
             }
         }
         kinematics(model, &mut state);
         cameras(model, &mut state);
-        // the box around MIMo along the axes of the hip
-        let frame = state.xmat[hip];
-        let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
-        for d in &visual.drawables {
-            let Element::Geom(g) = d.element else { continue };
-            let at = mat_t_vec(&frame, state.geom_xpos[g]);
-            let radius = model.geom_size[g].iter().fold(0.0, |m: f64, s| m.max(*s));
-            for k in 0..3 {
-                low[k] = low[k].min(at[k] - radius);
-                high[k] = high[k].max(at[k] + radius);
-            }
-        }
-        let size = sub(high, low);
-        let needed = size[2].max(size[1] * HEIGHT as f64 / WIDTH as f64) * (0.5 + MARGIN);
-        let distance = needed / pxfm::f_tan((0.5 * FOVY).to_radians());
-        (visual.near, visual.far) = (0.2 * distance, 3.0 * distance);
-        let center = mat_vec(&frame, scale(add(low, high), 0.5));
-        let renderer = CpuRenderer::new();
         Some(Self {
             visual,
             state,
             hip,
-            center,
-            distance,
-            renderer,
+            center: [0.0; 3],
+            distance: 1.0,
+            size,
+            renderer: CpuRenderer::new(),
         })
+    }
+
+    /// Looks at a point from so far away that half the picture's height is `half_height` m there.
+    fn aim(&mut self, center: Vec3, half_height: f64) {
+        self.center = center;
+        self.distance = half_height / pxfm::f_tan((0.5 * FOVY).to_radians());
+        (self.visual.near, self.visual.far) = (0.2 * self.distance, 3.0 * self.distance);
     }
 
     /// Draws a PNG image with a transparent background, each geom in a colour.
     pub fn draw(&mut self, side: Side, color: &dyn Fn(usize) -> [f32; 3]) -> Option<Vec<u8>> {
-        let frame = self.state.xmat[self.hip];
-        let turn = if side == Side::Front { 1.0 } else { -1.0 };
-        let (forward, left, up) = (
-            scale(column(&frame, 0), turn),
-            scale(column(&frame, 1), turn),
-            column(&frame, 2),
-        );
-        self.state.cam_xpos[0] = add_scaled(self.center, forward, self.distance);
-        let columns = [left, up, forward];
-        self.state.cam_xmat[0] = std::array::from_fn(|k| columns[k % 3][k / 3]);
         for drawable in &mut self.visual.drawables {
             if let Element::Geom(g) = drawable.element {
                 let [r, g, b] = match drawable.texture {
@@ -130,6 +149,22 @@ impl Doll {
                 drawable.rgba = [r, g, b, 1.0];
             }
         }
+        let [width, height] = self.size;
+        png(&self.cut_out(side)?, width, height, ExtendedColorType::Rgba8).ok()
+    }
+
+    /// Draws MIMo in his colours with a transparent background: red, green, blue and opacity.
+    pub fn cut_out(&mut self, side: Side) -> Option<Vec<u8>> {
+        let frame = self.state.xmat[self.hip];
+        let turn = if side == Side::Front { 1.0 } else { -1.0 };
+        let (forward, left, up) = (
+            scale(column(&frame, 0), turn),
+            scale(column(&frame, 1), turn),
+            column(&frame, 2),
+        );
+        self.state.cam_xpos[0] = add_scaled(self.center, forward, self.distance);
+        let columns = [left, up, forward];
+        self.state.cam_xmat[0] = std::array::from_fn(|k| columns[k % 3][k / 3]);
         let light = |dir: Vec3, strength: f32| Light {
             body: self.hip,
             pos: None,
@@ -147,28 +182,24 @@ impl Doll {
         let light = self.picture()?;
         // the same all in white is how much of each pixel is covered
         self.visual.lights.clear();
+        let colors: Vec<_> = self.visual.drawables.iter().map(|d| (d.rgba, d.texture)).collect();
         for drawable in &mut self.visual.drawables {
-            (drawable.rgba, drawable.emission) = ([1.0; 4], 1.0);
+            (drawable.rgba, drawable.emission, drawable.texture) = ([1.0; 4], 1.0, None);
         }
-        let textures = self
-            .visual
-            .drawables
-            .iter_mut()
-            .map(|d| d.texture.take())
-            .collect::<Vec<_>>();
         let cover = self.picture()?;
-        for (drawable, texture) in self.visual.drawables.iter_mut().zip(textures) {
-            (drawable.emission, drawable.texture) = (0.0, texture);
+        for (drawable, color) in self.visual.drawables.iter_mut().zip(colors) {
+            drawable.emission = 0.0;
+            (drawable.rgba, drawable.texture) = color;
         }
-        let rgba = cut_out(&light, &cover);
-        png(&rgba, WIDTH, HEIGHT, ExtendedColorType::Rgba8).ok()
+        Some(cut_out(&light, &cover))
     }
 
     fn picture(&mut self) -> Option<Vec<u8>> {
+        let [width, height] = self.size;
         let view = View {
             camera: 0,
-            width: WIDTH,
-            height: HEIGHT,
+            width,
+            height,
         };
         let mut rgb = vec![0; view.rgb_len()];
         let poses = Poses::from(&self.state);

@@ -1,9 +1,11 @@
 //! A report of a run: one HTML page that needs no other file, with the score, the learning curve, what the hands
 //! touched or the eyes saw, and key frames of the video.
 
+pub mod ages;
 mod curve;
 mod doll;
 mod gaze;
+mod lettering;
 mod page;
 mod run;
 pub mod skin;

@@ -13,7 +13,7 @@ use super::curve::curve;
 use super::gaze::Gaze;
 use super::run::Run;
 use crate::config::{Behavior, Compat, Config, Scene};
-use crate::env::EYE_HAND_PAIRS;
+use crate::env::{EYE_HAND_PAIRS, Info, Outcome, TaskInfo};
 use crate::eval::{Score, ScoreParts};
 use crate::mimo::Version;
 
@@ -61,12 +61,23 @@ fn title(run: &Run) -> String {
         Behavior::SelfTouch => "Self-touch",
         Behavior::HandRegard => "Hand regard",
         Behavior::None => "MIMo",
+        Behavior::Reach => return "Reaching for a ball".to_string(),
+        Behavior::Standup => return "Standing up".to_string(),
+        Behavior::SelfBody => return "Touching a part of the body".to_string(),
+        Behavior::Catch => return "Catching a ball".to_string(),
+        Behavior::RollOver => return "Rolling over".to_string(),
     };
-    match run.config.as_ref().map(|c| c.scene) {
-        Some(Scene::Crib) => format!("{behavior} in the crib"),
-        Some(Scene::Cubes) => format!("{behavior} among the cubes"),
-        Some(Scene::Base) => format!("{behavior} on the floor"),
-        None => behavior.to_string(),
+    let Some(config) = &run.config else {
+        return behavior.to_string();
+    };
+    let place = match config.scene {
+        Scene::Crib => "in the crib",
+        Scene::Cubes => "among the cubes",
+        Scene::Base => "on the floor",
+    };
+    match config.age {
+        Some(age) => format!("{behavior} {place}, at {age} months"),
+        None => format!("{behavior} {place}"),
     }
 }
 
@@ -81,7 +92,7 @@ pub(super) fn page(run: &mut Run) -> String {
     let body = match run.behavior {
         Behavior::SelfTouch => touch_section(run),
         Behavior::HandRegard => gaze_section(run),
-        Behavior::None => html! {},
+        _ => task_section(run),
     };
     let evaluation = evaluation_section(run);
     let markup = html! {
@@ -175,6 +186,39 @@ fn score_section(run: &Run) -> Markup {
     }
 }
 
+/// Sums up the episodes of a task: of training, or, without that, of the evaluation.
+fn task_section(run: &Run) -> Markup {
+    let last = run.evaluations.iter().filter_map(|e| e.log.info.last());
+    let records: Vec<&Info> = match run.counted() {
+        [] => last.collect(),
+        counted => counted.iter().collect(),
+    };
+    let tasks: Vec<&TaskInfo> = records.iter().filter_map(|r| r.behavior.task()).collect();
+    if tasks.is_empty() {
+        return html! {};
+    }
+    let n = tasks.len() as f64;
+    let mean = tasks.iter().map(|t| t.episode_return).sum::<f64>() / n;
+    let share = |which: fn(&Outcome) -> bool| {
+        let number = tasks.iter().filter(|t| which(&t.outcome)).count();
+        format!("{:.1} %", 100.0 * number as f64 / n)
+    };
+    let steps: u64 = records.iter().map(|r| r.steps).fold(0, u64::saturating_add);
+    html! {
+        section {
+            h2 { "Returns" }
+            div.cards {
+                (card(&format!("{mean:.3}"), "mean return"))
+                (card(&share(|o| o.is_success), "end in success"))
+                (card(&share(|o| o.is_failure), "end in failure"))
+                (card(&grouped(tasks.len() as u64), "episodes"))
+                (card(&grouped(steps), "steps"))
+                (card(&duration(steps as f64 * step_time(run)), "simulated"))
+            }
+        }
+    }
+}
+
 /// Draws the shares of the steps of the four pairs of eye and hand.
 fn fractions_table(fractions: &[f64; 4]) -> Markup {
     let most = fractions.iter().fold(0.01, |m: f64, f| m.max(*f));
@@ -198,7 +242,12 @@ fn curve_section(run: &Run) -> Markup {
     };
     let what = match run.behavior {
         Behavior::SelfTouch => "Different parts of the body that each palm has touched so far, and in single episodes.",
-        _ => "Share of the steps with the hand in the central field of view, mean over the last episodes.",
+        Behavior::HandRegard => {
+            "Share of the steps with the hand in the central field of view, mean over the last episodes."
+        }
+        _ => {
+            "Return of each episode, the sum of its rewards, and the share of successes, as means over the last episodes."
+        }
     };
     html! {
         section {

@@ -88,7 +88,8 @@ impl Run {
         let touchables = model.as_ref().and_then(Touchables::new);
         // the parts of a likely scene need not be those of the run
         let skin = touchables.as_ref().filter(|_| own);
-        let score = match training.is_empty() {
+        let tasks = training.iter().any(|r| r.behavior.task().is_some());
+        let score = match training.is_empty() || tasks {
             true => None,
             false => Score::new(&training).map_err(|e| notices.push(e.to_string())).ok(),
         };

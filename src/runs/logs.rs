@@ -6,8 +6,9 @@
 mod episode;
 mod read;
 
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub use episode::EvaluationLog;
 use read::records;
@@ -16,8 +17,8 @@ use thiserror::Error;
 
 use crate::config::{Compat, Config};
 use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, InfoDetails, PartNames};
-use crate::files::{self, replace_file};
-use crate::formats::pickle::{self, PickleError, Value};
+use crate::files::{self, Owner, replace_file, replace_file_with, sweep};
+use crate::formats::pickle::{self, ListWriter, PickleError, Value};
 use crate::json;
 use crate::limits::Limits;
 
@@ -50,7 +51,7 @@ pub enum LogError {
         source: PickleError,
     },
     /// The file is a pickle, but not of such a log.
-    #[error("{}: not a {kind} log of BabyBench: {reason}", path.display())]
+    #[error("{}: no {kind} log of BabyBench: {reason}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -63,6 +64,9 @@ pub enum LogError {
     #[error("cannot write the log: {0}")]
     Write(String),
 }
+
+/// Lines of JSON are written when there are more bytes of them than this.
+const WRITTEN_AT_ONCE: usize = 1 << 16;
 
 /// Returns the folder of the logs in the folder of a run.
 fn folder(save_dir: &Path) -> PathBuf {
@@ -79,9 +83,24 @@ pub fn evaluation_path(save_dir: impl AsRef<Path>, episode: u64) -> PathBuf {
     folder(save_dir.as_ref()).join(format!("evaluation_{episode}.pkl"))
 }
 
+/// Makes the folder of the logs, or removes what killed processes left in it.
 fn make_folder(save_dir: &Path) -> Result<(), LogError> {
     let path = folder(save_dir);
-    std::fs::create_dir_all(&path).map_err(|source| LogError::Io { path, source })
+    std::fs::create_dir_all(&path).map_err(|source| LogError::Io {
+        path: path.clone(),
+        source,
+    })?;
+    sweep(&path);
+    Ok(())
+}
+
+/// Makes the folder of the logs and takes possession of the run.
+fn own_folder(save_dir: &Path) -> Result<Arc<Owner>, LogError> {
+    make_folder(save_dir)?;
+    let path = save_dir.to_path_buf();
+    Owner::of(save_dir)
+        .map(Arc::new)
+        .map_err(|source| LogError::Io { path, source })
 }
 
 fn write(path: PathBuf, bytes: &[u8]) -> Result<(), LogError> {
@@ -128,6 +147,13 @@ fn to_value(info: &Info) -> Value {
             let counts = EYE_HAND_PAIRS.into_iter().zip(counts.to_array().map(count));
             Value::dict(counts.chain([steps]))
         }
+        BehaviorInfo::Task(info) => Value::dict([
+            ("task", Value::Text(info.task.name().into())),
+            ("is_success", Value::Bool(info.outcome.is_success)),
+            ("is_failure", Value::Bool(info.outcome.is_failure)),
+            ("return", Value::Float(info.episode_return)),
+            steps,
+        ]),
     }
 }
 
@@ -154,14 +180,18 @@ pub struct TrainingLog {
     resumed: bool,
     /// For the names of touched parts in the lines of JSON.
     names: Option<PartNames>,
+    /// Refuses the folder to other processes that would train into it.
+    _owner: Arc<Owner>,
 }
 
 impl TrainingLog {
-    /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten.
+    /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten. Until the
+    /// log and its copies are dropped, other processes cannot train into that folder.
     ///
     /// # Errors
-    /// What the file system says.
+    /// A folder into which another process trains; what the file system says.
     pub fn create(config: &Config) -> Result<Self, LogError> {
+        let owner = own_folder(config.save_dir.as_ref())?;
         let log = Self {
             save_dir: PathBuf::from(&config.save_dir),
             compat: config.compat,
@@ -169,8 +199,8 @@ impl TrainingLog {
             records: Vec::new(),
             resumed: false,
             names: None,
+            _owner: owner,
         };
-        make_folder(&log.save_dir)?;
         if log.compat == Compat::Api {
             log.save()?;
         }
@@ -180,12 +210,13 @@ impl TrainingLog {
     /// Resumes the log in the configuration's `save_dir`, or creates one if there is none. No empty record is added.
     ///
     /// # Errors
-    /// A log that cannot be read, or is of another behavior.
+    /// A log that cannot be read, or is of another behavior; a folder into which another process trains.
     pub fn resume(config: &Config) -> Result<Self, LogError> {
         let path = training_path(&config.save_dir);
         if !path.exists() {
             return Self::create(config);
         }
+        let owner = own_folder(config.save_dir.as_ref())?;
         let records = read_records(&path)?;
         if let Some(found) = records
             .first()
@@ -198,7 +229,6 @@ impl TrainingLog {
                 reason: format!("its behavior is {found}, not {}; use another save_dir", config.behavior),
             });
         }
-        make_folder(config.save_dir.as_ref())?;
         Ok(Self {
             save_dir: PathBuf::from(&config.save_dir),
             compat: config.compat,
@@ -206,6 +236,7 @@ impl TrainingLog {
             resumed: !records.is_empty(),
             records,
             names: None,
+            _owner: owner,
         })
     }
 
@@ -254,13 +285,30 @@ impl TrainingLog {
     /// What the file system says.
     pub fn save(&self) -> Result<(), LogError> {
         let path = training_path(&self.save_dir);
-        let mut lines = Vec::new();
+        self.save_lines(path.with_extension("jsonl"))?;
+        let unwritable = |e: PickleError| LogError::Write(e.to_string());
+        let mut list = ListWriter::new();
         for info in &self.records {
-            let details = self.names.as_ref().map(|names| InfoDetails::of(&info.behavior, names));
-            let details = details.as_ref();
-            json::line(&mut lines, &Detailed { info, details }).map_err(|e| LogError::Write(e.to_string()))?;
+            list.push(&to_value(info)).map_err(unwritable)?;
         }
-        write(path.with_extension("jsonl"), &lines)?;
-        write_pickle(path, &Value::list(self.records.iter().map(to_value)))
+        write(path, &list.finish())
+    }
+
+    /// Writes the records as lines of JSON, which are not all in memory at the same time: names make them long.
+    fn save_lines(&self, path: PathBuf) -> Result<(), LogError> {
+        replace_file_with(&path, |file| {
+            let mut lines = Vec::new();
+            for info in &self.records {
+                let details = self.names.as_ref().map(|names| InfoDetails::of(&info.behavior, names));
+                let details = details.as_ref();
+                json::line(&mut lines, &Detailed { info, details })?;
+                if lines.len() > WRITTEN_AT_ONCE {
+                    file.write_all(&lines)?;
+                    lines.clear();
+                }
+            }
+            file.write_all(&lines)
+        })
+        .map_err(|source| LogError::Io { path, source })
     }
 }

@@ -131,7 +131,7 @@ impl RunVector {
 
     fn over(&self, env: usize) -> Result<bool, VectorError> {
         let env = self.vector.env(env)?;
-        Ok(env.truncated() || !env.ready())
+        Ok(env.over() || !env.ready())
     }
 
     fn log_episode(&mut self, env: usize) -> Result<(), RunError> {
@@ -152,7 +152,7 @@ impl RunVector {
     /// What the file system says; environments in flight.
     pub fn finish_training(&mut self) -> Result<(), RunError> {
         for env in 0..self.vector.len() {
-            if self.compat == Compat::Api || self.vector.env(env)?.truncated() {
+            if self.compat == Compat::Api || self.vector.env(env)?.over() {
                 self.log_episode(env)?;
             }
         }

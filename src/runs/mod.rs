@@ -10,7 +10,7 @@ mod training;
 pub use logs::{EvaluationLog, LogError, TrainingLog, read_training};
 pub use many::RunVector;
 #[cfg(feature = "npz")]
-pub use replay::{Recording, Replay, ReplayError, TouchRows, replay, replay_with_images};
+pub use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images};
 #[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
 pub use scene_file::{

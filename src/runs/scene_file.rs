@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::assets::{AssetSource, DirAssets, directory, resolve};
-use crate::config::{Config, ConfigError};
+use crate::config::{Behavior, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
@@ -96,7 +96,12 @@ pub fn complete_scene(config: &Config) -> Result<SceneFile, SceneFileError> {
 /// # Errors
 /// Assets that are missing or no XML.
 pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
-    let (tree, root) = Tree::read(&scene_xml(config), DOCUMENT, assets, &Limits::default())?;
+    complete_document(&scene_xml(config), config, assets)
+}
+
+/// Writes a document of a configuration as one document.
+fn complete_document(document: &str, config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
+    let (tree, root) = Tree::read(document, DOCUMENT, assets, &Limits::default())?;
     let mut xml = comment(config);
     let mut images = BTreeMap::new();
     let is_folder = |element: &str, attribute: &str| element == "compiler" && attribute == "texturedir";
@@ -135,7 +140,17 @@ pub fn write_scene(config: &Config, save_dir: &Path) -> Result<PathBuf, SceneFil
 /// # Errors
 /// Assets that are missing or no XML; what the file system says.
 pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
-    let scene = complete_scene_from(config, assets)?;
+    write_scene_file(&complete_scene_from(config, assets)?, save_dir)
+}
+
+/// Writes the scene of a blueprint, whatever its task, into the folder of its run.
+pub(super) fn write_scene_of(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<PathBuf, SceneFileError> {
+    let config = blueprint.config();
+    let scene = complete_document(&blueprint.task().document(config), config, assets)?;
+    write_scene_file(&scene, Path::new(&config.save_dir))
+}
+
+fn write_scene_file(scene: &SceneFile, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
     let io = |path: &Path| {
         let path = path.to_path_buf();
         move |source| SceneFileError::Io { path, source }
@@ -176,7 +191,7 @@ pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<Kep
     let save_dir = Path::new(&config.save_dir);
     let path = save_dir.join(SCENE);
     if !path.exists() {
-        write_scene_from(config, assets, save_dir)?;
+        write_scene_of(blueprint, assets)?;
         return Ok(KeptScene::Written);
     }
     Ok(match read_scene(save_dir) {
@@ -200,7 +215,12 @@ fn same_ids(a: &Model, b: &Model) -> bool {
 /// Names what decides the ids of a scene: the scene and the version of MIMo.
 fn about(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
-    format!("the scene {} with MIMo {version}", config.scene)
+    match config.behavior {
+        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard => {
+            format!("the scene {} with MIMo {version}", config.scene)
+        }
+        task => format!("the task {task} with MIMo {version}"),
+    }
 }
 
 /// Loads and compiles the `scene.xml` of a run.

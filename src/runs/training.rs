@@ -1,12 +1,11 @@
 //! Environments that log their episodes, as the kit's `make_env` makes them.
 
 use std::ops::Deref;
-use std::path::Path;
 
 use thiserror::Error;
 
 use super::logs::{LogError, TrainingLog};
-use super::scene_file::{SceneFileError, keep_scene, write_scene_from};
+use super::scene_file::{SceneFileError, keep_scene, write_scene_of};
 use crate::assets::AssetSource;
 use crate::config::{Behavior, Compat, Config};
 use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step};
@@ -194,7 +193,7 @@ pub(super) fn open_training_log(
     if resume {
         keep_scene(blueprint, assets)?;
     }
-    write_scene_from(config, assets, Path::new(&config.save_dir))?;
+    write_scene_of(blueprint, assets)?;
     Ok(log)
 }
 

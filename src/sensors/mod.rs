@@ -3,12 +3,15 @@
 //! Positions and velocities are read as they are; everything else in the state describes the start of the last physics
 //! step, so torques, accelerations, contacts and images lag by one step, as in the reference.
 
+mod pain;
 mod proprioception;
 pub mod touch;
+pub mod transform;
 mod vestibular;
 mod vision;
 
+pub use pain::Pain;
 pub use proprioception::{Component, Entry, Proprioception, limit_activation};
-pub use touch::{SkinLayout, Touch};
+pub use touch::{SkinLayout, SkinValues, Touch, TouchPool};
 pub use vestibular::Vestibular;
 pub use vision::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Vision};

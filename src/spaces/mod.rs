@@ -1,5 +1,6 @@
 //! Action and observation spaces, as in Gymnasium.
 
+mod normal;
 mod rng;
 
 pub use rng::NumpyRng;
@@ -86,8 +87,8 @@ pub enum Dtype {
 /// The shape and bounds of one entry of the observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservationSpace {
-    /// Key in the observation: `observation`, `touch`, `eye_left`, `eye_right` (with `_gray`, `_depth` or `_segmentation`)
-    /// or `vestibular`.
+    /// Key in the observation: `observation`, `touch`, `touch_pooled`, `pain`, `eye_left`, `eye_right` (with `_gray`,
+    /// `_depth` or `_segmentation`) or `vestibular`.
     pub key: &'static str,
     /// Shape.
     pub shape: Vec<usize>,

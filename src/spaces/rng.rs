@@ -3,6 +3,8 @@
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
+use super::normal;
+
 /// NumPy's default generator: PCG64, seeded as `numpy.random.default_rng(seed)` does it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumpyRng {
@@ -47,8 +49,28 @@ impl NumpyRng {
 
     /// Draws a number in [0, 1) with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
+        normal::unit(self.word())
+    }
+
+    /// Draws a number of the standard normal distribution, by the ziggurat method: the same bits on every target, but not
+    /// NumPy's numbers. It takes one word of the generator nearly always, sometimes more.
+    pub fn normal(&mut self) -> f64 {
+        normal::normal(|| self.word())
+    }
+
+    fn word(&mut self) -> u64 {
         self.drawn = self.drawn.wrapping_add(1);
-        (self.generator.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+        self.generator.next_u64()
+    }
+
+    /// Draws a number between `low` and `high`, as NumPy's `uniform` does.
+    pub fn uniform_in(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Draws a whole number below `count`; 0 if there is none.
+    pub fn below(&mut self, count: usize) -> usize {
+        ((self.uniform() * count as f64) as usize).min(count.saturating_sub(1))
     }
 }
 
@@ -106,6 +128,45 @@ mod tests {
         let mut rng = NumpyRng::seed(0);
         let expect = [0.6369616873214543, 0.2697867137638703, 0.04097352393619469];
         assert_eq!(expect, std::array::from_fn(|_| rng.uniform()));
+    }
+
+    #[test]
+    fn normal_numbers_have_the_moments_and_the_tails_of_the_distribution() {
+        let mut rng = NumpyRng::seed(1);
+        const N: usize = 1_000_000;
+        let drawn: Vec<f64> = (0..N).map(|_| rng.normal()).collect();
+        let moment = |k: i32| drawn.iter().map(|v| v.powi(k)).sum::<f64>() / N as f64;
+        // five standard errors of each mean
+        for (k, expect, spread) in [
+            (1, 0.0, 1.0),
+            (2, 1.0, 2.0),
+            (3, 0.0, 15.0),
+            (4, 3.0, 96.0),
+            (6, 15.0, 10_170.0),
+        ] {
+            let (found, error) = (moment(k), f64::sqrt(spread / N as f64));
+            assert!(
+                (found - expect).abs() < 5.0 * error,
+                "moment {k}: {found}, expected {expect}"
+            );
+        }
+        // 1 - erf(x / sqrt 2)
+        for (beyond, share) in [
+            (0.5, 0.617_075),
+            (1.0, 0.317_311),
+            (2.0, 0.045_500),
+            (3.5, 4.652_6e-4),
+            (4.0, 6.334_2e-5),
+        ] {
+            let found = drawn.iter().filter(|v| v.abs() > beyond).count() as f64;
+            let expect = share * N as f64;
+            assert!(
+                (found - expect).abs() < 5.0 * expect.sqrt(),
+                "beyond {beyond}: {found}, expected {expect}"
+            );
+        }
+        let words = rng.drawn() as f64 / N as f64;
+        assert!((1.0..1.05).contains(&words), "{words} words for each");
     }
 
     #[test]

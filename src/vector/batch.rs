@@ -12,9 +12,9 @@ pub struct Batch<'a> {
     pub ids: &'a [usize],
     /// Observations: every sense is an array of rows, (rows, len).
     pub observation: Observation<'a>,
-    /// Rewards (rows); always 0: there is no extrinsic reward.
+    /// Rewards (rows); 0 for BabyBench's behaviors, which have no extrinsic reward.
     pub rewards: &'a [f64],
-    /// Always false (rows).
+    /// Whether the task has succeeded or failed (rows); false for BabyBench's behaviors.
     pub terminated: &'a [bool],
     /// Whether the episode has reached `max_episode_steps`, or has diverged (rows).
     pub truncated: &'a [bool],

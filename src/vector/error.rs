@@ -40,6 +40,20 @@ pub enum VectorError {
         /// The space of the environment.
         found: String,
     },
+    /// An environment of another age cannot share arrays with the others.
+    #[error(
+        "environment {env} cannot change its age: {what} would be {found} instead of {expected}; set touch_grows to True"
+    )]
+    Grown {
+        /// The environment.
+        env: usize,
+        /// The space that would differ.
+        what: String,
+        /// The space of all environments.
+        expected: String,
+        /// The space of the environment at that age.
+        found: String,
+    },
     /// An array has the wrong length.
     #[error("{what}: expected {expected:?} ({} values), found {}", expected[0] * expected[1], shape(*found, *expected))]
     Shape {

@@ -322,12 +322,12 @@ impl VectorEnv {
         let Some(slot) = &mut self.slots[env] else { return };
         out.write(row, &slot.env);
         out.write_flags(row, slot.reward, slot.terminated, slot.truncated);
-        self.infos.write(row, slot.env.info());
+        self.infos.write(row, slot.env.info(), slot.env.goal().terms);
         if let (Some(ends), Some(last)) = (&mut self.finals, &slot.last) {
             ends.ended[row] = slot.ended;
             if slot.ended {
                 ends.rows.buffers().write_whole(row, &last.observation());
-                ends.infos.write(row, &last.info);
+                ends.infos.write(row, &last.info, &last.terms);
             }
         }
         if let Some(error) = slot.failure.take() {

@@ -30,7 +30,7 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     });
     // engine and state: contacts, bodies and geoms in Rapier, the matrices of the solver
     let physics = 400_000 + 3_100 * model.ngeom() + 9_500 * model.nv;
-    (rows + renderer + physics) as u64
+    (rows + renderer + physics + env.transform_memory()) as u64
 }
 
 /// Refuses more environments than fit.

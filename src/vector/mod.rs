@@ -136,7 +136,15 @@ impl VectorEnv {
         let mut envs = vec![first];
         for env in 1..n {
             let made = make(env)?;
-            check_spaces(env, &envs[0], &made)?;
+            let spaces = envs[0].observation_space();
+            if let Some((what, expected, found)) = difference(envs[0].action_space(), &spaces, &made) {
+                return Err(VectorError::Spaces {
+                    env,
+                    what,
+                    expected,
+                    found,
+                });
+            }
             envs.push(made);
         }
         let deferred = envs
@@ -247,44 +255,29 @@ fn of(env: usize) -> impl FnOnce(EnvError) -> VectorError {
     }
 }
 
-/// Checks that an environment can share arrays with the first one.
-fn check_spaces(env: usize, first: &Env, other: &Env) -> Result<(), VectorError> {
-    let differ = |what: &str, expected: String, found: String| {
-        let what = what.to_string();
-        Err(VectorError::Spaces {
-            env,
-            what,
-            expected,
-            found,
-        })
-    };
-    let (a, b) = (first.action_space(), other.action_space());
+/// How the spaces of an environment differ from those of others: in what, theirs, its own.
+type Difference = (String, String, String);
+
+/// Returns how an environment differs from those whose arrays it is to share.
+fn difference(a: &BoxSpace, spaces: &[ObservationSpace], env: &Env) -> Option<Difference> {
+    let b = env.action_space();
     if a.len() != b.len() {
-        return differ("the action space", format!("[{}]", a.len()), format!("[{}]", b.len()));
+        let shapes = [a, b].map(|space| format!("[{}]", space.len()));
+        let [expected, found] = shapes;
+        return Some(("the action space".to_string(), expected, found));
     }
-    if a != b {
-        let bounds = |s: &BoxSpace| {
-            s.low()
-                .iter()
-                .copied()
-                .zip(s.high().iter().copied())
-                .collect::<Vec<_>>()
-        };
-        let (a, b) = (bounds(a), bounds(b));
-        let k = (0..a.len()).find(|&k| a[k] != b[k]).unwrap_or(0);
-        let what = format!("the bounds of action[{k}]");
-        return differ(&what, format!("{:?}", a[k]), format!("{:?}", b[k]));
+    let bounds = |s: &BoxSpace, k: usize| (s.low()[k], s.high()[k]);
+    if let Some(k) = (0..a.len()).find(|&k| bounds(a, k) != bounds(b, k)) {
+        let [expected, found] = [a, b].map(|space| format!("{:?}", bounds(space, k)));
+        return Some((format!("the bounds of action[{k}]"), expected, found));
     }
-    let (a, b) = (first.observation_space(), other.observation_space());
+    let own = env.observation_space();
     let describe = |s: Option<&ObservationSpace>| match s {
         Some(s) => format!("{:?} of {:?} in [{}, {}]", s.shape, s.dtype, s.low, s.high),
         None => "none".to_string(),
     };
-    for key in a.iter().chain(&b).map(|s| s.key) {
-        let [a, b] = [&a, &b].map(|spaces| spaces.iter().find(|s| s.key == key));
-        if a != b {
-            return differ(&format!("the observation {key:?}"), describe(a), describe(b));
-        }
-    }
-    Ok(())
+    spaces.iter().chain(&own).map(|s| s.key).find_map(|key| {
+        let [a, b] = [spaces, &own].map(|spaces| spaces.iter().find(|s| s.key == key));
+        (a != b).then(|| (format!("the observation {key:?}"), describe(a), describe(b)))
+    })
 }

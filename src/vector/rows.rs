@@ -1,7 +1,7 @@
 //! Arrays over environments: a row for each.
 
 use crate::config::{VisionOutput, VisionOutputs};
-use crate::env::{BehaviorInfo, Env, Info, Observation};
+use crate::env::{BehaviorInfo, Env, Info, Observation, Outcome};
 use crate::sensors::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages};
 use crate::vector::VectorError;
 
@@ -12,6 +12,8 @@ pub(super) struct Layout {
     pub proprioception: usize,
     pub touch: Option<usize>,
     pub sensors: usize,
+    pub pooled: Option<usize>,
+    pub pain: Option<usize>,
     /// Pixels of an eye.
     pub pixels: Option<usize>,
     pub outputs: VisionOutputs,
@@ -20,6 +22,10 @@ pub(super) struct Layout {
     pub geoms: Option<usize>,
     /// Whether any environment's behavior is `hand_regard`.
     pub regards: bool,
+    /// Length of a goal, if the goals of the tasks have numbers.
+    pub goal: Option<usize>,
+    /// Number of terms of the rewards, if the tasks report outcomes.
+    pub terms: Option<usize>,
 }
 
 impl Layout {
@@ -32,10 +38,14 @@ impl Layout {
             layout.proprioception = observation.proprioception.len();
             layout.touch = observation.touch.map(<[f32]>::len);
             layout.sensors = env.touch().map_or(0, |touch| touch.layout().len());
+            layout.pooled = observation.touch_pooled.map(<[f64]>::len);
+            layout.pain = observation.pain.map(<[f32]>::len);
             layout.pixels = env.vision().map(|v| v.shape()[0] * v.shape()[1]);
             layout.outputs = env.config().vision_outputs;
             layout.vestibular = observation.vestibular.map(<[f64]>::len);
             layout.regards |= env.info().behavior.regards().is_some();
+            layout.goal = observation.desired_goal.map(<[f64]>::len);
+            layout.terms = env.task().reports_outcome().then(|| env.goal().terms.len());
             if env.info().behavior.touches().is_some() {
                 layout.geoms = layout.geoms.max(Some(env.model().ngeom()));
             }
@@ -52,9 +62,12 @@ impl Layout {
 
     /// Returns the size of a row of everything, bytes.
     pub fn row_bytes(&self) -> usize {
-        let [touch, vestibular, geoms] = [self.touch, self.vestibular, self.geoms].map(Option::unwrap_or_default);
+        let [touch, pooled, pain] = [self.touch, self.pooled, self.pain].map(Option::unwrap_or_default);
+        let [vestibular, geoms] = [self.vestibular, self.geoms].map(Option::unwrap_or_default);
         let eye: usize = self.outputs.iter().map(|output| self.image_bytes(output)).sum();
-        8 * (self.proprioception + vestibular) + 4 * touch + 4 * self.sensors + 2 * eye + 2 * geoms + 64
+        let goals = 2 * self.goal.unwrap_or_default() + self.terms.unwrap_or_default();
+        let numbers = self.proprioception + pooled + vestibular + goals;
+        8 * numbers + 4 * (touch + pain) + 4 * self.sensors + 2 * eye + 2 * geoms + 64
     }
 
     fn image_bytes(&self, output: VisionOutput) -> usize {
@@ -75,6 +88,10 @@ pub struct Buffers<'a> {
     pub proprioception: Option<&'a mut [f64]>,
     /// What the skins feel, (N, len), N.
     pub touch: Option<&'a mut [f32]>,
+    /// What each body with skin feels, (N, bodies 5).
+    pub touch_pooled: Option<&'a mut [f64]>,
+    /// What hurts, (N, sensors).
+    pub pain: Option<&'a mut [f32]>,
     /// What the left eyes see, (N, H W 3).
     pub eye_left: Option<&'a mut [u8]>,
     /// What the right eyes see, (N, H W 3).
@@ -87,6 +104,10 @@ pub struct Buffers<'a> {
     pub eye_segmentation: Option<[&'a mut [i32]; 2]>,
     /// Balance, (N, 6), m/s^2 and rad/s.
     pub vestibular: Option<&'a mut [f64]>,
+    /// The achieved goals, (N, len).
+    pub achieved_goal: Option<&'a mut [f64]>,
+    /// The desired goals, (N, len).
+    pub desired_goal: Option<&'a mut [f64]>,
     /// Rewards (N).
     pub rewards: Option<&'a mut [f64]>,
     /// Whether episodes have ended in themselves (N).
@@ -118,6 +139,8 @@ impl Buffers<'_> {
                 Some(layout.proprioception),
             ),
             ("touch", length(&self.touch), layout.touch),
+            ("touch_pooled", length(&self.touch_pooled), layout.pooled),
+            ("pain", length(&self.pain), layout.pain),
             (EYES[0], length(&self.eye_left), eye(VisionOutput::Rgb)),
             (EYES[1], length(&self.eye_right), eye(VisionOutput::Rgb)),
             (EYES_GRAY[0], gray[0], eye(VisionOutput::Gray)),
@@ -127,6 +150,8 @@ impl Buffers<'_> {
             (EYES_SEGMENTATION[0], geoms[0], eye(VisionOutput::Segmentation)),
             (EYES_SEGMENTATION[1], geoms[1], eye(VisionOutput::Segmentation)),
             ("vestibular", length(&self.vestibular), layout.vestibular),
+            ("achieved_goal", length(&self.achieved_goal), layout.goal),
+            ("desired_goal", length(&self.desired_goal), layout.goal),
             ("rewards", length(&self.rewards), Some(1)),
             ("terminated", length(&self.terminated), Some(1)),
             ("truncated", length(&self.truncated), Some(1)),
@@ -148,7 +173,7 @@ impl Buffers<'_> {
     /// that is enough. There is room, which was checked before.
     pub(super) fn write(&mut self, row: usize, env: &Env) {
         let observation = env.observation();
-        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.touch, env.touch()) else {
+        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.touch, env.touch_observed()) else {
             return self.write_whole(row, &observation);
         };
         let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());
@@ -183,12 +208,16 @@ impl Buffers<'_> {
     /// Writes a row of everything but touch.
     fn write_dense(&mut self, row: usize, observation: &Observation<'_>) {
         write(&mut self.proprioception, row, Some(observation.proprioception));
+        write(&mut self.touch_pooled, row, observation.touch_pooled);
+        write(&mut self.pain, row, observation.pain);
         write(&mut self.eye_left, row, observation.eye_left);
         write(&mut self.eye_right, row, observation.eye_right);
         write_pair(&mut self.eye_gray, row, observation.eye_gray);
         write_pair(&mut self.eye_depth, row, observation.eye_depth);
         write_pair(&mut self.eye_segmentation, row, observation.eye_segmentation);
         write(&mut self.vestibular, row, observation.vestibular);
+        write(&mut self.achieved_goal, row, observation.achieved_goal);
+        write(&mut self.desired_goal, row, observation.desired_goal);
     }
 }
 
@@ -215,8 +244,12 @@ pub(super) struct Rows {
     proprioception: Vec<f64>,
     touch: Vec<f32>,
     touched: Vec<Vec<u32>>,
+    pooled: Vec<f64>,
+    pain: Vec<f32>,
     eyes: [EyeImages; 2],
     vestibular: Vec<f64>,
+    achieved_goal: Vec<f64>,
+    desired_goal: Vec<f64>,
     rewards: Vec<f64>,
     terminated: Vec<bool>,
     truncated: Vec<bool>,
@@ -234,8 +267,12 @@ impl Rows {
                 Some(_) => (0..n).map(|_| Vec::with_capacity(layout.sensors)).collect(),
                 None => Vec::new(),
             },
+            pooled: vec![0.0; of(layout.pooled)],
+            pain: vec![0.0; of(layout.pain)],
             eyes: [images(), images()],
             vestibular: vec![0.0; of(layout.vestibular)],
+            achieved_goal: vec![0.0; of(layout.goal)],
+            desired_goal: vec![0.0; of(layout.goal)],
             rewards: vec![0.0; n],
             terminated: vec![false; n],
             truncated: vec![false; n],
@@ -252,12 +289,16 @@ impl Rows {
         Buffers {
             proprioception: Some(&mut self.proprioception),
             touch: on(&mut self.touch, layout.touch),
+            touch_pooled: on(&mut self.pooled, layout.pooled),
+            pain: on(&mut self.pain, layout.pain),
             eye_left: left.rgb,
             eye_right: right.rgb,
             eye_gray: left.gray.zip(right.gray).map(<[_; 2]>::from),
             eye_depth: left.depth.zip(right.depth).map(<[_; 2]>::from),
             eye_segmentation: left.segmentation.zip(right.segmentation).map(<[_; 2]>::from),
             vestibular: on(&mut self.vestibular, layout.vestibular),
+            achieved_goal: on(&mut self.achieved_goal, layout.goal),
+            desired_goal: on(&mut self.desired_goal, layout.goal),
             rewards: Some(&mut self.rewards),
             terminated: Some(&mut self.terminated),
             truncated: Some(&mut self.truncated),
@@ -278,6 +319,8 @@ impl Rows {
         Observation {
             proprioception: &self.proprioception[..n * layout.proprioception],
             touch: on(&self.touch, n, layout.touch),
+            touch_pooled: on(&self.pooled, n, layout.pooled),
+            pain: on(&self.pain, n, layout.pain),
             eye_left: on(&left.rgb, n, eye(VisionOutput::Rgb)),
             eye_right: on(&right.rgb, n, eye(VisionOutput::Rgb)),
             eye_gray: both(&left.gray, &right.gray, n, eye(VisionOutput::Gray)),
@@ -289,6 +332,8 @@ impl Rows {
                 eye(VisionOutput::Segmentation),
             ),
             vestibular: on(&self.vestibular, n, layout.vestibular),
+            achieved_goal: on(&self.achieved_goal, n, layout.goal),
+            desired_goal: on(&self.desired_goal, n, layout.goal),
         }
     }
 
@@ -314,12 +359,16 @@ pub(super) fn row_of<'a>(all: &Observation<'a>, row: usize, n: usize) -> Observa
     Observation {
         proprioception: row_in(all.proprioception, row, n),
         touch: all.touch.map(|v| row_in(v, row, n)),
+        touch_pooled: all.touch_pooled.map(|v| row_in(v, row, n)),
+        pain: all.pain.map(|v| row_in(v, row, n)),
         eye_left: all.eye_left.map(|v| row_in(v, row, n)),
         eye_right: all.eye_right.map(|v| row_in(v, row, n)),
         eye_gray: all.eye_gray.map(|pair| pair.map(|v| row_in(v, row, n))),
         eye_depth: all.eye_depth.map(|pair| pair.map(|v| row_in(v, row, n))),
         eye_segmentation: all.eye_segmentation.map(|pair| pair.map(|v| row_in(v, row, n))),
         vestibular: all.vestibular.map(|v| row_in(v, row, n)),
+        achieved_goal: all.achieved_goal.map(|v| row_in(v, row, n)),
+        desired_goal: all.desired_goal.map(|v| row_in(v, row, n)),
     }
 }
 
@@ -334,6 +383,10 @@ pub struct Infos<'a> {
     /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
     /// behavior is `hand_regard`.
     pub regards: Option<&'a [u64]>,
+    /// Success and failure (N) of tasks that report them.
+    pub outcomes: Option<&'a [Outcome]>,
+    /// What the rewards of such tasks depend on beside goals, (N, len): [`Goal::terms`](crate::env::Goal::terms).
+    pub reward_terms: Option<&'a [f64]>,
 }
 
 /// Information as arrays.
@@ -343,6 +396,8 @@ pub(super) struct InfoRows {
     steps: Vec<u64>,
     touches: Vec<u8>,
     regards: Vec<u64>,
+    outcomes: Vec<Outcome>,
+    terms: Vec<f64>,
 }
 
 impl InfoRows {
@@ -352,11 +407,17 @@ impl InfoRows {
             steps: vec![0; n],
             touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
             regards: vec![0; 4 * n * usize::from(layout.regards)],
+            outcomes: vec![Outcome::default(); n * usize::from(layout.terms.is_some())],
+            terms: vec![0.0; n * layout.terms.unwrap_or_default()],
         }
     }
 
-    pub fn write(&mut self, row: usize, info: &Info) {
+    pub fn write(&mut self, row: usize, info: &Info, terms: &[f64]) {
         self.steps[row] = info.steps;
+        if let Some(len) = self.layout.terms {
+            self.outcomes[row] = info.behavior.task().map(|info| info.outcome).unwrap_or_default();
+            self.terms[row * len..(row + 1) * len].copy_from_slice(terms);
+        }
         if let Some(geoms) = self.layout.geoms {
             let out = &mut self.touches[2 * geoms * row..2 * geoms * (row + 1)];
             out.fill(0);
@@ -378,6 +439,8 @@ impl InfoRows {
             steps: &self.steps[..n],
             touches: self.layout.geoms.map(|geoms| &self.touches[..2 * geoms * n]),
             regards: self.layout.regards.then(|| &self.regards[..4 * n]),
+            outcomes: self.layout.terms.map(|_| &self.outcomes[..n]),
+            reward_terms: self.layout.terms.map(|len| &self.terms[..n * len]),
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::env::{Env, Info, Observation, Snapshot};
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::{BoxSpace, ObservationSpace};
 use crate::vector::slot::Slot;
-use crate::vector::{VectorEnv, VectorError, of};
+use crate::vector::{VectorEnv, VectorError, difference, of};
 
 impl VectorEnv {
     /// Returns an environment.
@@ -71,6 +71,28 @@ impl VectorEnv {
     pub fn restore(&mut self, env: usize, snapshot: &Snapshot) -> Result<(), VectorError> {
         let restored = self.env_mut(env)?.restore(snapshot);
         restored.map_err(|e| of(env)(e.into()))
+    }
+
+    /// Lets the MIMo of one environment grow between two episodes: see [`Env::set_age`]. With
+    /// [`Config::touch_grows`](crate::Config::touch_grows) the spaces are the same at every age.
+    ///
+    /// # Errors
+    /// As [`Env::set_age`]; [`VectorError::Grown`] where the spaces would differ; [`VectorError::Unknown`],
+    /// [`VectorError::InFlight`]. Nothing is changed then.
+    pub fn set_age(&mut self, env: usize, age: Option<f64>) -> Result<(), VectorError> {
+        let grown = self.env(env)?.grown(age).map_err(of(env))?;
+        match difference(&self.action_space, &self.observation_space, &grown) {
+            Some((what, expected, found)) => Err(VectorError::Grown {
+                env,
+                what,
+                expected,
+                found,
+            }),
+            None => {
+                self.env_mut(env)?.become_grown(grown);
+                Ok(())
+            }
+        }
     }
 
     /// Puts the scene of one environment at positions and velocities in the middle of an episode: see

@@ -63,7 +63,7 @@ impl Slot {
 
     /// Returns whether the episode is over: a step now is a reset, or an error.
     pub fn over(&self) -> bool {
-        !self.env.ready() || self.env.truncated()
+        !self.env.ready() || self.env.over()
     }
 
     /// Returns whether a step would mean something.
@@ -146,8 +146,13 @@ pub(super) struct Last {
     pub info: Info,
     proprioception: Vec<f64>,
     touch: Vec<f32>,
+    pooled: Vec<f64>,
+    pain: Vec<f32>,
     eyes: [EyeImages; 2],
     vestibular: Vec<f64>,
+    achieved_goal: Vec<f64>,
+    desired_goal: Vec<f64>,
+    pub terms: Vec<f64>,
 }
 
 impl Last {
@@ -157,8 +162,13 @@ impl Last {
             info: Info::default(),
             proprioception: vec![0.0; observation.proprioception.len()],
             touch: vec![0.0; observation.touch.map_or(0, <[f32]>::len)],
+            pooled: vec![0.0; observation.touch_pooled.map_or(0, <[f64]>::len)],
+            pain: vec![0.0; observation.pain.map_or(0, <[f32]>::len)],
             eyes: env.eye_images().clone(),
             vestibular: vec![0.0; observation.vestibular.map_or(0, <[f64]>::len)],
+            achieved_goal: vec![0.0; env.goal().achieved.len()],
+            desired_goal: vec![0.0; env.goal().desired.len()],
+            terms: vec![0.0; env.goal().terms.len()],
         };
         last.keep(env);
         last
@@ -168,11 +178,18 @@ impl Last {
         let observation = env.observation();
         self.proprioception.copy_from_slice(observation.proprioception);
         self.touch.copy_from_slice(observation.touch.unwrap_or_default());
+        self.pooled
+            .copy_from_slice(observation.touch_pooled.unwrap_or_default());
+        self.pain.copy_from_slice(observation.pain.unwrap_or_default());
         for (own, eye) in self.eyes.iter_mut().zip(env.eye_images()) {
             own.copy_from(eye);
         }
         self.vestibular
             .copy_from_slice(observation.vestibular.unwrap_or_default());
+        let goal = env.goal();
+        self.achieved_goal.copy_from_slice(goal.achieved);
+        self.desired_goal.copy_from_slice(goal.desired);
+        self.terms.copy_from_slice(goal.terms);
         copy_info(env.info(), &mut self.info);
     }
 
@@ -181,7 +198,11 @@ impl Last {
         Observation {
             proprioception: &self.proprioception,
             touch: Some(&self.touch),
+            touch_pooled: Some(&self.pooled),
+            pain: Some(&self.pain),
             vestibular: Some(&self.vestibular),
+            achieved_goal: Some(&self.achieved_goal),
+            desired_goal: Some(&self.desired_goal),
             ..Observation::of_eyes(&self.eyes)
         }
     }

@@ -60,6 +60,17 @@ pub fn body_only(name: &str) -> Config {
     }
 }
 
+/// An infant of three months whose senses have every transform that there is, with all images.
+pub fn infant() -> Config {
+    let text = "behavior: self_touch\nscene: crib\nage: 3\ntouch_scale: 2\nvision_resolution: 24\n\
+                vision_outputs: [rgb, gray, depth, segmentation]\ndelay_unit: ms\ndelay_sensory: 15\ndelay_vision: 20\n\
+                delay_motor: 10\nnoise_proprioception: 0.01\nnoise_touch: 0.1\nnoise_vestibular: 0.05\nnoise_vision: 4\n\
+                vision_acuity: true\nvision_acuity_left: 1.5\nvision_foveation: 10\nvision_foveation_right: 2\n\
+                touch_pooled: true\npain_active: true\npain_threshold: 0.5\npain_decay_old: 0.9\npain_limit: 3\n\
+                max_episode_steps: 20";
+    Config::from_yaml(text, "infant").expect("it is valid")
+}
+
 /// Everything actuated, nothing locked, proprioception and balance as the only senses.
 pub fn free(behavior: Behavior, scene: Scene) -> Config {
     Config {

@@ -279,6 +279,8 @@ fn check_run(folder: &Folder, config: Config) {
         qpos: Vec::new(),
         qvel: Vec::new(),
         qacc: Vec::new(),
+        activity: Vec::new(),
+        episodes: Vec::new(),
     };
     let done = replay(&mut env, &recording, false).expect("a replay");
     let out = folder.path().join("replay");

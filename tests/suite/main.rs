@@ -24,6 +24,10 @@ mod render;
 #[cfg(feature = "report")]
 mod report;
 mod scene;
+#[cfg(feature = "eval")]
+mod scene_file;
+mod senses;
 mod snapshot;
+mod tasks;
 mod touch;
 mod vector;

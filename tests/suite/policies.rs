@@ -209,7 +209,7 @@ mod commands {
             &script(&folder, "endless.sh", "yes '[' | tr -d '\\n'"),
             &["answered \"[[[", "it has more than 1048576 bytes"],
         );
-        let unasked = ["answered \"[0, 0", "more than one line came for one observation"];
+        let unasked = ["answered \"[0, 0", "more lines came than observations went"];
         refused("yes '[0, 0, 0, 0, 0, 0]'", &unasked);
         let twice = script(&folder, "twice.sh", "printf '[0, 0, 0, 0, 0, 0]\\n%.0s' 1 2");
         refused(&twice, &unasked);

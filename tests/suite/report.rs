@@ -57,6 +57,8 @@ fn report(folder: &Folder) -> Report {
 /// The page is whole, needs nothing from outside, and runs nothing.
 fn check_page(html: &str) {
     assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>"));
+    let policy = "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\"";
+    assert!(html.contains(policy), "nothing keeps the page from running scripts");
     for source in html.split(" src=\"").skip(1) {
         assert!(source.starts_with("data:image/"), "{}", &source[..40]);
     }

@@ -65,6 +65,12 @@ export class Env {
       get vestibular() {
         return view("vestibular");
       },
+      get achieved_goal() {
+        return view("achieved_goal");
+      },
+      get desired_goal() {
+        return view("desired_goal");
+      },
     };
   }
 
@@ -128,17 +134,39 @@ export class Env {
       }
       own.set(action);
     }
-    const truncated = guarded(() => this.#core.step());
+    guarded(() => this.#core.step());
     const env = this;
     return {
       observation: this.observation,
-      reward: 0,
-      terminated: false,
-      truncated,
+      reward: this.#core.reward(),
+      terminated: this.#core.terminated(),
+      truncated: this.#core.truncated(),
       get info() {
         return env.info; // made when it is read: most steps need none
       },
     };
+  }
+
+  /**
+   * Changes the desired goal of this episode.
+   * @param {ArrayLike<number>} desired
+   */
+  setGoal(desired) {
+    guarded(() => this.#core.setGoal(Float64Array.from(desired)));
+    return this.observation;
+  }
+
+  /**
+   * Computes what rows of goals would have earned; for the goals of a step it is the reward of the step.
+   * @param {ArrayLike<number>[]} achieved
+   * @param {ArrayLike<number>[]} desired
+   * @param {{ reward_terms: number[] | null }[]} infos those of the steps
+   * @returns {Float64Array} a reward for each row
+   */
+  computeReward(achieved, desired, infos) {
+    const flat = (/** @type {ArrayLike<number>[]} */ rows) => Float64Array.from(rows.flatMap((row) => Array.from(row)));
+    const terms = flat(infos.map((info) => info.reward_terms ?? []));
+    return guarded(() => this.#core.computeReward(flat(achieved), flat(desired), terms, achieved.length));
   }
 
   /** The next action, to write into. */

@@ -1,6 +1,6 @@
 // The types of what goes in and comes out.
 
-/** @typedef {Record<string, string | number | boolean | undefined>} Settings values of a configuration by key */
+/** @typedef {Record<string, string | number | boolean | null | undefined>} Settings values of a configuration by key; null for none */
 
 /**
  * One key of a configuration.
@@ -24,6 +24,8 @@
  * @property {Uint8Array | null} eye_left rows from the top; red, green, blue
  * @property {Uint8Array | null} eye_right
  * @property {Float64Array | null} vestibular acceleration, m/s^2, and angular velocity, rad/s, of the head
+ * @property {Float64Array | null} achieved_goal of a task with goals
+ * @property {Float64Array | null} desired_goal
  */
 
 /**
@@ -35,20 +37,24 @@
  * What a step reports.
  * @typedef {object} Info
  * @property {number} steps of the episode
- * @property {"none" | "self_touch" | "hand_regard"} behavior
+ * @property {"none" | "self_touch" | "hand_regard" | "reach" | "standup" | "selfbody" | "catch" | "roll_over"} behavior
  * @property {PerHand<number[]> | null} touches geoms that each palm has touched
  * @property {PerHand<string[]> | null} touched_parts their names
  * @property {number[] | null} regards steps in which each eye saw each hand: right eye with right and left hand, left eye
  * @property {number[] | null} gaze_angles between the axis of each eye and each hand, rad
  * @property {number | null} score that the episode would have alone
+ * @property {boolean | null} is_success whether a task's goal is reached
+ * @property {boolean | null} is_failure whether it is out of reach
+ * @property {number | null} return sum of a task's rewards in this episode
+ * @property {number[] | null} reward_terms what its reward depends on beside goals
  */
 
 /**
  * The result of a step, in Gymnasium's words.
  * @typedef {object} Step
  * @property {Observation} observation
- * @property {number} reward always 0
- * @property {boolean} terminated always false
+ * @property {number} reward of a task; 0 for behaviors
+ * @property {boolean} terminated whether a task has succeeded or failed
  * @property {boolean} truncated whether the episode has reached `max_episode_steps`
  * @property {Info} info
  */

@@ -23,7 +23,7 @@ export function serve(folder, port = 0, under = "/") {
     response.writeHead(200, { "content-type": TYPES[extname(target)] ?? "application/octet-stream", "content-length": stat.size });
     return createReadStream(target).pipe(response);
   });
-  return new Promise((done) => server.listen(port, "127.0.0.1", () => done({ url: `http://127.0.0.1:${server.address().port}${under}`, close: () => server.close() })));
+  return new Promise((done) => server.listen(port, "127.0.0.1", () => done({ url: `http://127.0.0.1:${server.address().port}${under}`, close: () => void (server.close(), server.closeAllConnections()) })));
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

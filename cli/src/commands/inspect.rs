@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::{self, Write, stdout};
 use std::path::{Path, PathBuf};
 
-use babybench::config::Compat;
+use babybench::config::{Compat, Delays};
 use babybench::formats::png::write_png;
 use babybench::mimo::joint_part;
 use babybench::mjcf_loader::elements;
@@ -15,20 +15,27 @@ use babybench::sensors::Component;
 use babybench::{Blueprint, Env};
 use clap::Args;
 
-use super::{Source, read_recording};
-use crate::arguments::{number, png};
+use super::keys::list_keys;
+use super::{Source, body, read_recording};
+use crate::arguments::{age, number, png};
 
 /// Arguments of `inspect`.
 #[derive(Args)]
 pub struct Inspect {
     #[command(flatten)]
     source: Option<Source>,
+    /// Print what MIMo is at this age, months, whatever the configuration says: his body, too
+    #[arg(long, value_name = "MONTHS", allow_negative_numbers = true, value_parser = age, conflicts_with = "mjcf")]
+    age: Option<f64>,
     /// Draw the touch sensors on the body in the settled state to a PNG image, instead of printing
     #[arg(long, value_name = "PNG", value_parser = png())]
     touch: Option<PathBuf>,
     /// List the MJCF elements and attributes that the loader understands, with defaults, instead of printing
     #[arg(long, exclusive = true)]
     mjcf: bool,
+    /// Print every key of the configuration with its values, default and meaning, as Markdown
+    #[arg(long, exclusive = true)]
+    keys: bool,
     /// Draw them at a step of this recording (as for replay), with the forces they feel
     #[arg(long, value_name = "FILE", requires = "touch")]
     state: Option<PathBuf>,
@@ -45,18 +52,28 @@ impl Inspect {
         if self.mjcf {
             return Ok(list_mjcf(&mut stdout().lock())?);
         }
-        let source = self.source.as_ref().ok_or("give --config FILE, or --mjcf alone")?;
-        let blueprint = source.blueprint(Compat::Api)?;
+        if self.keys {
+            return Ok(list_keys(&mut stdout().lock())?);
+        }
+        let source = self.source.as_ref();
+        let source = source.ok_or("give --config FILE, or --keys or --mjcf alone")?;
+        let mut config = source.read(Compat::Api)?;
+        config.age = self.age.or(config.age);
+        let blueprint = source.build(config)?;
         if let Some(path) = &self.touch {
             return self.draw_touch(&blueprint, path);
         }
         let mut out = stdout().lock();
         let env = blueprint.env()?;
         write_sizes(&mut out, &env)?;
+        if let Some(age) = blueprint.config().age {
+            body::write(&mut out, &env, age)?;
+        }
         write_joints(&mut out, &env)?;
         write_actuators(&mut out, &env)?;
         write_spaces(&mut out, &env)?;
         write_observation(&mut out, &env)?;
+        write_pipeline(&mut out, &env)?;
         Ok(())
     }
 
@@ -232,6 +249,27 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+/// Writes the way of each sense to the observation, and that of actions to the actuators.
+fn write_pipeline(out: &mut impl Write, env: &Env) -> io::Result<()> {
+    writeln!(out, "\nSenses on their way to the observation")?;
+    for (sense, chain) in env.pipeline() {
+        let chain: Vec<String> = chain.map(|transform| transform.describe()).collect();
+        let way = if chain.is_empty() {
+            "as it is".to_string()
+        } else {
+            chain.join(" -> ")
+        };
+        writeln!(out, "  {:12} {way}", sense.key())?;
+    }
+    let (steps, config) = (env.motor_delay(), env.config());
+    let ms = steps as f64 * Delays::step_ms(config.frame_skip);
+    match steps {
+        0 => writeln!(out, "  actions      as they are"),
+        1 => writeln!(out, "  actions      delay of 1 step ({ms} ms)"),
+        _ => writeln!(out, "  actions      delay of {steps} steps ({ms} ms)"),
+    }
 }
 
 /// Lists the MJCF that the loader understands: an attribute a line, with values, default and meaning.

@@ -1,7 +1,9 @@
 //! The subcommands; each reads its arguments and calls the library.
 
+mod body;
 mod evaluate;
 mod inspect;
+mod keys;
 mod many;
 mod render;
 mod replay;
@@ -80,6 +82,13 @@ impl Source {
 
     /// Builds the environment's blueprint with another renderer than that of the configuration.
     fn blueprint_with(&self, compat: Compat, renderer: Option<RendererKind>) -> Result<Blueprint, Box<dyn Error>> {
+        let mut config = self.read(compat)?;
+        config.renderer = renderer.unwrap_or(config.renderer);
+        self.build(config)
+    }
+
+    /// Reads the configuration; `compat` is that of one that does not say.
+    fn read(&self, compat: Compat) -> Result<Config, Box<dyn Error>> {
         let base = Config {
             compat,
             ..Config::default()
@@ -88,7 +97,11 @@ impl Source {
         if let Some(compat) = self.compat {
             config.compat = compat;
         }
-        config.renderer = renderer.unwrap_or(config.renderer);
+        Ok(config)
+    }
+
+    /// Builds the blueprint of a configuration.
+    fn build(&self, config: Config) -> Result<Blueprint, Box<dyn Error>> {
         let blueprint = match &self.assets {
             Some(dir) => Blueprint::with_assets(config, &*self.assets()?)
                 .map_err(|e| format!("--assets {}: {e}", dir.display()))?,
@@ -102,7 +115,7 @@ impl Source {
         Ok(match &self.assets {
             Some(dir) => Box::new(
                 DirAssets::new(dir)
-                    .map_err(|e| format!("--assets: {e}; it is a folder with babybench/*.xml and tex/*.png"))?,
+                    .map_err(|e| format!("--assets: {e}; give a folder with babybench/*.xml and tex/*.png"))?,
             ),
             None => Box::new(embedded()),
         })

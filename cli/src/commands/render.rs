@@ -4,13 +4,16 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use babybench::config::{Compat, RendererKind};
-use babybench::env::Viewer;
+use babybench::env::{ViewFrom, Viewer};
 use babybench::formats::npz::Npz;
 use babybench::formats::png::write_png;
+use babybench::mimo::build_model;
+use babybench::report::ages::draw_ages;
+use babybench::{Config, Model};
 use clap::Args;
 
 use super::Source;
-use crate::arguments::{count, number, png};
+use crate::arguments::{age, count, number, png};
 use crate::print::say;
 
 /// Arguments of `render`.
@@ -27,6 +30,10 @@ pub struct Render {
     /// Renderer: cpu, or wgpu (cargo feature wgpu); overrides the configuration
     #[arg(long, value_name = "WHICH", value_parser = parse_renderer)]
     renderer: Option<RendererKind>,
+    /// Draw MIMo alone at these ages instead, months with commas between, one beside the other on the same scale
+    #[arg(long, value_name = "MONTHS", value_delimiter = ',', allow_negative_numbers = true, value_parser = age,
+        conflicts_with_all = ["camera", "size", "renderer", "state"])]
+    age: Vec<f64>,
     /// PNG image to write
     #[arg(long, value_name = "FILE", value_parser = png())]
     out: PathBuf,
@@ -44,10 +51,13 @@ fn parse_renderer(text: &str) -> Result<RendererKind, String> {
 
 impl Render {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        if !self.age.is_empty() {
+            return self.draw_ages();
+        }
         let mut env = self.source.blueprint_with(Compat::Api, self.renderer)?.env()?;
-        let cameras = &env.model().cam_name;
-        if !cameras.contains(&self.camera) {
-            let (camera, all) = (&self.camera, cameras.join(", "));
+        let from = ViewFrom::room(&env, &self.camera);
+        if matches!(from, ViewFrom::Camera(name) if env.model().camera(name).is_none()) {
+            let (camera, all) = (&self.camera, env.model().cam_name.join(", "));
             return Err(format!("--camera {camera}: the scene has no such camera; it has {all}").into());
         }
         match &self.state {
@@ -68,12 +78,36 @@ impl Render {
         }
         let size = self.size.unwrap_or(env.config().render_size as usize);
         let mut viewer = Viewer::new(env.blueprint())?;
-        let picture = viewer.draw(&env, self.camera.as_str(), size, size)?;
+        let picture = viewer.draw(&env, ViewFrom::room(&env, &self.camera), size, size)?;
         write_png(&self.out, picture, size, size)?;
         say!(
             "{}: {size} x {size} pixels from camera {}",
             self.out.display(),
             self.camera
+        )?;
+        Ok(())
+    }
+
+    /// Draws a row of infants.
+    fn draw_ages(&self) -> Result<(), Box<dyn Error>> {
+        let (config, assets) = (self.source.read(Compat::Api)?, self.source.assets()?);
+        let grown = |&age: &f64| -> Result<(f64, Model), Box<dyn Error>> {
+            let config = Config {
+                age: Some(age),
+                ..config.clone()
+            };
+            Ok((age, build_model(&config, &*assets)?))
+        };
+        let models = self.age.iter().map(grown).collect::<Result<Vec<_>, _>>()?;
+        let infants: Vec<(f64, &Model)> = models.iter().map(|(age, model)| (*age, model)).collect();
+        let picture = draw_ages(&infants, &*assets).ok_or("--age: the assets have no MIMo")?;
+        write_png(&self.out, &picture.rgb, picture.width, picture.height)?;
+        say!(
+            "{}: {} x {} pixels, {} infants",
+            self.out.display(),
+            picture.width,
+            picture.height,
+            infants.len()
         )?;
         Ok(())
     }

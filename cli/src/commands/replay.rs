@@ -16,7 +16,8 @@ use crate::print::say;
 pub struct ReplayArgs {
     #[command(flatten)]
     source: Source,
-    /// Recording with qpos0, qvel0, actions, and for --one-step qpos, qvel, qacc
+    /// Recording with qpos0, qvel0, actions, and for --one-step qpos, qvel, qacc; of a task with reset_row, reset_qpos, reset_qvel
+    /// instead of a single start
     #[arg(long, value_name = "FILE")]
     recording: PathBuf,
     /// Directory for replay.npz and info.jsonl

@@ -163,10 +163,13 @@ impl Run {
 fn description(env: &Env) -> String {
     let config = env.config();
     let spaces = env.observation_space();
+    let scene = match env.task().reports_outcome() {
+        true => String::new(), // a task has a scene of its own
+        false => format!(" in {}", config.scene),
+    };
     format!(
-        "{} in {}, {}: {} joints, {} actuators, {} numbers observed",
+        "{}{scene}, {}: {} joints, {} actuators, {} numbers observed",
         config.behavior,
-        config.scene,
         config.actuation_model,
         env.proprioception().joints().len(),
         env.model().nu(),
@@ -190,7 +193,7 @@ impl Tally {
         for k in 0..length {
             env.sample_action(&mut action);
             let before = Instant::now();
-            let truncated = env.step(&action)?.truncated;
+            env.step(&action)?;
             lock(clock).enter(None);
             self.stepping += before.elapsed();
             self.steps += 1;
@@ -201,7 +204,7 @@ impl Tally {
             if k % 16 == 15 {
                 bar.inc(16);
             }
-            if truncated {
+            if env.over() {
                 break;
             }
         }

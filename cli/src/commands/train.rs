@@ -65,7 +65,8 @@ impl Train {
                 env.reset(None)?;
             }
             env.sample_action(&mut action);
-            over = env.step(&action)?.truncated;
+            env.step(&action)?;
+            over = env.over();
             steps += 1;
             if steps % 16 == 0 {
                 bar.set_position(steps);
@@ -135,6 +136,17 @@ impl Train {
             return Err(Interrupted(done).into());
         }
         say!("{n} records, {steps} steps: {}", config.save_dir)?;
+        let tasks: Vec<_> = records.iter().filter_map(|record| record.behavior.task()).collect();
+        if !tasks.is_empty() {
+            let mean = tasks.iter().map(|task| task.episode_return).sum::<f64>() / tasks.len() as f64;
+            let successes = tasks.iter().filter(|task| task.outcome.is_success).count();
+            say!(
+                "mean return {mean:.3}, {successes} of {} episodes end in success",
+                tasks.len()
+            )?;
+            say!("Details: babybench report {dir}")?;
+            return Ok(());
+        }
         match Score::new(records) {
             Ok(score) => {
                 say!("{score}")?;

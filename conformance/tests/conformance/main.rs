@@ -20,8 +20,10 @@ mod render;
 #[cfg(feature = "wgpu")]
 mod render_gpu;
 mod replay;
+mod senses;
 mod settling;
 mod static_quantities;
+mod tasks;
 mod touch;
 
 use std::process::ExitCode;
@@ -48,8 +50,10 @@ fn main() -> ExitCode {
         #[cfg(feature = "wgpu")]
         render_gpu::trials(),
         replay::trials(),
+        senses::trials(),
         settling::trials(),
         static_quantities::trials(),
+        tasks::trials(),
         touch::trials(),
     ];
     testkit::harness::run(all.concat())

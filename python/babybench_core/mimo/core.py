@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _native
-from . import live
+from .live import Live, ViewLive
+from .models import Watched, make_model, mujoco_module
+from .mujoco_live import MujocoLive
 from .scene import Scene
 from .settings import blueprint
+from .views import ModelView
 
 Array = NDArray[np.float64]
 
@@ -69,8 +72,8 @@ class Core:
         self._fresh = False
         self._contacts: dict[str, NDArray[Any]] | None = None
         self._poses: Poses | None = None
-        self._watched: live.Watched | None = None
-        self._live: live.Live | None = None
+        self._watched: Watched | None = None
+        self._live: Live | None = None
         self.layout = self._proprioception_layout()
 
     def _proprioception_layout(self) -> dict[str, slice]:
@@ -188,14 +191,19 @@ class Core:
     def model(self) -> Any:
         """Returns the model that scripts see."""
         if self._watched is None:
-            self._watched = live.Watched(self, live.make_model(self))
+            self._watched = Watched(self, make_model(self))
         return self._watched.model
 
     @property
     def data(self) -> Any:
         """Returns the state that scripts see, up to date."""
         if self._live is None:
-            self._live = live.make_live(self)
+            self._live = self._make_live()
         elif self._live.stale:
             self._live.refresh()
         return self._live.data
+
+    def _make_live(self) -> Live:
+        """Makes the state that scripts hold: MuJoCo's own where it is installed."""
+        mujoco = mujoco_module()
+        return ViewLive(self) if mujoco is None or isinstance(self.model, ModelView) else MujocoLive(self, mujoco)

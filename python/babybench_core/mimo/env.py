@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import tables
 from .actuation import MODELS, ActuationModel, EngineActuation, SpringDamperModel
 from .core import Core
-from .mimo_env import DEFAULT_SIZE, EMOTES, SCENE_NAME, MIMoEnv, Observation
+from .mimo_env import DEFAULT_SIZE, EMOTES, SCENE_NAME, MIMoEnv
+from .sensing import Observation
 from .utils import get_child_bodies, get_geoms_for_body
 
 __all__ = [

@@ -11,9 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
-from gymnasium import spaces
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _native
@@ -22,11 +20,9 @@ from .actuation import MODELS, ActuationModel, SpringDamperModel
 from .core import Core
 from .renderer import MujocoRenderer
 from .scene import Scene, read_scene
-from .senses import Proprioception, SimpleProprioception, SimpleVestibular, SimpleVision, Vestibular, Vision
+from .sensing import Observation, SensingEnv
 from .settings import engine_config
-from .touch import Touch, TrimeshTouch
 
-Observation = dict[str, NDArray[Any]]
 Array = NDArray[np.float64]
 
 DEFAULT_SIZE = 480
@@ -50,8 +46,6 @@ _WITHIN_STEP = (
 )
 """Methods between the start of a step and its observation."""
 
-_HOOKS = ("get_proprio_obs", "get_touch_obs", "get_vision_obs", "get_vestibular_obs")
-
 _DEFAULT_SCENE = Scene(
     keys={"scene": "base", **{f"act_{part}": True for part in tables.PARTS}},
     place={"pos": [0.0, 0.0, 0.075]},
@@ -69,7 +63,7 @@ def _known_scene(model_path: str | os.PathLike[str]) -> Scene:
     raise FileNotFoundError(f"File {path} does not exist")
 
 
-class MIMoEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
+class MIMoEnv(SensingEnv):
     """MIMo in a scene, with the senses and the actuation that the arguments ask for.
 
     Args:
@@ -145,10 +139,7 @@ class MIMoEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         self._set_action_space()
         self._own_seed = self.action_space.np_random
         self.mujoco_renderer = MujocoRenderer(self._core, default_camera_config)
-        self.proprioception: Proprioception | None = None
-        self.touch: Touch | None = None
-        self.vision: Vision | None = None
-        self.vestibular: Vestibular | None = None
+        self.proprioception = self.touch = self.vision = self.vestibular = None
         self._core.reset_data()
         self._core.forward(self.init_qpos, self.init_qvel)
         self._env_setup()
@@ -185,20 +176,6 @@ class MIMoEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         self.init_qvel: Array = np.zeros(core.blueprint.model_options["nv"])
         if core.place is not None:
             self.init_qpos[:3] = core.place
-
-    def _observes_plainly(self) -> bool:
-        """Tells whether the observation is the engine's, with nothing replaced."""
-        known = (SimpleProprioception, TrimeshTouch, SimpleVision, SimpleVestibular, type(None))
-        senses = (self.proprioception, self.touch, self.vision, self.vestibular)
-        components = set((self.proprio_params or {}).get("components", ()))
-        return (
-            all(getattr(type(self), hook) is getattr(MIMoEnv, hook) for hook in _HOOKS)
-            and all(type(sense) in known for sense in senses)
-            and not getattr(self.touch, "_own", False)
-            and components == set(SimpleProprioception.VALID_COMPONENTS)
-            and self._core.plain_actuation
-            and not self.goals_in_observation
-        )
 
     # --- what scripts see ---
 
@@ -257,41 +234,6 @@ class MIMoEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         """Makes :attr:`action_space`."""
         self.action_space = self.actuation_model.get_action_space()
 
-    def _set_observation_space(self) -> None:
-        """Makes :attr:`observation_space` from an observation."""
-        observation = self._get_obs()
-        boxes: dict[str, spaces.Space[Any]] = {}
-        for key, value in observation.items():
-            low, high = (0, 255) if value.dtype == np.uint8 else (-np.inf, np.inf)
-            boxes[key] = spaces.Box(low, high, shape=value.shape, dtype=value.dtype.type)
-        self.observation_space = spaces.Dict(boxes)
-
-    def _env_setup(self) -> None:
-        """Makes the senses."""
-        self.proprio_setup(self.proprio_params)
-        if self.touch_params is not None:
-            self.touch_setup(self.touch_params)
-        if self.vision_params is not None:
-            self.vision_setup(self.vision_params)
-        if self.vestibular_params is not None:
-            self.vestibular_setup(self.vestibular_params)
-
-    def proprio_setup(self, proprio_params: dict[str, Any] | None) -> None:
-        """Makes proprioception."""
-        self.proprioception = SimpleProprioception(self, proprio_params)
-
-    def touch_setup(self, touch_params: dict[str, Any]) -> None:
-        """Makes touch."""
-        self.touch = TrimeshTouch(self, touch_params)
-
-    def vision_setup(self, vision_params: dict[str, Any]) -> None:
-        """Makes vision."""
-        self.vision = SimpleVision(self, vision_params)
-
-    def vestibular_setup(self, vestibular_params: dict[str, Any]) -> None:
-        """Makes the sense of balance."""
-        self.vestibular = SimpleVestibular(self, vestibular_params)
-
     # --- physics ---
 
     def _set_action(self, action: ArrayLike) -> None:
@@ -331,45 +273,6 @@ class MIMoEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
 
     def _obs_callback(self) -> None:
         """Is called after the observation of a step."""
-
-    # --- senses ---
-
-    def get_proprio_obs(self) -> Array:
-        """Returns the present proprioception, (n,)."""
-        assert self.proprioception is not None
-        return self.proprioception.get_proprioception_obs()
-
-    def get_touch_obs(self) -> NDArray[np.float32]:
-        """Returns what is felt at present, (sensors, 3), N."""
-        assert self.touch is not None
-        return self.touch.get_touch_obs()
-
-    def get_vision_obs(self) -> dict[str, NDArray[np.uint8]]:
-        """Returns what is seen at present, by camera."""
-        assert self.vision is not None
-        return self.vision.get_vision_obs()
-
-    def get_vestibular_obs(self) -> Array:
-        """Returns the present sense of balance, (6,)."""
-        assert self.vestibular is not None
-        return self.vestibular.get_vestibular_obs()
-
-    def _get_obs(self) -> Observation:
-        """Returns the present observation."""
-        self._core.observe()
-        if getattr(self, "_plain", False):
-            return self._core.observation()
-        observation: Observation = {"observation": self.get_proprio_obs()}
-        if self.touch:
-            observation["touch"] = self.get_touch_obs().ravel()
-        if self.vision:
-            observation.update(self.get_vision_obs())
-        if self.vestibular:
-            observation["vestibular"] = self.get_vestibular_obs()
-        if self.goals_in_observation:
-            observation["achieved_goal"] = np.array(self.get_achieved_goal())
-            observation["desired_goal"] = np.array(self.goal)
-        return observation
 
     # --- Gymnasium ---
 
@@ -453,10 +356,6 @@ class MIMoEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
 
     def sample_goal(self) -> Any:
         """Returns a goal."""
-        raise NotImplementedError
-
-    def get_achieved_goal(self) -> Any:
-        """Returns what is reached at present."""
         raise NotImplementedError
 
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> Any:

@@ -12,8 +12,8 @@ from typing import Any
 import gymnasium as gym
 
 from ..standin import CHOICE
+from .assets import assets_folder
 from .build_xml import build
-from .live import assets_folder
 from .scene import kit_assets
 
 ENVS = {"none": "BabyBench", "self_touch": "BabyBench-SelfTouch", "hand_regard": "BabyBench-HandRegard"}

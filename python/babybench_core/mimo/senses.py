@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _native
+
 if TYPE_CHECKING:
-    from .mimo_env import MIMoEnv
+    from .sensing import SensingEnv
 
 Array = NDArray[np.float64]
 
@@ -31,7 +33,7 @@ class Proprioception:
 
     VALID_COMPONENTS: ClassVar[list[str]] = []
 
-    def __init__(self, env: MIMoEnv, proprio_parameters: dict[str, Any] | None) -> None:
+    def __init__(self, env: SensingEnv, proprio_parameters: dict[str, Any] | None) -> None:
         """Belongs to an environment."""
         self.env = env
         self._core = env._core
@@ -59,7 +61,7 @@ class SimpleProprioception(Proprioception):
 
     VALID_COMPONENTS: ClassVar[list[str]] = ["velocity", "torque", "limits", "actuation"]
 
-    def __init__(self, env: MIMoEnv, proprio_parameters: dict[str, Any] | None) -> None:
+    def __init__(self, env: SensingEnv, proprio_parameters: dict[str, Any] | None) -> None:
         """Belongs to an environment."""
         super().__init__(env, proprio_parameters)
         names, array = env._core.names, env._core.blueprint.model_array
@@ -85,7 +87,10 @@ class SimpleProprioception(Proprioception):
                 "proprio_params: the engine feels limits from 0.035 rad on; another threshold is not served"
             )
         where = env._core.layout
-        self._parts = {key: where[key] for key, component in _OUTPUTS if not component or component in on}
+        keys = [key for key, component in _OUTPUTS if not component or component in on]
+        self._parts = _native.Blocks(
+            env._core.engine, False, [(key, where[key].start, where[key].stop) for key in keys]
+        )
         self._shown = -1
         self._outputs: dict[str, Array] = {}
         self._all = set(on) == set(self.VALID_COMPONENTS)
@@ -93,11 +98,8 @@ class SimpleProprioception(Proprioception):
     @property
     def sensor_outputs(self) -> dict[str, Array]:
         """Returns the parts of the last output: ``qpos``, ``qvel``, ``torques``, ``limits``, ``actuation``."""
-        if self._shown != self._core.observed:
-            flat = self._core.proprioception()
-            self._outputs = dict(zip(self._parts, map(flat.__getitem__, self._parts.values())))
-            self._shown = self._core.observed
-        return self._outputs
+        moment = self._core.observed
+        return self._outputs if self._shown == moment else self._parts.felt(moment)
 
     @sensor_outputs.setter
     def sensor_outputs(self, outputs: dict[str, Array]) -> None:
@@ -122,7 +124,7 @@ class Vestibular:
         vestibular_parameters: Parameters: ``sensors``.
     """
 
-    def __init__(self, env: MIMoEnv, vestibular_parameters: dict[str, Any]) -> None:
+    def __init__(self, env: SensingEnv, vestibular_parameters: dict[str, Any]) -> None:
         """Belongs to an environment."""
         self.env = env
         self._core = env._core
@@ -140,7 +142,7 @@ class SimpleVestibular(Vestibular):
         sensors: Names of the sensors; ``sensor_ids`` their ids, ``sensor_addrs`` (n, 3) where their values stand.
     """
 
-    def __init__(self, env: MIMoEnv, vestibular_parameters: dict[str, Any]) -> None:
+    def __init__(self, env: SensingEnv, vestibular_parameters: dict[str, Any]) -> None:
         """Belongs to an environment."""
         super().__init__(env, vestibular_parameters)
         self.sensors: list[str] = vestibular_parameters["sensors"]
@@ -158,7 +160,7 @@ class SimpleVestibular(Vestibular):
     def sensor_outputs(self) -> Array:
         """Returns the last output, (n,)."""
         if self._shown != self._core.observed:
-            self._outputs = np.array(self._core.engine.state_array("sensordata")[self._where])
+            self._outputs = self._core.engine.state_array("sensordata")[self._where]
             self._shown = self._core.observed
         return self._outputs
 
@@ -176,7 +178,7 @@ class Vision:
         camera_parameters: ``width`` and ``height`` of each camera's picture, pixels.
     """
 
-    def __init__(self, env: MIMoEnv, camera_parameters: dict[str, dict[str, int]]) -> None:
+    def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, int]]) -> None:
         """Belongs to an environment."""
         self.env = env
         self._core = env._core
@@ -190,7 +192,7 @@ class Vision:
 class SimpleVision(Vision):
     """A picture of each eye."""
 
-    def __init__(self, env: MIMoEnv, camera_parameters: dict[str, dict[str, int]]) -> None:
+    def __init__(self, env: SensingEnv, camera_parameters: dict[str, dict[str, int]]) -> None:
         """Belongs to an environment."""
         super().__init__(env, camera_parameters)
         self._shown = -1

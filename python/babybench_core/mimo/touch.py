@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any, Callable, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import _native
 from . import utils
 from .utils import EPS
 
 if TYPE_CHECKING:
-    from .mimo_env import MIMoEnv
+    from .sensing import SensingEnv
 
 Array = NDArray[np.float64]
 
@@ -64,7 +65,7 @@ class Touch:
     VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {}
     VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = []
 
-    def __init__(self, env: MIMoEnv, touch_params: dict[str, Any]) -> None:
+    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
         """Belongs to an environment."""
         self.env = env
         self._core = env._core
@@ -91,7 +92,7 @@ class Touch:
 class DiscreteTouch(Touch):
     """MIMo's touch by geoms; the kit's own does not run, so nobody has it."""
 
-    def __init__(self, env: MIMoEnv, touch_params: dict[str, Any]) -> None:
+    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
         """Refuses.
 
         Raises:
@@ -120,7 +121,7 @@ class TrimeshTouch(Touch):
         "get_sensors_within_distance",
     )
 
-    def __init__(self, env: MIMoEnv, touch_params: dict[str, Any]) -> None:
+    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
         """Belongs to an environment."""
         super().__init__(env, touch_params)
         layout = {skin["body"]: skin for skin in env._core.engine.touch_layout()}
@@ -132,10 +133,8 @@ class TrimeshTouch(Touch):
         self.active_vertices = {body: np.ones(len(p), dtype=bool) for body, p in self.sensor_positions.items()}
         self.plotting_limits: dict[int, float] = {}
         self._sensor_counts = {body: len(positions) for body, positions in self.sensor_positions.items()}
-        self._rows = {
-            body: slice(layout[body]["offset"], layout[body]["offset"] + count)
-            for body, count in self._sensor_counts.items()
-        }
+        places = [(body, layout[body]["offset"], count) for body, count in self._sensor_counts.items()]
+        self._skin = _native.Blocks(env._core.engine, True, [(body, at, at + count) for body, at, count in places])
         self._shape = (-1, self.touch_size)
         self._shown = self._felt = -1
         self._outputs: dict[int, NDArray[np.float32]] = {}
@@ -260,11 +259,8 @@ class TrimeshTouch(Touch):
     @property
     def sensor_outputs(self) -> dict[int, NDArray[np.float32]]:
         """Returns what the sensors of each body felt last, (n, touch_size), N, in the order of ``sensor_positions``."""
-        if self._shown != self._core.observed:
-            flat = self._core.touch().reshape(self._shape)
-            self._outputs = dict(zip(self._rows, map(flat.__getitem__, self._rows.values())))
-            self._shown = self._core.observed
-        return self._outputs
+        moment = self._core.observed
+        return self._outputs if self._shown == moment else self._skin.felt(moment)
 
     @sensor_outputs.setter
     def sensor_outputs(self, outputs: dict[int, NDArray[np.float32]]) -> None:

@@ -88,17 +88,21 @@ def checkout(whole: Path, tmp_path: Path) -> Path:
 def recordings(
     whole: Path, kit_python: str, tmp_path_factory: pytest.TempPathFactory
 ) -> Callable[[str, str], dict[str, Any]]:
-    """Recordings by configuration and by what was run: ``kit``, ``mujoco`` (beside MuJoCo) or ``alone`` (without)."""
+    """Recordings by configuration and by what was run.
+
+    That is ``kit``, ``kit cold`` (its solver starts each step afresh), ``mujoco`` (this library beside MuJoCo) or ``alone``.
+    """
     folder = tmp_path_factory.mktemp("recordings")
     record = Path(__file__).parent / "record.py"
 
     def recorded(config: str, who: str) -> dict[str, Any]:
         out = folder / f"{config}-{who}.pkl"
         if not out.exists():
+            who, *how = who.split()
             path = {"kit": (whole / "MIMo",), "alone": (WITHOUT_MUJOCO,)}.get(who, ())
             env = {"mujoco": {"BABYBENCH_MIMO": "babybench"}, "alone": {"BABYBENCH_MUJOCO": "off"}}.get(who, {})
             file = whole / "examples" / f"config_{config}.yml"
-            run(kit_python, record, file, STEPS, out, cwd=whole, path=path, **env)
+            run(kit_python, record, file, STEPS, out, *how, cwd=whole, path=path, **env)
         with out.open("rb") as f:
             return pickle.load(f)  # type: ignore[no-any-return]
 

@@ -1,6 +1,8 @@
 """Drives an environment of the kit as a script would, and records everything that scripts can see.
 
-Run as ``record.py CONFIG STEPS OUT`` from the root of a checkout of the kit, with MIMo or its stand-in on the path.
+Run as ``record.py CONFIG STEPS OUT`` from the root of a checkout of the kit, with MIMo or its stand-in on the path. With
+``cold`` as a further word MuJoCo's solver starts each step afresh instead of from its last solution: it finds the same up to its
+tolerance, and what is recorded shows how far that alone takes it.
 """
 
 from __future__ import annotations
@@ -111,12 +113,26 @@ def observation(obs: dict[str, Any]) -> dict[str, Any]:
     return {key: np.array(value) for key, value in obs.items()}
 
 
+def start_cold() -> None:
+    """Lets MuJoCo's solver start each step afresh, in all models from now on."""
+    import mujoco
+
+    read = mujoco.MjModel.from_xml_path
+
+    def cold(*args: Any) -> Any:
+        model = read(*args)
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_WARMSTART
+        return model
+
+    mujoco.MjModel.from_xml_path = cold
+
+
 def drive(config: dict[str, Any], steps: int) -> dict[str, Any]:
     """Runs an environment and records it."""
     env = bb_utils.make_env(config)
+    u = env.unwrapped
     env.action_space.seed(SEED)
     obs, empty = env.reset()
-    u = env.unwrapped
     recorded: dict[str, Any] = {
         "reset": observation(obs),
         "reset_info": empty,
@@ -174,11 +190,13 @@ def drive(config: dict[str, Any], steps: int) -> dict[str, Any]:
 
 def main() -> None:
     """Records one configuration."""
-    file, steps, out = sys.argv[1:]
+    file, steps, out, *how = sys.argv[1:]
     with open(file) as f:
         config = yaml.safe_load(f)
     with tempfile.TemporaryDirectory() as save_dir:
         config["save_dir"] = save_dir
+        if how == ["cold"]:
+            start_cold()
         recorded = drive(config, int(steps))
     with open(out, "wb") as f:
         pickle.dump(recorded, f)

@@ -13,7 +13,8 @@ from .conftest import CONFIGS, STEPS
 Recordings = Callable[[str, str], dict[str, Any]]
 
 # Differences grow with the steps, as any difference in the last bit does where there are contacts. Measured in 300 steps,
-# relative to the largest entry or 1: self-touch 1e-8, 1e-7, 8e-9; hand regard 1.1e-5; installation test 5e-9, 1e-7, 4e-9.
+# relative to the largest entry or 1: self-touch 1e-8, 1e-7, 8e-9; hand regard 1.1e-5 (the kit beside itself with its solver
+# started afresh in each step: 1.5e-5); installation test 5e-9, 1e-7, 4e-9.
 TOLERANCE = {
     "selftouch": {"observation": 1e-6, "touch": 1e-5, "vestibular": 1e-6},
     "handregard": {"observation": 1e-4},
@@ -46,6 +47,15 @@ def test_what_is_sensed_is_what_the_kit_senses(recordings: Recordings, config: s
         assert difference < tolerance
 
 
+def test_among_cubes_it_is_as_near_to_the_kit_as_the_kit_to_itself(recordings: Recordings) -> None:
+    kit, again, own = (recordings("handregard", who) for who in ("kit", "kit cold", "mujoco"))
+    floor = furthest(kit["observations"], again["observations"], "observation")
+    difference = furthest(kit["observations"], own["observations"], "observation")
+    print(f"hand regard: the kit differs from itself by {floor:.1e}, this library by {difference:.1e}")
+    assert floor > 1e-6
+    assert difference < 2 * floor
+
+
 @pytest.mark.parametrize("config", CONFIGS)
 def test_information_and_log_are_the_kits(recordings: Recordings, config: str) -> None:
     kit, own = recordings(config, "kit"), recordings(config, "mujoco")
@@ -63,9 +73,13 @@ def test_the_eyes_see_what_the_kits_eyes_see(recordings: Recordings, config: str
             np.abs(a[eye].astype(int) - b[eye]).max() for a, b in zip(kit["observations"][:30], own["observations"])
         ]
         state = np.abs(kit["state"][eye].astype(int) - own["state"][eye])
-        print(f"{config}: {eye} differs by at most {max(near)} in 30 steps, {state.max()} in the same state")
+        all_steps = [np.abs(a[eye].astype(int) - b[eye]) > 2 for a, b in zip(kit["observations"], own["observations"])]
+        share = float(np.mean(all_steps))
+        print(f"{config}: {eye} differs by at most {max(near)} in 30 steps, {state.max()} in the same state;")
+        print(f"  {share:.1e} of all numbers of {STEPS} steps by more than 2")
         assert max(near) <= 2
         assert state.max() <= 2
+        assert share < 1e-5
 
 
 def test_a_state_that_a_script_writes_is_sensed(recordings: Recordings) -> None:

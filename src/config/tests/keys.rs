@@ -39,12 +39,22 @@ fn values(kind: KeyKind) -> Values {
                 .map(String::from)
                 .into(),
         ),
+        KeyKind::Number { min, max } => (
+            vec![
+                format!("{min:?}"),
+                format!("{max:?}"),
+                "1".to_string(),
+                "1e0".to_string(),
+            ],
+            &["one", "true", "'1'", "none"],
+            ["-1", "2000000", ".nan", ".inf"].map(String::from).into(),
+        ),
         KeyKind::NoneOr { .. } => (
             ["none", "null", "~", "'none'", "1", "7.5", "1e1", "24"]
                 .map(String::from)
                 .into(),
             &["one", "true", "'1'", "None"],
-            ["-1", "1000", ".nan"].map(String::from).into(),
+            ["-1", "2000000", ".nan"].map(String::from).into(),
         ),
         KeyKind::Choice(names) => {
             // Values that depend on other keys have tests of their own.
@@ -124,19 +134,24 @@ fn every_key_takes_what_it_says_and_nothing_else() {
         for value in good {
             // A block scalar ends with a line break, which no folder name may have, unless stripped.
             let value = value.replace(">\n", ">-\n");
-            // the other keys of growth change MIMo at an age
-            let age = if key.section == "Growth" && name != "age" {
-                "age: 3\n"
-            } else {
-                ""
+            let beside = match (key.section, name) {
+                ("Growth", "age") | ("Pain", "pain_active") => "",
+                // the other keys of growth change MIMo at an age
+                ("Growth", _) => "age: 3\n",
+                ("Pain", _) => "pain_active: true\n",
+                // 10,000 steps are too many
+                ("Delays", _) if name != "delay_unit" => "delay_unit: ms\nframe_skip: 2\nvision_resolution: 16\n",
+                _ => "",
             };
-            let config =
-                read(&format!("\n{age}{name}: {value}\n")).unwrap_or_else(|error| panic!("{name}: {value}: {error}"));
-            let set = |other: &&Key| other.name != name && (age.is_empty() || other.name != "age");
+            let config = read(&format!("\n{beside}{name}: {value}\n"))
+                .unwrap_or_else(|error| panic!("{name}: {value}: {error}"));
+            let set = |other: &&Key| other.name != name && !beside.contains(&format!("{}:", other.name));
+            // tasks have defaults of their own
+            let defaults = Config::of(config.behavior);
             for other in Config::keys().iter().filter(set) {
                 assert_eq!(
                     other.value(&config),
-                    other.default_value(),
+                    other.value(&defaults),
                     "{name} changes {}",
                     other.name
                 );

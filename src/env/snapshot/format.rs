@@ -2,26 +2,27 @@
 
 use thiserror::Error;
 
-use crate::config::Config;
+use crate::config::{Config, Delays, Key};
 use crate::model::Model;
 
 /// First bytes of a snapshot.
 pub(super) const MAGIC: [u8; 8] = *b"BBSNAP\r\n";
 /// Layout of the bytes that follow.
-pub(super) const VERSION: u32 = 3;
+pub(super) const VERSION: u32 = 4;
 /// Magic, version, a zero, fingerprint, checksum.
 pub(super) const HEADER: usize = 32;
 
 /// An environment at one moment: [`Env::snapshot`](crate::Env::snapshot) takes it, [`Env::restore`](crate::Env::restore) goes back to it.
 ///
 /// It holds positions, velocities, controls, muscles, applied forces, the start of the solver, all parameters with the
-/// locks, the random generator, the information and counters of the episode, and the vectors
-/// `observation` and `vestibular`. A continuation from it has the same bits as the original, in the same environment or
+/// locks, the random generator, the goals and the memory of the task, the information and counters of the episode, the vectors
+/// `observation`, `touch_pooled` and `vestibular`, and what delays, pain and other transforms remember. A continuation from it has the
+/// same bits as the original, in the same environment or
 /// in another of the same configuration and scene.
 ///
 /// The bytes are little-endian and the same on all machines: the magic `BBSNAP\r\n`, the version of the layout (`u32`), a
 /// zero (`u32`), a fingerprint of configuration and scene (`u64`), a checksum of what follows (`u64`), whole numbers
-/// (`u64`), numbers (`f64`), flags (a byte each), touched geoms (`u32`).
+/// (`u64`), numbers (`f64`), flags (a byte each), touched geoms (`u32`), and what is remembered, each part behind its length (`u64`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snapshot {
     pub(super) bytes: Vec<u8>,
@@ -69,7 +70,9 @@ pub enum SnapshotError {
         what: &'static str,
     },
     /// Taken from an environment of another configuration or scene.
-    #[error("the snapshot was taken with another behavior, scene, actuation model, compat or set of actuators")]
+    #[error(
+        "the snapshot was taken with another behavior, scene, actuation model, compat, set of actuators or of senses"
+    )]
     OtherEnvironment,
 }
 
@@ -183,6 +186,16 @@ pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
         config.engine.name(),
     ] {
         bytes.extend_from_slice(name.as_bytes());
+        bytes.push(0);
+    }
+    let remembers = config.delays != Delays::default() || config.pain_active;
+    let shapes = |key: &&Key| {
+        ["Delays", "Pain"].contains(&key.section)
+            || key.name == "touch_pooled"
+            || remembers && ["Vision", "Touch"].contains(&key.section)
+    };
+    for key in Config::keys().iter().filter(shapes) {
+        bytes.extend_from_slice(key.value(config).to_yaml().as_bytes());
         bytes.push(0);
     }
     checksum(&bytes)

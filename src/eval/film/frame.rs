@@ -1,6 +1,8 @@
 //! The composed frame of an evaluation: the room on the left, what the behavior is about at the upper right, the view
 //! from above at the lower right.
 
+use crate::env::room_camera;
+use crate::math::{Mat3, Vec3, add};
 use crate::model::Model;
 use crate::render::{CpuRenderer, Poses, RenderError, View, Visual, luma};
 
@@ -42,26 +44,45 @@ pub enum Panel<'a> {
     Picture(&'a [u8]),
 }
 
+/// Where a picture is taken from.
+#[derive(Clone, Copy, Debug)]
+enum Spot {
+    /// A camera of the scene.
+    Camera(usize),
+    /// Before MIMo's hip, where the room has no camera: offset (m) and orientation.
+    Free(Vec3, Mat3),
+}
+
 /// Composes the frames of evaluation videos.
 #[derive(Debug)]
 pub struct FrameComposer {
     renderer: CpuRenderer,
-    corner: usize,
-    top: usize,
-    side: usize,
+    corner: Spot,
+    top: Spot,
+    side: Spot,
     eyes: Option<[usize; 2]>,
+    hip: usize,
     picture: Vec<u8>,
     half: Vec<u8>,
     other: Vec<u8>,
 }
 
 impl FrameComposer {
-    /// Creates a composer for the scene of `model`.
+    /// Creates a composer for the scene of `model`. Where it has no cameras `corner`, `top`, `side2`, as scenes of tasks have none, others
+    /// follow MIMo.
     ///
     /// # Errors
-    /// The scene lacks one of the cameras `corner`, `top`, `side2`.
+    /// The scene lacks such a camera, and MIMo.
     pub fn new(model: &Model) -> Result<Self, FrameError> {
-        let camera = |name: &'static str| model.camera(name).ok_or(FrameError::Camera(name));
+        let origin = vec![[0.0; 3]; model.nbody()];
+        let camera = |name: &'static str| match (model.camera(name), room_camera(model, &origin, name)) {
+            (Some(camera), _) => Ok(Spot::Camera(camera)),
+            (None, Some(free)) => free
+                .pose()
+                .map(|(offset, mat)| Spot::Free(offset, mat))
+                .map_err(FrameError::from),
+            (None, None) => Err(FrameError::Camera(name)),
+        };
         Ok(Self {
             renderer: CpuRenderer::new(),
             corner: camera("corner")?,
@@ -71,6 +92,7 @@ impl FrameComposer {
                 .camera("eye_left")
                 .zip(model.camera("eye_right"))
                 .map(<[_; 2]>::from),
+            hip: model.body("hip").unwrap_or_default(),
             picture: vec![0; 3 * FRAME_HEIGHT * FRAME_HEIGHT],
             half: vec![0; 3 * PANEL * PANEL],
             other: vec![0; 3 * PANEL * PANEL],
@@ -112,20 +134,37 @@ impl FrameComposer {
         Ok(())
     }
 
-    fn draw(&mut self, visual: &Visual, poses: &Poses, camera: usize) -> Result<(), FrameError> {
-        Ok(self.renderer.rgb(visual, poses, &view(camera), &mut self.picture)?)
+    fn draw(&mut self, visual: &Visual, poses: &Poses, from: Spot) -> Result<(), FrameError> {
+        let (poses, camera) = self.stand(poses, from);
+        Ok(self.renderer.rgb(visual, &poses, &view(camera), &mut self.picture)?)
     }
 
     /// Draws a panel of half the size: every second pixel of every second row.
-    fn half(&mut self, visual: &Visual, poses: &Poses, camera: usize) -> Result<(), FrameError> {
-        Ok(self.renderer.rgb_halved(visual, poses, &view(camera), &mut self.half)?)
+    fn half(&mut self, visual: &Visual, poses: &Poses, from: Spot) -> Result<(), FrameError> {
+        let (poses, camera) = self.stand(poses, from);
+        Ok(self
+            .renderer
+            .rgb_halved(visual, &poses, &view(camera), &mut self.half)?)
+    }
+
+    /// Returns the poses and the camera of a spot.
+    fn stand<'p>(&self, poses: &Poses<'p>, from: Spot) -> (Poses<'p>, usize) {
+        let mut poses = *poses;
+        match from {
+            Spot::Camera(camera) => (poses, camera),
+            Spot::Free(offset, mat) => {
+                let hip = poses.xpos.get(self.hip).copied().unwrap_or_default();
+                poses.free = Some((add(hip, offset), mat));
+                (poses, View::FREE)
+            }
+        }
     }
 
     fn binocular(&mut self, visual: &Visual, poses: &Poses) -> Result<(), FrameError> {
         let [left, right] = self.eyes.ok_or(FrameError::Camera("eye_left"))?;
-        self.half(visual, poses, left)?;
+        self.half(visual, poses, Spot::Camera(left))?;
         std::mem::swap(&mut self.half, &mut self.other);
-        self.half(visual, poses, right)?;
+        self.half(visual, poses, Spot::Camera(right))?;
         for (right, left) in self.half.chunks_exact_mut(3).zip(self.other.chunks_exact(3)) {
             let cyan = luma([right[0], right[1], right[2]]);
             right.copy_from_slice(&[luma([left[0], left[1], left[2]]), cyan, cyan]);

@@ -1,5 +1,6 @@
 //! Videos of evaluation episodes, one composed frame for each step.
 
+use std::ffi::OsStr;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,6 +9,7 @@ use super::skin_panel::SkinPanel;
 use super::{FRAME_HEIGHT, FRAME_WIDTH, Film, FilmError, FrameComposer, Panel};
 use crate::config::Behavior;
 use crate::env::Env;
+use crate::files::{sweep, unfinished};
 use crate::formats::avi::{AviWriter, DEFAULT_FPS};
 use crate::render::{Poses, Visual};
 
@@ -42,6 +44,7 @@ impl RoomFilm {
     pub fn new(env: &Env, folder: impl Into<PathBuf>) -> Result<Self, FilmError> {
         let folder = folder.into();
         std::fs::create_dir_all(&folder)?;
+        sweep(&folder);
         Ok(Self {
             composer: FrameComposer::new(env.model())?,
             skin: SkinPanel::new(),
@@ -63,15 +66,7 @@ impl RoomFilm {
 
     /// Creates a temporary file in the folder.
     fn begin(&self) -> Result<(PathBuf, AviWriter<File>), FilmError> {
-        let mut number = 0;
-        let (path, file) = loop {
-            let path = self.folder.join(format!(".evaluation.{number}.tmp"));
-            match File::options().write(true).create_new(true).open(&path) {
-                Ok(file) => break (path, file),
-                Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists && number < 1000 => number += 1,
-                Err(e) => return Err(e.into()),
-            }
-        };
+        let (path, file) = unfinished(&self.folder, OsStr::new("evaluation"))?;
         let writer = AviWriter::new(file, FRAME_WIDTH as u32, FRAME_HEIGHT as u32, self.fps)?;
         Ok((path, writer))
     }
@@ -86,7 +81,7 @@ impl Film for RoomFilm {
         let panel = match env.config().behavior {
             Behavior::HandRegard => Panel::Binocular,
             Behavior::SelfTouch => self.skin.draw(env).map_or(Panel::Side, Panel::Picture),
-            Behavior::None => Panel::Side,
+            _ => Panel::Side,
         };
         let composed = self
             .composer
@@ -109,7 +104,7 @@ impl Film for RoomFilm {
 
     fn discard(&mut self) {
         if let Some((temporary, _)) = self.writer.take() {
-            // a leftover does no harm
+            // what stays is removed by the next film
             let _ = std::fs::remove_file(temporary);
         }
     }

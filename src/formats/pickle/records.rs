@@ -59,6 +59,24 @@ impl<'m, 'a> Node<'m, 'a> {
         }
     }
 
+    /// Returns a number; 0 or 1 for false and true.
+    pub fn number(self) -> Option<f64> {
+        match self.item {
+            Item::Bool(on) => Some(f64::from(u8::from(on))),
+            Item::Int(number) => Some(number as f64),
+            Item::Float(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// Returns a text.
+    pub fn text(self) -> Option<&'m str> {
+        match self.object() {
+            Some(Object::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+
     /// Returns a whole number that is not negative.
     pub fn count(self) -> Option<u64> {
         match self.item {

@@ -43,6 +43,17 @@ fn what_is_written_reads_back() {
 }
 
 #[test]
+fn a_list_written_item_by_item_is_the_same_list() {
+    let mut writer = ListWriter::new();
+    // more than are appended at once
+    let items = || (0..2500).map(|k| if k % 1000 == 0 { sample() } else { Value::Int(k) });
+    items().for_each(|item| writer.push(&item).unwrap());
+    let bytes = writer.finish();
+    assert!(bytes == to_bytes(&Value::list(items())).unwrap());
+    assert!(from_bytes(&bytes).unwrap() == Value::list(items()));
+}
+
+#[test]
 fn nothing_is_looked_up_or_called() {
     for (bytes, name) in [
         (&b"\x80\x02cos\nsystem\nX\x02\0\0\0ls\x85R."[..], "os.system"),

@@ -1,6 +1,7 @@
 //! Values -> protocol 4.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::{Array, PickleError, Value};
 use crate::limits::Limits;
@@ -10,29 +11,69 @@ use crate::limits::Limits;
 /// # Errors
 /// Values nested too deeply, an array whose shape does not fit its numbers.
 pub fn to_bytes(value: &Value) -> Result<Vec<u8>, PickleError> {
-    let mut writer = Writer {
-        out: vec![0x80, 4],
-        keys: BTreeMap::new(),
-        numpy: None,
-        memo: 0,
-    };
+    let mut writer = Writer::new();
     writer.value(value, 0)?;
     writer.out.push(b'.');
     Ok(writer.out)
 }
 
+/// Writes a list item by item, so that the items need not be in memory at the same time. The bytes are those of
+/// [`to_bytes`] for the whole list.
+pub(crate) struct ListWriter {
+    writer: Writer,
+    items: usize,
+}
+
+impl ListWriter {
+    /// Begins a list.
+    pub fn new() -> Self {
+        let mut writer = Writer::new();
+        writer.begin_list();
+        Self { writer, items: 0 }
+    }
+
+    /// Adds an item.
+    ///
+    /// # Errors
+    /// As [`to_bytes`].
+    pub fn push(&mut self, item: &Value) -> Result<(), PickleError> {
+        self.writer.item(self.items, item, 1)?;
+        self.items += 1;
+        Ok(())
+    }
+
+    /// Ends the list and returns the pickle.
+    pub fn finish(mut self) -> Vec<u8> {
+        self.writer.end_list();
+        self.writer.out.push(b'.');
+        self.writer.out
+    }
+}
+
+/// Number of items that are appended to a list at once, as Python does it; a reader need not hold more.
+const BATCH: usize = 1000;
+
 /// Memo indices of NumPy's constructor, its array type and the type `float64`.
 type Numpy = [u32; 3];
 
-struct Writer<'v> {
+struct Writer {
     out: Vec<u8>,
-    keys: BTreeMap<&'v str, u32>,
+    keys: BTreeMap<Arc<str>, u32>,
     numpy: Option<Numpy>,
     memo: u32,
 }
 
-impl<'v> Writer<'v> {
-    fn value(&mut self, value: &'v Value, depth: usize) -> Result<(), PickleError> {
+impl Writer {
+    fn new() -> Self {
+        Self {
+            out: vec![0x80, 4],
+            keys: BTreeMap::new(),
+            numpy: None,
+            memo: 0,
+        }
+    }
+
+    fn value(&mut self, value: &Value, depth: usize) -> Result<(), PickleError> {
         // what is written can be read
         let limit = Limits::DEFAULT.pickle_depth;
         if depth > limit {
@@ -49,11 +90,11 @@ impl<'v> Writer<'v> {
             }
             Value::Text(t) => self.text(t),
             Value::List(items) => {
-                self.out.extend(b"](");
-                for item in items.iter() {
-                    self.value(item, depth + 1)?;
+                self.begin_list();
+                for (index, item) in items.iter().enumerate() {
+                    self.item(index, item, depth + 1)?;
                 }
-                self.out.push(b'e');
+                self.end_list();
             }
             Value::Dict(items) => {
                 self.out.extend(b"}(");
@@ -63,7 +104,7 @@ impl<'v> Writer<'v> {
                         None => {
                             self.text(key);
                             let index = self.put();
-                            self.keys.insert(key, index);
+                            self.keys.insert(key.clone(), index);
                         }
                     }
                     self.value(item, depth + 1)?;
@@ -73,6 +114,22 @@ impl<'v> Writer<'v> {
             Value::Array(array) => self.array(array)?,
         }
         Ok(())
+    }
+
+    fn begin_list(&mut self) {
+        self.out.extend(b"](");
+    }
+
+    /// Writes an item of a list by its index.
+    fn item(&mut self, index: usize, item: &Value, depth: usize) -> Result<(), PickleError> {
+        if index > 0 && index.is_multiple_of(BATCH) {
+            self.out.extend(b"e(");
+        }
+        self.value(item, depth)
+    }
+
+    fn end_list(&mut self) {
+        self.out.push(b'e');
     }
 
     /// Remembers the top of the stack.

@@ -9,6 +9,7 @@
 //! BabyBench's lacks; here the chest's parts belong to the upper body. Its muscles keep their strength at all ages; here
 //! they follow the motors.
 
+mod blame;
 mod body;
 mod fingers;
 mod lengths;
@@ -22,8 +23,9 @@ use crate::config::{Compat, Config, MAX_AGE};
 use crate::math::Vec3;
 use crate::mimo::Version;
 use crate::mjcf_loader::Draft;
+pub(super) use blame::blame;
 use lengths::Lengths;
-use shapes::{Geom, Shapes, Side};
+use shapes::{Shapes, Side};
 use strength::carrier;
 
 /// Half the diameter of an eyeball of the original proportions, m: how far its camera is before its centre.
@@ -41,22 +43,15 @@ pub enum GrowthError {
         /// Age asked for, months.
         age: f64,
     },
-    /// A geom would vanish.
-    #[error(
-        "at {age} months, with these measurements, geom {index} of the body {body:?} would vanish: \
-         its size {axis} is {size:.4} m; change the measurement of that part"
-    )]
-    Vanishes {
+    /// Measurements make a body that cannot be.
+    #[error("{keys}: at {age} months {reason}; change it, or leave it to the age")]
+    Measurements {
+        /// Keys of the configuration at fault, with their values.
+        keys: String,
         /// Age, months.
         age: f64,
-        /// Name of the body.
-        body: String,
-        /// Index among the geoms of the body.
-        index: usize,
-        /// Index of the size at fault.
-        axis: usize,
-        /// Size, m.
-        size: f64,
+        /// What is wrong with the body.
+        reason: String,
     },
     /// The scene lacks a part that grows.
     #[error("the scene's MIMo has no {what}, which `age` would change; its assets are of another MIMo")]
@@ -78,11 +73,11 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Returns how MIMo grows to the `age` of a configuration; `None` if it has none.
+    /// Returns how a MIMo of some version grows to the `age` of a configuration; `None` if it has none.
     ///
     /// # Errors
     /// An age out of range, measurements that make a part vanish.
-    pub fn of(config: &Config) -> Result<Option<Self>, GrowthError> {
+    pub fn of(config: &Config, version: Version) -> Result<Option<Self>, GrowthError> {
         let Some(age) = config.age else { return Ok(None) };
         let strength_age = config.strength_age.unwrap_or(age);
         for (key, age) in [("age", age), ("strength_age", strength_age)] {
@@ -90,14 +85,16 @@ impl Growth {
                 return Err(GrowthError::Age { key, age });
             }
         }
-        let version = Version::of(config.behavior);
         let base = Lengths::base();
         let now = Lengths::new(age, &config.measurements);
-        let body = shapes(version, &now, &base);
-        let strong = shapes(version, &Lengths::new(strength_age, &config.measurements), &base);
-        for (age, shapes) in [(age, &body), (strength_age, &strong)] {
-            check(age, shapes)?;
-        }
+        let grown = |age: f64, config: &Config| {
+            let shapes = shapes(version, &Lengths::new(age, &config.measurements), &base);
+            check(&shapes).map(|()| shapes)
+        };
+        let made = |age: f64| {
+            grown(age, config).map_err(|reason| blame(config, age, reason, |other| grown(age, other).is_ok()))
+        };
+        let (body, strong) = (made(age)?, made(strength_age)?);
         let camera = match config.compat {
             Compat::Api => EYEBALL * now.head_circumference / base.head_circumference,
             Compat::Reference => EYEBALL, // where it was, outside a newborn's eye
@@ -207,30 +204,20 @@ fn shapes(version: Version, now: &Lengths, base: &Lengths) -> Shapes {
     out
 }
 
-/// Checks that every geom has a size.
-fn check(age: f64, shapes: &Shapes) -> Result<(), GrowthError> {
-    for &Geom {
-        body,
-        side,
-        index,
-        size,
-        ..
-    } in &shapes.geoms
-    {
-        if let Some(axis) = size
-            .iter()
-            .position(|s| !(s.is_finite() && *s >= 0.0))
-            .or((size[0] == 0.0).then_some(0))
-        {
-            let body = sides(side, body).next().map(|(name, _)| name).unwrap_or_default();
-            let size = size[axis];
-            return Err(GrowthError::Vanishes {
-                age,
-                body,
-                index,
-                axis,
-                size,
-            });
+/// Checks that every geom has a size; otherwise says which has none.
+fn check(shapes: &Shapes) -> Result<(), String> {
+    for geom in &shapes.geoms {
+        let gone = |s: &f64| !(s.is_finite() && *s >= 0.0);
+        let axis = geom.size.iter().position(gone).or((geom.size[0] == 0.0).then_some(0));
+        if let Some(axis) = axis {
+            let body = sides(geom.side, geom.body)
+                .next()
+                .map(|(name, _)| name)
+                .unwrap_or_default();
+            let (index, size) = (geom.index, geom.size[axis]);
+            return Err(format!(
+                "geom {index} of the body {body:?} would vanish: its size {axis} is {size:.4} m"
+            ));
         }
     }
     Ok(())

@@ -147,5 +147,12 @@ pub(super) fn compile_tendon(
     arrays.tendon_margin.push(tendon.margin);
     arrays.tendon_solref_lim.push(tendon.solref_limit);
     arrays.tendon_solimp_lim.push(tendon.solimp_limit);
+    let [shortest, longest] = tendon.springlength.0;
+    if shortest > longest {
+        return Err(context.invalid(tendon.at, "springlength must be the shorter and then the longer length"));
+    }
+    arrays.tendon_lengthspring.push([shortest, longest]);
+    arrays.tendon_stiffness.push(tendon.stiffness);
+    arrays.tendon_damping.push(tendon.damping);
     Ok(())
 }

@@ -214,7 +214,7 @@ pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
 }
 
 /// Computes the radius of the bounding sphere, m; 0 for planes.
-pub(super) fn bounding_radius(kind: GeomType, size: &Vec3) -> f64 {
+pub(crate) fn bounding_radius(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {
         GeomType::Plane => 0.0,

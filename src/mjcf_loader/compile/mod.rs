@@ -8,6 +8,7 @@ mod geometry;
 mod surface;
 
 use context::{Context, Ids};
+pub(crate) use geometry::bounding_radius;
 pub(super) use geometry::volume;
 
 use super::document::Document;

@@ -146,7 +146,7 @@ impl Newton {
         let (mut cost, length) = island.start(topology, &s.qacc_warmstart, efc);
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
         // what rests needs no step: the Hessian exceeds the inertia, so its steps are bounded by the inertia's inverse
-        let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(model, t)).sum();
+        let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(&s.params, t)).sum();
         if mobility > 0.0 && length * length * mobility < MINVAL {
             island.store(topology, efc, s);
             return;

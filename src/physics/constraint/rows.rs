@@ -4,6 +4,7 @@ use crate::math::*;
 use crate::model::{EqualityKind, Model};
 use crate::physics::constraint::append::{Rows, Spec};
 use crate::physics::constraint::{Block, ConstraintType, Efc, impedance, weld_points};
+use crate::physics::dynamics::tendon_length;
 use crate::physics::state::State;
 use crate::physics::tiles::{Lanes, total};
 use crate::physics::topology::Topology;
@@ -164,7 +165,7 @@ fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<
     let mut spec = Spec {
         solref: model.eq_solref[id],
         solimp: model.eq_solimp[id],
-        diag: model.dof_invweight0[d1],
+        diag: s.params.dof_invweight0[d1],
     };
     let Some(joint2) = joint2 else {
         rows.single(ConstraintType::Equality, id, d1, 1.0);
@@ -175,7 +176,7 @@ fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<
     let x = displacement(joint2);
     pos -= x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
     let slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * 4.0 * c[4]));
-    spec.diag += model.dof_invweight0[d2];
+    spec.diag += s.params.dof_invweight0[d2];
     rows.block(ConstraintType::Equality, id, 1);
     let mut entries = [(d1, 1.0), (d2, -slope)];
     entries.sort_unstable_by_key(|e| e.0);
@@ -209,7 +210,7 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
         rows.efc.blocks.pop();
         return;
     }
-    let (w1, w2) = (model.body_invweight0[body1], model.body_invweight0[body2]);
+    let (w1, w2) = (s.params.body_invweight0[body1], s.params.body_invweight0[body2]);
     let norm = weld.error.iter().map(|e| e * e).sum::<f64>().sqrt();
     for (k, &pos) in weld.error.iter().enumerate() {
         let spec = Spec {
@@ -236,7 +237,7 @@ fn joint_limits(rows: &mut Rows, s: &State) {
                 let spec = Spec {
                     solref: model.jnt_solref[j],
                     solimp: model.jnt_solimp[j],
-                    diag: model.dof_invweight0[d],
+                    diag: s.params.dof_invweight0[d],
                 };
                 rows.single(ConstraintType::LimitJoint, j, d, -side);
                 rows.row(dist, margin, dist - margin, spec);
@@ -254,7 +255,7 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
             continue;
         }
         let wrap = &model.tendon_wrap[t];
-        let length: f64 = wrap.iter().map(|&(j, coef)| coef * s.qpos[model.jnt_qposadr[j]]).sum();
+        let length = tendon_length(model, &s.qpos, t);
         let margin = model.tendon_margin[t];
         let spec = Spec {
             solref: model.tendon_solref_lim[t],
@@ -316,7 +317,7 @@ fn contact(rows: &mut Rows, s: &mut State, i: usize) {
         return;
     }
     let first = rows.efc.pos.len();
-    let diag = model.body_invweight0[b1][0] + model.body_invweight0[b2][0];
+    let diag = s.params.body_invweight0[b1][0] + s.params.body_invweight0[b2][0];
     let spec = Spec {
         solref: c.solref,
         solimp: c.solimp,

@@ -6,7 +6,7 @@ use crate::math::*;
 use crate::model::{
     Arrays, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
 };
-use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics};
+use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendon_length};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -25,11 +25,20 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
     Constants {
         body_invweight0: (0..model.nbody()).map(|b| weights.body(b)).collect(),
         dof_invweight0: weights.dofs(),
+        tendon_lengthspring: (0..model.ntendon()).map(|t| slack(model, t)).collect(),
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
         stat: statistics(model, &s, &dof_m0),
         weld_poses: weld_poses(model, &s),
         light_poses: light_poses(model, &s),
         dof_m0,
+    }
+}
+
+/// Returns the lengths between which a tendon's spring is slack: as given, else that in the springs' rest configuration.
+fn slack(model: &Arrays, tendon: usize) -> [f64; 2] {
+    match model.tendon_lengthspring[tendon] {
+        [-1.0, -1.0] => [tendon_length(model, &model.qpos_spring, tendon); 2],
+        given => given,
     }
 }
 

@@ -103,12 +103,12 @@ pub fn com_pos(model: &Arrays, s: &mut State) {
     let nb = model.nbody();
     s.subtree_com.fill([0.0; 3]);
     for b in (0..nb).rev() {
-        let com = add_scaled(s.subtree_com[b], s.xipos[b], model.body_mass[b]);
+        let com = add_scaled(s.subtree_com[b], s.xipos[b], s.params.body_mass[b]);
         if b > 0 {
             let p = model.body_parentid[b];
             s.subtree_com[p] = add(s.subtree_com[p], com);
         }
-        let mass = model.body_subtreemass[b];
+        let mass = s.params.body_subtreemass[b];
         s.subtree_com[b] = if mass < MINVAL {
             s.xipos[b]
         } else {
@@ -117,7 +117,7 @@ pub fn com_pos(model: &Arrays, s: &mut State) {
     }
     for b in 1..nb {
         let d = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
-        let (r, i, m) = (&s.ximat[b], model.body_inertia[b], model.body_mass[b]);
+        let (r, i, m) = (&s.ximat[b], s.params.body_inertia[b], s.params.body_mass[b]);
         let rotated = |a: usize, c: usize| {
             r[3 * a] * i[0] * r[3 * c] + r[3 * a + 1] * i[1] * r[3 * c + 1] + r[3 * a + 2] * i[2] * r[3 * c + 2]
         };

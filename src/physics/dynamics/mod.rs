@@ -16,7 +16,7 @@ mod velocity;
 
 pub use actuation::fwd_actuation;
 pub use articulated::Articulated;
-#[cfg(any(test, feature = "rapier"))]
+#[cfg(feature = "rapier")]
 pub use articulated::Damping;
 pub(in crate::physics) use constants::constants;
 pub use inertia::crb;
@@ -26,4 +26,4 @@ pub use integrate::Integrator;
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;
 pub use sensor::sensors;
-pub use velocity::{BiasScratch, fwd_velocity};
+pub use velocity::{BiasScratch, fwd_velocity, tendon_length};

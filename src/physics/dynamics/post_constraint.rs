@@ -36,7 +36,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
         }
     }
     apply_welds(model, s, double_weld_torque);
-    let g = model.opt.gravity;
+    let g = s.params.gravity;
     s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     s.cfrc_int[0] = [0.0; 6];
     for b in 1..nb {

@@ -1,6 +1,6 @@
 //! Velocities, bias forces and passive forces.
 
-use crate::model::{JointType, Model};
+use crate::model::{Arrays, JointType, Model};
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
@@ -47,7 +47,7 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
     let nb = model.nbody();
     scratch.acc.resize(nb, [0.0; 6]);
     scratch.force.resize(nb, [0.0; 6]);
-    let g = model.opt.gravity;
+    let g = s.params.gravity;
     scratch.acc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     scratch.force[0] = [0.0; 6];
     for b in 1..nb {
@@ -82,4 +82,36 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
             s.qfrc_passive[model.jnt_dofadr[j]] -= k * (s.qpos[q] - model.qpos_spring[q]);
         }
     }
+    for t in 0..model.ntendon() {
+        pull(model, s, t);
+    }
+}
+
+/// Adds the force of a tendon's spring and damper to `qfrc_passive`.
+#[inline(always)]
+fn pull(model: &Model, s: &mut State, tendon: usize) {
+    let (stiffness, damping) = (model.tendon_stiffness[tendon], model.tendon_damping[tendon]);
+    if stiffness == 0.0 && damping == 0.0 {
+        return;
+    }
+    let wrap = &model.tendon_wrap[tendon];
+    let (length, [shortest, longest]) = (tendon_length(model, &s.qpos, tendon), model.tendon_lengthspring[tendon]);
+    let mut force = 0.0;
+    if length > longest {
+        force = stiffness * (longest - length);
+    } else if length < shortest {
+        force = stiffness * (shortest - length);
+    }
+    let speed: f64 = wrap.iter().map(|&(j, coef)| coef * s.qvel[model.jnt_dofadr[j]]).sum();
+    force -= damping * speed;
+    for &(j, coef) in wrap {
+        s.qfrc_passive[model.jnt_dofadr[j]] += coef * force;
+    }
+}
+
+/// Returns the length of a fixed tendon at positions `qpos`.
+#[inline(always)]
+pub fn tendon_length(model: &Arrays, qpos: &[f64], tendon: usize) -> f64 {
+    let wrap = model.tendon_wrap[tendon].iter();
+    wrap.map(|&(j, coef)| coef * qpos[model.jnt_qposadr[j]]).sum()
 }

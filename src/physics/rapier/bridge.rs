@@ -11,6 +11,7 @@ use crate::physics::constraint::RowBuilder;
 use crate::physics::contact::{ContactOptions, Quirks};
 use crate::physics::dynamics::*;
 use crate::physics::engine::{EngineError, Stage, check_input, check_motion, check_output};
+use crate::physics::params::Params;
 use crate::physics::rapier::contacts::{ContactAims, ContactHooks, read_contacts};
 use crate::physics::rapier::rig::Rig;
 use crate::physics::rapier::rows::{RapierRows, read_welds, softness};
@@ -209,6 +210,7 @@ impl Bridge {
     pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage, &State)) -> Result<(), EngineError> {
         let (model, topology) = (&*self.model, &*self.topology);
         check_input(model, s)?;
+        check_params(model, &s.params)?;
         // values that Rapier cannot handle never reach it
         check_motion(model, s)?;
         stage(Stage::Kinematics, s);
@@ -279,5 +281,18 @@ impl Bridge {
     pub fn advance(&mut self, s: &mut State) -> Result<(), EngineError> {
         self.integrator.advance(&self.model, &mut self.inertia, s);
         check_output(&self.model, s)
+    }
+}
+
+/// Refuses parameters that the rig has built in.
+fn check_params(model: &Model, p: &Params) -> Result<(), EngineError> {
+    let same = [
+        ("body_mass", p.body_mass == model.body_mass),
+        ("body_inertia", p.body_inertia == model.body_inertia),
+        ("geom_size", p.geom_size == model.geom_size),
+    ];
+    match same.into_iter().find(|(_, same)| !same) {
+        Some((what, _)) => Err(EngineError::FixedParameter { what }),
+        None => Ok(()),
     }
 }

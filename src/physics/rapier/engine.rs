@@ -129,12 +129,13 @@ impl RapierEngine {
     /// Computes everything that follows from the state, in a fresh copy of the world.
     fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
         let (scene, probe) = (&mut self.scene, &mut self.probe);
+        let model = self.bridge.model().clone();
         self.bridge.compute(s, &mut |stage, s| {
             if let Some(p) = probe {
                 p(Some(stage));
             }
             if stage == Stage::Scene {
-                scene.sync(s);
+                scene.sync(&model, s);
             }
         })?;
         let mut world = OwnedSets::clone(&self.pristine);

@@ -68,6 +68,10 @@ pub struct RapierScene {
     stale: Mutex<Sets>,
     /// Pose of each moving body at the last `sync`.
     poses: Vec<(Vec3, Quat)>,
+    /// Size of each geom at the last `sync`.
+    sizes: Vec<Vec3>,
+    /// Geoms whose colliders have another size, with their type.
+    resized: Vec<(usize, GeomType)>,
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
     narrow_phase: NarrowPhase,
@@ -168,6 +172,8 @@ impl RapierScene {
             live: OnceLock::from(Sets { bodies, colliders }),
             stale: Mutex::default(),
             poses: Vec::with_capacity(moving.len()),
+            sizes: model.geom_size.clone(),
+            resized: Vec::new(),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
             narrow_phase: NarrowPhase::with_query_dispatcher(ContactDispatcher::new(options)),
@@ -189,8 +195,17 @@ impl RapierScene {
         scene
     }
 
-    /// Takes the body poses of `s`.
-    pub fn sync(&mut self, s: &State) {
+    /// Takes the body poses of `s`, and the sizes of its geoms.
+    pub fn sync(&mut self, model: &Model, s: &State) {
+        if self.sizes != s.params.geom_size {
+            for (g, (old, &new)) in self.sizes.iter_mut().zip(&s.params.geom_size).enumerate() {
+                let entry = (g, model.geom_type[g]);
+                if *old != new && !self.resized.contains(&entry) {
+                    self.resized.push(entry);
+                }
+                *old = new;
+            }
+        }
         self.poses.clear();
         self.poses.extend(self.moving.iter().map(|&b| (s.xpos[b], s.xquat[b])));
         if let Some(sets) = self.live.take() {
@@ -206,6 +221,11 @@ impl RapierScene {
             for (&b, &(pos, quat)) in self.moving.iter().zip(&self.poses) {
                 if let Some(body) = sets.bodies.get_mut(self.body_handle[b]) {
                     body.set_position(pose(pos, quat), false);
+                }
+            }
+            for &(g, kind) in &self.resized {
+                if let Some(collider) = sets.colliders.get_mut(self.collider_handle[g]) {
+                    collider.set_shape(shape(kind, self.sizes[g]));
                 }
             }
             sets.bodies

@@ -106,13 +106,19 @@ impl Sweep {
     fn narrow_phase(&mut self, model: &Model, pair: &Pair, s: &mut State) {
         let placed = |g: usize| PlacedGeom {
             kind: model.geom_type[g],
-            size: model.geom_size[g],
+            size: s.params.geom_size[g],
             pos: s.geom_xpos[g],
             mat: &s.geom_xmat[g],
         };
         let [a, b] = pair.geom;
         let (first, second) = (placed(a), placed(b));
-        if !bounding_test(&first, model.geom_rbound[a], &second, model.geom_rbound[b], pair.margin) {
+        if !bounding_test(
+            &first,
+            s.params.geom_rbound[a],
+            &second,
+            s.params.geom_rbound[b],
+            pair.margin,
+        ) {
             return;
         }
         let (scratch, points) = (&mut self.scratch, &mut self.points);
@@ -137,7 +143,7 @@ impl Sweep {
             let slack = SLACK + model.geom_margin[g];
             [b.low, b.high] = aabb(
                 model.geom_type[g],
-                model.geom_size[g],
+                s.params.geom_size[g],
                 s.geom_xpos[g],
                 &s.geom_xmat[g],
                 slack,

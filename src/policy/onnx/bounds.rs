@@ -6,53 +6,16 @@
 
 use std::collections::BTreeMap;
 
+use super::wire::{self, Field, varint};
+
 /// Greatest number of values that one operator may make.
 const MOST: u128 = 1 << 26;
 /// Longest list of sizes.
 const LIST: usize = 64;
 
-/// A field of a message: its number, and its number or bytes.
-enum Field<'a> {
-    Number(u64),
-    Bytes(&'a [u8]),
-}
-
-/// Reads a number of variable length.
-fn varint(bytes: &mut &[u8]) -> Option<u64> {
-    let mut value = 0;
-    for shift in (0..64).step_by(7) {
-        let (&byte, rest) = bytes.split_first()?;
-        *bytes = rest;
-        value |= u64::from(byte & 0x7f) << shift;
-        if byte & 0x80 == 0 {
-            return Some(value);
-        }
-    }
-    None
-}
-
-/// Lists the fields of a message, as far as it can be read: the loader says what is wrong with the rest.
-fn fields(mut bytes: &[u8]) -> Vec<(u64, Field<'_>)> {
-    let mut out = Vec::new();
-    while let Some(key) = varint(&mut bytes) {
-        let length = match key & 7 {
-            0 => {
-                let Some(value) = varint(&mut bytes) else { break };
-                out.push((key >> 3, Field::Number(value)));
-                continue;
-            }
-            1 => Some(8),
-            2 => varint(&mut bytes).and_then(|n| usize::try_from(n).ok()),
-            5 => Some(4),
-            _ => None,
-        };
-        let Some((data, rest)) = length.and_then(|n| bytes.split_at_checked(n)) else {
-            break;
-        };
-        out.push((key >> 3, Field::Bytes(data)));
-        bytes = rest;
-    }
-    out
+/// Lists the fields of a message that was looked through.
+fn fields(bytes: &[u8]) -> Vec<(u64, Field<'_>)> {
+    wire::fields(bytes).unwrap_or_default()
 }
 
 /// Lists the messages, texts or bytes in a field.
@@ -94,8 +57,9 @@ fn size_input(operator: &[u8]) -> Option<usize> {
     }
 }
 
-/// Checks the sizes in a model; the error says which operator makes too much.
+/// Checks the bytes of a model and the sizes in it; the error says which operator makes too much.
 pub(super) fn check(model: &[u8]) -> Result<(), String> {
+    wire::check(model)?;
     for graph in parts(model, 7) {
         let nodes = parts(graph, 1);
         let mut constants: BTreeMap<&[u8], Vec<i64>> = BTreeMap::new();

@@ -54,9 +54,19 @@ pub fn outside([x, y, z, w]: Clip) -> u32 {
         | u32::from(z > w) << 5
 }
 
-/// Returns whether all points of a box certainly lie beyond one clipping plane, however their projection by `rows` is
-/// rounded.
-pub fn is_box_outside(rows: &[Row; 4], low: V3, high: V3) -> bool {
+/// The place of a box in relation to what is in view, however the projection is rounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// All of it lies beyond one clipping plane.
+    Outside,
+    /// All of it is in view.
+    Inside,
+    /// It may be cut.
+    Across,
+}
+
+/// Returns the place of a box that is projected by `rows`.
+pub fn place(rows: &[Row; 4], low: V3, high: V3) -> Place {
     const SAFE: f32 = 1e-5;
     let [x, y, z, w] = rows;
     // positive beyond the plane: a row with its sign, and whether w is subtracted
@@ -68,16 +78,23 @@ pub fn is_box_outside(rows: &[Row; 4], low: V3, high: V3) -> bool {
         (z, -1.0, 0.0),
         (z, 1.0, 1.0),
     ];
-    planes.into_iter().any(|(row, sign, by)| {
+    let mut within = true;
+    for (row, sign, by) in planes {
         let mut least = sign * row[3] - by * w[3];
+        let mut greatest = least;
         let mut size = row[3].abs() + w[3].abs();
         for k in 0..3 {
             let slope = sign * row[k] - by * w[k];
             least += (slope * low[k]).min(slope * high[k]);
+            greatest += (slope * low[k]).max(slope * high[k]);
             size += (row[k].abs() + w[k].abs()) * low[k].abs().max(high[k].abs());
         }
-        least > SAFE * size
-    })
+        if least > SAFE * size {
+            return Place::Outside;
+        }
+        within &= greatest < -SAFE * size;
+    }
+    if within { Place::Inside } else { Place::Across }
 }
 
 /// Returns the signed distance from a clipping plane; planes are numbered as the bits of [`outside`].
@@ -250,9 +267,18 @@ mod tests {
             [0.0, 0.0, 0.0, 0.5],
             [0.0, 0.0, 1.0, 3.0],
         ];
-        let at = |x: f32| is_box_outside(&rows, [x, -1.0, -1.0], [x + 2.0, 1.0, 1.0]);
-        assert!(!at(-1.0) && !at(3.9) && at(4.1) && !at(-5.9) && at(-6.1));
-        assert!(!is_box_outside(&[[f32::NAN; 4]; 4], [0.0; 3], [1.0; 3]));
+        let at = |x: f32| place(&rows, [x, -1.0, -1.0], [x + 2.0, 1.0, 1.0]);
+        for (x, expected) in [
+            (-1.0, Place::Inside),
+            (0.5, Place::Across),
+            (3.9, Place::Across),
+            (4.1, Place::Outside),
+            (-5.9, Place::Across),
+            (-6.1, Place::Outside),
+        ] {
+            assert_eq!(at(x), expected, "{x}");
+        }
+        assert_eq!(place(&[[f32::NAN; 4]; 4], [0.0; 3], [1.0; 3]), Place::Across);
     }
 
     #[test]

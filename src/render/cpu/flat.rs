@@ -1,23 +1,20 @@
-//! Lookups in two-dimensional textures, in 8-bit arithmetic: four channels in one integer.
+//! Lookups in two-dimensional textures, in 8-bit arithmetic.
 
-use wide::f32x4;
+use wide::bytemuck::cast;
+use wide::{f32x4, i32x4, u16x8, u32x4};
 
-use super::lanes::four;
-use super::sample::{Coordinates, MipLevels, across, numbers, upward, whole};
+use super::light::Vectors;
+use super::sample::{Coordinates, MipLevels, across, are_settled, channels, texels, upward, whole};
 use crate::render::texture::{Face, Level};
 
-/// The channels of a texel, 16 bits for each: red, blue, green, opacity.
-type Channels = u64;
-
 /// Weights are parts of this.
-const ONE: u64 = 256;
-/// Half of [`ONE`] in every channel.
-const HALF: Channels = 0x0080_0080_0080_0080;
-/// The bits of a byte in every channel.
-const BYTES: Channels = 0x00ff_00ff_00ff_00ff;
+const ONE: u16 = 256;
 
-/// Looks up those pixels of a block that are `wanted`; 0..255.
-pub fn colours(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x4; 4] {
+/// The channels of four texels, 16 bits for each: red and blue, green and mark.
+type Channels = [u16x8; 2];
+
+/// Looks up the pixels of a block: red, green, blue; 0..255.
+pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
     let (width, height) = (face[0].width as f32, face[0].height as f32);
     let length = |change: fn(f32x4) -> f32x4| {
         let (s, t) = (change(*s) * width, change(*t) * height);
@@ -26,34 +23,35 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates, wanted: [bool; 4]) -> [f32x
     let squared = length(across).max(length(upward));
     let detail = MipLevels::new(f32x4::splat(squared), face.len());
     let (level, share) = (detail.level[0], detail.blend[0]);
-    let mut out = at_level(&face[level], *s, *t, wanted);
-    if share > 0.0 {
-        let weight = (share * ONE as f32) as u64;
-        let next = at_level(&face[level + 1], *s, *t, wanted);
-        for k in 0..4 {
-            out[k] = blend(out[k], next[k], weight);
-        }
+    let spots = Spots::new(&face[level], *s, *t);
+    let first = texels(spots.level, spots.places(spots.y.before, spots.x.before));
+    if face[level].has_one_colour() || are_settled(first) {
+        return channels(first);
     }
-    four(|k| numbers(joined(out[k])))
+    let mut out = spots.colours(first);
+    if share > 0.0 {
+        let spots = Spots::new(&face[level + 1], *s, *t);
+        let first = texels(spots.level, spots.places(spots.y.before, spots.x.before));
+        out = blend(out, spots.colours(first), u16x8::splat((share * f32::from(ONE)) as u16));
+    }
+    let [red_blue, green] = out.map(cast::<_, i32x4>);
+    let low = i32x4::splat(0xffff);
+    [red_blue & low, green & low, red_blue >> 16].map(f32x4::from_i32x4)
 }
 
-/// Spreads the bytes of a texel.
+/// Spreads the bytes of texels.
 #[inline(always)]
-fn spread(texel: [u8; 4]) -> Channels {
-    let v = u64::from(u32::from_le_bytes(texel));
-    v & 0x00ff_00ff | (v & 0xff00_ff00) << 24
+fn spread(texels: u32x4) -> Channels {
+    let bytes = u32x4::splat(0x00ff_00ff);
+    [cast(texels & bytes), cast(texels >> 8 & bytes)]
 }
 
-/// Joins the bytes of a texel, the inverse of [`spread`].
+/// Blends bytes with weights of 0..256.
 #[inline(always)]
-fn joined(v: Channels) -> [u8; 4] {
-    ((v | v >> 24) as u32).to_le_bytes()
-}
-
-/// Blends bytes with a weight of 0..256.
-#[inline(always)]
-fn blend(a: Channels, b: Channels, weight: u64) -> Channels {
-    (a * (ONE - weight) + b * weight + HALF) >> 8 & BYTES
+fn blend(a: Channels, b: Channels, weight: u16x8) -> Channels {
+    let rest = u16x8::splat(ONE) - weight;
+    let one = |k: usize| (a[k] * rest + b[k] * weight + u16x8::splat(ONE / 2)) >> 8;
+    [one(0), one(1)]
 }
 
 /// Coordinates along one axis of an image that repeats.
@@ -62,8 +60,8 @@ struct RepeatedAxis {
     before: f32x4,
     /// Index of the texel after.
     after: f32x4,
-    /// Weights of the texels after, 0..256.
-    weight: [i32; 4],
+    /// Places between the two, 0..1.
+    between: f32x4,
 }
 
 impl RepeatedAxis {
@@ -75,37 +73,56 @@ impl RepeatedAxis {
         // NaN coordinates give an arbitrary texel
         let index = |v: f32x4| v.max(f32x4::ZERO).fast_min(n - 1.0);
         let (before, after) = (low, low + 1.0);
-        let weight = whole((at - low) * ONE as f32 + 0.5).max(f32x4::ZERO);
         Self {
             before: index(before.simd_lt(f32x4::ZERO).select(n - 1.0, before)),
             after: index(after.simd_ge(n).select(f32x4::ZERO, after)),
-            weight: weight.fast_min(f32x4::splat(ONE as f32)).fast_trunc_int().to_array(),
+            between: at - low,
         }
+    }
+
+    /// Returns the weights of the texels after, 0..256, for two channels each.
+    #[inline(always)]
+    fn weight(&self) -> u16x8 {
+        let one = f32::from(ONE);
+        let weight = whole(self.between * one + 0.5).max(f32x4::ZERO);
+        let weight = weight.fast_min(f32x4::splat(one)).fast_trunc_int();
+        cast(weight | weight << 16)
     }
 }
 
-#[inline(always)]
-fn at_level(level: &Level, s: f32x4, t: f32x4, wanted: [bool; 4]) -> [Channels; 4] {
-    let width = level.width as f32;
-    let (x, y) = (RepeatedAxis::new(s, width), RepeatedAxis::new(t, level.height as f32));
-    // textures are small enough for exact indices
-    let place = |row: f32x4, column: f32x4| (row + column).fast_trunc_int().to_array();
-    let (upper, lower) = (y.before * width, y.after * width);
-    let places = [
-        place(upper, x.before),
-        place(upper, x.after),
-        place(lower, x.before),
-        place(lower, x.after),
-    ];
-    let mut out = [0; 4];
-    for k in 0..4 {
-        if wanted[k] {
-            let [a, b, c, d] = four(|i| spread(level.pixels[places[i][k] as usize]));
-            let (wx, wy) = (x.weight[k] as u64, y.weight[k] as u64);
-            out[k] = blend(blend(a, b, wx), blend(c, d, wx), wy);
+/// The places in a level at which the pixels of a block look.
+struct Spots<'a> {
+    level: &'a Level,
+    x: RepeatedAxis,
+    y: RepeatedAxis,
+}
+
+impl<'a> Spots<'a> {
+    #[inline(always)]
+    fn new(level: &'a Level, s: f32x4, t: f32x4) -> Self {
+        Self {
+            level,
+            x: RepeatedAxis::new(s, level.width as f32),
+            y: RepeatedAxis::new(t, level.height as f32),
         }
     }
-    out
+
+    /// Returns the indices of the texels at the crossings of a row and a column.
+    #[inline(always)]
+    fn places(&self, row: f32x4, column: f32x4) -> [i32; 4] {
+        // textures are small enough for exact indices
+        (row * self.level.width as f32 + column).fast_trunc_int().to_array()
+    }
+
+    /// Looks up bilinearly; `first` are the texels before.
+    #[inline(always)]
+    fn colours(&self, first: u32x4) -> Channels {
+        let (x, y) = (&self.x, &self.y);
+        let at = |row: f32x4, column: f32x4| spread(texels(self.level, self.places(row, column)));
+        let upper = blend(spread(first), at(y.before, x.after), x.weight());
+        let lower = blend(at(y.after, x.before), at(y.after, x.after), x.weight());
+        blend(upper, lower, y.weight())
+    }
 }
 
 #[cfg(test)]
@@ -115,12 +132,14 @@ mod tests {
     #[test]
     fn channels_blend_like_bytes() {
         let (a, b) = ([255, 0, 7, 128], [255, 255, 200, 3]);
-        assert_eq!(joined(spread(a)), a);
-        for weight in 0..=256u32 {
-            let found = joined(blend(spread(a), spread(b), u64::from(weight)));
+        let of = |v: [u8; 4]| spread(u32x4::splat(u32::from_le_bytes(v)));
+        for weight in 0..=256u16 {
+            let [even, odd] = blend(of(a), of(b), u16x8::splat(weight)).map(|v| v.to_array());
             for k in 0..4 {
-                let exact = (u32::from(a[k]) * (256 - weight) + u32::from(b[k]) * weight + 128) / 256;
-                assert_eq!(u32::from(found[k]), exact, "{weight}");
+                let found = [even[k / 2], odd[k / 2]][k % 2];
+                let exact =
+                    (u32::from(a[k]) * (256 - u32::from(weight)) + u32::from(b[k]) * u32::from(weight) + 128) / 256;
+                assert_eq!(u32::from(found), exact, "{weight}");
             }
         }
     }

@@ -1,16 +1,13 @@
-//! The geometry of an image: what is in view, projected, clipped and rasterised.
+//! The geometry of an image: what is in view.
 
 use std::ops::Range;
 
-use super::camera::{Eye, Row, V3, dot, fused, part_rows, single};
-use super::clip;
+use super::camera::{Eye, Row, V3, dot, single};
+use super::group::Waiting;
 use super::plane::{Basis, Vertex};
-use super::raster::LIMIT;
-use super::small::Waiting;
 use super::target::{Target, Triangle};
 use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
-use crate::render::mesh::{LANES, Mesh};
 use crate::render::view::{Poses, View};
 use crate::render::visual::{Drawable, Element, Shape, Visual};
 
@@ -32,8 +29,10 @@ pub struct Frame {
     pub y: Vec<f32>,
     /// For each vertex, one bit for every clipping plane that it lies beyond.
     pub sides: Vec<u8>,
-    /// For each band of the drawable being drawn, the sides on which any of its vertices is, and on which all are.
-    bands: Vec<(u8, u8)>,
+    /// For each patch of the drawable being drawn, one bit for each quadrilateral that may show its front.
+    pub fronts: Vec<u8>,
+    /// For each group of vertices of the drawable being drawn, whether a quadrilateral of these has one.
+    pub needed: Vec<bool>,
     /// Triangles of the drawable being drawn that are still to be rasterised.
     pub waiting: Waiting,
     /// Points made by clipping.
@@ -44,6 +43,8 @@ pub struct Frame {
     opaque: Vec<(f32, u32)>,
     /// Distance and index of the transparent drawables in view.
     transparent: Vec<(f32, u32)>,
+    /// Indices of what is drawn.
+    pub placed: Vec<u32>,
     /// Range of fragments of each transparent drawable, the nearest drawable first.
     pub layers: Vec<Range<usize>>,
 }
@@ -54,10 +55,12 @@ pub struct PlacedDrawable {
     pub pos: V3,
     pub mat: [f32; 9],
     /// Transform from the unit shape to the camera frame.
-    rows: [Row; 3],
+    pub rows: [Row; 3],
     /// Index of its first vertex in the frame.
     pub base: usize,
-    /// Index of its first point among those made by clipping; they follow its vertices in the frame.
+    /// Index after its vertices, where those begin that clipping made of it.
+    pub end: usize,
+    /// Index of the first of these among all points made by clipping.
     pub points: usize,
     /// Opacity.
     pub alpha: f32,
@@ -81,6 +84,7 @@ impl PlacedDrawable {
         mat: [0.0; 9],
         rows: [[0.0; 4]; 3],
         base: 0,
+        end: 0,
         points: 0,
         alpha: 1.0,
         flip: false,
@@ -171,6 +175,7 @@ impl Frame {
         self.opaque.clear();
         self.transparent.clear();
         self.layers.clear();
+        self.placed.clear();
     }
 
     /// Adds a drawable, which is `ahead` of the camera, to the list of opaque or transparent ones.
@@ -205,10 +210,12 @@ impl Frame {
             mat: mat.map(|v| v as f32),
             rows: eye.model(pos, &mat, drawable.size),
             base: self.vertices.len(),
+            end: self.vertices.len() + visual.meshes[drawable.shape as usize].x.len(),
             points: self.points.len(),
             transparent,
             ..self.draws[index]
         };
+        self.placed.push(index as u32);
         self.add(visual, eye, index);
     }
 
@@ -261,92 +268,4 @@ impl Frame {
             || y.start >= y.end
             || (hides(self.targets.colour, &self.colour) && hides(self.targets.centre, &self.centre))
     }
-
-    /// Projects and draws all triangles of a drawable.
-    fn add(&mut self, visual: &Visual, eye: &Eye, index: usize) {
-        let drawable = &visual.drawables[index];
-        let mesh = &visual.meshes[drawable.shape as usize];
-        let draw = self.draws[index];
-        let half = [self.size[0] as f32 * 0.5, self.size[1] as f32 * 0.5];
-        self.bands.clear();
-        for band in &mesh.bands {
-            let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
-            let sides = if clip::is_box_outside(&rows, band.low, band.high) {
-                let end = self.vertices.len() + band.vertices.len();
-                self.vertices.resize(end, Vertex::default());
-                self.x.resize(end, 0.0);
-                self.y.resize(end, 0.0);
-                self.sides.resize(end, u8::MAX);
-                (u8::MAX, u8::MAX)
-            } else {
-                self.project(mesh, band.vertices.clone(), &rows, half)
-            };
-            self.bands.push(sides);
-        }
-        for (k, band) in mesh.bands.iter().enumerate() {
-            match self.bands[k] {
-                (0, _) if !draw.flip => self.inside(mesh, index, band),
-                (_, 0) => {
-                    let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
-                    self.across(mesh, &rows, index, band.triangles.clone());
-                }
-                _ => {}
-            }
-        }
-        self.flush(index);
-    }
-
-    /// Projects vertices of a mesh. Gives the outer sides on which any of them is, and on which all are.
-    fn project(&mut self, mesh: &Mesh, range: Range<usize>, rows: &[Row; 4], half: [f32; 2]) -> (u8, u8) {
-        let (mut any, mut all) = (0, u8::MAX);
-        let coordinates = |v: &[f32], at: usize| -> [f32; LANES] {
-            let mut out = [0.0; LANES];
-            out.copy_from_slice(&v[at..at + LANES]);
-            out
-        };
-        for at in range.step_by(LANES) {
-            let [x, y, z] = [&mesh.x, &mesh.y, &mesh.z].map(|v| coordinates(v, at));
-            let mut vertices = [Vertex::default(); LANES];
-            let (mut px, mut py, mut pz, mut iw) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            let mut sides = [0; LANES];
-            for k in 0..LANES {
-                let clip = clip::apply(rows, [x[k], y[k], z[k]]);
-                let [cx, cy, cz, cw] = clip;
-                iw[k] = 1.0 / cw;
-                px[k] = fused(cx * iw[k], half[0], half[0]);
-                py[k] = fused(cy * iw[k], half[1], half[1]);
-                pz[k] = cz * iw[k];
-                sides[k] = clip::outside(clip);
-            }
-            for k in 0..LANES {
-                vertices[k] = Vertex {
-                    x: px[k],
-                    y: py[k],
-                    z: pz[k],
-                    iw: iw[k],
-                };
-                (px[k], py[k]) = (steps(px[k]), steps(py[k]));
-            }
-            let sides = sides.map(|s| s as u8);
-            self.vertices.extend_from_slice(&vertices);
-            self.x.extend_from_slice(&px);
-            self.y.extend_from_slice(&py);
-            self.sides.extend_from_slice(&sides);
-            for s in &sides {
-                any |= s;
-                all &= s;
-            }
-        }
-        (any, all)
-    }
-}
-
-/// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
-#[inline(always)]
-pub fn steps(pixels: f32) -> f32 {
-    // adding 1.5 * 2^23 rounds to the nearest integer
-    const SHIFT: f32 = 12_582_912.0;
-    #[allow(clippy::manual_clamp)] // unlike `clamp`, this turns NaN into a number
-    let v = (pixels * 256.0).max(-LIMIT).min(LIMIT);
-    (v + SHIFT) - SHIFT
 }

@@ -1,7 +1,10 @@
-//! Lighting per vertex: ambient, diffuse and Blinn highlights, as fixed-function OpenGL computes them.
+//! Lighting per vertex, four at a time: ambient, diffuse and Blinn highlights, as fixed-function OpenGL computes them.
 
-use super::camera::{Eye, V3, dot, single, unit};
+use wide::f32x4;
+
+use super::camera::{Eye, V3, single, unit};
 use super::frame::PlacedDrawable;
+use super::lanes::{four, three};
 use crate::math::{Vec3, add, mat_vec, sub};
 use crate::render::mesh::MeshPart;
 use crate::render::view::Poses;
@@ -74,83 +77,120 @@ fn pose(light: &Light, poses: &Poses) -> (Option<Vec3>, Vec3) {
     (light.pos.map(|_| pos), crate::math::unit(dir).0)
 }
 
-/// Computes the colour (0..1) of a vertex of a unit shape under the lights.
-pub fn vertex(
+/// Four vectors, by component.
+pub type Vectors = [f32x4; 3];
+
+/// Four vertices of a unit shape: parts, places, normals.
+pub struct Corners {
+    pub part: [MeshPart; 4],
+    pub at: Vectors,
+    pub normal: Vectors,
+}
+
+#[inline(always)]
+fn dots(a: &Vectors, b: &Vectors) -> f32x4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn units(a: &Vectors) -> Vectors {
+    let scale = f32x4::ONE / dots(a, a).sqrt();
+    three(|k| a[k] * scale)
+}
+
+#[inline(always)]
+fn splat(v: V3) -> Vectors {
+    three(|k| f32x4::splat(v[k]))
+}
+
+/// Computes the colours (0..1) of four vertices of a drawable under the lights.
+pub fn vertices(
     lights: &[PlacedLight],
     drawable: &Drawable,
     draw: &PlacedDrawable,
     eye: V3,
-    (part, at, normal): (MeshPart, V3, V3),
-) -> V3 {
+    corners: &Corners,
+) -> Vectors {
     let size = drawable.size;
     let cap = 0.5 * (size[0] + size[1]);
-    let (stretch, shift) = match part {
+    let ends = four(|k| match corners.part[k] {
         MeshPart::Body => (size[2], 0.0),
         MeshPart::Top => (cap, size[2] - cap),
         MeshPart::Bottom => (cap, cap - size[2]),
-    };
-    let m = &draw.mat;
-    let rotate = |v: V3| {
-        [
-            m[0] * v[0] + m[1] * v[1] + m[2] * v[2],
-            m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
-            m[6] * v[0] + m[7] * v[1] + m[8] * v[2],
-        ]
-    };
-    let p = rotate([at[0] * size[0], at[1] * size[1], at[2] * stretch + shift]);
-    let p = [p[0] + draw.pos[0], p[1] + draw.pos[1], p[2] + draw.pos[2]];
+    });
+    let (stretch, shift) = (f32x4::new(four(|k| ends[k].0)), f32x4::new(four(|k| ends[k].1)));
+    let m = draw.mat.map(f32x4::splat);
+    let rotate = |v: &Vectors| three(|k| m[3 * k] * v[0] + m[3 * k + 1] * v[1] + m[3 * k + 2] * v[2]);
+    let at = &corners.at;
+    let p = rotate(&[at[0] * size[0], at[1] * size[1], at[2] * stretch + shift]);
+    let p = three(|k| p[k] + draw.pos[k]);
     // the inverse of the scale, times all of it: the length does not matter
-    let n = unit(rotate([
-        normal[0] * (size[1] * stretch),
-        normal[1] * (size[0] * stretch),
+    let normal = &corners.normal;
+    let n = units(&rotate(&[
+        normal[0] * (stretch * size[1]),
+        normal[1] * (stretch * size[0]),
         normal[2] * (size[0] * size[1]),
     ]));
     let to_eye = if drawable.specular > 0.0 {
-        unit([eye[0] - p[0], eye[1] - p[1], eye[2] - p[2]])
+        units(&three(|k| f32x4::splat(eye[k]) - p[k]))
     } else {
-        [0.0; 3]
+        [f32x4::ZERO; 3]
     };
-    shade(lights, drawable, p, n, to_eye)
+    shade(lights, drawable, &p, &n, &to_eye)
 }
 
-/// Computes the colour (0..1) of a point with the unit normal `n`; `to_eye` is the unit direction to the camera.
+/// Computes the colours (0..1) of points with the unit normals `n`; `to_eye` are the unit directions to the camera.
 #[inline(always)]
-fn shade(lights: &[PlacedLight], drawable: &Drawable, p: V3, n: V3, to_eye: V3) -> V3 {
+fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vectors, n: &Vectors, to_eye: &Vectors) -> Vectors {
     // a scene without lights is not quite dark
     let glow = if lights.is_empty() { 0.3 } else { 0.0 } + drawable.emission;
-    let (mut diffuse, mut highlights) = ([glow; 3], [0.0; 3]);
+    let (mut diffuse, mut highlights) = ([f32x4::splat(glow); 3], [f32x4::ZERO; 3]);
     for light in lights {
         let (to_light, strength) = light.reach(p);
-        let facing = dot(n, to_light);
-        let facing = if facing > 0.0 { facing } else { 0.0 };
+        let facing = dots(n, &to_light);
+        let front = facing.simd_gt(f32x4::ZERO);
+        let facing = facing & front;
         for k in 0..3 {
-            diffuse[k] += strength * (light.ambient[k] + facing * light.diffuse[k]);
+            diffuse[k] += strength * (facing * light.diffuse[k] + light.ambient[k]);
         }
-        if facing > 0.0 && drawable.specular > 0.0 && light.shines {
-            let middle = [
-                to_light[0] + to_eye[0],
-                to_light[1] + to_eye[1],
-                to_light[2] + to_eye[2],
-            ];
-            if !faint(dot(n, middle), dot(middle, middle), drawable.exponent) {
-                let highlight = strength * drawable.specular * power(dot(n, unit(middle)), drawable.exponent);
+        if front.to_bitmask() != 0 && drawable.specular > 0.0 && light.shines {
+            let middle = three(|k| to_light[k] + to_eye[k]);
+            let exponent = drawable.exponent;
+            let shown = front & !faint(dots(n, &middle), dots(&middle, &middle), exponent);
+            let bits = shown.to_bitmask();
+            if bits != 0 {
+                let cosines = dots(n, &units(&middle)).to_array();
+                let powers = four(|k| {
+                    if bits >> k & 1 == 1 {
+                        power(cosines[k], exponent)
+                    } else {
+                        0.0
+                    }
+                });
+                let highlight = (strength * drawable.specular * f32x4::new(powers)) & shown;
                 for k in 0..3 {
                     highlights[k] += highlight * light.specular[k];
                 }
             }
         }
     }
-    let mut colour = highlights;
-    for k in 0..3 {
-        colour[k] = (highlights[k] + diffuse[k] * drawable.rgba[k]).clamp(0.0, 1.0);
-    }
-    colour
+    // NaN stays
+    let within = |v: f32x4| {
+        let (low, high) = (v.simd_lt(f32x4::ZERO), v.simd_gt(f32x4::ONE));
+        low.select(f32x4::ZERO, high.select(f32x4::ONE, v))
+    };
+    three(|k| within(highlights[k] + diffuse[k] * drawable.rgba[k]))
 }
 
-/// Returns whether `(along / sqrt(squared))^y` is certainly too weak to be seen.
-fn faint(along: f32, squared: f32, y: f32) -> bool {
+/// Returns where `(along / sqrt(squared))^y` is certainly too weak to be seen.
+#[inline(always)]
+fn faint(along: f32x4, squared: f32x4, y: f32) -> f32x4 {
     let least = 1.0 + 1.001 * LN_FAINT / y;
-    least > 0.0 && (along <= 0.0 || along * along < least * least * squared)
+    if least > 0.0 {
+        along.simd_le(f32x4::ZERO) | (along * along).simd_lt(squared * (least * least))
+    } else {
+        f32x4::ZERO
+    }
 }
 
 /// Computes `x^y` for x up to 1; returns 0 where the result is too weak to be seen.
@@ -191,24 +231,27 @@ fn near_one(x: f64, y: f32) -> f64 {
 }
 
 impl PlacedLight {
-    /// Returns the unit direction from a point to the light, and how much of the light's intensity arrives there
+    /// Returns the unit directions from points to the light, and how much of the light's intensity arrives there
     /// (0..1).
-    fn reach(&self, p: V3) -> (V3, f32) {
+    #[inline(always)]
+    fn reach(&self, p: &Vectors) -> (Vectors, f32x4) {
         let Some(pos) = self.pos else {
-            return (self.dir.map(|v| -v), 1.0);
+            return (splat(self.dir.map(|v| -v)), f32x4::ONE);
         };
-        let d = [pos[0] - p[0], pos[1] - p[1], pos[2] - p[2]];
-        let distance = dot(d, d).sqrt();
-        let to_light = d.map(|v| v / distance);
-        let [constant, linear, quadratic] = self.attenuation;
-        let mut strength = 1.0 / (constant + linear * distance + quadratic * distance * distance);
+        let d = three(|k| f32x4::splat(pos[k]) - p[k]);
+        let distance = dots(&d, &d).sqrt();
+        let to_light = three(|k| d[k] / distance);
+        let [constant, linear, quadratic] = self.attenuation.map(f32x4::splat);
+        let mut strength = f32x4::ONE / (constant + linear * distance + quadratic * distance * distance);
         if self.cos_cutoff > -1.0 {
-            let along = -dot(to_light, self.dir);
-            strength *= if along < self.cos_cutoff {
-                0.0
-            } else {
-                power(along, self.exponent)
-            };
+            let along = (-dots(&to_light, &splat(self.dir))).to_array();
+            strength *= f32x4::new(four(|k| {
+                if along[k] < self.cos_cutoff {
+                    0.0
+                } else {
+                    power(along[k], self.exponent)
+                }
+            }));
         }
         (to_light, strength)
     }

@@ -2,14 +2,19 @@
 
 mod camera;
 mod clip;
+mod cube;
+mod facing;
 mod flat;
 mod frame;
+mod group;
 mod lanes;
 mod light;
 mod plane;
+mod project;
 mod raster;
 mod sample;
 mod sampling;
+mod seen;
 mod shade;
 mod small;
 mod target;

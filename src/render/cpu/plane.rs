@@ -21,9 +21,9 @@ pub struct Vertex {
 /// A linear function: value at the corner of the image, change per pixel to the right and upward.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plane {
-    at: f32,
-    dx: f32,
-    dy: f32,
+    pub at: f32,
+    pub dx: f32,
+    pub dy: f32,
 }
 
 /// Four linear functions: values at the corner of the image, changes per pixel to the right and upward.
@@ -133,6 +133,13 @@ impl Plane {
     pub fn is_gentle(&self, value: f32, size: [usize; 2]) -> bool {
         let change = self.dx.abs() * size[0] as f32 + self.dy.abs() * size[1] as f32;
         self.at.abs() + change <= GENTLE * value.abs()
+    }
+
+    /// Does the same for four planes, given as lanes of their fields: one bit for each.
+    #[inline(always)]
+    pub fn are_gentle([at, dx, dy]: [f32x4; 3], value: f32x4, size: [usize; 2]) -> u32 {
+        let change = dx.abs() * size[0] as f32 + dy.abs() * size[1] as f32;
+        (at.abs() + change).simd_le(value.abs() * GENTLE).to_bitmask()
     }
 
     /// Evaluates at one point, without llvmpipe's rounding.

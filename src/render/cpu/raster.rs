@@ -3,6 +3,7 @@
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
+use super::lanes::three;
 use super::plane::{Basis, Plane, Vertex};
 use super::sampling::{GRAIN, GRAIN_BITS, Sampling};
 
@@ -11,9 +12,9 @@ pub const LIMIT: f32 = (1 << 21) as f32;
 
 /// Side of the blocks in which large triangles are tested, pixels.
 const BLOCK: i32 = 8;
-/// Triangles up to this extent are drawn without blocks, 1/256 pixels: single precision holds their edge functions
+/// Triangles below this extent are drawn without blocks, 1/256 pixels: single precision holds their edge functions
 /// without rounding.
-const SMALL: i32 = 8 << 8;
+pub const MEDIUM: i32 = 8 << 8;
 
 /// A projected vertex, 1/256 pixels from the lower left.
 pub type Fixed = [i32; 2];
@@ -94,9 +95,15 @@ impl Depth {
     pub fn new<S: Sampling>(vertices: [&Vertex; 3], size: [usize; 2]) -> Self {
         let [a, b, c] = vertices;
         let plane = Basis::new(vertices).plane([a.z, b.z, c.z]);
+        Self::of::<S>(plane, plane.is_gentle(a.z, size))
+    }
+
+    /// Creates the depth function from its plane, and whether rounding errors are small.
+    #[inline(always)]
+    pub fn of<S: Sampling>(plane: Plane, gentle: bool) -> Self {
         Self {
             plane,
-            gentle: plane.is_gentle(a.z, size),
+            gentle,
             spread: plane.spread(S::X, S::Y),
         }
     }
@@ -127,98 +134,52 @@ pub fn is_counterclockwise([a, b, c]: &[Fixed; 3]) -> bool {
     wide(b[0] - a[0]) * wide(c[1] - a[1]) > wide(b[1] - a[1]) * wide(c[0] - a[0])
 }
 
-/// The extent of a triangle, 1/256 pixels.
-struct Extent {
-    x: [i32; 2],
-    y: [i32; 2],
+/// Returns the first and the last pixel in each direction that a triangle may cover; `None` if it covers none.
+fn pixels([a, b, c]: &[Fixed; 3], size: [usize; 2]) -> Option<[[i32; 2]; 2]> {
+    // no sample is nearer to the edges of a pixel than a grain
+    let range = |k: usize| {
+        let (least, greatest) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
+        let first = ((least + GRAIN - 1) >> 8).max(0);
+        let last = ((greatest - GRAIN) >> 8).min(size[k] as i32 - 1);
+        [first, last]
+    };
+    let (x, y) = (range(0), range(1));
+    (x[0] <= x[1] && y[0] <= y[1]).then_some([x, y])
 }
 
-impl Extent {
-    #[inline(always)]
-    fn new([a, b, c]: &[Fixed; 3]) -> Self {
-        let range = |k: usize| [a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k])];
-        Self {
-            x: range(0),
-            y: range(1),
-        }
-    }
-
-    #[inline(always)]
-    fn below(&self, limit: i32) -> bool {
-        self.x[1] - self.x[0] < limit && self.y[1] - self.y[0] < limit
-    }
-
-    /// Returns the first and the last pixel in each direction that the triangle may cover; `None` if it covers none.
-    #[inline(always)]
-    fn pixels(&self, size: [usize; 2]) -> Option<[[i32; 2]; 2]> {
-        // no sample is nearer to the edges of a pixel than a grain
-        let range = |[least, greatest]: [i32; 2], size: usize| {
-            let first = ((least + GRAIN - 1) >> 8).max(0);
-            let last = ((greatest - GRAIN) >> 8).min(size as i32 - 1);
-            [first, last]
-        };
-        let (x, y) = (range(self.x, size[0]), range(self.y, size[1]));
-        (x[0] <= x[1] && y[0] <= y[1]).then_some([x, y])
-    }
-}
-
-/// The edge functions of a small triangle at the samples of a pixel, and their changes to the next pixels.
-struct SmallEdges {
+/// The edge functions of a triangle of medium size at the samples of a pixel, and their changes to the next pixels.
+pub struct Edges {
     samples: [f32x4; 3],
     right: [f32x4; 3],
     up: [f32x4; 3],
 }
 
-impl SmallEdges {
-    /// Sets the edges up at the pixel `x`, `y`.
+impl Edges {
+    /// Sets the edges up from their differences in x and y, 1/256 pixels, and their values at the corner of a pixel.
     #[inline(always)]
-    fn new<S: Sampling>(&[a, b, c]: &[Fixed; 3], x: i32, y: i32) -> Self {
-        let from =
-            |k: usize, corner: i32| f32x4::from_i32x4(i32x4::new([b[k] - corner, c[k] - corner, a[k] - corner, 0]));
-        let next = |v: f32x4| {
-            let [a, b, c, _] = v.to_array();
-            f32x4::new([b, c, a, 0.0])
-        };
-        let (x, y) = (from(0, 256 * x), from(1, 256 * y));
-        let (dx, dy) = (next(x) - x, next(y) - y);
-        // zero belongs to one of the two triangles that share an edge, as in `Edge`
-        let ours = dy.simd_lt(f32x4::ZERO) | (dy.simd_eq(f32x4::ZERO) & dx.simd_lt(f32x4::ZERO));
-        let corner = dy * x - dx * y + ours.select(f32x4::ZERO, -f32x4::ONE);
-        let (dx, dy, corner) = (dx.to_array(), dy.to_array(), corner.to_array());
+    pub fn new<S: Sampling>(edges: [[f32; 3]; 3]) -> Self {
         let (across, upward) = (f32x4::new(S::X) * 256.0, f32x4::new(S::Y) * 256.0);
         Self {
-            samples: [0, 1, 2].map(|k| upward * dx[k] - across * dy[k] + corner[k]),
-            right: [0, 1, 2].map(|k| f32x4::splat(-256.0 * dy[k])),
-            up: [0, 1, 2].map(|k| f32x4::splat(256.0 * dx[k])),
+            samples: three(|k| upward * edges[k][0] - across * edges[k][1] + edges[k][2]),
+            right: three(|k| f32x4::splat(-256.0 * edges[k][1])),
+            up: three(|k| f32x4::splat(256.0 * edges[k][0])),
         }
     }
 }
 
-/// Passes the samples that a counterclockwise triangle covers to `sink`.
+/// Passes the samples that a large counterclockwise triangle covers to `sink`.
 #[inline(always)]
-pub fn scan<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
-    let extent = Extent::new(fixed);
-    let Some([x, y]) = extent.pixels(size) else {
-        return;
-    };
-    if extent.below(SMALL) {
-        small::<S>(sink, size[0], fixed, (x, y), depth);
-    } else {
-        blocks::<S>(sink, size[0], &Edge::around(fixed), (x, y), &depth());
+pub fn large<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed; 3], depth: impl Fn() -> Depth) {
+    if let Some(range) = pixels(fixed, size) {
+        blocks::<S>(sink, size[0], &Edge::around(fixed), range, &depth());
     }
 }
 
-/// Tests the samples of the pixels around a small triangle.
+/// Passes the samples that a triangle of medium size covers to `sink`; its edges are given at the first pixel.
 #[inline(always)]
-fn small<S: Sampling>(
-    sink: &mut impl Sink,
-    width: usize,
-    fixed: &[Fixed; 3],
-    (x, y): ([i32; 2], [i32; 2]),
-    new_depth: impl Fn() -> Depth,
-) {
-    let SmallEdges { mut samples, right, up } = SmallEdges::new::<S>(fixed, x[0], y[0]);
-    let mut depth = None;
+pub fn medium<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &Edges, [x, y]: [[i32; 2]; 2], depth: &Depth) {
+    let mut samples = edges.samples;
+    let (right, up) = (&edges.right, &edges.up);
     let mut py = y[0];
     while py <= y[1] {
         let [mut a, mut b, mut c] = samples;
@@ -226,7 +187,6 @@ fn small<S: Sampling>(
         while px <= x[1] {
             let inside = a.fast_min(b).fast_min(c).simd_ge(f32x4::ZERO);
             if inside.to_bitmask() != 0 {
-                let depth = depth.get_or_insert_with(&new_depth);
                 let at = py as usize * width + px as usize;
                 sink.pixel(at, inside, depth.at::<S>(px, py));
             }
@@ -244,13 +204,7 @@ fn small<S: Sampling>(
 
 /// Goes through a large triangle in blocks.
 #[inline(never)]
-fn blocks<S: Sampling>(
-    sink: &mut impl Sink,
-    width: usize,
-    edges: &[Edge; 3],
-    (x, y): ([i32; 2], [i32; 2]),
-    depth: &Depth,
-) {
+fn blocks<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &[Edge; 3], [x, y]: [[i32; 2]; 2], depth: &Depth) {
     let wide = i64::from;
     let reach = i64::from(BLOCK * 256);
     for by in (y[0] / BLOCK * BLOCK..=y[1]).step_by(BLOCK as usize) {

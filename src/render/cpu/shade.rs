@@ -1,23 +1,24 @@
 //! Shading: the colour of each visible triangle once per pixel, at the pixel's centre, averaged over the four samples.
 
-use wide::{f32x4, u32x4};
+use wide::{f32x4, i32x4, u32x4};
 
 use super::camera::Eye;
 use super::frame::Frame;
 use super::lanes::{four, three};
-use super::light::{self, PlacedLight};
+use super::light::Vectors;
 use super::plane::{Basis, Planes};
+use super::sample::channels;
+use super::seen::Seen;
 use super::target::{NONE, Triangle};
+use crate::render::texture::Texture;
 use crate::render::view::Poses;
 use crate::render::visual::Visual;
 
 /// Computes the colours of a frame.
 #[derive(Debug, Default)]
 pub struct Shader {
-    lights: Vec<PlacedLight>,
-    /// Index into `lit` for each vertex of the frame, or [`NONE`].
-    lit_of: Vec<u32>,
-    lit: Vec<LitVertex>,
+    seen: Seen,
+    /// The shading of each triangle that is seen.
     setups: Vec<Setup>,
     /// Colours of the samples of each pixel, in bytes; used where there are transparent drawables.
     samples: Vec<[f32x4; 4]>,
@@ -58,21 +59,14 @@ impl Pixels {
     }
 }
 
-/// A lit vertex of a visible triangle.
-#[derive(Clone, Copy, Debug)]
-struct LitVertex {
-    /// Red, green, blue, 1.
-    colour: f32x4,
-    /// Texture coordinates, 0.
-    texture: f32x4,
-}
-
 /// The shading of a triangle: its colour and texture coordinates as linear functions.
 #[derive(Clone, Copy, Debug)]
 struct Setup {
     /// Colour, divided by w.
     colour: Planes,
     texture: Planes,
+    /// Factor on red, green and blue.
+    tint: [f32; 3],
     /// Index of the texture, or [`NONE`].
     image: u32,
 }
@@ -96,63 +90,55 @@ impl Shader {
         eye: &Eye,
         (pixels, out): (Pixels, &mut [u8]),
     ) {
-        light::place(visual, poses, eye, &mut self.lights);
-        self.lit_of.clear();
-        self.lit_of.resize(frame.vertices.len(), NONE);
-        self.lit.clear();
-        self.setups.clear();
+        self.seen.find(frame, visual, poses, eye, pixels);
         let (w, h) = (frame.size[0], frame.size[1]);
         let inputs = Inputs {
             visual,
             eye,
             step: [2.0 / w as f32, 2.0 / h as f32],
         };
+        self.setups.clear();
+        for &id in &self.seen.triangles {
+            let setup = Setup::new(frame, visual, &self.seen, &frame.colour.records[id as usize]);
+            self.setups.push(setup);
+        }
         if !frame.layers.is_empty() {
             self.blended(frame, &inputs, pixels, out);
             return;
         }
         let part = pixels.of_block(h);
-        let wanted = [0, 1, 2, 3].map(|k| part >> (4 * k) & 15 != 0);
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
-                let mut write = |k: usize, colour: [u8; 3]| {
+                let colours = if let Some(id) = frame.colour.only(x, y) {
+                    bytes(&self.colours(frame, &inputs, [x, y], id, [true; 4]))
+                } else {
+                    let mut sums = [f32x4::splat(2.0); 3];
+                    self.block(frame, &inputs, [x, y], part, |samples, colour| {
+                        let count = f32x4::new(four(|k| COUNT[(samples >> (4 * k) & 15) as usize]));
+                        for k in 0..3 {
+                            sums[k] += count * colour[k];
+                        }
+                    });
+                    three(|k| sums[k] * 0.25)
+                };
+                let colours = packed(&colours);
+                for k in 0..4 {
                     let (x, y) = (x + k % 2, y + k / 2);
                     if x < w
                         && y < h
                         && let Some(at) = pixels.place(x, h - 1 - y, w)
                     {
-                        out[3 * at..3 * at + 3].copy_from_slice(&colour);
-                    }
-                };
-                if let Some(id) = frame.colour.only(x, y) {
-                    let colours = self.colours(frame, &inputs, [x, y], id, wanted);
-                    for k in 0..4 {
-                        write(k, truncated(bytes(colours[k])));
-                    }
-                } else {
-                    let mut sums = [f32x4::ZERO; 4];
-                    self.block(frame, &inputs, [x, y], part, |k, samples, colour| {
-                        sums[k] += f32x4::splat(COUNT[samples as usize]) * colour;
-                    });
-                    for k in 0..4 {
-                        write(k, average(sums[k]));
+                        out[3 * at..3 * at + 3].copy_from_slice(&colours[k][..3]);
                     }
                 }
             }
         }
     }
 
-    /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: the pixel in the block,
-    /// a bit for each sample, the colour in bytes.
+    /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: four bits for each
+    /// pixel, the colours of all pixels in bytes.
     #[inline(always)]
-    fn block(
-        &mut self,
-        frame: &mut Frame,
-        inputs: &Inputs,
-        at: [usize; 2],
-        part: u32,
-        mut emit: impl FnMut(usize, u32, f32x4),
-    ) {
+    fn block(&self, frame: &Frame, inputs: &Inputs, at: [usize; 2], part: u32, mut emit: impl FnMut(u32, &Vectors)) {
         let (w, h) = (frame.size[0], frame.size[1]);
         let [x, y] = at;
         let first = y * w + x;
@@ -167,30 +153,28 @@ impl Shader {
             let same = |k: usize| vectors[k].simd_eq(u32x4::splat(id)).to_bitmask() << (4 * k);
             let mine = (same(0) | same(1) | same(2) | same(3)) & rest;
             rest &= !mine;
-            let samples = [mine & 15, mine >> 4 & 15, mine >> 8 & 15, mine >> 12 & 15];
-            let colours = self.colours(frame, inputs, at, id, four(|k| samples[k] != 0));
-            for k in 0..4 {
-                if samples[k] != 0 {
-                    emit(k, samples[k], bytes(colours[k]));
-                }
-            }
+            let wanted = four(|k| mine >> (4 * k) & 15 != 0);
+            emit(mine, &bytes(&self.colours(frame, inputs, at, id, wanted)));
         }
     }
 
     /// Writes an image with transparent things, each drawn twice: from the front to the back and then back.
     #[cold]
-    fn blended(&mut self, frame: &mut Frame, inputs: &Inputs, pixels: Pixels, out: &mut [u8]) {
+    fn blended(&mut self, frame: &Frame, inputs: &Inputs, pixels: Pixels, out: &mut [u8]) {
         let (w, h) = (frame.size[0], frame.size[1]);
         let mut samples = std::mem::take(&mut self.samples);
         samples.clear();
         samples.resize(w * h, [f32x4::ZERO; 4]);
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
-                self.block(frame, inputs, [x, y], 0xffff, |k, covered, colour| {
-                    let (x, y) = (x + k % 2, y + k / 2);
-                    if x < w && y < h {
-                        for s in (0..4).filter(|s| covered >> s & 1 == 1) {
-                            samples[y * w + x][s] = colour;
+                self.block(frame, inputs, [x, y], 0xffff, |covered, colours| {
+                    let colours = by_pixel(colours);
+                    for k in 0..4 {
+                        let (x, y) = (x + k % 2, y + k / 2);
+                        if x < w && y < h {
+                            for s in (0..4).filter(|s| covered >> (4 * k + s) & 1 == 1) {
+                                samples[y * w + x][s] = colours[k];
+                            }
                         }
                     }
                 });
@@ -205,7 +189,7 @@ impl Shader {
                 let own = x % 2 + 2 * (y % 2);
                 wanted[own] = true;
                 let block = [x - x % 2, y - y % 2];
-                let colour = self.colours(frame, inputs, block, fragment.id, wanted)[own];
+                let colour = by_pixel(&self.colours(frame, inputs, block, fragment.id, wanted))[own];
                 let draw = frame.colour.records[fragment.id as usize].draw;
                 let alpha = frame.draws[draw as usize].alpha;
                 for s in (0..4).filter(|s| fragment.samples >> s & 1 == 1) {
@@ -216,7 +200,8 @@ impl Shader {
         }
         for (i, s) in samples.iter().enumerate() {
             if let Some(at) = pixels.place(i % w, h - 1 - i / w, w) {
-                out[3 * at..3 * at + 3].copy_from_slice(&average(s[0] + s[1] + s[2] + s[3]));
+                let [r, g, b, _] = ((s[0] + s[1] + s[2] + s[3] + 2.0) * 0.25).fast_trunc_int().to_array();
+                out[3 * at..3 * at + 3].copy_from_slice(&[r, g, b].map(|v| v as u8));
             }
         }
         self.samples = samples;
@@ -224,140 +209,97 @@ impl Shader {
 
     /// Returns the colours of a record at the centres of those pixels of a block that are `wanted`.
     #[inline(always)]
-    fn colours(
-        &mut self,
-        frame: &mut Frame,
-        inputs: &Inputs,
-        [x, y]: [usize; 2],
-        id: u32,
-        wanted: [bool; 4],
-    ) -> [f32x4; 4] {
+    fn colours(&self, frame: &Frame, inputs: &Inputs, [x, y]: [usize; 2], id: u32, wanted: [bool; 4]) -> Vectors {
         let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
         if id == NONE {
             return inputs.sky(x, y, wanted);
         }
-        let mut index = frame.colour.records[id as usize].setup;
-        if index == NONE {
-            index = self.setups.len() as u32;
-            let record = frame.colour.records[id as usize];
-            let setup = self.setup(frame, inputs, &record);
-            self.setups.push(setup);
-            frame.colour.records[id as usize].setup = index;
-        }
+        let index = frame.colour.records[id as usize].setup;
         self.setups[index as usize].colours(inputs.visual, x, y, wanted)
-    }
-
-    fn setup(&mut self, frame: &Frame, inputs: &Inputs, record: &Triangle) -> Setup {
-        let index = record.draw as usize;
-        let lit = three(|k| self.lit(frame, inputs, index, record.vertices[k]));
-        let vertices = three(|k| &frame.vertices[record.vertices[k] as usize]);
-        let basis = Basis::new(vertices);
-        let iw = three(|k| f32x4::splat(vertices[k].iw));
-        let size = [frame.size[0], frame.size[1]];
-        let over = |[a, b, c]: [f32x4; 3]| Planes::new(&basis, [a * iw[0], b * iw[1], c * iw[2]], vertices[0].iw, size);
-        let image = inputs.visual.drawables[index].texture;
-        Setup {
-            colour: over(three(|k| lit[k].colour)),
-            texture: match image {
-                Some(_) => over(three(|k| lit[k].texture)),
-                None => Planes::default(),
-            },
-            image: image.map_or(NONE, |i| i as u32),
-        }
-    }
-
-    /// Returns the lighting of a vertex of the frame, computed when it is first asked for.
-    fn lit(&mut self, frame: &Frame, inputs: &Inputs, index: usize, v: u32) -> LitVertex {
-        let slot = self.lit_of[v as usize];
-        if slot != NONE {
-            return self.lit[slot as usize];
-        }
-        let drawable = &inputs.visual.drawables[index];
-        let draw = &frame.draws[index];
-        let mesh = &inputs.visual.meshes[drawable.shape as usize];
-        let i = v as usize - draw.base;
-        let lit = match i.checked_sub(mesh.x.len()) {
-            Some(point) => {
-                let point = frame.points[draw.points + point];
-                let from = self.lit(frame, inputs, index, point.from);
-                let to = self.lit(frame, inputs, index, point.to);
-                let share = f32x4::splat(point.share);
-                LitVertex {
-                    colour: from.colour + share * (to.colour - from.colour),
-                    texture: from.texture + share * (to.texture - from.texture),
-                }
-            }
-            None => {
-                let unit = [mesh.x[i], mesh.y[i], mesh.z[i]];
-                let part = mesh.part_of(i);
-                let vertex = (part, unit, mesh.normal[i]);
-                let [r, g, b] = light::vertex(&self.lights, drawable, draw, inputs.eye.pos, vertex);
-                let [s, t, u] = [0, 1, 2].map(|k| unit[k] * drawable.texture_scale[k] + drawable.texture_offset);
-                LitVertex {
-                    colour: f32x4::new([r, g, b, 1.0]),
-                    texture: f32x4::new([s, t, u, 0.0]),
-                }
-            }
-        };
-        self.lit_of[v as usize] = self.lit.len() as u32;
-        self.lit.push(lit);
-        lit
     }
 }
 
-/// Converts a colour of 0..1 to bytes: rounded to the nearest, halves to even; NaN becomes 0.
+/// Converts colours of 0..1 to bytes: rounded to the nearest, halves to even; NaN becomes 0.
 #[inline(always)]
-fn bytes(colour: f32x4) -> f32x4 {
+fn bytes(colours: &Vectors) -> Vectors {
+    three(|k| rounded(colours[k]))
+}
+
+#[inline(always)]
+fn rounded(colour: f32x4) -> f32x4 {
     // adding 2^23 rounds to the nearest integer
     const SHIFT: f32 = 8_388_608.0;
     (colour.max(f32x4::ZERO).fast_min(f32x4::ONE) * 255.0 + SHIFT) - SHIFT
 }
 
+/// Returns red, green and blue of each pixel in bytes, rounded down.
+#[inline(always)]
+fn packed(colours: &Vectors) -> [[u8; 4]; 4] {
+    let [r, g, b] = three(|k| colours[k].fast_trunc_int());
+    let joined: i32x4 = r | g << 8 | b << 16;
+    joined.to_array().map(i32::to_le_bytes)
+}
+
+/// Returns the colour of each pixel.
+fn by_pixel(&[r, g, b]: &Vectors) -> [f32x4; 4] {
+    f32x4::transpose([r, g, b, f32x4::ZERO])
+}
+
 /// Lays a colour over one in bytes.
 fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
     let over = over.max(f32x4::ZERO).fast_min(f32x4::ONE);
-    bytes(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
-}
-
-/// Returns the average of four colours in bytes, from their sum.
-#[inline(always)]
-fn average(sum: f32x4) -> [u8; 3] {
-    truncated((sum + 2.0) * 0.25)
-}
-
-/// Returns a colour in bytes, rounded down.
-#[inline(always)]
-fn truncated(colour: f32x4) -> [u8; 3] {
-    let [r, g, b, _] = colour.fast_trunc_int().to_array();
-    [r as u8, g as u8, b as u8]
+    rounded(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
 }
 
 impl Setup {
+    fn new(frame: &Frame, visual: &Visual, seen: &Seen, record: &Triangle) -> Self {
+        let lit = three(|k| seen.lit(record.vertices[k]));
+        let vertices = three(|k| &frame.vertices[record.vertices[k] as usize]);
+        let basis = Basis::new(vertices);
+        let iw = three(|k| f32x4::splat(vertices[k].iw));
+        let over = |of: [f32x4; 3]| Planes::new(&basis, three(|k| of[k] * iw[k]), vertices[0].iw, frame.size);
+        let mut setup = Self {
+            colour: over(three(|k| lit[k].colour)),
+            texture: Planes::default(),
+            tint: [1.0; 3],
+            image: NONE,
+        };
+        let Some(image) = visual.drawables[record.draw as usize].texture else {
+            return setup;
+        };
+        if let Texture::Flat(face) = &visual.textures[image]
+            && face[0].has_one_colour()
+        {
+            let texel = u32::from_le_bytes(face[0].pixels[0]);
+            setup.tint = channels(u32x4::splat(texel)).map(|v| v.to_array()[0] * (1.0 / 255.0));
+        } else {
+            setup.texture = over(three(|k| lit[k].texture));
+            setup.image = image as u32;
+        }
+        setup
+    }
+
+    /// Returns the colours of a block of 2 x 2 pixels.
     #[inline(always)]
-    fn colours(&self, visual: &Visual, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
-        let mut colours = self.colour.block(x, y);
-        let w = f32x4::ONE / f32x4::new(four(|k| colours[k].to_array()[3]));
-        let each = w.to_array();
-        for k in 0..4 {
-            colours[k] *= f32x4::splat(each[k]);
+    fn colours(&self, visual: &Visual, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
+        let [r, g, b, w] = f32x4::transpose(self.colour.block(x, y));
+        let w = f32x4::ONE / w;
+        let colours = [r * w, g * w, b * w];
+        if self.image == NONE {
+            return three(|k| colours[k] * self.tint[k]);
         }
-        if self.image != NONE {
-            let [s, t, u, _] = f32x4::transpose(self.texture.block(x, y));
-            let texels = visual.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
-            for k in 0..4 {
-                colours[k] *= texels[k];
-            }
-        }
-        colours
+        let [s, t, u, _] = f32x4::transpose(self.texture.block(x, y));
+        let texels = visual.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
+        three(|k| colours[k] * texels[k])
     }
 }
 
 impl Inputs<'_> {
     /// Returns the background: a cube map turned by 90 degrees about x, seen in the directions of the pixels of a
     /// block.
-    fn sky(&self, x: f32, y: f32, wanted: [bool; 4]) -> [f32x4; 4] {
+    fn sky(&self, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
         let Some(sky) = self.visual.sky else {
-            return [f32x4::ZERO; 4];
+            return [f32x4::ZERO; 3];
         };
         let Eye { forward, right, up, .. } = self.eye;
         let ray = |at: [f32; 4], k: usize| (f32x4::new(at) * self.step[k] - 1.0) * self.eye.tan[k];

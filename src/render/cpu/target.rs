@@ -7,7 +7,7 @@ use wide::{f32x4, u32x4};
 
 use super::lanes::{four, three};
 use super::plane::Vertex;
-use super::raster::{Depth, Fixed, Sink, scan};
+use super::raster::{Depth, Edges, Fixed, Sink, large, medium};
 use super::sampling::Sampling;
 use super::small::Spots;
 
@@ -85,39 +85,51 @@ impl Target {
         (all.to_bitmask() == 15).then_some(id)
     }
 
-    /// Draws a counterclockwise triangle as `K` says: [`Opaque`] or [`Transparent`]. `record` has the indices of its corners
-    /// among `vertices`.
+    /// Draws a large counterclockwise triangle as `K` says: [`Opaque`] or [`Transparent`]. `record` has the indices of its
+    /// corners among `vertices`.
     #[inline(never)]
-    pub fn triangle<'a, S: Sampling, K>(&'a mut self, fixed: &[Fixed; 3], vertices: &[Vertex], record: Triangle)
+    pub fn large<'a, S: Sampling, K>(&'a mut self, fixed: &[Fixed; 3], vertices: &[Vertex], record: Triangle)
     where
         Writer<'a, K>: Sink,
     {
         let size = [self.width, self.height];
         let corners = record.vertices;
-        let mut writer = Writer {
+        let depth = || Depth::new::<S>(three(|k| &vertices[corners[k] as usize]), size);
+        large::<S>(&mut self.writer::<K>(record), size, fixed, depth);
+    }
+
+    /// Draws a triangle of medium size.
+    #[inline(never)]
+    pub fn medium<'a, S: Sampling, K>(
+        &'a mut self,
+        edges: &Edges,
+        range: [[i32; 2]; 2],
+        depth: &Depth,
+        record: Triangle,
+    ) where
+        Writer<'a, K>: Sink,
+    {
+        let width = self.width;
+        medium::<S>(&mut self.writer::<K>(record), width, edges, range, depth);
+    }
+
+    fn writer<K>(&mut self, record: Triangle) -> Writer<'_, K> {
+        Writer {
             target: self,
             record,
             id: NONE,
-            kind: PhantomData::<K>,
-        };
-        let depth = || Depth::new::<S>(three(|k| &vertices[corners[k] as usize]), size);
-        scan::<S>(&mut writer, size, fixed, depth);
+            kind: PhantomData,
+        }
     }
 
     /// Draws a small triangle, of which the covered samples are known.
     #[inline(never)]
-    pub fn spots<'a, S: Sampling, K>(&'a mut self, spots: &Spots, vertices: &[Vertex], record: Triangle)
+    pub fn spots<'a, S: Sampling, K>(&'a mut self, spots: &Spots, depth: &Depth, record: Triangle)
     where
         Writer<'a, K>: Sink,
     {
         let (width, height) = (self.width, self.height);
-        let depth = Depth::new::<S>(three(|k| &vertices[record.vertices[k] as usize]), [width, height]);
-        let mut writer = Writer {
-            target: self,
-            record,
-            id: NONE,
-            kind: PhantomData::<K>,
-        };
+        let mut writer = self.writer::<K>(record);
         let mut rest = spots.samples;
         while rest != 0 {
             let at = spots.pixel::<S>(rest.trailing_zeros() as usize);

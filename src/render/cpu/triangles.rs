@@ -6,12 +6,14 @@ use wide::f32x4;
 
 use super::camera::Row;
 use super::clip::{self, Clip, EdgePoint, Origin, Polygon};
-use super::frame::{ClipPoint, Frame, Targets, steps};
+use super::frame::{ClipPoint, Frame, Targets};
+use super::group::{Drawn, Waiting};
 use super::lanes::{four, three};
 use super::plane::Vertex;
+use super::project::steps;
 use super::raster::{Sink, is_counterclockwise};
 use super::sampling::{FourSamples, PixelCentre, Sampling};
-use super::small::{Quads, Waiting};
+use super::small::Quads;
 use super::target::{NONE, Opaque, Target, Transparent, Triangle, Writer};
 use crate::render::mesh::{Band, Mesh};
 use crate::render::strip::{STRIP_LANES, Strip};
@@ -43,7 +45,7 @@ impl Frame {
         (x[b] - x[a]) * (y[c] - y[a]) >= (y[b] - y[a]) * (x[c] - x[a])
     }
 
-    /// Draws a band that is wholly in view.
+    /// Draws a band that is wholly in view: the quadrilaterals that may show their front.
     pub fn inside(&mut self, mesh: &Mesh, index: usize, band: &Band) {
         let base = self.draws[index].base;
         for t in &mesh.triangles[band.triangles.clone()][..band.loose] {
@@ -58,8 +60,13 @@ impl Frame {
     fn strip(&mut self, index: usize, strip: &Strip) {
         let base = self.draws[index].base;
         let step = four(|k| usize::from(strip.step[k]));
-        let mut at = four(|k| base + usize::from(strip.first[k]));
-        for _ in (0..strip.count).step_by(STRIP_LANES) {
+        let first = four(|k| base + usize::from(strip.first[k]));
+        for k in 0..strip.count / STRIP_LANES {
+            let fronts = u32::from(self.fronts[strip.patch + k]);
+            if fronts == 0 {
+                continue;
+            }
+            let at = four(|i| first[i] + step[i] * STRIP_LANES * k);
             let quads = Quads(four(|k| {
                 [lanes(&self.x, at[k], step[k]), lanes(&self.y, at[k], step[k])]
             }));
@@ -70,8 +77,8 @@ impl Frame {
                 Targets { colour: false, .. } => quads.hit::<PixelCentre>(),
                 _ => quads.hit::<FourSamples>() | quads.hit::<PixelCentre>(),
             };
-            let first = front[0] & hit;
-            let second = if strip.fan { 0 } else { front[1] & hit };
+            let first = front[0] & hit & fronts;
+            let second = if strip.fan { 0 } else { front[1] & hit & fronts };
             let mut rest = first | second;
             while rest != 0 {
                 let j = rest.trailing_zeros() as usize;
@@ -84,16 +91,13 @@ impl Frame {
                     self.wait(index, [b, c, d]);
                 }
             }
-            for k in 0..4 {
-                at[k] += step[k] * STRIP_LANES;
-            }
         }
     }
 
     /// Puts a triangle, whose vertices are given, among those to be rasterised.
     #[inline(always)]
     fn wait(&mut self, index: usize, vertices: [usize; 3]) {
-        if self.waiting.add(vertices, &self.x, &self.y) {
+        if self.waiting.add(vertices, &self.vertices, &self.x, &self.y) {
             self.flush(index);
         }
     }
@@ -179,7 +183,7 @@ impl Geometry<'_> {
     where
         for<'t> Writer<'t, K>: Sink,
     {
-        waiting.each::<S>(|own, spots| {
+        waiting.each::<S>([target.width, target.height], |own, drawn| {
             let [a, b, c] = own;
             // the order in which Mesa sets triangles up
             let record = Triangle {
@@ -187,15 +191,15 @@ impl Geometry<'_> {
                 vertices: [b as u32, a as u32, c as u32],
                 setup: NONE,
             };
-            if let Some(spots) = spots {
-                if spots.samples != 0 {
-                    target.spots::<S, K>(&spots, self.vertices, record);
+            match drawn {
+                Drawn::Spots(spots, depth) => target.spots::<S, K>(&spots, &depth, record),
+                Drawn::Medium(edges, range, depth) => target.medium::<S, K>(&edges, range, &depth, record),
+                Drawn::Large => {
+                    let fixed = three(|k| [self.x[own[k]] as i32, self.y[own[k]] as i32]);
+                    if is_counterclockwise(&fixed) {
+                        target.large::<S, K>(&fixed, self.vertices, record);
+                    }
                 }
-                return;
-            }
-            let fixed = three(|k| [self.x[own[k]] as i32, self.y[own[k]] as i32]);
-            if is_counterclockwise(&fixed) {
-                target.triangle::<S, K>(&fixed, self.vertices, record);
             }
         });
     }

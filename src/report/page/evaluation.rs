@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::{embed, grouped, percent, step_time};
 use crate::config::{Behavior, Compat};
-use crate::env::{EYE_HAND_PAIRS, PartNames};
+use crate::env::{EYE_HAND_PAIRS, Outcome, PartNames};
 use crate::eval::Score;
 use crate::report::run::{Evaluated, Run};
 use crate::report::strip::{frames, moments};
@@ -60,7 +60,7 @@ fn strip(run: &Run, evaluated: &Evaluated) -> std::io::Result<Markup> {
     let panel = match run.behavior {
         Behavior::SelfTouch => "the skin",
         Behavior::HandRegard => "what both eyes see",
-        Behavior::None => "the room from the side",
+        _ => "the room from the side",
     };
     let seen = |step: usize, event: &str| match event {
         "" => format!("step {}: the room, MIMo from above and {panel}", step + 1),
@@ -83,10 +83,21 @@ fn strip(run: &Run, evaluated: &Evaluated) -> std::io::Result<Markup> {
     })
 }
 
+/// Says how an episode of a task ended.
+fn outcome(outcome: &Outcome) -> &'static str {
+    match (outcome.is_success, outcome.is_failure) {
+        (true, _) => "success",
+        (_, true) => "failure",
+        _ => "neither",
+    }
+}
+
 /// Draws the table of all episodes.
 fn evaluation_table(run: &Run, scores: &[Option<f64>]) -> Markup {
     let touch = run.behavior == Behavior::SelfTouch;
     let regard = run.behavior == Behavior::HandRegard;
+    let of_task = |e: &Evaluated| e.log.info.last().is_some_and(|info| info.behavior.task().is_some());
+    let task = run.evaluations.iter().any(of_task);
     html! {
         div.scroll { table {
             thead { tr {
@@ -94,6 +105,7 @@ fn evaluation_table(run: &Run, scores: &[Option<f64>]) -> Markup {
                 @if touch { th.number { "parts, right" } th.number { "parts, left" } }
                 @if regard { @for name in EYE_HAND_PAIRS { th.number { (name.replacen("eye_", "eye, ", 1).replace('_', " ")) } } }
                 @if touch || regard { th.number { "score of the episode" } }
+                @if task { th.number { "return" } th { "outcome" } }
             } }
             @for (evaluated, score) in run.evaluations.iter().zip(scores) {
                 @let steps = evaluated.log.len();
@@ -105,6 +117,10 @@ fn evaluation_table(run: &Run, scores: &[Option<f64>]) -> Markup {
                         }
                         @if let Some(counts) = info.behavior.regards() {
                             @for n in counts { td.number { (percent(n as f64 / steps as f64)) } }
+                        }
+                        @if let Some(task) = info.behavior.task() {
+                            td.number { (format!("{:.3}", task.episode_return)) }
+                            td { (outcome(&task.outcome)) }
                         }
                     }
                     @if let Some(score) = score { td.number { b { (format!("{score:.3}")) } } }

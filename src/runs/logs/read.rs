@@ -5,7 +5,8 @@ use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 
 use super::{LogError, record, training_path};
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerHand};
+use crate::config::Behavior;
+use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PerHand, TaskInfo};
 use crate::formats::pickle::{self, Node, PickleError, Root, Value};
 use crate::limits::Limits;
 
@@ -15,6 +16,10 @@ trait Field: Copy {
     fn get(self, key: &str) -> Option<Self>;
     /// Returns a whole number that is not negative.
     fn count(self) -> Option<u64>;
+    /// Returns a number; 0 or 1 for false and true.
+    fn number(self) -> Option<f64>;
+    /// Returns the value among some names that a text has.
+    fn task(self) -> Option<Behavior>;
     /// Returns a list of at most so many such numbers.
     fn counts(self, most: usize) -> Option<Vec<usize>>;
 }
@@ -30,6 +35,22 @@ impl Field for &Value {
 
     fn count(self) -> Option<u64> {
         self.count()
+    }
+
+    fn number(self) -> Option<f64> {
+        match self {
+            Value::Bool(on) => Some(f64::from(u8::from(*on))),
+            Value::Int(number) => Some(*number as f64),
+            Value::Float(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    fn task(self) -> Option<Behavior> {
+        match self {
+            Value::Text(text) => Behavior::from_name(text),
+            _ => None,
+        }
     }
 
     fn counts(self, most: usize) -> Option<Vec<usize>> {
@@ -49,6 +70,14 @@ impl Field for Node<'_, '_> {
 
     fn count(self) -> Option<u64> {
         self.count()
+    }
+
+    fn number(self) -> Option<f64> {
+        self.number()
+    }
+
+    fn task(self) -> Option<Behavior> {
+        self.text().and_then(Behavior::from_name)
     }
 
     fn counts(self, most: usize) -> Option<Vec<usize>> {
@@ -84,6 +113,19 @@ fn from_dict(value: impl Field, limits: &Limits) -> Result<Info, String> {
         BehaviorInfo::HandRegard {
             counts: [a?, b?, c?, d?].into(),
         }
+    } else if let Some(task) = value.get("task") {
+        let number = |key: &str| {
+            let number = value.get(key).and_then(Field::number).filter(|v| v.is_finite());
+            number.ok_or_else(|| format!("`{key}` is not a number"))
+        };
+        BehaviorInfo::Task(TaskInfo {
+            task: task.task().ok_or("`task` is not the name of a task")?,
+            outcome: Outcome {
+                is_success: number("is_success")? != 0.0,
+                is_failure: number("is_failure")? != 0.0,
+            },
+            episode_return: number("return")?,
+        })
     } else {
         BehaviorInfo::None
     };

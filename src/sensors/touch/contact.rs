@@ -30,6 +30,8 @@ pub struct TouchContact {
     pub point: Vec3,
     /// Point of contact, m, frame of the body.
     pub point_body: Vec3,
+    /// Whether sensors are near enough to feel it; set by [`Touch::sense`](super::Touch::sense).
+    pub felt: bool,
     /// Index of the body in [`SkinLayout::bodies`].
     pub(super) index: usize,
     /// Index of the touched geom among the contact's two.
@@ -90,6 +92,7 @@ pub fn touch_contacts(
                 force_body: mat_t_vec(&xmat[b], force),
                 point,
                 point_body: mat_t_vec(&xmat[b], sub(point, xpos[b])),
+                felt: false,
                 index,
                 side,
             });

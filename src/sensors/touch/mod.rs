@@ -33,7 +33,9 @@ mod grid;
 mod hull;
 mod layout;
 pub(crate) mod points;
+mod pooled;
 mod scaled;
+mod values;
 
 use std::sync::Arc;
 
@@ -41,6 +43,8 @@ pub use contact::{TouchContact, touch_contacts};
 pub use hull::Hull;
 pub use layout::{MAX_SENSORS, SkinBody, SkinError, SkinGeom, SkinLayout};
 pub use points::surface_points;
+pub use pooled::{POOLED, TouchPool};
+pub use values::SkinValues;
 
 use crate::config::{Compat, Config, TouchFunction, TouchResponse};
 use crate::math::*;
@@ -76,10 +80,7 @@ pub struct Touch {
     function: TouchFunction,
     response: TouchResponse,
     compat: Compat,
-    values: Vec<f32>,
-    /// Sensors that were written, and for each sensor whether it was written.
-    touched: Vec<u32>,
-    is_touched: Vec<bool>,
+    felt: SkinValues,
     contacts: Vec<TouchContact>,
     /// Sensors in reach of a contact, and their weights.
     near: Vec<(u32, f64)>,
@@ -100,9 +101,7 @@ impl Touch {
             function,
             response,
             compat,
-            values: vec![0.0; width * layout.len()],
-            touched: Vec::with_capacity(layout.len()),
-            is_touched: vec![false; layout.len()],
+            felt: SkinValues::new(layout.len(), width),
             contacts: Vec::with_capacity(128),
             near: Vec::with_capacity(most),
             layout,
@@ -126,22 +125,27 @@ impl Touch {
 
     /// Returns the number of values per sensor: 1 for [`TouchFunction::Normal`], else 3.
     pub fn width(&self) -> usize {
-        if self.function == TouchFunction::Normal { 1 } else { 3 }
+        self.felt.width()
     }
 
     /// Returns the number of values.
     pub fn len(&self) -> usize {
-        self.values.len()
+        self.values().len()
     }
 
     /// Returns whether there are no sensors.
     pub fn is_empty(&self) -> bool {
-        self.values.is_empty()
+        self.values().is_empty()
+    }
+
+    /// Returns what all sensors feel, N.
+    pub fn felt(&self) -> &SkinValues {
+        &self.felt
     }
 
     /// Returns the values of all sensors, N: sensor by sensor, [`Self::width`] numbers each.
     pub fn values(&self) -> &[f32] {
-        &self.values
+        self.felt.values()
     }
 
     /// Returns the values of the sensors of a body; empty if it has none.
@@ -151,15 +155,14 @@ impl Touch {
             .layout
             .body(body)
             .map_or(0..0, |b| width * b.offset..width * (b.offset + b.len()));
-        &self.values[range]
+        &self.values()[range]
     }
 
     /// Iterates over the sensors whose value is not zero, in the order in which contacts reached them.
     pub fn active(&self) -> impl Iterator<Item = ActiveSensor<'_>> {
-        let width = self.width();
-        self.touched.iter().filter_map(move |&sensor| {
+        self.touched().iter().filter_map(|&sensor| {
             let sensor = sensor as usize;
-            let value = &self.values[width * sensor..width * (sensor + 1)];
+            let value = self.felt.of(sensor);
             let (body, index) = self.layout.locate(sensor)?;
             value.iter().any(|v| *v != 0.0).then_some(ActiveSensor {
                 sensor,
@@ -172,7 +175,7 @@ impl Touch {
 
     /// Returns the sensors that contacts have reached, in that order: all others have the value zero.
     pub fn touched(&self) -> &[u32] {
-        &self.touched
+        self.felt.touched()
     }
 
     /// Returns the contacts with skin, with points and forces in the world and body frames: touch before it is spread
@@ -222,7 +225,7 @@ impl Touch {
                     mat_t_vec(&xmat[c.body], scale(normal, c.sign() * contact.force[0]))
                 }
             };
-            self.touch(skin, c.point_body, value);
+            self.contacts[k].felt = self.touch(skin, c.point_body, value);
         }
     }
 
@@ -237,26 +240,22 @@ impl Touch {
 
     /// Sets all sensors to zero and removes all contacts.
     pub fn clear(&mut self) {
-        let width = self.width();
-        for &sensor in &self.touched {
-            let sensor = sensor as usize;
-            self.values[width * sensor..width * (sensor + 1)].fill(0.0);
-            self.is_touched[sensor] = false;
-        }
-        self.touched.clear();
+        self.felt.clear();
         self.contacts.clear();
     }
 
-    /// Shares `value` among the sensors around `point`.
-    fn touch(&mut self, skin: &SkinBody, point: Vec3, value: Vec3) {
+    /// Shares `value` among the sensors around `point`. Returns whether there are any.
+    fn touch(&mut self, skin: &SkinBody, point: Vec3, value: Vec3) -> bool {
         let radius = REACH * skin.spacing;
         match self.response {
             TouchResponse::Nearest => {
-                if let Some(sensor) = skin.grid.nearest(point, radius) {
-                    self.near.clear();
-                    self.near.push((sensor, 1.0));
-                    self.share(skin, value, 1.0);
-                }
+                let Some(sensor) = skin.grid.nearest(point, radius) else {
+                    return false;
+                };
+                self.near.clear();
+                self.near.push((sensor, 1.0));
+                self.share(skin, value, 1.0);
+                true
             }
             TouchResponse::SpreadLinear => {
                 let near = &mut self.near;
@@ -272,9 +271,11 @@ impl Touch {
                     }
                 });
                 let dropped = self.compat == Compat::Reference && (value[0] * total).abs() <= DROPPED;
-                if total > 0.0 && !dropped {
+                let felt = total > 0.0 && !dropped;
+                if felt {
                     self.share(skin, value, total);
                 }
+                felt
             }
         }
     }
@@ -282,7 +283,6 @@ impl Touch {
     /// Adds `value` times weight over `total` to each sensor in `near`. Values are kept in single precision, each sum
     /// rounded once.
     fn share(&mut self, skin: &SkinBody, value: Vec3, total: f64) {
-        let width = self.width();
         // forces in the frame of each geom of the body
         let mut framed = [value; MAX_GEOMS];
         let by_geom = self.compat == Compat::Api && self.function == TouchFunction::ForceVector;
@@ -298,12 +298,8 @@ impl Touch {
                 Some(g) => mat_t_vec(&skin.geoms[g].mat, value),
             };
             let sensor = skin.offset + sensor as usize;
-            if !self.is_touched[sensor] {
-                self.is_touched[sensor] = true;
-                self.touched.push(sensor as u32);
-            }
             let share = weight / total;
-            for (out, v) in self.values[width * sensor..width * (sensor + 1)].iter_mut().zip(v) {
+            for (out, v) in self.felt.of_mut(sensor).iter_mut().zip(v) {
                 *out = (f64::from(*out) + v * share) as f32;
             }
         }

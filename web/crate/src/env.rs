@@ -20,7 +20,7 @@ use crate::scene;
 /// An environment, with what a page draws of it.
 #[wasm_bindgen]
 pub struct Core {
-    env: Env,
+    pub(crate) env: Env,
     visual: Option<Arc<Visual>>,
     viewer: Option<Viewer>,
     frame: Frame,
@@ -70,11 +70,10 @@ impl Core {
         done(self.env.set_activity(activity))
     }
 
-    /// Steps with the action in the view `action`; returns whether the episode is over.
-    pub fn step(&mut self) -> Result<bool, JsValue> {
+    /// Steps with the action in the view `action`.
+    pub fn step(&mut self) -> Result<(), JsValue> {
         self.restored = None;
-        let step = self.env.step(&self.action).map_err(|e| js::env_error(&e))?;
-        Ok(step.truncated)
+        self.env.step(&self.action).map(drop).map_err(|e| js::env_error(&e))
     }
 
     /// Draws a random action into the view `action`.
@@ -110,7 +109,11 @@ impl Core {
             "action" => Numbers::F32(&self.action),
             "proprioception" => Numbers::F64(seen.proprioception),
             "vestibular" => Numbers::F64(seen.vestibular?),
+            "achieved_goal" => Numbers::F64(seen.achieved_goal?),
+            "desired_goal" => Numbers::F64(seen.desired_goal?),
             "touch" => Numbers::F32(seen.touch?),
+            "touch_pooled" => Numbers::F64(seen.touch_pooled?),
+            "pain" => Numbers::F32(seen.pain?),
             "eye_left" => Numbers::U8(seen.eye_left?),
             "eye_right" => Numbers::U8(seen.eye_right?),
             "poses" => Numbers::F32(&self.frame.poses),
@@ -191,7 +194,7 @@ impl Core {
     /// Returns the information of the last step.
     pub fn info(&self) -> JsValue {
         let info = self.env.info();
-        let touches = info.behavior.touches();
+        let (touches, task) = (info.behavior.touches(), info.behavior.task());
         let parts = info.details.touched_parts.as_ref().map(|p| p.each_ref());
         let hands = |make: &dyn Fn(usize) -> JsValue| object([("right_hand", make(0)), ("left_hand", make(1))]);
         object([
@@ -209,6 +212,10 @@ impl Core {
                 optional(info.behavior.regards(), |counts| js::numbers(&counts.map(|c| c as f64))),
             ),
             ("score", optional(info.behavior.score(info.steps), JsValue::from)),
+            ("is_success", optional(task, |t| t.outcome.is_success.into())),
+            ("is_failure", optional(task, |t| t.outcome.is_failure.into())),
+            ("return", optional(task, |t| t.episode_return.into())),
+            ("reward_terms", optional(task, |_| js::numbers(self.env.goal().terms))),
             (
                 "gaze_angles",
                 optional(info.details.gaze_angles, |angles| js::numbers(&angles.to_array())),

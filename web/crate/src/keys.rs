@@ -25,7 +25,9 @@ fn describe(key: &Key) -> JsValue {
         KeyKind::Bool => ("boolean", JsValue::NULL, JsValue::NULL, JsValue::NULL),
         KeyKind::Whole { min, max } => ("integer", JsValue::NULL, (min as f64).into(), (max as f64).into()),
         KeyKind::ZeroOrAtLeast(least) => ("number", JsValue::NULL, least.into(), JsValue::NULL),
-        KeyKind::NoneOr { min, max } => ("number", JsValue::NULL, min.into(), max.into()),
+        KeyKind::Number { min, max } | KeyKind::NoneOr { min, max } => {
+            ("number", JsValue::NULL, min.into(), max.into())
+        }
         KeyKind::Choice(names) => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         KeyKind::List(names) => ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         KeyKind::Text => ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL),

@@ -9,6 +9,7 @@ mod frame;
 mod js;
 mod keys;
 mod scene;
+mod task;
 
 use babybench::Config;
 use wasm_bindgen::prelude::*;

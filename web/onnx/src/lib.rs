@@ -68,9 +68,7 @@ impl Model {
             vestibular: vestibular.as_deref(),
             eye_left: eye_left.as_deref(),
             eye_right: eye_right.as_deref(),
-            eye_gray: None, // models in pages see in colour
-            eye_depth: None,
-            eye_segmentation: None,
+            ..Observation::default() // models in pages see in colour
         };
         let decided = self.policy.decide(&observation, &self.space, &mut self.action);
         decided.map_err(error)?;

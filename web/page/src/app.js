@@ -124,6 +124,7 @@ export class App {
   /** Starts the worker's world for the first time, from the link if it holds a state. */
   async start() {
     await this.world.ask("load");
+    performance.mark("module");
     let opened = null;
     try {
       opened = await link.decode(location.hash);
@@ -157,6 +158,7 @@ export class App {
     /** @type {Scene} */
     const scene = await this.world.ask("make", { settings: yaml ?? settings, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot });
     if (!snapshot) this.state.held = {};
+    if (!this.scene) performance.mark("scene");
     this.scene = scene;
     this.state.settings = scene.settings;
     this.state.locks = scene.joints.filter((j) => j.locked).map((j) => j.name);
@@ -164,6 +166,15 @@ export class App {
     this.emit("scene", scene);
     this.emit("state");
     await this.world.ask("look");
+  }
+
+  /**
+   * Builds a world of these settings alone, without what was set before.
+   * @param {Settings} settings
+   */
+  async begin(settings) {
+    this.state.locks = [];
+    await this.make(settings, null);
   }
 
   /**

@@ -10,6 +10,7 @@ import { tabs } from "./panels/tabs.js";
 import { caption, transport } from "./panels/transport.js";
 import { watch } from "./panels/watch.js";
 import { fromFile } from "./recording.js";
+import { drawnInSoftware } from "./stage/graphics.js";
 import { HEAT, heatGradient, place, SCALE } from "./stage/heat.js";
 import { Pointer } from "./stage/pointer.js";
 import { Stage } from "./stage/stage.js";
@@ -24,7 +25,8 @@ function stageOrExplain() {
     return null;
   }
   try {
-    return new Stage(/** @type {HTMLCanvasElement} */ ($("scene")));
+    const plain = drawnInSoftware() && new URLSearchParams(location.search).get("quality") !== "full";
+    return new Stage(/** @type {HTMLCanvasElement} */ ($("scene")), plain);
   } catch {
     fatal("WebGL is missing", "The scene is drawn with WebGL 2. Turn on hardware acceleration in the browser's settings, or open the page in a current Firefox, Chrome, Edge or Safari.");
     return null;
@@ -108,6 +110,7 @@ function drops(app) {
 }
 
 async function main() {
+  performance.mark("page");
   const stage = stageOrExplain();
   if (!stage) return hideVeil();
   const app = new App(stage, new URL("./worker.js", import.meta.url));

@@ -50,7 +50,7 @@ export interface Key {
   default: string | number | boolean;
 }
 
-export type Settings = Record<string, string | number | boolean>;
+export type Settings = Record<string, string | number | boolean | null>;
 
 /** What the page learns once about a world. */
 export interface Scene {
@@ -89,6 +89,9 @@ export interface Score {
   behavior: string;
   value: number | null;
   steps: number;
+  /** Whether a task's goal is reached, and what it has earned in this episode. */
+  success: boolean | null;
+  earned: number | null;
   hands: { right: string[]; left: string[]; reachable: number } | null;
   regards: [number, number, number, number] | null;
 }

@@ -3,7 +3,7 @@ import init, { Env } from "../../dist/babybench/babybench.js";
 
 /** Lengths of the episodes, as in `examples/checksum`. */
 const STEPS = [0, 10, 100, 1000];
-const NAMES = { self_touch: "config_selftouch", hand_regard: "config_handregard", test_installation: "config_test_installation" };
+const NAMES = { self_touch: "config_selftouch", hand_regard: "config_handregard", test_installation: "config_test_installation", infant: "config_infant" };
 
 /**
  * Returns what `cargo run --release --example checksum` prints.

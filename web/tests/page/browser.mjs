@@ -27,6 +27,8 @@ export async function start() {
       if (wait) await ready(page);
       return page;
     },
+    /** Stops the server, as a network that fails. */
+    hangUp: () => server.close(),
     async stop() {
       await browser.close();
       server.close();

@@ -140,6 +140,31 @@ test("a part is pulled without a pointer, at the strength that one sets", async 
   await until(page, () => mimo.moment.pull === null);
 });
 
+test("MIMo grows, and is the original again", async () => {
+  await tab(page, "Setup");
+  const tall = () => look(() => Math.max(...mimo.scene.drawables.filter((d) => d.shape === "capsule").map((d) => d.size[2])));
+  const original = await tall();
+  const age = page.getByLabel("Age of the body");
+  await age.fill("6");
+  await until(page, () => mimo.scene.settings.age === 6);
+  assert.ok((await tall()) < original);
+  await page.getByRole("button", { name: "Original", exact: true }).click();
+  await until(page, () => mimo.scene.settings.age === null);
+  assert.equal(await tall(), original);
+});
+
+test("tasks have scenes of their own", async () => {
+  for (const task of ["reach", "standup", "selfbody", "catch", "roll_over"]) {
+    await page.getByLabel("Task", { exact: true }).selectOption(task);
+    await until(page, (v) => mimo.scene.settings.behavior === v, task);
+    assert.ok(await page.getByRole("group", { name: "Scene" }).isHidden());
+    await steps(page, 3);
+    assert.ok(Number.isFinite(await look(() => mimo.moment.score.earned)));
+  }
+  await page.getByRole("group", { name: "Behavior" }).getByLabel("Self-touch").check({ force: true });
+  await until(page, () => mimo.scene.settings.behavior === "self_touch" && mimo.scene.settings.scene === "crib");
+});
+
 test("scene, behavior, body, actuation, seed and settings", async () => {
   await tab(page, "Setup");
   for (const [group, name, key, value] of [["Scene", "Cubes", "scene", "cubes"], ["Scene", "Floor", "scene", "base"], ["Behavior", "None", "behavior", "none"], ["Body", "Five fingers (v2)", "behavior", "hand_regard"], ["Body", "Mitten hands (v1)", "behavior", "self_touch"], ["Behavior", "Hand regard", "behavior", "hand_regard"], ["Actuation", "Muscles", "actuation_model", "muscle"], ["Actuation", "Angles", "actuation_model", "positional"], ["Actuation", "Torque", "actuation_model", "spring_damper"], ["Scene", "Crib", "scene", "crib"], ["Behavior", "Self-touch", "behavior", "self_touch"]]) {

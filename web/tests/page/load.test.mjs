@@ -18,11 +18,12 @@ test("a frame needs at most 200 draw calls in every scene", async () => {
     await page.evaluate((s) => mimo.change(s), settings);
     await steps(page, 40);
     const { calls, triangles } = await page.evaluate(() => {
-      mimo.stage.arrows.visible = true;
+      mimo.stage.arrows.visible = mimo.stage.studio.key.castShadow = true;
       mimo.stage.draw();
       return mimo.stage.renderer.info.render;
     });
     const cost = await page.evaluate(async () => {
+      mimo.stage.studio.key.castShadow = false; // takes the processor's time, not the script's
       mimo.stage.cost.fill(0);
       mimo.stage.frames = 0;
       for (let i = 0; i < 40; i++) {
@@ -35,6 +36,17 @@ test("a frame needs at most 200 draw calls in every scene", async () => {
     assert.ok(calls <= 200, `${settings.scene}: ${calls}`);
   }
   await page.context().close();
+});
+
+test("where the processor draws it draws plainly, unless all is asked for", async () => {
+  for (const [query, plain] of [["?paused", true], ["?paused&quality=full", false]]) {
+    const page = await host.open({ query });
+    const [shadows, width, shown] = await page.evaluate(() => [mimo.stage.studio.key.castShadow, mimo.stage.canvas.width, mimo.stage.canvas.clientWidth]);
+    assert.equal(shadows, !plain);
+    assert.equal(width < shown, plain);
+    assert.equal(await page.getByLabel("Shadows").isChecked(), !plain);
+    await page.context().close();
+  }
 });
 
 test("the first frame comes", async () => {

@@ -20,7 +20,7 @@ after(() => host.stop());
 
 for (const { name, settings, ...view } of CASES) {
   test(`the picture ${name} is as committed`, async () => {
-    const page = await host.open(view);
+    const page = await host.open({ query: "?paused&quality=full", ...view });
     await tab(page, "Move");
     await page.evaluate((s) => mimo.change(s).then(() => mimo.reset(1)), settings);
     await steps(page, 100);

@@ -1,7 +1,7 @@
 // The configuration: scene, behavior, body, muscles, seed; and every key of the file, from the library's own table.
 import { download, el, say } from "../dom.js";
 import { capital } from "../names.js";
-import { button, card, check, choice, drop } from "./controls.js";
+import { button, card, check, choice, drop, slider } from "./controls.js";
 
 /** @typedef {import("../types").Key} Key */
 /** @typedef {import("../types").Scene} Scene */
@@ -10,10 +10,16 @@ import { button, card, check, choice, drop } from "./controls.js";
 const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"]];
 /** @type {[string, string][]} */
 const BEHAVIORS = [["self_touch", "Self-touch"], ["hand_regard", "Hand regard"], ["none", "None"]];
+/** Each has a scene and a body of its own. */
+/** @type {[string, string][]} */
+const TASKS = [["reach", "Reach"], ["standup", "Stand up"], ["selfbody", "Touch a part"], ["catch", "Catch"], ["roll_over", "Roll over"]];
 /** @type {[string, string][]} */
 const BODIES = [["v1", "Mitten hands (v1)"], ["v2", "Five fingers (v2)"]];
 /** @type {[string, string][]} */
 const ACTUATION = [["spring_damper", "Torque"], ["muscle", "Muscles"], ["positional", "Angles"]];
+
+/** The age whose proportions are nearest to the original's, months. */
+const ORIGINAL = 18;
 
 /** @param {import("../app.js").App} app */
 export function setup(app) {
@@ -23,33 +29,55 @@ export function setup(app) {
 /** @param {import("../app.js").App} app */
 function scene(app) {
   const error = el("p", { className: "error", role: "alert" });
-  const change = async (/** @type {import("../types").Settings} */ settings) => {
+  const attempt = async (/** @type {() => Promise<void>} */ work) => {
     say(error, "");
     try {
-      await app.change(settings);
+      await work();
     } catch (e) {
       say(error, /** @type {Error} */ (e).message);
       app.emit("state");
     }
   };
+  const change = (/** @type {import("../types").Settings} */ settings) => attempt(() => app.change(settings));
   const places = choice("Scene", SCENES, (v) => change({ scene: v }));
-  const behaviors = choice("Behavior", BEHAVIORS, (v) => change({ behavior: v }));
+  const isTask = (/** @type {unknown} */ name) => TASKS.some(([task]) => task === name);
+  const choose = (/** @type {string} */ v) => {
+    const { behavior, age } = app.state.settings;
+    // what another task left would stand against the defaults of this one
+    const kept = { behavior: v, age, vision_active: false, max_episode_steps: 12_000 };
+    if (isTask(v)) attempt(() => app.begin(kept));
+    else if (isTask(behavior)) attempt(() => app.begin({ ...kept, scene: "crib" }));
+    else change({ behavior: v });
+  };
+  const behaviors = choice("Behavior", BEHAVIORS, choose);
+  const task = el("select", { "aria-label": "Task", onchange: () => choose(task.value || "self_touch") }, el("option", { value: "" }, "None"), ...TASKS.map(([value, text]) => el("option", { value }, text)));
   const bodies = choice("Body", BODIES, (v) => change({ behavior: v === "v2" ? "hand_regard" : "self_touch" }));
   const actuation = choice("Actuation", ACTUATION, (v) => change({ actuation_model: v }));
+  const original = button("Original", () => change({ age: null }), "tiny");
+  const age = slider("Months", { min: 0, max: 24, step: 0.5, value: ORIGINAL, format: String, label: "Age of the body" }, () => {});
+  age.input.addEventListener("change", () => change({ age: age.input.valueAsNumber }));
   app.on("state", () => {
     const s = app.state.settings;
+    age.set(typeof s.age === "number" ? s.age : ORIGINAL);
+    original.disabled = typeof s.age !== "number";
+    for (const part of [place, body]) part.hidden = isTask(s.behavior);
     places.set(String(s.scene));
     behaviors.set(String(s.behavior));
+    task.value = isTask(s.behavior) ? String(s.behavior) : "";
     bodies.set(s.behavior === "hand_regard" ? "v2" : "v1");
     actuation.set(String(s.actuation_model));
   });
   const line = (/** @type {string} */ title, /** @type {HTMLElement} */ control, /** @type {string} */ hint) =>
     el("div", { style: "display:grid;gap:5px" }, el("div", { className: "small" }, title), control, hint ? el("p", { className: "soft small" }, hint) : null);
+  const place = line("Scene", places, "");
+  const body = line("Body", bodies, "Hand regard has the body with fingers, all else the one with mittens.");
   return card(
     "World",
-    line("Scene", places, ""),
     line("Behavior", behaviors, ""),
-    line("Body", bodies, "Hand regard has the body with fingers, all else the one with mittens."),
+    line("Task", task, "A task has a goal, a reward, and a scene and a body of its own."),
+    place,
+    body,
+    line("Growth", el("div", { className: "age" }, age, original), "Size, mass and strength at an age. The original is measured as a child of 18 months."),
     line("Actuation", actuation, "Torques, pairs of opposing muscles, or desired angles."),
     error,
   );
@@ -118,7 +146,7 @@ function all(app) {
     }
   };
   const refresh = () => {
-    for (const [name, show] of fields) if (name in app.state.settings) show(app.state.settings[name]);
+    for (const [name, show] of fields) show(app.state.settings[name] ?? "");
   };
   const details = el("details", { className: "part" }, el("summary", {}, "Every setting"), el("div", {}, error, list));
   details.addEventListener("toggle", async () => {

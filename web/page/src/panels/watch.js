@@ -30,7 +30,7 @@ function eyes(app) {
 }
 
 /** @type {Record<string, string>} */
-const TITLES = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "No behavior" };
+const TITLES = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "No behavior", reach: "Reach", standup: "Stand up", selfbody: "Touch a part", catch: "Catch", roll_over: "Roll over" };
 
 /** @param {import("../app.js").App} app */
 function score(app) {
@@ -44,9 +44,10 @@ function score(app) {
   let drawn = "";
   app.on("tick", (/** @type {import("../types").Moment} */ moment) => {
     const s = moment.score;
-    say(heading, s.behavior === "none" ? "Score" : `${TITLES[s.behavior] ?? s.behavior}: score so far`);
+    const what = s.earned === null ? "score so far" : "return so far";
+    say(heading, s.behavior === "none" ? "Score" : `${TITLES[s.behavior] ?? s.behavior}: ${what}`);
     const percent = s.value === null ? 0 : 100 * s.value;
-    say(number, s.value === null ? "–" : `${percent.toFixed(1)} %`);
+    say(number, s.earned !== null ? s.earned.toFixed(1) : s.value === null ? "–" : `${percent.toFixed(1)} %`);
     fill.style.width = `${Math.min(100, percent)}%`;
     bar.setAttribute("aria-valuenow", percent.toFixed(0));
     bar.hidden = s.value === null;
@@ -66,6 +67,7 @@ function score(app) {
  */
 function caption(s, truncated) {
   const over = truncated ? " · episode complete" : "";
+  if (s.earned !== null) return `${s.success ? "the goal is reached" : "rewards of this episode"}${over}`;
   if (s.behavior === "self_touch") return `of the parts both palms can touch${over}`;
   if (s.behavior === "hand_regard") return `of the time, hands in view${over}`;
   return "Choose a behavior in Setup to count";
@@ -109,7 +111,7 @@ function skin(app) {
   const shadows = check("Shadows", (on) => {
     stage.studio.key.castShadow = on;
     stage.invalidate();
-  }, true);
+  }, stage.studio.key.castShadow);
   const follow = check("Camera follows MIMo", (on) => {
     stage.orbit.follow = on;
   }, true);

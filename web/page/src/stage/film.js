@@ -5,15 +5,21 @@ const LONGEST = 20_000;
 const TYPES = ["video/mp4;codecs=avc1.42E01E", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
 
 /**
- * Draws once more and returns the picture: a canvas forgets it afterwards.
+ * Draws once more, sharply, and returns the picture: a canvas forgets it afterwards.
  * @param {import("./stage.js").Stage} stage
  * @returns {Promise<Blob>}
  */
 export function picture(stage) {
+  const { sharpness } = stage;
+  stage.sharpness = 2;
+  stage.resize();
   stage.draw();
-  return new Promise((resolve, reject) => {
+  const blob = new Promise((resolve, reject) => {
     stage.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The browser could not make the picture."))), "image/png");
   });
+  stage.sharpness = sharpness;
+  stage.resize();
+  return blob;
 }
 
 export class Film {

@@ -17,10 +17,15 @@ import { Spring } from "./spring.js";
 const VIEWS = { crib: [-0.98, 0.8, 1.72], cubes: [-0.42, 0.26, 1.7], base: [-0.8, 0.5, 1.7] };
 
 export class Stage {
-  /** @param {HTMLCanvasElement} canvas */
-  constructor(canvas) {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {boolean} plain whether to draw coarsely, without shadows and smooth edges
+   */
+  constructor(canvas, plain) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    /** Pixels drawn for a pixel of the page, at most. */
+    this.sharpness = plain ? 0.7 : 2;
+    this.renderer = new WebGLRenderer({ canvas, antialias: !plain, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.info.autoReset = false;
     // asking for errors waits for the compiler of the graphics card
@@ -28,6 +33,7 @@ export class Stage {
     this.root = new Root();
     this.orbit = new Orbit();
     this.studio = new Studio(this.renderer);
+    this.studio.key.castShadow = !plain;
     this.arrows = new Arrows();
     this.spring = new Spring();
     this.root.add(this.studio, this.arrows, this.spring);
@@ -73,6 +79,7 @@ export class Stage {
     this.rehearsed = rehearsal(this.shared).add(this.studio.ground.clone());
     await this.renderer.compileAsync(this.rehearsed, this.orbit.camera, this.root);
     this.compiled = true;
+    performance.mark("shaders");
     this.invalidate();
   }
 
@@ -170,7 +177,7 @@ export class Stage {
   resize() {
     const { clientWidth: w, clientHeight: h } = this.canvas;
     if (!w || !h) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, this.sharpness));
     this.renderer.setSize(w, h, false);
     this.orbit.camera.aspect = w / h;
     this.orbit.camera.updateProjectionMatrix();

@@ -82,7 +82,8 @@ export class PageEnv {
    */
   step(action) {
     this.steps++;
-    return this.env.step(action).truncated;
+    const { terminated, truncated } = this.env.step(action);
+    return terminated || truncated;
   }
 
   /** @param {Float32Array} action */
@@ -137,11 +138,13 @@ export class PageEnv {
 
   /** @returns {import("../types").Score} */
   score() {
-    const { behavior, score, touched_parts, regards } = this.env.info;
+    const { behavior, score, touched_parts, regards, is_success, return: earned } = this.env.info;
     return {
       behavior,
       value: score,
       steps: this.steps,
+      success: is_success,
+      earned,
       hands: touched_parts && { right: touched_parts.right_hand, left: touched_parts.left_hand, reachable: PARTS },
       regards: /** @type {import("../types").Score["regards"]} */ (regards),
     };
@@ -201,7 +204,8 @@ export class PageEnv {
     const defaults = new Map(PageEnv.keys().map((k) => [k.name, k.default]));
     return {
       settings: this.settings,
-      changed: Object.fromEntries(Object.entries(this.settings).filter(([name, value]) => value !== defaults.get(name))),
+      // tasks have other defaults than those of the table
+      changed: this.env.info.is_success === null ? Object.fromEntries(Object.entries(this.settings).filter(([name, value]) => value !== defaults.get(name))) : this.settings,
       yaml: this.yaml,
       drawables: this.look.drawables.map(({ texture_scale, texture_offset, ...d }) => ({ ...d, textureScale: texture_scale, textureOffset: texture_offset })),
       textures: this.look.textures.map((faces, t) => faces.map(({ width, height }, f) => ({ width, height, pixels: this.env.texturePixels(t, f) }))),

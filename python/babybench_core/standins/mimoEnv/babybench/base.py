@@ -5,8 +5,8 @@ import os
 from babybench_core.mimo import tables
 from babybench_core.mimo.actuation import MODELS as ACTUATION_MODELS
 from babybench_core.mimo.actuation import MuscleModel, PositionalModel, SpringDamperModel
+from babybench_core.mimo.assets import assets_folder
 from babybench_core.mimo.env import DEFAULT_SIZE, SCENE_NAME, BabyBenchEnv, MIMoEnv
-from babybench_core.mimo.live import assets_folder
 from babybench_core.mimo.tables import PART_OF_BODY as BODY_GROUPS
 
 __all__ = [

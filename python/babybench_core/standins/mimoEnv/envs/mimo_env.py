@@ -2,7 +2,7 @@
 
 from babybench_core.mimo import tables
 from babybench_core.mimo.actuation import ActuationModel, SpringDamperModel
-from babybench_core.mimo.live import assets_folder
+from babybench_core.mimo.assets import assets_folder
 from babybench_core.mimo.mimo_env import EMOTES, MIMoEnv
 from babybench_core.mimo.senses import (
     Proprioception,

@@ -1,0 +1,72 @@
+//! A task of one's own: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, another one each time.
+
+use babybench::env::task::{TaskScene, TaskSizes, TaskView};
+use babybench::env::{EnvError, Goal, Task};
+use babybench::{Blueprint, Config, Model};
+
+#[derive(Clone, Debug, Default)]
+struct Lift {
+    hand: usize,
+}
+
+impl Task for Lift {
+    fn name(&self) -> &str {
+        "lift"
+    }
+
+    fn bind(&mut self, _config: &Config, model: &Model) -> Result<(), EnvError> {
+        self.hand = model.body("right_hand").ok_or(EnvError::Missing {
+            what: "body",
+            name: "right_hand".to_string(),
+            purpose: "the task lift",
+        })?;
+        Ok(())
+    }
+
+    fn sizes(&self) -> TaskSizes {
+        TaskSizes {
+            goal: 1,
+            ..TaskSizes::default()
+        }
+    }
+
+    fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
+        desired.fill(scene.rng.uniform_in(0.3, 0.35));
+    }
+
+    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], _terms: &mut [f64]) {
+        achieved.fill(view.state.xpos[self.hand][2]);
+    }
+
+    fn success(&self, goal: Goal<'_>) -> bool {
+        goal.achieved >= goal.desired
+    }
+
+    fn reward(&self, goal: Goal<'_>) -> f64 {
+        -(goal.desired[0] - goal.achieved[0]).max(0.0)
+    }
+}
+
+pub fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let config = Config {
+        frame_skip: 4,
+        touch_active: false,
+        vision_active: false,
+        ..Config::default()
+    };
+    let mut env = Blueprint::with_task(config, Lift::default())?.env()?;
+    let arm: Vec<f32> = env
+        .model()
+        .actuator_name
+        .iter()
+        .map(|name| f32::from(u8::from(name.contains("right_shoulder"))))
+        .collect();
+    for episode in 0..3 {
+        env.reset(Some(episode))?;
+        while !env.over() {
+            env.step(&arm)?;
+        }
+        println!("episode {episode}: {}", env.info().to_json());
+    }
+    Ok(())
+}

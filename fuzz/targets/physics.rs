@@ -1,0 +1,45 @@
+//! Models to twenty steps of both engines: a step is an error or leaves finite numbers.
+#![no_main]
+
+use std::sync::Arc;
+
+use babybench::assets::MemoryAssets;
+use babybench::mjcf_loader::load_str;
+use babybench::physics::{Engine, RapierModel, RapierOptions, SoftEngine, SoftOptions, compile};
+use libfuzzer_sys::fuzz_target;
+
+/// Larger models are left alone: their cost hides others.
+const LARGE: usize = 40;
+const STEPS: usize = 20;
+
+fn run(engine: &mut dyn Engine) {
+    let mut state = engine.new_state();
+    for step in 0..STEPS {
+        for (k, control) in state.ctrl.iter_mut().enumerate() {
+            *control = if (k + step) % 2 == 0 { 1.0 } else { -1.0 };
+        }
+        if engine.step(&mut state).is_err() {
+            return;
+        }
+        let numbers = state.qpos.iter().chain(&state.qvel).chain(&state.qacc);
+        let forces = state.contact.iter().flat_map(|c| c.force.iter().chain(&c.pos));
+        assert!(numbers.chain(forces).all(|v| v.is_finite()), "step {step}: not finite");
+    }
+}
+
+fuzz_target!(|data: &[u8]| {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    let Ok(spec) = load_str(text, "m.xml", &MemoryAssets::new()) else { return };
+    if spec.nv() > LARGE || spec.nbody() > LARGE {
+        return;
+    }
+    let Ok(model) = compile(spec) else { return };
+    if model.ngeom() > LARGE {
+        return;
+    }
+    let model = Arc::new(model);
+    run(&mut SoftEngine::new(model.clone(), SoftOptions::default()));
+    if let Ok(rapier) = RapierModel::new(model, RapierOptions::default()) {
+        run(&mut rapier.engine());
+    }
+});

@@ -1,0 +1,66 @@
+//! Snapshots from bytes: what is restored goes on or says why not.
+#![no_main]
+
+#[path = "common/env.rs"]
+mod env;
+
+use std::cell::RefCell;
+
+use babybench::Env;
+use babybench::env::Snapshot;
+use libfuzzer_sys::fuzz_target;
+
+thread_local! { static ENV: RefCell<Env> = RefCell::new(env::env()); }
+
+/// Bytes before what the checksum covers, of which the last eight are the checksum.
+const HEADER: usize = 32;
+
+/// The checksum of a snapshot, eight bytes at a time.
+fn checksum(bytes: &[u8]) -> u64 {
+    let (words, rest) = bytes.as_chunks::<8>();
+    let mix = |h: u64, w: u64| (h ^ w).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    let h = words.iter().fold(bytes.len() as u64, |h, w| mix(h, u64::from_le_bytes(*w)));
+    rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
+}
+
+/// Returns a snapshot of the environment with some bytes replaced: data says where, then with what.
+fn changed(data: &[u8], env: &Env) -> Vec<u8> {
+    let mut bytes = env.snapshot().as_bytes().to_vec();
+    for change in data.chunks(10) {
+        let [low, high, new @ ..] = change else { continue };
+        let at = HEADER + usize::from(u16::from_le_bytes([*low, *high])) % (bytes.len() - HEADER);
+        for (to, from) in bytes[at..].iter_mut().zip(new) {
+            *to = *from;
+        }
+    }
+    let sum = checksum(&bytes[HEADER..]);
+    bytes[HEADER - 8..HEADER].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
+fuzz_target!(|data: &[u8]| {
+    ENV.with_borrow_mut(|env| {
+        let bytes = match data.split_first() {
+            Some((0 | 1, rest)) => changed(rest, env),
+            _ => data.to_vec(),
+        };
+        let Ok(snapshot) = Snapshot::from_bytes(bytes) else { return };
+        let before = env.snapshot();
+        let _ = snapshot.info();
+        if env.restore(&snapshot).is_err() {
+            assert!(env.snapshot() == before, "a refused snapshot changed something");
+            return;
+        }
+        let taken = env.snapshot();
+        env.restore(&taken).expect("it was taken here");
+        assert!(env.snapshot() == taken, "restored, it is another one");
+        // a step costs more than all the rest
+        if data.first() == Some(&1) {
+            let action = vec![0.5; env.action_space().len()];
+            if let Ok(step) = env.step(&action) {
+                assert!(step.observation.proprioception.iter().all(|v| v.is_finite()), "not finite");
+            }
+        }
+        env.restore(&before).expect("it was taken here");
+    });
+});

@@ -1,0 +1,143 @@
+"""MuJoCo's own state, ``env.data`` where MuJoCo is installed: the engine's numbers in MuJoCo's arrays.
+
+What the engine does not know by MuJoCo's names, above all contacts and constraints, MuJoCo computes when a script first asks
+for it, and from then on with every step.
+"""
+
+from __future__ import annotations
+
+import copy
+import sys
+import weakref
+from collections.abc import Callable
+from functools import lru_cache
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .live import STATE, Live
+
+if TYPE_CHECKING:
+    from .core import Core
+
+_POSITION = ("mj_comPos", "mj_camlight", "mj_tendon", "mj_crb", "mj_factorM", "mj_transmission", "mj_comVel")
+"""What follows from poses and is cheap."""
+
+_CONSTRAINT = ("mj_collision", "mj_makeConstraint", "mj_island", "mj_projectConstraint", "mj_fwdVelocity")
+"""What is not: contacts, constraints, and what follows from them."""
+
+_CONSTRAINED = ("ncon", "contact", "ne", "nf", "nl", "nJ", "nA", "nefc", "nisland", "actuator_velocity", "ten_velocity")
+_PREFIXES = ("efc_", "iefc_", "island_", "map_", "dof_island", "tree_island")
+
+
+@lru_cache(maxsize=1)
+def data_class(mujoco: ModuleType) -> Any:
+    """Returns MuJoCo's class of states, with contacts and constraints that are computed when they are asked for."""
+    base = mujoco.MjData
+
+    def completed(method: Callable[..., Any]) -> Callable[..., Any]:
+        def call(self: Any, *args: Any) -> Any:
+            live = self._live()
+            if live is not None:
+                live.complete()
+            return method(self, *args)
+
+        call.__doc__ = method.__doc__
+        return call
+
+    names = [
+        name
+        for name, member in vars(base).items()
+        if isinstance(member, property) and (name in _CONSTRAINED or name.startswith(_PREFIXES))
+    ]
+    own: dict[str, Any] = {}
+    for name in names:
+        member = getattr(base, name)
+        own[name] = property(completed(member.fget), member.fset, doc=member.__doc__)
+    for name in ("actuator", "tendon", "ten", "__copy__", "__deepcopy__"):
+        if hasattr(base, name):
+            own[name] = completed(getattr(base, name))
+    # a copy, and so a pickle, is MuJoCo's alone
+    own["__reduce_ex__"] = lambda self, protocol: (copy.copy, (self.__copy__(),))
+    return type(base.__name__, (base,), {**own, "__module__": base.__module__, "__doc__": base.__doc__})
+
+
+class MujocoLive(Live):
+    """MuJoCo's own state."""
+
+    def __init__(self, core: Core, mujoco: ModuleType) -> None:
+        """Makes a state of the environment's model."""
+        super().__init__(core)
+        self.model = core.model
+        self.data = data_class(mujoco)(core.model)
+        self.data._live = weakref.ref(self)
+        self.whole = False
+        self.partial = False
+        self.position = [getattr(mujoco, name) for name in _POSITION]
+        self.constraint = [getattr(mujoco, name) for name in _CONSTRAINT]
+        self.arrays = [getattr(self.data, name) for name in core.parts.FILLED]
+        self._state = [getattr(self.data, name) for name in STATE]
+        self.muscle = core.config["actuation_model"] == "muscle"
+        self.refresh()
+        self.idle = self._references()
+
+    def _references(self) -> int:
+        # MuJoCo's arrays are the same objects each time, and do not hold the state
+        return sys.getrefcount(self.data) + sum(map(sys.getrefcount, self.arrays))
+
+    @property
+    def state(self) -> list[Any]:
+        """Returns the arrays that can be written to."""
+        return self._state
+
+    def held(self) -> bool:
+        """Tells whether anybody but the environment holds the state or one of its arrays."""
+        return self._references() > self.idle
+
+    def refresh(self) -> None:
+        """Brings the state up to date."""
+        data, model, parts = self.data, self.model, self.core.parts
+        parts.fill(self.arrays)
+        data.eq_active[:] = parts.eq_active
+        if self.muscle:
+            model.actuator_gear[:, 0] = parts.gear
+        data.time = self.core.engine.time
+        self._compute([*self.position, *self.constraint] if self.whole else self.position)
+        if self.whole:
+            self._fill_forces()
+        self.stale, self.partial = False, not self.whole
+
+    def _compute(self, functions: list[Any]) -> None:
+        """Calls functions of MuJoCo with the positions and velocities that all computed numbers are of."""
+        data, (qpos, qvel) = self.data, self._state[:2]
+        present = qpos.copy(), qvel.copy()
+        qpos[:], qvel[:] = self.core.parts.start
+        for function in functions:
+            function(self.model, data)
+        qpos[:], qvel[:] = present
+
+    def complete(self) -> None:
+        """Computes contacts and constraints, now and from now on with every step."""
+        if not self.partial or self.stale:
+            return
+        self.partial, self.whole = False, True
+        data, core = self.data, self.core
+        if not np.array_equal(data.xpos, core.engine.state_array("xpos")):
+            return  # a script has computed another state
+        self._compute(self.constraint)
+        self._fill_forces()
+
+    def _fill_forces(self) -> None:
+        forces = self.core.parts.efc_force
+        if len(forces) == self.data.nefc:
+            self.data.efc_force[:] = forces
+
+    def pull(self) -> None:
+        """Reads back what a script has written."""
+        if not self.stale and self.data.xfrc_applied.any():
+            raise ValueError(
+                "data.xfrc_applied is not served: turn the force into a generalised one with "
+                "mujoco.mj_applyFT(model, data, force, torque, point, body, data.qfrc_applied)"
+            )
+        super().pull()

@@ -1,0 +1,72 @@
+"""Makes a page for each module, and one with the guides: ``python docs/build.py FOLDER``.
+
+Needs pdoc and the installed package. Warnings are errors.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import warnings
+from pathlib import Path
+
+import pdoc
+import pdoc.render
+import pdoc.render_helpers
+
+import babybench
+
+HERE = Path(__file__).parent
+MODULES = (
+    "babybench",
+    "babybench.build_xml",
+    "babybench.eval",
+    "babybench.utils",
+    "babybench_core.env",
+    "babybench_core.vector",
+    "babybench_core.senses",
+    "babybench_core.scenes",
+    "babybench_core.records",
+    "babybench_core.mimo.actuation",
+    "babybench_core.mimo.env",
+    "babybench_core.mimo.mimo_env",
+    "babybench_core.mimo.senses",
+    "babybench_core.mimo.sensing",
+    "babybench_core.mimo.touch",
+    "babybench_core.mimo.utils",
+    "babybench_core.mimo.views",
+)
+LINKS = {"(docs/from-the-kit.md)": "(#from-the-starter-kit-to-here)", "(../README.md)": "(#babybench-for-python)"}
+
+
+def guide() -> str:
+    """Returns the README and the table from the kit to here as one page of HTML."""
+    text = "\n\n".join((HERE / name).read_text("utf-8") for name in ("../README.md", "from-the-kit.md"))
+    for link, here in LINKS.items():
+        text = text.replace(link, here)
+    return str(pdoc.render_helpers.to_html(text))
+
+
+def main() -> None:
+    """Makes the pages."""
+    if len(sys.argv) != 2:
+        sys.exit("Say where the pages go: python docs/build.py FOLDER")
+    modules = list(MODULES)
+    if importlib.util.find_spec("stable_baselines3") is not None:
+        modules.append("babybench_core.sb3")
+    warnings.simplefilter("error")
+    for name in babybench.__all__:
+        setattr(babybench, name, getattr(babybench, name))  # pdoc does not see what is imported when it is asked for
+    pdoc.render.configure(docformat="google", template_directory=HERE / "template")
+    pdoc.render.env.globals["guide"] = guide()
+    folder = Path(sys.argv[1])
+    pdoc.pdoc(*modules, output_directory=folder)
+    made = [folder / (name.replace(".", "/") + ".html") for name in modules]
+    missing = [str(page) for page in made if not page.is_file()]
+    if missing:
+        sys.exit(f"no page was made: {', '.join(missing)}")
+    print(f"{len(made)} pages in {folder}")
+
+
+if __name__ == "__main__":
+    main()

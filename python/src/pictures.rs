@@ -1,0 +1,90 @@
+//! Pictures of an environment from any of its cameras.
+
+use babybench::env::Viewer;
+use babybench::render::{Poses, RenderRequest, Renderer, View};
+use numpy::Element;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+
+use crate::arrays::shaped;
+use crate::env::Inner;
+use crate::errors::detached;
+
+/// What has been made to draw with.
+#[derive(Default)]
+pub struct Painters {
+    viewer: Option<Viewer>,
+    renderer: Option<Renderer>,
+}
+
+/// Draws a picture as people see it, (height, width, 3).
+pub fn colour<'py>(
+    py: Python<'py>,
+    inner: &mut Inner,
+    camera: &str,
+    [width, height]: [usize; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    let Inner { env, painters, .. } = inner;
+    let viewer = &mut painters.viewer;
+    let picture = detached(py, || -> Result<Vec<u8>, babybench::EnvError> {
+        if viewer.is_none() {
+            *viewer = Some(Viewer::new(env.blueprint())?);
+        }
+        match viewer {
+            Some(viewer) => Ok(viewer.draw(env, camera, width, height)?.to_vec()),
+            None => Ok(Vec::new()),
+        }
+    })?;
+    shaped(py, &picture, &[height, width, 3])
+}
+
+/// Draws distances from the camera's plane, (height, width), m.
+pub fn depth<'py>(py: Python<'py>, inner: &mut Inner, camera: &str, size: [usize; 2]) -> PyResult<Bound<'py, PyAny>> {
+    map::<f32>(py, inner, camera, size, |renderer, views, out| {
+        renderer.depth(views, [out])
+    })
+}
+
+/// Draws ids of geoms, (height, width).
+pub fn segmentation<'py>(
+    py: Python<'py>,
+    inner: &mut Inner,
+    camera: &str,
+    size: [usize; 2],
+) -> PyResult<Bound<'py, PyAny>> {
+    map::<i32>(py, inner, camera, size, |renderer, views, out| {
+        renderer.segmentation(views, [out])
+    })
+}
+
+/// A method of a renderer that draws numbers of one kind.
+type Draw<T> = fn(&mut Renderer, &[RenderRequest], &mut [T]) -> Result<(), babybench::render::RenderError>;
+
+/// Draws a picture of numbers, (height, width).
+fn map<'py, T: Element + Copy + Default + Send>(
+    py: Python<'py>,
+    inner: &mut Inner,
+    camera: &str,
+    [width, height]: [usize; 2],
+    method: Draw<T>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Inner { env, painters, .. } = inner;
+    let renderer = &mut painters.renderer;
+    let camera = env.model().camera(camera).ok_or_else(|| {
+        let cameras = env.model().cam_name.join(", ");
+        PyKeyError::new_err(format!("there is no camera {camera:?}; there are {cameras}"))
+    })?;
+    let picture = detached(py, || -> Result<Vec<T>, babybench::EnvError> {
+        let view = View { camera, width, height };
+        view.check()?;
+        let mut picture = vec![T::default(); view.pixels()];
+        let poses = Poses::from(env.state());
+        let renderer = match renderer {
+            Some(renderer) => renderer,
+            None => renderer.insert(env.blueprint().renderer()?),
+        };
+        method(renderer, &[RenderRequest { poses, view }], &mut picture)?;
+        Ok(picture)
+    })?;
+    shaped(py, &picture, &[height, width])
+}

@@ -1,0 +1,185 @@
+//! What values of the configuration exclude each other.
+
+use super::{Behavior, Compat, Config, DelayUnit, Delays, TouchFunction, VisionOutput, defaults, keys};
+
+/// A value that another one excludes: key, value, and why.
+pub(super) type Conflict = (&'static str, String, String);
+
+/// Greatest delay, steps of the environment.
+const MAX_DELAY: usize = 1000;
+
+/// Greatest memory that the images of a delay may take, bytes.
+const MAX_WAITING: usize = 1 << 30;
+
+/// Keys that shape a sense, and what to do when it is off.
+struct Shaping {
+    off: fn(&Config) -> bool,
+    keys: &'static [&'static str],
+    reason: &'static str,
+}
+
+/// What shapes senses that can be off.
+const SHAPING: [Shaping; 5] = [
+    Shaping {
+        off: |c| !c.vision_active,
+        keys: &[
+            "vision_acuity",
+            "vision_acuity_left",
+            "vision_acuity_right",
+            "vision_foveation",
+            "vision_foveation_left",
+            "vision_foveation_right",
+            "noise_vision",
+            "delay_vision",
+        ],
+        reason: "it shapes what the eyes see, and they are off; set `vision_active: true`",
+    },
+    Shaping {
+        off: |c| {
+            ![VisionOutput::Rgb, VisionOutput::Gray]
+                .iter()
+                .any(|&o| c.vision_outputs.contains(o))
+        },
+        keys: &[
+            "vision_acuity",
+            "vision_acuity_left",
+            "vision_acuity_right",
+            "noise_vision",
+        ],
+        reason: "it changes images in colour and grey, and neither is observed; add rgb or gray to `vision_outputs`",
+    },
+    Shaping {
+        off: |c| !c.touch_enabled(),
+        keys: &["touch_pooled", "pain_active", "noise_touch", "delay_touch"],
+        reason: "it needs touch, which is off; set `touch_active: true` and a `touch_scale` above 0",
+    },
+    Shaping {
+        off: |c| !c.vestibular_active,
+        keys: &["noise_vestibular", "delay_vestibular"],
+        reason: "it shapes the sense of balance, which is off; set `vestibular_active: true`",
+    },
+    Shaping {
+        off: |c| !c.pain_active,
+        keys: &[
+            "pain_threshold",
+            "pain_slope",
+            "pain_limit",
+            "pain_decay_old",
+            "pain_decay_new",
+        ],
+        reason: "it shapes pain, which is off; set `pain_active: true`",
+    },
+];
+
+impl Config {
+    /// Returns the first value that another one excludes: key, value, and why.
+    pub(super) fn conflict(&self) -> Option<Conflict> {
+        self.unused()
+            .or_else(|| self.impossible_delay())
+            .or_else(|| defaults::conflict(self))
+            .or_else(|| self.unlike_reference())
+    }
+
+    /// Returns the first value that `compat` excludes.
+    fn unlike_reference(&self) -> Option<Conflict> {
+        let touch = self.touch_enabled();
+        let function = self.touch_function;
+        let (key, value, reason) = match self.compat {
+            Compat::Api if function == TouchFunction::NormalForce => (
+                "touch_function",
+                function.to_string(),
+                "that is the Python code's name for another quantity; use normal, force_vector or \
+                 force_vector_global, or set `compat: reference`",
+            ),
+            Compat::Api => return None,
+            Compat::Reference if touch && function == TouchFunction::Normal => (
+                "touch_function",
+                function.to_string(),
+                "the Python code that `compat: reference` follows does not have it; use force_vector, \
+                 force_vector_global or normal_force",
+            ),
+            // The Python code places touch sensors by the one-finger table, whose fingers MIMo v2 does not have.
+            Compat::Reference if touch && self.touch.fingers && self.behavior == Behavior::HandRegard => (
+                "touch_fingers",
+                self.touch.fingers.to_string(),
+                "the Python code that `compat: reference` follows has no finger touch with `behavior: hand_regard`; \
+                 set `touch_fingers: false` or `touch_active: false`",
+            ),
+            Compat::Reference if self.vision_active && self.vision_resolution > self.render_size => (
+                "vision_resolution",
+                self.vision_resolution.to_string(),
+                "under `compat: reference` an eye's image cannot be larger than `render_size`; raise `render_size`",
+            ),
+            Compat::Reference => return None,
+        };
+        Some((key, value, reason.to_string()))
+    }
+
+    /// Returns the first value that would do nothing, because what it shapes is off.
+    fn unused(&self) -> Option<Conflict> {
+        let set = |key: &&super::Key| key.value(self) != key.default_value();
+        let conflict = |key: &super::Key, reason: &str| (key.name, key.value(self).to_yaml(), reason.to_string());
+        if self.age.is_none() {
+            let mut of_growth = Self::keys().iter().filter(|key| key.section == keys::GROWTH);
+            if let Some(key) = of_growth.find(set) {
+                let reason = "it changes MIMo at an age, and `age` is none; set `age`, 0 to 24 months";
+                return Some(conflict(key, reason));
+            }
+        }
+        SHAPING
+            .iter()
+            .filter(|shaping| (shaping.off)(self))
+            .find_map(|shaping| {
+                let mut keys = Self::keys().iter().filter(|key| shaping.keys.contains(&key.name));
+                keys.find(set).map(|key| conflict(key, shaping.reason))
+            })
+    }
+
+    /// Returns the first delay that is not a number of steps, or that would remember too much.
+    fn impossible_delay(&self) -> Option<Conflict> {
+        let delays = &self.delays;
+        let each = [
+            ("delay_sensory", Some(delays.sensory)),
+            ("delay_motor", Some(delays.motor)),
+            ("delay_proprioception", delays.proprioception),
+            ("delay_touch", delays.touch),
+            ("delay_vestibular", delays.vestibular),
+            ("delay_vision", delays.vision),
+        ];
+        for (key, delay) in each {
+            let Some(delay) = delay else { continue };
+            if delays.unit == DelayUnit::Steps && delay.fract() != 0.0 {
+                let reason = "it is counted in whole steps; use a whole number, or set `delay_unit: ms`";
+                return Some((key, format!("{delay:?}"), reason.to_string()));
+            }
+            let steps = delays.steps(delay, self.frame_skip);
+            if steps > MAX_DELAY {
+                let step = Delays::step_ms(self.frame_skip);
+                let reason = format!("that is {steps} steps of {step} ms, and a delay has at most {MAX_DELAY}");
+                return Some((key, format!("{delay:?}"), reason));
+            }
+        }
+        let bytes = |output| match output {
+            VisionOutput::Rgb => 3,
+            VisionOutput::Gray => 1,
+            VisionOutput::Depth | VisionOutput::Segmentation => 4,
+        };
+        let pixels = self.vision_resolution as usize * self.vision_resolution as usize;
+        let images = 2 * pixels * self.vision_outputs.iter().map(bytes).sum::<usize>();
+        let delay = delays.of(delays.vision);
+        let waiting = delays.steps(delay, self.frame_skip).saturating_mul(images);
+        (self.vision_active && waiting > MAX_WAITING).then(|| {
+            let key = if delays.vision.is_some() {
+                "delay_vision"
+            } else {
+                "delay_sensory"
+            };
+            let reason = format!(
+                "the images that wait would take {} MB, and may take {}; lower it, or `vision_resolution`",
+                waiting / 1_000_000,
+                MAX_WAITING / 1_000_000
+            );
+            (key, format!("{delay:?}"), reason)
+        })
+    }
+}

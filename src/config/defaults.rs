@@ -1,0 +1,86 @@
+//! Defaults of tasks, and what they exclude.
+
+use super::conflicts::Conflict;
+use super::keys::KEYS;
+use super::{ActuationModel, Behavior, BodyParts, Config, Scene, TouchFunction, TouchResponse};
+
+impl Config {
+    /// Gives keys that were left to their default (`given` tells of the others, by their place in the table) the default of
+    /// the behavior.
+    pub(super) fn take_defaults(&mut self, given: impl Fn(usize) -> bool) {
+        let Some(own) = of_task(self.behavior) else {
+            return;
+        };
+        for (index, key) in KEYS.iter().enumerate() {
+            if !given(index) && key.value(self) == key.default_value() {
+                key.assign(self, &key.value(&own));
+            }
+        }
+    }
+}
+
+/// Returns the configuration of a task as MIMo's authors define it; `None` for BabyBench's behaviors.
+fn of_task(behavior: Behavior) -> Option<Config> {
+    let task = Config {
+        save_dir: format!("results/{behavior}"),
+        behavior,
+        frame_skip: 2,
+        vestibular_active: false,
+        vision_active: false,
+        touch_active: false,
+        touch_function: TouchFunction::ForceVector,
+        touch_response: TouchResponse::SpreadLinear,
+        ..Config::default()
+    };
+    Some(match behavior {
+        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard => return None,
+        Behavior::Reach => task,
+        Behavior::Standup | Behavior::RollOver => Config {
+            max_episode_steps: 500,
+            vestibular_active: true,
+            done_active: false,
+            ..task
+        },
+        Behavior::SelfBody => Config {
+            max_episode_steps: 500,
+            frame_skip: 1,
+            touch_active: true,
+            ..task
+        },
+        Behavior::Catch => Config {
+            max_episode_steps: 800,
+            touch_active: true,
+            actuation_model: ActuationModel::Muscle,
+            ..task
+        },
+    })
+}
+
+/// Returns the first value that the task of a configuration excludes: key, value, and why.
+pub(super) fn conflict(config: &Config) -> Option<Conflict> {
+    of_task(config.behavior)?;
+    if config.scene != Scene::Base {
+        let reason = "a task has a scene of its own; leave `scene` out";
+        return Some(("scene", config.scene.to_string(), reason.to_string()));
+    }
+    if config.act != BodyParts::all(true) {
+        let off = KEYS
+            .iter()
+            .find(|key| key.name.starts_with("act_") && key.value(config) != key.default_value())?;
+        let reason = "a task drives the joints that it needs; leave `act_...` out";
+        return Some((off.name, off.value(config).to_yaml(), reason.to_string()));
+    }
+    if config.actuation_model == ActuationModel::Positional {
+        let reason = "a task has motors and no servos; use spring_damper or muscle";
+        return Some((
+            "actuation_model",
+            config.actuation_model.to_string(),
+            reason.to_string(),
+        ));
+    }
+    if config.behavior == Behavior::SelfBody && !config.touch_enabled() {
+        let reason = "the task selfbody is about touch; leave `touch_active` and `touch_scale` out";
+        return Some(("touch_active", config.touch_active.to_string(), reason.to_string()));
+    }
+    None
+}

@@ -1,0 +1,87 @@
+//! The delay between an action and the actuators.
+
+use crate::actuation::Actuation;
+use crate::config::{ActuationModel, Compat};
+use crate::env::Blueprint;
+use crate::env::pipeline::effective;
+use crate::sensors::transform::DelayLine;
+
+/// The way of actions to the actuators: at once, or later.
+pub(super) struct Motor {
+    line: Option<DelayLine>,
+    /// The action that comes out before the first of an episode.
+    rest: Vec<f32>,
+    compat: Compat,
+}
+
+impl Motor {
+    pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Self {
+        let (config, space) = (blueprint.config(), actuation.action_space());
+        let steps = effective(config, config.delays.motor);
+        let centred = config.actuation_model == ActuationModel::Positional;
+        let bounds = space.low().iter().zip(space.high());
+        Self {
+            line: (steps > 0).then(|| DelayLine::new(steps, space.len())),
+            // an angle of 0 is no rest
+            rest: bounds
+                .map(|(low, high)| if centred { low + (high - low) / 2.0 } else { 0.0 })
+                .collect(),
+            compat: config.compat,
+        }
+    }
+
+    /// Returns the delay, steps.
+    pub fn steps(&self) -> usize {
+        self.line.as_ref().map_or(0, DelayLine::steps)
+    }
+
+    /// Returns the action that reaches the actuators when `action` is given.
+    pub fn pass<'a>(&'a mut self, action: &'a [f32]) -> &'a [f32] {
+        match &mut self.line {
+            Some(line) => line.pass(action),
+            None => action,
+        }
+    }
+
+    /// Returns the action that reaches the actuators when `action` is given in a reset: at once, but in the code that
+    /// `compat: reference` follows as any other.
+    pub fn pass_in_reset<'a>(&'a mut self, action: &'a [f32]) -> &'a [f32] {
+        match self.compat {
+            Compat::Api => action,
+            Compat::Reference => self.pass(action),
+        }
+    }
+
+    /// Forgets the last episode, at the start of a reset.
+    pub fn clear(&mut self) {
+        if let Some(line) = &mut self.line {
+            line.clear();
+        }
+    }
+
+    /// Fills the delay at the end of a reset.
+    pub fn rest(&mut self) {
+        if let (Some(line), Compat::Api) = (&mut self.line, self.compat) {
+            line.fill(&self.rest);
+        }
+    }
+
+    pub fn save(&self, out: &mut Vec<u8>) {
+        if let Some(line) = &self.line {
+            line.save(out);
+        }
+    }
+
+    /// Takes over what was saved; `false` if it is something else.
+    pub fn load(&mut self, bytes: &[u8]) -> bool {
+        match &mut self.line {
+            Some(line) => line.load(bytes),
+            None => bytes.is_empty(),
+        }
+    }
+
+    /// Returns the memory of the delay, bytes.
+    pub fn memory(&self) -> usize {
+        4 * self.steps() * self.rest.len()
+    }
+}

@@ -1,0 +1,65 @@
+//! What came of a step: reward, success, failure.
+
+use super::task::{Goals, Task, TaskView};
+use super::{BehaviorInfo, Env, Info, Outcome, TaskInfo};
+use crate::config::Config;
+
+impl Env {
+    /// Returns the reward of the last step.
+    pub fn reward(&self) -> f64 {
+        self.episode.reward
+    }
+
+    /// Returns whether the last step ended the episode in success or failure.
+    pub fn terminated(&self) -> bool {
+        self.episode.terminated
+    }
+
+    /// Returns whether the episode is over: terminated or truncated.
+    pub fn over(&self) -> bool {
+        self.terminated() || self.truncated()
+    }
+
+    /// Looks at what is achieved, and computes outcome, reward and end of the last step.
+    pub(super) fn judge(&mut self) {
+        let view = TaskView {
+            model: self.blueprint.model(),
+            state: &self.physics.state,
+            touch: self.senses.touch.as_ref(),
+            actuation: &*self.actuation,
+        };
+        let Goals {
+            achieved,
+            desired,
+            terms,
+        } = &mut self.goals;
+        self.task.achieve(&view, desired, achieved, terms);
+        self.conclude();
+    }
+
+    /// Computes outcome, reward and end of the last step from its goals.
+    pub(super) fn conclude(&mut self) {
+        let (task, goal) = (&*self.task, self.goals.row());
+        self.episode.reward = task.reward(goal);
+        if let BehaviorInfo::Task(info) = &mut self.info.behavior {
+            info.outcome = Outcome {
+                is_success: task.success(goal),
+                is_failure: task.failure(goal),
+            };
+            let over = info.outcome.is_success || info.outcome.is_failure;
+            self.episode.terminated = self.blueprint.config().done_active && over;
+        }
+    }
+}
+
+/// Sets what is counted as it is at the start of an episode.
+pub(super) fn clear(task: &dyn Task, config: &Config, info: &mut Info) {
+    if task.reports_outcome() {
+        info.behavior = BehaviorInfo::Task(TaskInfo {
+            task: config.behavior,
+            ..TaskInfo::default()
+        });
+    }
+    task.clear(info);
+    task.describe(None, info);
+}

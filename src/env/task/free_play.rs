@@ -1,0 +1,21 @@
+//! No task at all.
+
+use crate::env::{BehaviorInfo, Info, Task};
+
+/// MIMo does what the actions say, and nothing is counted.
+#[derive(Clone, Debug)]
+pub(super) struct FreePlay;
+
+impl Task for FreePlay {
+    fn name(&self) -> &str {
+        "none"
+    }
+
+    fn reports_outcome(&self) -> bool {
+        false
+    }
+
+    fn clear(&self, info: &mut Info) {
+        info.behavior = BehaviorInfo::None;
+    }
+}

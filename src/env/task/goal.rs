@@ -1,0 +1,97 @@
+//! Goals, and what came of them.
+
+use thiserror::Error;
+
+use super::{Task, TaskSizes};
+
+/// What a reward depends on: a row of goals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal<'a> {
+    /// The goal that is achieved.
+    pub achieved: &'a [f64],
+    /// The goal that is desired.
+    pub desired: &'a [f64],
+    /// What the reward depends on beside the goals, such as the cost of the action.
+    pub terms: &'a [f64],
+}
+
+/// What came of a step of a task.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// Whether the goal is reached.
+    pub is_success: bool,
+    /// Whether it is out of reach.
+    pub is_failure: bool,
+}
+
+/// Goals or terms of a wrong shape.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{what} has {found} values but the task {task:?} needs {rows} rows of {expected}")]
+pub struct GoalError {
+    /// Which array.
+    pub what: &'static str,
+    /// Its length.
+    pub found: usize,
+    /// The task.
+    pub task: String,
+    /// Number of rows that `out` has.
+    pub rows: usize,
+    /// Length of a row.
+    pub expected: usize,
+}
+
+/// The goals of an environment.
+#[derive(Clone, Debug, Default)]
+pub(in crate::env) struct Goals {
+    pub achieved: Vec<f64>,
+    pub desired: Vec<f64>,
+    pub terms: Vec<f64>,
+}
+
+impl Goals {
+    pub fn new(sizes: TaskSizes) -> Self {
+        Self {
+            achieved: vec![0.0; sizes.goal],
+            desired: vec![0.0; sizes.goal],
+            terms: vec![0.0; sizes.terms],
+        }
+    }
+
+    pub fn row(&self) -> Goal<'_> {
+        Goal {
+            achieved: &self.achieved,
+            desired: &self.desired,
+            terms: &self.terms,
+        }
+    }
+}
+
+/// Computes the reward of each row of goals: see [`Env::compute_reward`](crate::Env::compute_reward).
+pub(in crate::env) fn rewards(task: &dyn Task, all: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
+    let (sizes, rows) = (task.sizes(), out.len());
+    let check = |what, values: &[f64], expected: usize| {
+        let found = values.len();
+        match found == rows * expected {
+            true => Ok(()),
+            false => Err(GoalError {
+                what,
+                found,
+                task: task.name().to_string(),
+                rows,
+                expected,
+            }),
+        }
+    };
+    check("achieved", all.achieved, sizes.goal)?;
+    check("desired", all.desired, sizes.goal)?;
+    check("terms", all.terms, sizes.terms)?;
+    for (row, out) in out.iter_mut().enumerate() {
+        let of = |len: usize| row * len..(row + 1) * len;
+        *out = task.reward(Goal {
+            achieved: &all.achieved[of(sizes.goal)],
+            desired: &all.desired[of(sizes.goal)],
+            terms: &all.terms[of(sizes.terms)],
+        });
+    }
+    Ok(())
+}

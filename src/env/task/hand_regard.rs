@@ -1,0 +1,120 @@
+//! Whether the hands are in the central field of view of the eyes.
+
+use super::scene::TaskScene;
+use super::{START_ACTIONS, Task, body};
+use crate::config::{Compat, Config};
+use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, missing_camera};
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::State;
+
+/// Half of the central field of view, degrees.
+const FIELD_OF_VIEW: f64 = 15.0;
+
+/// MIMo looks at his hands: the bodies and cameras of the eyes (right, left), and the bodies of the hands (right, left).
+#[derive(Clone, Debug, Default)]
+pub(super) struct HandRegard {
+    eyes: [usize; 2],
+    cameras: [usize; 2],
+    hands: [usize; 2],
+    compat: Compat,
+    cos_half_angle: f64,
+}
+
+impl HandRegard {
+    /// Tells whether the origin of a hand lies less than 15 degrees off the axis of an eye (0 right, 1 left, both).
+    fn sees(&self, s: &State, eye: usize, hand: usize) -> bool {
+        let (axis, direction) = self.axis_and_direction(s, eye, hand);
+        within_cone(axis, direction, self.cos_half_angle)
+    }
+
+    /// Returns the axis of an eye's camera and the way from it to the origin of a hand; under `compat: reference` the -z
+    /// axis of the eye's body, which points down the face.
+    fn axis_and_direction(&self, s: &State, eye: usize, hand: usize) -> (Vec3, Vec3) {
+        let (origin, axis) = match self.compat {
+            Compat::Api => (
+                s.cam_xpos[self.cameras[eye]],
+                scale(column(&s.cam_xmat[self.cameras[eye]], 2), -1.0),
+            ),
+            Compat::Reference => (s.xpos[self.eyes[eye]], scale(column(&s.xmat[self.eyes[eye]], 2), -1.0)),
+        };
+        (axis, sub(s.xpos[self.hands[hand]], origin))
+    }
+
+    /// Computes the angles between the axes and the hands, rad; infinite where a hand is at the eye.
+    fn angles(&self, s: &State) -> PerEyeAndHand<f64> {
+        PerEyeAndHand::from_fn(|eye, hand| {
+            let (axis, direction) = self.axis_and_direction(s, eye, hand);
+            let length = norm(direction);
+            if length == 0.0 {
+                return f64::INFINITY;
+            }
+            pxfm::f_acos((dot(axis, direction) / length).clamp(-1.0, 1.0))
+        })
+    }
+}
+
+impl Task for HandRegard {
+    fn name(&self) -> &str {
+        "hand_regard"
+    }
+
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+        let purpose = "behavior hand_regard";
+        let camera = |name: &str| model.camera(name).ok_or_else(|| missing_camera(name, purpose));
+        *self = Self {
+            eyes: [body(model, "right_eye", purpose)?, body(model, "left_eye", purpose)?],
+            cameras: [camera("eye_right")?, camera("eye_left")?],
+            hands: [body(model, "right_hand", purpose)?, body(model, "left_hand", purpose)?],
+            compat: config.compat,
+            cos_half_angle: pxfm::f_cos(FIELD_OF_VIEW.to_radians()),
+        };
+        Ok(())
+    }
+
+    fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        scene.restart()?;
+        (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+    }
+
+    fn reports_outcome(&self) -> bool {
+        false
+    }
+
+    fn count(&self, state: &State, info: &mut Info) {
+        if let BehaviorInfo::HandRegard { counts } = &mut info.behavior {
+            let seen = PerEyeAndHand::from_fn(|eye, hand| u64::from(self.sees(state, eye, hand))).to_array();
+            let sums = counts.to_array();
+            *counts = std::array::from_fn(|k| sums[k] + seen[k]).into();
+        }
+    }
+
+    fn clear(&self, info: &mut Info) {
+        let counts = PerEyeAndHand::default();
+        info.behavior = BehaviorInfo::HandRegard { counts };
+    }
+
+    fn describe(&self, state: Option<&State>, info: &mut Info) {
+        info.details.gaze_angles = state.map(|state| self.angles(state));
+    }
+}
+
+/// Tells whether `direction` is strictly inside the cone about the unit vector `axis`. A zero direction is not.
+fn within_cone(axis: Vec3, direction: Vec3, cos_half_angle: f64) -> bool {
+    let length = norm(direction);
+    length > 0.0 && dot(axis, direction) > cos_half_angle * length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cone_is_15_degrees_wide() {
+        let cos = pxfm::f_cos(FIELD_OF_VIEW.to_radians());
+        let axis = [0.0, 0.0, -1.0];
+        assert!(within_cone(axis, [0.1, 0.0, -0.4], cos));
+        assert!(!within_cone(axis, [0.11, 0.0, -0.4], cos));
+        assert!(!within_cone(axis, [0.0; 3], cos));
+    }
+}

@@ -1,0 +1,44 @@
+//! Initial poses, as tables of joint angles.
+
+use crate::env::EnvError;
+use crate::model::{JointType, Model};
+
+/// Angles of joints by name, without `robot:`, rad.
+pub(super) type Angles = [(&'static str, f64)];
+
+/// Writes angles of joints into positions (nq). Joints of a table that the scene lacks are an error.
+pub(super) fn set_angles(
+    model: &Model,
+    angles: &Angles,
+    qpos: &mut [f64],
+    purpose: &'static str,
+) -> Result<(), EnvError> {
+    for &(name, angle) in angles {
+        qpos[address(model, &format!("robot:{name}"), purpose)?] = angle;
+    }
+    Ok(())
+}
+
+/// Returns the index in `qpos` of a joint that a task needs.
+pub(super) fn address(model: &Model, name: &str, purpose: &'static str) -> Result<usize, EnvError> {
+    let missing = || EnvError::Missing {
+        what: "joint",
+        name: name.to_string(),
+        purpose,
+    };
+    Ok(model.jnt_qposadr[model.joint(name).ok_or_else(missing)?])
+}
+
+/// Returns the index in `qpos` of the free joint of a body that a task needs.
+pub(super) fn free_address(model: &Model, body: usize, purpose: &'static str) -> Result<usize, EnvError> {
+    let joint = model.body_jntadr[body];
+    let free = model.body_jntnum[body] > 0 && model.jnt_type[joint] == JointType::Free;
+    match free {
+        true => Ok(model.jnt_qposadr[joint]),
+        false => Err(EnvError::Missing {
+            what: "free joint",
+            name: model.body_name[body].clone(),
+            purpose,
+        }),
+    }
+}

@@ -1,0 +1,125 @@
+//! Reaching for a ball.
+
+use super::pose::free_address;
+use super::scene::{TaskScene, TaskView};
+use super::tracking::HeadTracking;
+use super::{Goal, Task, TaskSizes, body};
+use crate::config::{Compat, Config};
+use crate::env::EnvError;
+use crate::math::{Vec3, norm, sub};
+use crate::model::Model;
+
+const PURPOSE: &str = "behavior reach";
+/// Random actions at the start of an episode, of one physics step each.
+const START_ACTIONS: usize = 10;
+/// How far the ball may lie from its place at the start of an episode, m: from, to.
+const BALL: [[f64; 2]; 3] = [[-0.1, 0.0], [-0.2, 0.1], [-0.1, 0.0]];
+/// Way of the ball from its first place that counts as touched, m.
+const MOVED: f64 = 0.01;
+/// Reward of success.
+const BONUS: f64 = 100.0;
+
+/// MIMo hangs in the air and knocks a hovering ball from its place with the right hand, on which his eyes are.
+///
+/// The achieved goal is the place of the right fingers, the desired goal that of the ball at the start of the episode, world, m.
+/// The reward is minus their distance, and 100 more on success, which a term tells: the ball has moved by more than 1 cm. Under
+/// `compat: reference` goals are empty, and the distance is that to the ball as it moves.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Reach {
+    fingers: usize,
+    target: usize,
+    ball: usize,
+    head: HeadTracking,
+    has_goals: bool,
+    /// Where the ball was at the start of the episode, m.
+    first: Vec3,
+}
+
+/// Distance of the fingers, which the reference has instead of goals; whether the ball has moved.
+type Terms = [f64; 2];
+
+impl Task for Reach {
+    fn name(&self) -> &str {
+        "reach"
+    }
+
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+        self.fingers = body(model, "right_fingers", PURPOSE)?;
+        self.target = body(model, "target", PURPOSE)?;
+        self.ball = free_address(model, self.target, PURPOSE)?;
+        self.has_goals = config.compat == Compat::Api;
+        self.head = HeadTracking::new(model, !self.has_goals, PURPOSE)?;
+        Ok(())
+    }
+
+    fn sizes(&self) -> TaskSizes {
+        TaskSizes {
+            goal: if self.has_goals { 3 } else { 0 },
+            terms: 2,
+            observation: 0,
+        }
+    }
+
+    fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        scene.steps(1)?;
+        scene.restart()
+    }
+
+    /// Ten random actions move the arm, then the ball is put to a random place: x, y, z.
+    fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        scene.restart()?;
+        for _ in 0..START_ACTIONS {
+            scene.random_step()?;
+            self.after_step(scene)?;
+        }
+        let [start, _] = scene.start();
+        for (k, [low, high]) in BALL.into_iter().enumerate() {
+            scene.state.qpos[self.ball + k] = start[self.ball + k] + scene.rng.uniform_in(low, high);
+        }
+        scene.state.qvel.fill(0.0);
+        scene.forward()
+    }
+
+    fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
+        self.first = scene.state.xpos[self.target];
+        if self.has_goals {
+            desired.copy_from_slice(&self.first);
+        }
+    }
+
+    fn after_step(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        let ball = scene.state.xpos[self.target];
+        self.head.look_at(scene, ball);
+        Ok(())
+    }
+
+    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+        let (fingers, ball) = (view.state.xpos[self.fingers], view.state.xpos[self.target]);
+        if self.has_goals {
+            achieved.copy_from_slice(&fingers);
+        }
+        let moved = norm(sub(ball, self.first)) > MOVED;
+        let found: Terms = [norm(sub(fingers, ball)), f64::from(u8::from(moved))];
+        terms.copy_from_slice(&found);
+    }
+
+    fn success(&self, goal: Goal<'_>) -> bool {
+        goal.terms.get(1).is_some_and(|moved| *moved > 0.0)
+    }
+
+    fn reward(&self, goal: Goal<'_>) -> f64 {
+        let distance = match (goal.achieved, goal.desired) {
+            (&[x, y, z], &[u, v, w]) => norm(sub([x, y, z], [u, v, w])),
+            _ => goal.terms.first().copied().unwrap_or_default(),
+        };
+        -distance + if self.success(goal) { BONUS } else { 0.0 }
+    }
+
+    fn memory(&self) -> &[f64] {
+        &self.first
+    }
+
+    fn memory_mut(&mut self) -> &mut [f64] {
+        &mut self.first
+    }
+}

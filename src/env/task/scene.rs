@@ -1,0 +1,271 @@
+//! What a task may look at and change.
+
+use crate::actuation::Actuation;
+use crate::config::{Compat, Config};
+use crate::env::motor::Motor;
+use crate::env::{EnvError, check_vector};
+use crate::mimo::{LockTarget, held_posture, lock};
+use crate::model::Model;
+use crate::physics::{Engine, Params, State};
+use crate::sensors::Touch;
+use crate::spaces::NumpyRng;
+
+/// Physics steps in which a scene settles before it is used.
+const SETTLING_STEPS: u32 = 100;
+
+/// The simulation of an environment in the hands of its task, between physics steps.
+pub struct TaskScene<'a> {
+    /// The configuration.
+    pub config: &'a Config,
+    /// The compiled scene.
+    pub model: &'a Model,
+    /// The state of the scene.
+    pub state: &'a mut State,
+    /// The generator of the environment's random choices.
+    pub rng: &'a mut NumpyRng,
+    pub(in crate::env) engine: &'a mut dyn Engine,
+    /// Parameters after a reset.
+    pub(in crate::env) base: &'a mut Params,
+    pub(in crate::env) actuation: &'a dyn Actuation,
+    /// The delay before the actuators; none while the scene settles.
+    pub(in crate::env) motor: Option<&'a mut Motor>,
+    /// Where episodes start: positions and velocities.
+    pub(in crate::env) start: [&'a [f64]; 2],
+    /// Room for a random action.
+    pub(in crate::env) action: &'a mut Vec<f32>,
+}
+
+impl std::fmt::Debug for TaskScene<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TaskScene")
+            .field("config", self.config)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What a task may look at after a step.
+#[derive(Clone, Copy)]
+pub struct TaskView<'a> {
+    /// The compiled scene.
+    pub model: &'a Model,
+    /// The state of the scene.
+    pub state: &'a State,
+    /// The sense of touch, if it is active, before it is transformed.
+    pub touch: Option<&'a Touch>,
+    /// The actuation model.
+    pub actuation: &'a dyn Actuation,
+}
+
+impl std::fmt::Debug for TaskView<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("TaskView")
+    }
+}
+
+impl<'a> TaskScene<'a> {
+    /// Returns positions (nq) and velocities (nv) of the settled state; those of `qpos0` at rest while the scene settles.
+    pub fn start(&self) -> [&'a [f64]; 2] {
+        self.start
+    }
+
+    /// Returns whether to follow the Python code where it disagrees with its description.
+    pub fn follows_reference(&self) -> bool {
+        self.config.compat == Compat::Reference
+    }
+
+    /// Forgets the past: time, controls and the start of the solver are 0, the actuators rest, parameters are those of the
+    /// blueprint; and computes everything at the settled state.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn restart(&mut self) -> Result<(), EnvError> {
+        let [qpos, qvel] = self.start;
+        self.place(qpos, qvel)
+    }
+
+    /// Forgets the past as [`TaskScene::restart`] does, and computes everything at positions (nq) and velocities (nv).
+    ///
+    /// # Errors
+    /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges.
+    pub fn place(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        check_vector("qpos", qpos, self.model.nq)?;
+        check_vector("qvel", qvel, self.model.nv)?;
+        self.forget();
+        if self.follows_reference() {
+            // the reference resets its actuators before it sets the state
+            self.actuation.reset(self.model, self.state);
+        }
+        self.state.qpos.copy_from_slice(qpos);
+        self.state.qvel.copy_from_slice(qvel);
+        if !self.follows_reference() {
+            self.actuation.reset(self.model, self.state);
+        }
+        self.forward()
+    }
+
+    /// Forgets the past: `qpos0` at rest, of which nothing is computed. Actuators are as they were.
+    pub(in crate::env) fn forget(&mut self) {
+        if let Some(motor) = &mut self.motor {
+            motor.clear();
+        }
+        let s = &mut *self.state;
+        s.time = 0.0;
+        s.step = 0;
+        s.ctrl.fill(0.0);
+        s.qfrc_applied.fill(0.0);
+        s.release_forces();
+        s.qacc_warmstart.fill(0.0);
+        s.params.clone_from(self.base);
+        s.qpos.copy_from_slice(&self.model.qpos0);
+        s.qvel.fill(0.0);
+    }
+
+    /// Computes everything that follows from positions, velocities and controls.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn forward(&mut self) -> Result<(), EnvError> {
+        Ok(self.engine.forward(self.state)?)
+    }
+
+    /// Gives an action, of the length of the action space, to the actuators, and makes physics steps.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn act(&mut self, action: &[f32], steps: u32) -> Result<(), EnvError> {
+        self.give(action);
+        self.advance(steps)
+    }
+
+    /// Gives the action of a step of the environment to the actuators, by way of its delay, and makes physics steps.
+    pub(in crate::env) fn step(&mut self, action: &[f32], steps: u32) -> Result<(), EnvError> {
+        let action = match &mut self.motor {
+            Some(motor) => motor.pass(action),
+            None => action,
+        };
+        self.actuation.set_action(self.model, self.state, action);
+        self.advance(steps)
+    }
+
+    /// Gives an action to the actuators, as resets do.
+    fn give(&mut self, action: &[f32]) {
+        let action = match &mut self.motor {
+            Some(motor) => motor.pass_in_reset(action),
+            None => action,
+        };
+        self.actuation.set_action(self.model, self.state, action);
+    }
+
+    /// Makes physics steps, before each of which but the first the actuators are updated.
+    fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
+        for k in 0..steps {
+            if k > 0 {
+                self.actuation.substep(self.model, self.state);
+            }
+            self.engine.step(self.state)?;
+        }
+        Ok(())
+    }
+
+    /// Gives the action 0 to the actuators once, and makes physics steps. As in the Python code, the actuators are not updated
+    /// between them.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn rest(&mut self, steps: u32) -> Result<(), EnvError> {
+        self.with_action(|scene, action| {
+            action.clear();
+            action.resize(scene.actuation.action_space().len(), 0.0);
+            scene.give(action);
+            scene.steps(steps)
+        })
+    }
+
+    /// Gives the action 0 to the actuators and makes physics steps. Under `compat: reference` actuators are not updated between them.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn relax(&mut self, steps: u32) -> Result<(), EnvError> {
+        if self.follows_reference() {
+            return self.rest(steps);
+        }
+        self.with_action(|scene, action| {
+            action.clear();
+            action.resize(scene.actuation.action_space().len(), 0.0);
+            scene.act(action, steps)
+        })
+    }
+
+    /// Gives a random action to the actuators and makes a physics step.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn random_step(&mut self) -> Result<(), EnvError> {
+        self.with_action(|scene, action| {
+            scene.actuation.action_space().sample(scene.rng, action);
+            scene.act(action, 1)
+        })
+    }
+
+    /// Makes physics steps; actuators go on as they are.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn steps(&mut self, steps: u32) -> Result<(), EnvError> {
+        for _ in 0..steps {
+            self.engine.step(self.state)?;
+        }
+        Ok(())
+    }
+
+    /// Updates the actuators, as before each physics step of an action but the first.
+    pub fn substep(&mut self) {
+        self.actuation.substep(self.model, self.state);
+    }
+
+    /// Lets the actuators rest.
+    pub fn reset_actuators(&mut self) {
+        self.actuation.reset(self.model, self.state);
+    }
+
+    /// Locks a joint at an angle, rad, in every episode; with `now` at once, too.
+    ///
+    /// # Errors
+    /// No such joint, a joint that cannot be locked.
+    pub fn lock(&mut self, joint: &str, angle: f64, now: bool) -> Result<(), EnvError> {
+        lock(self.model, self.base, LockTarget::Name(joint), angle)?;
+        if now {
+            lock(self.model, &mut self.state.params, LockTarget::Name(joint), angle)?;
+        }
+        Ok(())
+    }
+
+    /// Lets a scene settle for 100 steps from `qpos0` with the action 0. Muscles pull as they do at the start throughout. A MIMo with an
+    /// age starts in the posture in which the scene holds him: of other proportions than the original's, his legs would be too
+    /// deep in the floor on their way there.
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn settle(&mut self) -> Result<(), EnvError> {
+        // the step that the reference makes before it looks at its sensors: it leaves the warm start of the solver
+        self.steps(1)?;
+        match self.config.age {
+            None => self.state.qpos.copy_from_slice(&self.model.qpos0),
+            Some(_) => self.state.qpos.copy_from_slice(&held_posture(self.model)),
+        }
+        self.state.qvel.fill(0.0);
+        self.forward()?;
+        self.rest(SETTLING_STEPS)
+    }
+
+    /// Lends the room for an action while `work` is done.
+    fn with_action(
+        &mut self,
+        work: impl FnOnce(&mut Self, &mut Vec<f32>) -> Result<(), EnvError>,
+    ) -> Result<(), EnvError> {
+        let mut action = std::mem::take(self.action);
+        let done = work(self, &mut action);
+        *self.action = action;
+        done
+    }
+}

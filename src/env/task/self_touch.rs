@@ -1,0 +1,93 @@
+//! Which parts of the body the palms touch.
+
+use super::scene::TaskScene;
+use super::{START_ACTIONS, Task, body};
+use crate::config::Config;
+use crate::env::{BehaviorInfo, EnvError, Info, PartNames, PerHand};
+use crate::model::Model;
+use crate::physics::State;
+
+/// MIMo touches himself; which of his geoms (ngeom) are palms.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SelfTouch {
+    right_palm: Vec<bool>,
+    left_palm: Vec<bool>,
+    own: Vec<bool>,
+    names: PartNames,
+}
+
+impl SelfTouch {
+    /// Adds the parts that the palms touch. A contact counts for the first rule that fits: right palm as first geom, as
+    /// second, left palm as first, as second.
+    fn update(&self, s: &State, touches: &mut PerHand<Vec<usize>>) {
+        for c in &s.contact {
+            let [a, b] = c.geom;
+            let (list, other) = if self.right_palm[a] {
+                (&mut touches.right_hand, b)
+            } else if self.right_palm[b] {
+                (&mut touches.right_hand, a)
+            } else if self.left_palm[a] {
+                (&mut touches.left_hand, b)
+            } else if self.left_palm[b] {
+                (&mut touches.left_hand, a)
+            } else {
+                continue;
+            };
+            if self.own[other] && !list.contains(&other) {
+                list.push(other);
+            }
+        }
+    }
+}
+
+impl Task for SelfTouch {
+    fn name(&self) -> &str {
+        "self_touch"
+    }
+
+    fn bind(&mut self, _config: &Config, model: &Model) -> Result<(), EnvError> {
+        let purpose = "behavior self_touch";
+        let (right, left) = (body(model, "right_hand", purpose)?, body(model, "left_hand", purpose)?);
+        let hip = body(model, "hip", purpose)?;
+        let of = |f: &dyn Fn(usize) -> bool| model.geom_bodyid.iter().map(|&b| f(b)).collect::<Vec<bool>>();
+        *self = Self {
+            right_palm: of(&|b| b == right),
+            left_palm: of(&|b| b == left),
+            own: of(&|b| model.in_subtree(b, hip)),
+            names: PartNames::new(model),
+        };
+        Ok(())
+    }
+
+    fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+        scene.restart()?;
+        (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+    }
+
+    fn reports_outcome(&self) -> bool {
+        false
+    }
+
+    fn count(&self, state: &State, info: &mut Info) {
+        if let BehaviorInfo::SelfTouch { touches } = &mut info.behavior {
+            self.update(state, touches);
+        }
+    }
+
+    fn clear(&self, info: &mut Info) {
+        match &mut info.behavior {
+            BehaviorInfo::SelfTouch { touches } => touches.each_mut().into_iter().for_each(Vec::clear),
+            behavior => {
+                let touches = PerHand::from_fn(|_| Vec::with_capacity(self.own.len()));
+                *behavior = BehaviorInfo::SelfTouch { touches };
+            }
+        }
+        if info.details.touched_parts.is_none() {
+            info.details.reserve(&info.behavior, &self.names);
+        }
+    }
+
+    fn describe(&self, _state: Option<&State>, info: &mut Info) {
+        info.details.name_parts(&info.behavior, &self.names);
+    }
+}

@@ -1,0 +1,71 @@
+//! The head and the eyes follow a point.
+
+use super::pose::address;
+use super::scene::TaskScene;
+use crate::env::EnvError;
+use crate::math::{Vec3, norm, sub};
+use crate::model::Model;
+
+/// Height of the eyes above the origin of the head, m.
+const EYE_HEIGHT: f64 = 0.067375;
+/// Distance of the eyes from the middle of the head, m.
+const EYE_FORWARD: f64 = 0.07;
+/// Distance of an eye from the plane of symmetry, m.
+const EYE_SIDEWARD: f64 = 0.0245;
+
+/// The joints of the head and of the eyes, as indices in `qpos`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct HeadTracking {
+    head: usize,
+    swivel: usize,
+    tilt: usize,
+    /// Horizontal angles of the left and of the right eye.
+    eyes: [usize; 2],
+    /// Joints that are held at 0.
+    straight: Vec<usize>,
+}
+
+impl HeadTracking {
+    /// Finds the joints. Under `compat: reference` with `forgets_torsion` the left eye rolls freely, as in the Python code.
+    pub fn new(model: &Model, forgets_torsion: bool, purpose: &'static str) -> Result<Self, EnvError> {
+        let at = |name: &str| address(model, &format!("robot:{name}"), purpose);
+        let straight = [
+            "head_tilt_side",
+            "left_eye_vertical",
+            "left_eye_torsional",
+            "right_eye_vertical",
+            "right_eye_torsional",
+        ];
+        let held = straight
+            .iter()
+            .filter(|name| !(forgets_torsion && **name == "left_eye_torsional"));
+        Ok(Self {
+            head: super::body(model, "head", purpose)?,
+            swivel: at("head_swivel")?,
+            tilt: at("head_tilt")?,
+            eyes: [at("left_eye_horizontal")?, at("right_eye_horizontal")?],
+            straight: held.map(|name| at(name)).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Turns head and eyes towards a point of the world, m; velocities stay.
+    ///
+    /// Under `compat: reference` the head turns the wrong way from a point behind it.
+    pub fn look_at(&self, scene: &mut TaskScene<'_>, point: Vec3) {
+        let [x, y, z] = sub(point, scene.state.xpos[self.head]);
+        let eyes = norm([x, y, z]) - EYE_FORWARD;
+        let up = z - EYE_HEIGHT;
+        let [swivel, tilt] = match scene.follows_reference() {
+            true => [pxfm::f_atan(y / x), pxfm::f_atan(-up / x)],
+            false => [pxfm::f_atan2(y, x), pxfm::f_atan2(-up, x.abs())],
+        };
+        let qpos = &mut scene.state.qpos;
+        (qpos[self.swivel], qpos[self.tilt]) = (swivel, tilt);
+        for eye in self.eyes {
+            qpos[eye] = pxfm::f_atan(-EYE_SIDEWARD / eyes);
+        }
+        for &joint in &self.straight {
+            qpos[joint] = 0.0;
+        }
+    }
+}

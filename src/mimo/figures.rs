@@ -1,0 +1,71 @@
+//! How tall and how heavy MIMo is.
+
+use crate::math::{column, dot, mat_t_vec};
+use crate::mimo::MimoJoints;
+use crate::mimo::placement::reach;
+use crate::model::Model;
+use crate::physics::{State, Topology, kinematics};
+
+/// What tables of infants tell about a body, with all joints at 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyFigures {
+    /// From the soles to the crown, m.
+    pub stature: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Height of the centre of mass above the soles, m.
+    pub center_of_mass: f64,
+}
+
+impl BodyFigures {
+    /// Measures the MIMo of a scene; `None` if it has none.
+    ///
+    /// ```
+    /// use babybench::mimo::BodyFigures;
+    /// use babybench::{Blueprint, Config};
+    ///
+    /// let newborn = Config { age: Some(0.0), touch_active: false, vision_active: false, ..Config::default() };
+    /// let figures = BodyFigures::of(Blueprint::new(newborn)?.model()).expect("there is a MIMo");
+    /// assert!((figures.stature - 0.5046).abs() < 1e-4 && (figures.mass - 2.910).abs() < 1e-3);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    pub fn of(model: &Model) -> Option<Self> {
+        let hip = model.body("hip")?;
+        let mut state = State::new(model, &Topology::new(model));
+        for q in MimoJoints::new(model).qpos {
+            state.qpos[q] = 0.0;
+        }
+        kinematics(model, &mut state);
+        let [soles, crown] = upright_extent(model, &state, hip);
+        let up = column(&state.xmat[hip], 2);
+        let bodies = (0..model.nbody()).filter(|&b| model.in_subtree(b, hip));
+        let (mut mass, mut moment) = (0.0, 0.0);
+        for body in bodies {
+            mass += model.body_mass[body];
+            moment += model.body_mass[body] * dot(up, state.xipos[body]);
+        }
+        Some(Self {
+            stature: crown - soles,
+            mass,
+            center_of_mass: moment / mass - soles,
+        })
+    }
+}
+
+/// Returns the lowest and the highest point of MIMo along the axis from his hip to his chest, m.
+pub(crate) fn upright_extent(model: &Model, state: &State, hip: usize) -> [f64; 2] {
+    let up = column(&state.xmat[hip], 2);
+    let own = |g: &usize| model.in_subtree(model.geom_bodyid[*g], hip);
+    let geoms = (0..model.ngeom()).filter(own).map(|g| {
+        let at = dot(up, state.geom_xpos[g]);
+        let far = reach(
+            model.geom_type[g],
+            model.geom_size[g],
+            mat_t_vec(&state.geom_xmat[g], up),
+        );
+        [at - far, at + far]
+    });
+    geoms.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
+        [low.min(a), high.max(b)]
+    })
+}

@@ -1,0 +1,41 @@
+//! Which measurements are to blame for a body that cannot be.
+
+use super::GrowthError;
+use crate::config::{Config, Key, KeyValue};
+
+/// Returns the error of a body that cannot be, with the measurements that alone are to blame: without any one of them the
+/// body `works`. If there is none, it names all that are given.
+pub(in crate::mimo) fn blame(
+    config: &Config,
+    age: f64,
+    reason: String,
+    works: impl Fn(&Config) -> bool,
+) -> GrowthError {
+    let given: Vec<&Key> = measurements()
+        .filter(|key| key.value(config) != KeyValue::None)
+        .collect();
+    let alone = |key: &&&Key| {
+        let mut other = config.clone();
+        key.assign(&mut other, &KeyValue::None) && works(&other)
+    };
+    let mut guilty: Vec<&Key> = given.iter().filter(alone).copied().collect();
+    if guilty.is_empty() {
+        guilty = given;
+    }
+    let named = |key: &&Key| format!("`{}` is {}", key.name, key.value(config).to_yaml());
+    let keys: Vec<String> = guilty.iter().map(named).collect();
+    let keys = if keys.is_empty() {
+        format!("`age` is {age:?}")
+    } else {
+        keys.join(", ")
+    };
+    GrowthError::Measurements { keys, age, reason }
+}
+
+/// Lists the keys of measurements.
+fn measurements() -> impl Iterator<Item = &'static Key> {
+    let growth = Key::named("age").map(|key| key.section);
+    let others = ["age", "strength_age", "touch_grows"];
+    let keys = Config::keys().iter();
+    keys.filter(move |key| Some(key.section) == growth && !others.contains(&key.name))
+}

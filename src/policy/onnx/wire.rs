@@ -1,0 +1,121 @@
+//! The bytes of a model: protobuf, as far as the runtime reads it (`onnx.proto`).
+//!
+//! The runtime believes lengths, waits for ever for the end of a number that is too long, and reads messages in messages by
+//! recursion. So a model is looked through before the runtime gets it.
+
+/// Levels of messages in messages; each graph in an operator takes three.
+const DEPTH: usize = 64;
+
+/// A field of a message: its number, or its bytes.
+pub(super) enum Field<'a> {
+    Number(u64),
+    Bytes(&'a [u8]),
+}
+
+/// What the runtime reads messages as.
+#[derive(Clone, Copy)]
+enum Message {
+    Model,
+    Graph,
+    Node,
+    Attribute,
+    Tensor,
+    Value,
+    Type,
+    TensorType,
+    Sequence,
+    Shape,
+    /// Without messages inside.
+    Plain,
+}
+
+/// What the bytes of a field are.
+enum Content {
+    Message(Message),
+    /// Numbers of variable length, one after the other.
+    Numbers,
+    /// Text, or what the runtime does not look into.
+    Other,
+}
+
+impl Message {
+    /// Says what the bytes of a field are.
+    fn content(self, field: u64) -> Content {
+        Content::Message(match (self, field) {
+            (Self::Model, 7) | (Self::Attribute, 6) => Self::Graph,
+            (Self::Graph, 1) => Self::Node,
+            (Self::Node, 5) => Self::Attribute,
+            (Self::Graph, 5) | (Self::Attribute, 5) => Self::Tensor,
+            (Self::Graph, 11..=13) => Self::Value,
+            (Self::Value, 2) | (Self::Sequence, 1) => Self::Type,
+            (Self::Type, 1) => Self::TensorType,
+            (Self::Type, 4) => Self::Sequence,
+            (Self::TensorType, 2) => Self::Shape,
+            (Self::Model, 8 | 14) | (Self::Tensor, 13) | (Self::Shape, 1) => Self::Plain,
+            (Self::Attribute, 8) | (Self::Tensor, 1 | 5 | 7) => return Content::Numbers,
+            _ => return Content::Other,
+        })
+    }
+}
+
+/// Reads a number of variable length.
+pub(super) fn varint(bytes: &mut &[u8]) -> Option<u64> {
+    let mut value = 0;
+    for shift in (0..64).step_by(7) {
+        let (&byte, rest) = bytes.split_first()?;
+        *bytes = rest;
+        value |= u64::from(byte & 0x7f) << shift;
+        if byte & 0x80 == 0 {
+            return Some(value);
+        }
+    }
+    None
+}
+
+/// Lists the fields of a message, unless it is malformed.
+pub(super) fn fields(mut bytes: &[u8]) -> Option<Vec<(u64, Field<'_>)>> {
+    let mut out = Vec::new();
+    while !bytes.is_empty() {
+        let key = varint(&mut bytes)?;
+        let length = match key & 7 {
+            0 => {
+                out.push((key >> 3, Field::Number(varint(&mut bytes)?)));
+                continue;
+            }
+            1 => 8,
+            2 => usize::try_from(varint(&mut bytes)?).ok()?,
+            5 => 4,
+            _ => return None,
+        };
+        let (data, rest) = bytes.split_at_checked(length)?;
+        out.push((key >> 3, Field::Bytes(data)));
+        bytes = rest;
+    }
+    Some(out)
+}
+
+/// Looks a model through; the error says what is wrong with its bytes.
+pub(super) fn check(model: &[u8]) -> Result<(), String> {
+    walk(model, Message::Model, DEPTH)
+}
+
+fn walk(bytes: &[u8], message: Message, depth: usize) -> Result<(), String> {
+    let malformed = || "it is damaged, or no ONNX model: its bytes are not protobuf".to_string();
+    let Some(depth) = depth.checked_sub(1) else {
+        return Err(format!("it has more than {DEPTH} levels of messages in messages"));
+    };
+    for (number, field) in fields(bytes).ok_or_else(malformed)? {
+        let Field::Bytes(data) = field else { continue };
+        match message.content(number) {
+            Content::Message(inside) => walk(data, inside, depth)?,
+            Content::Numbers => {
+                let mut rest = data;
+                while !rest.is_empty() {
+                    varint(&mut rest).ok_or_else(malformed)?;
+                }
+            }
+            Content::Other => {}
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,336 @@
+//! Lookups in cube maps, in single precision.
+
+use std::ops::Neg;
+
+use wide::{f32x4, u32x4};
+
+use super::lanes::{four, three};
+use super::light::Vectors;
+use super::sample::{Coordinates, MipLevels, across, are_settled, channels, texels, upward, whole};
+use crate::render::texture::{Face, Level};
+
+/// The points of a cube map at which the pixels of a block look.
+pub struct CubePoints {
+    side: [u8; 4],
+    u: f32x4,
+    v: f32x4,
+    detail: MipLevels,
+}
+
+impl CubePoints {
+    #[inline(always)]
+    pub fn new(faces: &[Face; 6], at: &Coordinates) -> Self {
+        let axes = Axes::new(at);
+        match axes.common() {
+            Some(side) => Self::on(faces, side, at),
+            None => Self::apart(faces, axes.sides(), at),
+        }
+    }
+
+    /// Locates pixels that lie on several sides: each as if the whole block were on its side.
+    #[cold]
+    fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
+        let own = side.map(|side| Self::on(faces, side, at));
+        let each = |value: &dyn Fn(&Self) -> [f32; 4]| {
+            let mut out = [0.0; 4];
+            for k in 0..4 {
+                out[k] = value(&own[k])[k];
+            }
+            out
+        };
+        let mut level = [0; 4];
+        for k in 0..4 {
+            level[k] = own[k].detail.level[k];
+        }
+        Self {
+            side,
+            u: f32x4::new(each(&|p| p.u.to_array())),
+            v: f32x4::new(each(&|p| p.v.to_array())),
+            detail: MipLevels {
+                level,
+                blend: each(&|p| p.detail.blend),
+                same: false,
+            },
+        }
+    }
+
+    /// Locates pixels as if all of them were on one side.
+    #[inline(always)]
+    fn on(faces: &[Face; 6], side: u8, at: &Coordinates) -> Self {
+        let (sc, tc, ma) = components(side, *at);
+        // a zero direction has no side; any colour will do
+        let least = f32x4::splat(f32::MIN_POSITIVE);
+        let inverse = f32x4::ONE / ma.simd_gt(least).select(ma, least);
+        let half = 0.5 * inverse;
+        let scale = half * f32x4::splat(faces[0][0].width as f32);
+        let length = |change: fn(f32x4) -> f32x4| {
+            let shift = change(ma) * inverse;
+            let s = (change(sc) - shift * sc) * scale;
+            let t = (change(tc) - shift * tc) * scale;
+            s * s + t * t
+        };
+        let (right, up) = (length(across), length(upward));
+        Self {
+            side: [side; 4],
+            u: sc * half + 0.5,
+            v: tc * half + 0.5,
+            detail: MipLevels::new(right.simd_gt(up).select(right, up), faces[0].len()),
+        }
+    }
+
+    /// Returns red, green and blue (0..255) at those pixels that are `wanted`.
+    #[inline(always)]
+    pub fn colours(&self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
+        if !self.detail.same {
+            return self.mixed(faces, wanted);
+        }
+        let side = usize::from(self.side[0]);
+        let level = self.detail.level[0];
+        let image = &faces[side][level];
+        let spots = Spots::new(self.u, self.v, f32x4::splat(image.width as f32));
+        if spots.inside == 15 {
+            let first = texels(image, spots.first);
+            if are_settled(first) {
+                return channels(first);
+            }
+        }
+        let look = |image: &Level, level: usize, spots: &Spots| {
+            if spots.inside == 15 {
+                spots.within(image)
+            } else {
+                self.beyond(faces, [level; 4], spots, wanted)
+            }
+        };
+        let mut colours = look(image, level, &spots);
+        if self.detail.blends() {
+            let level = (level + 1).min(faces[side].len() - 1);
+            let image = &faces[side][level];
+            let spots = Spots::new(self.u, self.v, f32x4::splat(image.width as f32));
+            self.blend(&mut colours, &look(image, level, &spots));
+        }
+        colours
+    }
+
+    /// Looks up pixels that lie on several sides or in several levels.
+    #[inline(never)]
+    fn mixed(&self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
+        let last = faces[0].len() - 1;
+        let at = |level: [usize; 4]| {
+            let size = f32x4::new(four(|k| faces[0][level[k]].width as f32));
+            self.beyond(faces, level, &Spots::new(self.u, self.v, size), wanted)
+        };
+        let mut colours = at(self.detail.level);
+        if self.detail.blends() {
+            let next = at(four(|k| (self.detail.level[k] + 1).min(last)));
+            self.blend(&mut colours, &next);
+        }
+        colours
+    }
+
+    /// Blends in the colours of the next level.
+    #[inline(always)]
+    fn blend(&self, colours: &mut Vectors, next: &Vectors) {
+        let share = f32x4::new(self.detail.blend);
+        for k in 0..3 {
+            colours[k] += share * (next[k] - colours[k]);
+        }
+    }
+
+    /// Looks up bilinearly in one mip level for each pixel, across the edges of the cube where needed.
+    #[inline(never)]
+    fn beyond(&self, faces: &[Face; 6], level: [usize; 4], spots: &Spots, wanted: [bool; 4]) -> Vectors {
+        let (left, top) = (spots.left.to_array(), spots.top.to_array());
+        let mut corners = [[0; 4]; 4];
+        for k in (0..4).filter(|&k| wanted[k]) {
+            let image = &faces[usize::from(self.side[k])][level[k]];
+            let found = if spots.inside >> k & 1 == 1 {
+                let at = |place: usize| image.pixels[spots.first[k] as usize + place];
+                [at(0), at(1), at(image.width), at(image.width + 1)]
+            } else {
+                across_edges(faces, self.side[k], level[k], left[k] as i32, top[k] as i32)
+            };
+            for i in 0..4 {
+                corners[i][k] = u32::from_le_bytes(found[i]);
+            }
+        }
+        spots.between(corners.map(|c| channels(u32x4::new(c))))
+    }
+}
+
+/// The places in one mip level for each pixel at which the pixels of a block look.
+struct Spots {
+    /// Column of the texel before; -1 or the last one if the texel after lies beyond the edge.
+    left: f32x4,
+    /// Row of the texel before, likewise.
+    top: f32x4,
+    /// Places between the texels, 0..1.
+    across: f32x4,
+    down: f32x4,
+    /// Index of the first texel, if all four are inside.
+    first: [i32; 4],
+    /// One bit for each pixel: whether all four texels are inside the image.
+    inside: u32,
+}
+
+impl Spots {
+    #[inline(always)]
+    fn new(u: f32x4, v: f32x4, size: f32x4) -> Self {
+        let (x, y) = (u * size - 0.5, v * size - 0.5);
+        let (left, top) = (whole(x), whole(y));
+        let (across, down) = (x - left, y - top);
+        let last = size - 1.0;
+        let within = |v: f32x4| v.max(f32x4::splat(-1.0)).fast_min(last);
+        let (left, top) = (within(left), within(top));
+        let least = left.fast_min(top).simd_ge(f32x4::ZERO);
+        Self {
+            left,
+            top,
+            across,
+            down,
+            // textures are small enough for exact indices
+            first: (top * size + left).fast_trunc_int().to_array(),
+            inside: (least & left.fast_max(top).simd_lt(last)).to_bitmask(),
+        }
+    }
+
+    /// Looks up bilinearly where all texels are inside the image.
+    #[inline(always)]
+    fn within(&self, image: &Level) -> Vectors {
+        let n = image.width as i32;
+        let at = |place: i32| channels(texels(image, four(|k| self.first[k] + place)));
+        self.between([at(0), at(1), at(n), at(n + 1)])
+    }
+
+    /// Blends four texels for each pixel.
+    #[inline(always)]
+    fn between(&self, [a, b, c, d]: [Vectors; 4]) -> Vectors {
+        three(|k| {
+            let (upper, lower) = (a[k] + self.across * (b[k] - a[k]), c[k] + self.across * (d[k] - c[k]));
+            upper + self.down * (lower - upper)
+        })
+    }
+}
+
+/// Returns the components of directions on a side of the cube: right, down, outward.
+#[inline(always)]
+fn components<T: Neg<Output = T>>(side: u8, [x, y, z]: [T; 3]) -> (T, T, T) {
+    match side {
+        0 => (-z, -y, x),
+        1 => (z, -y, -x),
+        2 => (x, z, y),
+        3 => (x, -z, -y),
+        4 => (x, -y, z),
+        _ => (-x, -y, -z),
+    }
+}
+
+/// Returns the direction with the given components on a side of the cube.
+fn direction(side: u8, right: f32, down: f32) -> [f32; 3] {
+    match side {
+        0 => [1.0, -down, -right],
+        1 => [-1.0, -down, right],
+        2 => [right, 1.0, down],
+        3 => [right, -1.0, -down],
+        4 => [right, -down, 1.0],
+        _ => [-right, -down, -1.0],
+    }
+}
+
+/// The axes of the cube along which directions are longest: one bit for each pixel.
+struct Axes {
+    /// Whether x is longer than y.
+    longer: u32,
+    /// Whether z is the longest.
+    upright: u32,
+    /// Whether x, y and z are negative.
+    negative: [u32; 3],
+}
+
+impl Axes {
+    #[inline(always)]
+    fn new([x, y, z]: &Coordinates) -> Self {
+        let (along_x, along_y) = (x.abs(), y.abs());
+        let longer = along_x.simd_gt(along_y);
+        Self {
+            longer: longer.to_bitmask(),
+            upright: z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask(),
+            negative: [x, y, z].map(|v| v.is_sign_negative().to_bitmask()),
+        }
+    }
+
+    /// Returns the side through which all directions point; `None` if they point through several.
+    #[inline(always)]
+    fn common(&self) -> Option<u8> {
+        let axis = match (self.upright, self.longer) {
+            (15, _) => 2,
+            (0, 15) => 0,
+            (0, 0) => 1,
+            _ => return None,
+        };
+        match self.negative[axis] {
+            0 => Some(2 * axis as u8),
+            15 => Some(2 * axis as u8 + 1),
+            _ => None,
+        }
+    }
+
+    /// Returns the side through which each direction points.
+    fn sides(&self) -> [u8; 4] {
+        [0, 1, 2, 3].map(|k| {
+            let axis = if self.upright >> k & 1 == 1 {
+                2
+            } else {
+                1 - (self.longer >> k & 1)
+            };
+            (2 * axis + (self.negative[axis as usize] >> k & 1)) as u8
+        })
+    }
+}
+
+/// Returns a block of four texels, some of which lie beyond an edge of the side.
+#[cold]
+fn across_edges(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> [[u8; 4]; 4] {
+    let at = |dx: i32, dy: i32| texel(faces, side, level, x + dx, y + dy);
+    let mut found = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+    // at a corner of the cube only three texels meet
+    if let Some(missing) = found.iter().position(Option::is_none) {
+        let others = || found.iter().flatten();
+        let count = others().count().max(1) as u16;
+        let mean = [0, 1, 2, 3].map(|c| (others().map(|t| u16::from(t[c])).sum::<u16>() / count) as u8);
+        found[missing] = Some(mean);
+    }
+    found.map(|t| t.unwrap_or_default())
+}
+
+/// Returns a texel of a side or, beyond one of its edges, of the adjoining side; `None` beyond two edges.
+fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u8; 4]> {
+    let image = |side: u8| &faces[usize::from(side)][level];
+    let n = image(side).width;
+    let inside = |i: i32| (0..n as i32).contains(&i);
+    match (inside(x), inside(y)) {
+        (true, true) => Some(image(side).pixels[y as usize * n + x as usize]),
+        (false, false) => None,
+        _ => {
+            let place = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;
+            let at = direction(side, place(x), place(y));
+            let side = Axes::new(&at.map(f32x4::splat)).sides()[0];
+            let (right, down, out) = components(side, at);
+            let index = |v: f32| (((v / out + 1.0) * 0.5 * n as f32) as usize).min(n - 1);
+            Some(image(side).pixels[index(down) * n + index(right)])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_and_directions_are_inverse() {
+        for side in 0..6 {
+            let at = direction(side, 0.3, -0.7);
+            assert_eq!(Axes::new(&at.map(f32x4::splat)).sides(), [side; 4]);
+            assert_eq!(components(side, at), (0.3, -0.7, 1.0));
+        }
+    }
+}

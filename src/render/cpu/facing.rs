@@ -1,0 +1,96 @@
+//! Which faces of a drawable certainly show their back: their vertices need not be projected.
+
+use wide::f32x4;
+
+use super::camera::{Eye, V3, dot};
+use super::frame::PlacedDrawable;
+use crate::render::mesh::{Band, MeshPart};
+use crate::render::patch::{ALL, Patch};
+use crate::render::visual::{Drawable, Shape};
+
+/// Bound on the relative rounding of distances from a plane.
+const ROUNDING: f32 = 1e-5;
+/// Bound on the areas of faces of unit shapes.
+const AREA: f32 = 0.26;
+
+/// The camera as a drawable sees it.
+pub struct Facing {
+    /// Its position in the frame of the drawable, m.
+    eye: V3,
+    /// Size of the drawable, m.
+    size: V3,
+    /// Pixels in a metre across, where the drawable is nearest.
+    nearest: f32,
+    /// Area in pixels of a square metre, seen from the front at a distance of 1 m, over the cube of the greatest distance.
+    area: f32,
+    /// Bound on what rounding adds to the difference between two vertices, pixels: they move to 1/256 pixels.
+    moved: f32,
+}
+
+/// The camera in the unit shape of one part of a drawable.
+pub struct PartFacing {
+    eye: V3,
+    /// Least product of the distance from a plane and the area of a face at which the face may show its front.
+    least: f32,
+}
+
+impl Facing {
+    /// Locates the camera; `None` where the drawable is flat, or comes so near that it may be cut.
+    pub fn new(drawable: &Drawable, draw: &PlacedDrawable, eye: &Eye, image: [usize; 2]) -> Option<Self> {
+        let d = [
+            eye.pos[0] - draw.pos[0],
+            eye.pos[1] - draw.pos[1],
+            eye.pos[2] - draw.pos[2],
+        ];
+        let m = &draw.mat;
+        let ahead = -dot(d, eye.forward);
+        let (near, far) = (ahead - drawable.radius, ahead + drawable.radius);
+        if drawable.shape == Shape::Plane || near <= eye.near {
+            return None;
+        }
+        let half = [image[0] as f32 * 0.5, image[1] as f32 * 0.5];
+        let focal = [half[0] * eye.focal[0], half[1] * eye.focal[1]];
+        let steepest = |k: usize| (focal[k] * focal[k] + half[k] * half[k]).sqrt();
+        Some(Self {
+            eye: [0, 1, 2].map(|k| d[0] * m[k] + d[1] * m[3 + k] + d[2] * m[6 + k]),
+            size: drawable.size,
+            nearest: steepest(0).max(steepest(1)) / near,
+            area: focal[0] * focal[1] / (far * far * far),
+            moved: 1.05 / 256.0 + 1e-5 * half[0].max(half[1]),
+        })
+    }
+
+    /// Locates the camera in the unit shape of a band.
+    pub fn of(&self, band: &Band) -> PartFacing {
+        let [width, depth, length] = self.size;
+        let cap = 0.5 * (width + depth);
+        let (stretch, shift) = match band.part {
+            MeshPart::Body => (length, 0.0),
+            MeshPart::Top => (cap, length - cap),
+            MeshPart::Bottom => (cap, cap - length),
+        };
+        let [x, y, z] = self.eye;
+        let eye = [x / width, y / depth, (z - shift) / stretch];
+        let edge = [band.edge[0] * width, band.edge[1] * depth, band.edge[2] * stretch];
+        let longest = dot(edge, edge).sqrt() * self.nearest;
+        // moving its corners changes the area of a parallelogram by no more than this
+        let change = self.moved * (4.0 * longest + 2.0 * self.moved);
+        let distance = eye[0].abs() + eye[1].abs() + eye[2].abs() + 2.0;
+        PartFacing {
+            eye,
+            least: -change / (self.area * width * depth * stretch) - ROUNDING * AREA * distance,
+        }
+    }
+}
+
+impl PartFacing {
+    /// Returns one bit for each quadrilateral of a patch that may show its front.
+    #[inline(always)]
+    pub fn fronts(&self, patch: &Patch) -> u8 {
+        let [x, y, z] = patch.normal.map(f32x4::new);
+        let [ex, ey, ez] = self.eye;
+        let out = x * ex + y * ey + z * ez - f32x4::new(patch.offset);
+        // NaN counts as front
+        ALL & !out.simd_lt(f32x4::splat(self.least)).to_bitmask() as u8
+    }
+}

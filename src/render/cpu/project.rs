@@ -1,0 +1,130 @@
+//! Vertices of what is in view: those of faces that may show their front are projected.
+
+use std::ops::Range;
+
+use super::camera::{Eye, Row, fused, part_rows};
+use super::clip::{self, Place};
+use super::facing::Facing;
+use super::frame::Frame;
+use super::plane::Vertex;
+use super::raster::LIMIT;
+use crate::render::mesh::{Band, LANES, Mesh};
+use crate::render::patch::ALL;
+use crate::render::visual::Visual;
+
+impl Frame {
+    /// Projects and draws a drawable.
+    pub fn add(&mut self, visual: &Visual, eye: &Eye, index: usize) {
+        let drawable = &visual.drawables[index];
+        let mesh = &visual.meshes[drawable.shape as usize];
+        let draw = self.draws[index];
+        self.vertices.resize(draw.end, Vertex::default());
+        self.x.resize(draw.end, 0.0);
+        self.y.resize(draw.end, 0.0);
+        self.sides.resize(draw.end, 0);
+        self.fronts.clear();
+        self.fronts.resize(mesh.patches.len(), ALL);
+        let facing = Facing::new(drawable, &draw, eye, self.size);
+        for band in &mesh.bands {
+            let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
+            match (clip::place(&rows, band.low, band.high), &facing) {
+                (Place::Outside, _) => {}
+                (Place::Inside, Some(facing)) => {
+                    self.find_fronts(mesh, band, facing);
+                    for group in band.vertices.start / LANES..band.vertices.end / LANES {
+                        if self.needed[group] {
+                            self.project(mesh, draw.base, group, &rows);
+                        }
+                    }
+                    self.inside(mesh, index, band);
+                }
+                _ => match self.project_all(mesh, draw.base, band.vertices.clone(), &rows) {
+                    (0, _) if !draw.flip => self.inside(mesh, index, band),
+                    (_, 0) => self.across(mesh, &rows, index, band.triangles.clone()),
+                    _ => {}
+                },
+            }
+        }
+        self.flush(index);
+    }
+
+    /// Finds the quadrilaterals of a band that may show their front, and their vertices.
+    fn find_fronts(&mut self, mesh: &Mesh, band: &Band, facing: &Facing) {
+        let facing = facing.of(band);
+        self.needed.clear();
+        self.needed.resize(mesh.x.len() / LANES, false);
+        for k in band.patches.clone() {
+            let patch = &mesh.patches[k];
+            let fronts = facing.fronts(patch);
+            self.fronts[k] = fronts;
+            if fronts != 0 {
+                for group in patch.vertices {
+                    self.needed[usize::from(group)] = true;
+                }
+            }
+        }
+    }
+
+    /// Projects vertices of a mesh. Gives the outer sides on which any of them is, and on which all are.
+    fn project_all(&mut self, mesh: &Mesh, base: usize, range: Range<usize>, rows: &[Row; 4]) -> (u8, u8) {
+        let (mut any, mut all) = (0, u8::MAX);
+        for group in range.start / LANES..range.end / LANES {
+            let clips = self.project(mesh, base, group, rows);
+            let sides = &mut self.sides[base + LANES * group..][..LANES];
+            for (side, clip) in sides.iter_mut().zip(clips) {
+                *side = clip::outside(clip) as u8;
+            }
+            for side in sides {
+                any |= *side;
+                all &= *side;
+            }
+        }
+        (any, all)
+    }
+
+    /// Projects a group of vertices of a mesh. Gives them in clip coordinates.
+    #[inline(always)]
+    fn project(&mut self, mesh: &Mesh, base: usize, group: usize, rows: &[Row; 4]) -> [clip::Clip; LANES] {
+        let half = [self.size[0] as f32 * 0.5, self.size[1] as f32 * 0.5];
+        let at = LANES * group;
+        let coordinates = |v: &[f32]| -> [f32; LANES] {
+            let mut out = [0.0; LANES];
+            out.copy_from_slice(&v[at..at + LANES]);
+            out
+        };
+        let (x, y, z) = (coordinates(&mesh.x), coordinates(&mesh.y), coordinates(&mesh.z));
+        let mut clips = [[0.0; 4]; LANES];
+        let (mut px, mut py, mut pz, mut iw) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            clips[k] = clip::apply(rows, [x[k], y[k], z[k]]);
+            let [cx, cy, cz, cw] = clips[k];
+            iw[k] = 1.0 / cw;
+            px[k] = fused(cx * iw[k], half[0], half[0]);
+            py[k] = fused(cy * iw[k], half[1], half[1]);
+            pz[k] = cz * iw[k];
+        }
+        let vertices = &mut self.vertices[base + at..][..LANES];
+        for k in 0..LANES {
+            vertices[k] = Vertex {
+                x: px[k],
+                y: py[k],
+                z: pz[k],
+                iw: iw[k],
+            };
+            (px[k], py[k]) = (steps(px[k]), steps(py[k]));
+        }
+        self.x[base + at..][..LANES].copy_from_slice(&px);
+        self.y[base + at..][..LANES].copy_from_slice(&py);
+        clips
+    }
+}
+
+/// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
+#[inline(always)]
+pub fn steps(pixels: f32) -> f32 {
+    // adding 1.5 * 2^23 rounds to the nearest integer
+    const SHIFT: f32 = 12_582_912.0;
+    #[allow(clippy::manual_clamp)] // unlike `clamp`, this turns NaN into a number
+    let v = (pixels * 256.0).max(-LIMIT).min(LIMIT);
+    (v + SHIFT) - SHIFT
+}

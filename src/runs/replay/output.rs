@@ -1,0 +1,322 @@
+//! What an environment produced in a replay.
+
+use std::path::Path;
+
+use super::{EpisodeStart, Recording, ReplayError};
+use crate::env::{Env, Info, Observation};
+use crate::files::replace_file;
+use crate::formats::npz::NpzWriter;
+use crate::json;
+use crate::sensors::{EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages};
+
+/// Touch values that are not zero, step by step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TouchRows {
+    /// First entry of each step (T + 1).
+    pub ptr: Vec<i64>,
+    /// Positions in the touch observation, ascending within a step.
+    pub idx: Vec<i32>,
+    /// Values, N.
+    pub val: Vec<f32>,
+    /// Length of the touch observation.
+    pub len: i64,
+}
+
+impl TouchRows {
+    fn push(&mut self, values: &[f32]) {
+        for (i, v) in (0..).zip(values).filter(|(_, v)| **v != 0.0) {
+            self.idx.push(i);
+            self.val.push(*v);
+        }
+        self.ptr.push(self.idx.len() as i64);
+    }
+}
+
+/// Everything an environment produced in a replay, row-major, one row per step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Replay {
+    /// Number of steps.
+    pub len: usize,
+    /// Positions (T, nq).
+    pub qpos: Vec<f64>,
+    /// Velocities (T, nv).
+    pub qvel: Vec<f64>,
+    /// Accelerations (T, nv).
+    pub qacc: Vec<f64>,
+    /// Controls (T, nu).
+    pub ctrl: Vec<f64>,
+    /// Gears (T, nu).
+    pub gear: Vec<f64>,
+    /// Sensors (T, nsensordata).
+    pub sensordata: Vec<f64>,
+    /// Proprioception (T, no).
+    pub observation: Vec<f64>,
+    /// Touch, if active.
+    pub touch: Option<TouchRows>,
+    /// Touch pooled over bodies (T, bodies 5), if active.
+    pub touch_pooled: Option<Vec<f64>>,
+    /// Pain (T, sensors), if active.
+    pub pain: Option<Vec<f32>>,
+    /// Vestibular sense (T, 6), if active.
+    pub vestibular: Option<Vec<f64>>,
+    /// First contact of each step (T + 1).
+    pub contact_ptr: Vec<i64>,
+    /// Geoms of each contact (C, 2).
+    pub contact_geom: Vec<i64>,
+    /// Positions (C, 3), m.
+    pub contact_pos: Vec<f64>,
+    /// Frames (C, 9).
+    pub contact_frame: Vec<f64>,
+    /// Distances (C), m.
+    pub contact_dist: Vec<f64>,
+    /// Force and torque in the contact frame (C, 6), N and N m.
+    pub contact_force: Vec<f64>,
+    /// Steps whose pictures were taken (K).
+    pub eye_steps: Vec<i64>,
+    /// What the left eye saw in them (K, H, W, 3).
+    pub eye_left: Vec<u8>,
+    /// What the right eye saw in them.
+    pub eye_right: Vec<u8>,
+    /// What else the environment's eyes observed in them, left and right, (K, H, W) each.
+    pub eyes: [EyeImages; 2],
+    /// Width and height of those pictures, pixels.
+    pub eye_size: usize,
+    /// Information of each step.
+    pub info: Vec<Info>,
+    /// Rewards and goals, of a task that has them.
+    pub task: Option<TaskRows>,
+}
+
+/// What a task produced in a replay, row-major, one row per step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TaskRows {
+    /// Rewards (T).
+    pub reward: Vec<f64>,
+    /// Whether success or failure ended the episode (T).
+    pub terminated: Vec<bool>,
+    /// Whether the episode was cut off (T).
+    pub truncated: Vec<bool>,
+    /// Achieved goals (T, n).
+    pub achieved_goal: Vec<f64>,
+    /// Desired goals (T, n).
+    pub desired_goal: Vec<f64>,
+}
+
+impl TaskRows {
+    fn push(&mut self, env: &Env) {
+        self.reward.push(env.reward());
+        self.terminated.push(env.terminated());
+        self.truncated.push(env.truncated());
+        self.achieved_goal.extend_from_slice(env.goal().achieved);
+        self.desired_goal.extend_from_slice(env.goal().desired);
+    }
+
+    fn write(&self, npz: &mut NpzWriter) -> Result<(), ReplayError> {
+        let t = self.reward.len();
+        npz.add("reward", &[t], &self.reward)?;
+        for (name, flags) in [("terminated", &self.terminated), ("truncated", &self.truncated)] {
+            let bytes: Vec<u8> = flags.iter().map(|flag| u8::from(*flag)).collect();
+            npz.add(name, &[t], &bytes)?;
+        }
+        for (name, goals) in [
+            ("achieved_goal", &self.achieved_goal),
+            ("desired_goal", &self.desired_goal),
+        ] {
+            npz.add(name, &[t, goals.len().checked_div(t).unwrap_or(0)], goals)?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes where the episodes of a recording start, so that the replay is a recording, too.
+fn write_starts(npz: &mut NpzWriter, recording: &Recording) -> Result<(), ReplayError> {
+    let starts = &recording.episodes;
+    if starts.is_empty() {
+        return Ok(());
+    }
+    let rows: Vec<i64> = starts.iter().map(|start| start.row as i64).collect();
+    npz.add("reset_row", &[rows.len()], &rows)?;
+    let ball = |start: &EpisodeStart| match start.ball {
+        Some([radius, mass, inertia @ ..]) => {
+            let turn = inertia.iter().map(|i| 1.0 / i).sum::<f64>() / 3.0;
+            vec![radius, mass, inertia[0], inertia[1], inertia[2], 1.0 / mass, turn]
+        }
+        None => Vec::new(),
+    };
+    type Column<'c> = (&'c str, &'c dyn Fn(&EpisodeStart) -> Vec<f64>);
+    let tables: [Column<'_>; 6] = [
+        ("reset_qpos", &|start| start.qpos.clone()),
+        ("reset_qvel", &|start| start.qvel.clone()),
+        ("reset_warm", &|start| start.warm.clone()),
+        ("reset_activity", &|start| start.activity.clone()),
+        ("reset_desired_goal", &|start| start.desired_goal.clone()),
+        ("reset_ball", &ball),
+    ];
+    for (name, of) in tables {
+        let data: Vec<f64> = starts.iter().flat_map(of).collect();
+        if !data.is_empty() {
+            npz.add(name, &[starts.len(), data.len() / starts.len()], &data)?;
+        }
+    }
+    Ok(())
+}
+
+impl Replay {
+    /// Starts a replay of `len` steps with the senses of an environment.
+    pub(super) fn begin(env: &Env, len: usize) -> Self {
+        Self {
+            len,
+            touch: env.touch().map(|t| TouchRows {
+                ptr: vec![0],
+                len: t.len() as i64,
+                ..TouchRows::default()
+            }),
+            touch_pooled: env.touch_pool().map(|_| Vec::new()),
+            pain: env.pain().map(|_| Vec::new()),
+            vestibular: env.vestibular().map(|_| Vec::new()),
+            contact_ptr: vec![0],
+            task: env.task().reports_outcome().then(TaskRows::default),
+            ..Self::default()
+        }
+    }
+
+    /// Adds everything but pictures after a step.
+    pub(super) fn push(&mut self, env: &Env) {
+        let (s, observation) = (env.state(), env.observation());
+        self.qpos.extend_from_slice(&s.qpos);
+        self.qvel.extend_from_slice(&s.qvel);
+        self.qacc.extend_from_slice(&s.qacc);
+        self.ctrl.extend_from_slice(&s.ctrl);
+        self.gear.extend_from_slice(s.reference_gear());
+        self.sensordata.extend_from_slice(&s.sensordata);
+        self.observation.extend_from_slice(observation.proprioception);
+        if let (Some(all), Some(v)) = (&mut self.touch, observation.touch) {
+            all.push(v);
+        }
+        if let (Some(all), Some(v)) = (&mut self.touch_pooled, observation.touch_pooled) {
+            all.extend_from_slice(v);
+        }
+        if let (Some(all), Some(v)) = (&mut self.pain, observation.pain) {
+            all.extend_from_slice(v);
+        }
+        if let (Some(all), Some(v)) = (&mut self.vestibular, observation.vestibular) {
+            all.extend_from_slice(v);
+        }
+        for c in &s.contact {
+            self.contact_geom.extend(c.geom.map(|g| g as i64));
+            self.contact_pos.extend(c.pos);
+            self.contact_frame.extend(c.frame);
+            self.contact_dist.push(c.dist);
+            self.contact_force.extend(c.force);
+        }
+        self.contact_ptr.push(self.contact_dist.len() as i64);
+        self.info.push(env.info().clone());
+        if let Some(task) = &mut self.task {
+            task.push(env);
+        }
+    }
+
+    /// Adds what the eyes observe besides colours.
+    pub(super) fn push_eyes(&mut self, observation: &Observation) {
+        let [left, right] = &mut self.eyes;
+        if let Some(gray) = observation.eye_gray {
+            left.gray.extend_from_slice(gray[0]);
+            right.gray.extend_from_slice(gray[1]);
+        }
+        if let Some(depth) = observation.eye_depth {
+            left.depth.extend_from_slice(depth[0]);
+            right.depth.extend_from_slice(depth[1]);
+        }
+        if let Some(ids) = observation.eye_segmentation {
+            left.segmentation.extend_from_slice(ids[0]);
+            right.segmentation.extend_from_slice(ids[1]);
+        }
+    }
+
+    /// Writes what the eyes observed besides colours.
+    fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), ReplayError> {
+        let shape = [self.eye_steps.len(), self.eye_size, self.eye_size];
+        for (k, eye) in self.eyes.iter().enumerate() {
+            if !eye.gray.is_empty() {
+                npz.add(EYES_GRAY[k], &shape, &eye.gray)?;
+            }
+            if !eye.depth.is_empty() {
+                npz.add(EYES_DEPTH[k], &shape, &eye.depth)?;
+            }
+            if !eye.segmentation.is_empty() {
+                npz.add(EYES_SEGMENTATION[k], &shape, &eye.segmentation)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes `replay.npz`, with the recording's own start and actions, and `info.jsonl` into a directory, which is
+    /// made if it is not there.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn write(&self, dir: &Path, recording: &Recording) -> Result<(), ReplayError> {
+        let write_error = |path: &Path| {
+            let path = path.display().to_string();
+            move |source| ReplayError::Write { path, source }
+        };
+        std::fs::create_dir_all(dir).map_err(write_error(dir))?;
+        let t = self.len;
+        let columns = |n: usize| n.checked_div(t).unwrap_or(0);
+        let mut npz = NpzWriter::new();
+        npz.add("qpos0", &[recording.qpos0.len()], &recording.qpos0)?;
+        npz.add("qvel0", &[recording.qvel0.len()], &recording.qvel0)?;
+        npz.add("activity0", &[recording.activity0.len()], &recording.activity0)?;
+        npz.add("actions", &[t, columns(recording.actions.len())], &recording.actions)?;
+        let tables = [
+            ("ctrl", &self.ctrl),
+            ("gear", &self.gear),
+            ("qpos", &self.qpos),
+            ("qvel", &self.qvel),
+            ("qacc", &self.qacc),
+            ("sensordata", &self.sensordata),
+            ("observation", &self.observation),
+        ];
+        for (name, data) in tables {
+            npz.add(name, &[t, columns(data.len())], data)?;
+        }
+        if let Some(task) = &self.task {
+            task.write(&mut npz)?;
+        }
+        write_starts(&mut npz, recording)?;
+        if let Some(v) = &self.touch_pooled {
+            npz.add("touch_pooled", &[t, columns(v.len())], v)?;
+        }
+        if let Some(v) = &self.pain {
+            npz.add("pain", &[t, columns(v.len())], v)?;
+        }
+        if let Some(v) = &self.vestibular {
+            npz.add("vestibular", &[t, columns(v.len())], v)?;
+        }
+        if let Some(touch) = &self.touch {
+            npz.add("touch_idx", &[touch.idx.len()], &touch.idx)?;
+            npz.add("touch_val", &[touch.val.len()], &touch.val)?;
+            npz.add("touch_ptr", &[touch.ptr.len()], &touch.ptr)?;
+            npz.add("touch_len", &[], &[touch.len])?;
+        }
+        let (k, side) = (self.eye_steps.len(), self.eye_size);
+        if k > 0 {
+            npz.add("eye_steps", &[k], &self.eye_steps)?;
+            npz.add("eye_left", &[k, side, side, 3], &self.eye_left)?;
+            npz.add("eye_right", &[k, side, side, 3], &self.eye_right)?;
+            self.write_eyes(&mut npz)?;
+        }
+        let n = self.contact_dist.len();
+        npz.add("contact_ptr", &[self.contact_ptr.len()], &self.contact_ptr)?;
+        npz.add("contact_geom", &[n, 2], &self.contact_geom)?;
+        npz.add("contact_pos", &[n, 3], &self.contact_pos)?;
+        npz.add("contact_frame", &[n, 9], &self.contact_frame)?;
+        npz.add("contact_dist", &[n], &self.contact_dist)?;
+        npz.add("contact_force", &[n, 6], &self.contact_force)?;
+        npz.write(dir.join("replay.npz"))?;
+        let path = dir.join("info.jsonl");
+        let lines = json::lines(&self.info);
+        let written = lines.and_then(|lines| replace_file(&path, &lines));
+        written.map_err(write_error(&path))
+    }
+}

@@ -1,0 +1,105 @@
+//! Pain: what presses too hard, and how it fades.
+
+use std::sync::Arc;
+
+use crate::config::{Compat, Config, PainOptions, TouchFunction};
+use crate::model::Model;
+use crate::sensors::transform::Waiting as _;
+use crate::sensors::{SkinLayout, SkinValues, Touch};
+
+/// The sense of pain of one environment: a number for each touch sensor.
+///
+/// The normal force of each contact, times the softness of the body that presses and the sensitivity of the body that
+/// is pressed, is shared among the sensors as touch is. What a sensor gets beyond [`PainOptions::threshold`], times
+/// [`PainOptions::slope`] and at most [`PainOptions::limit`], is the new pain p; the pain of the step is
+/// max([`decay_old`](PainOptions::decay_old) times the pain of the step before, [`decay_new`](PainOptions::decay_new) p).
+/// Under `compat: reference` the slope is applied before the threshold, as in the code that the sense is from
+/// (`PainTouch`, a class for MIMo), and an episode starts with the pain of the last.
+#[derive(Clone, Debug)]
+pub struct Pain {
+    options: PainOptions,
+    compat: Compat,
+    /// Of the bodies of the model.
+    softness: Vec<f64>,
+    sensitivity: Vec<f64>,
+    /// Shares the forces.
+    skin: Touch,
+    felt: SkinValues,
+}
+
+impl Pain {
+    /// Creates the sense for a skin; every body has the softness and the sensitivity 1.
+    pub fn new(model: &Model, layout: Arc<SkinLayout>, config: &Config) -> Self {
+        let (compat, response) = (config.compat, config.touch_response);
+        Self {
+            options: config.pain,
+            compat,
+            softness: vec![1.0; model.nbody()],
+            sensitivity: vec![1.0; model.nbody()],
+            felt: SkinValues::new(layout.len(), 1),
+            skin: Touch::new(layout, TouchFunction::Normal, response, compat),
+        }
+    }
+
+    /// Returns the softness of each body, by id, to be changed: the factor on the forces with which it presses others.
+    pub fn softness_mut(&mut self) -> &mut [f64] {
+        &mut self.softness
+    }
+
+    /// Returns the sensitivity of each body, by id, to be changed: the factor on the forces that press it.
+    pub fn sensitivity_mut(&mut self) -> &mut [f64] {
+        &mut self.sensitivity
+    }
+
+    /// Returns the pain of all sensors.
+    pub fn felt(&self) -> &SkinValues {
+        &self.felt
+    }
+
+    /// Appends what it remembers from step to step.
+    pub(crate) fn save(&self, out: &mut Vec<u8>) {
+        self.felt.save(out);
+    }
+
+    /// Takes over what was saved; `false` if it is something else.
+    pub(crate) fn load(&mut self, mut bytes: &[u8]) -> bool {
+        self.felt.load(&mut bytes) && bytes.is_empty()
+    }
+
+    /// Feels the contacts of touch, which has the same skin, and goes on by one step.
+    pub fn observe(&mut self, model: &Model, touch: &Touch) {
+        let options = self.options;
+        self.skin.clear();
+        for contact in touch.contacts() {
+            let other = model.geom_bodyid[contact.other];
+            let factor = self.softness[other] * self.sensitivity[contact.body];
+            self.skin
+                .press(contact.body, contact.point_body, [contact.normal * factor, 0.0, 0.0]);
+        }
+        self.felt.for_each_touched(|pain| {
+            for p in pain {
+                *p = (f64::from(*p) * options.decay_old) as f32;
+            }
+        });
+        for &sensor in self.skin.touched() {
+            let force = f64::from(self.skin.felt().of(sensor as usize)[0]);
+            let beyond = match self.compat {
+                Compat::Api => options.slope * (force - options.threshold),
+                Compat::Reference => options.slope * force - options.threshold,
+            };
+            let new = beyond.max(0.0).min(options.limit.unwrap_or(f64::INFINITY)) * options.decay_new;
+            if new > 0.0 {
+                let pain = &mut self.felt.of_mut(sensor as usize)[0];
+                *pain = pain.max(new as f32);
+            }
+        }
+        self.felt.forget_zeros();
+    }
+
+    /// Forgets the pain of the last episode.
+    pub fn reset(&mut self) {
+        if self.compat == Compat::Api {
+            self.felt.clear();
+        }
+    }
+}

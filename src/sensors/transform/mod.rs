@@ -1,0 +1,166 @@
+//! Transforms of what a sense reports, on its way to the observation: a sense, its transforms one after the other, the observation.
+//!
+//! A transform is a small type that changes the values of one sense in place. The configuration sets up those of this
+//! module; [`Env::add_transform`](crate::Env::add_transform) adds others, such as eyes that see nothing half of the time:
+//!
+//! ```
+//! use babybench::sensors::transform::{Sense, Signal, Transform};
+//! use babybench::spaces::NumpyRng;
+//! use babybench::{Config, Env};
+//!
+//! struct Blink;
+//!
+//! impl Transform for Blink {
+//!     fn describe(&self) -> String {
+//!         "blink".to_string()
+//!     }
+//!     fn apply(&mut self, signal: Signal<'_>, rng: &mut NumpyRng) {
+//!         if let (Signal::Eye { images, .. }, true) = (signal, rng.uniform() < 0.5) {
+//!             images.rgb.fill(0);
+//!         }
+//!     }
+//! }
+//!
+//! let mut env = Env::new(Config { touch_active: false, ..Config::default() })?;
+//! env.add_transform(Sense::EyeLeft, Box::new(Blink))?;
+//! let black = |env: &Env| env.observation().eye_left.is_some_and(|image| image.iter().all(|&v| v == 0));
+//! let blinks = (0..20).filter(|&seed| env.reset(Some(seed)).is_ok() && black(&env)).count();
+//! assert!((1..20).contains(&blinks));
+//! # Ok::<(), babybench::EnvError>(())
+//! ```
+
+mod acuity;
+mod delay;
+mod fourier;
+mod foveation;
+mod noise;
+
+pub use acuity::{Acuity, AcuityOptions, acuity_cutoff};
+pub(super) use delay::Waiting;
+pub use delay::{Delay, DelayLine};
+pub use foveation::Foveation;
+pub use noise::Noise;
+
+use crate::sensors::{EYES, EyeImages, SkinValues};
+use crate::spaces::NumpyRng;
+
+/// A sense whose values can be transformed, in the order in which the senses are transformed in each step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Sense {
+    /// Joints and actuators, the key `observation`.
+    Proprioception,
+    /// The skin, the key `touch`.
+    Touch,
+    /// The skin of whole parts, the key `touch_pooled`.
+    TouchPooled,
+    /// Pain, the key `pain`.
+    Pain,
+    /// Balance, the key `vestibular`.
+    Vestibular,
+    /// The left eye, the key `eye_left` and its other images.
+    EyeLeft,
+    /// The right eye, the key `eye_right` and its other images.
+    EyeRight,
+}
+
+impl Sense {
+    /// Every sense, in order.
+    pub const ALL: [Self; 7] = [
+        Self::Proprioception,
+        Self::Touch,
+        Self::TouchPooled,
+        Self::Pain,
+        Self::Vestibular,
+        Self::EyeLeft,
+        Self::EyeRight,
+    ];
+    /// The two eyes, left and right.
+    pub const EYES: [Self; 2] = [Self::EyeLeft, Self::EyeRight];
+
+    /// Returns its key in the observation.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Proprioception => "observation",
+            Self::Touch => "touch",
+            Self::TouchPooled => "touch_pooled",
+            Self::Pain => "pain",
+            Self::Vestibular => "vestibular",
+            Self::EyeLeft => EYES[0],
+            Self::EyeRight => EYES[1],
+        }
+    }
+
+    /// Returns the key of the configuration that turns it on; proprioception is always on.
+    pub const fn switch(self) -> &'static str {
+        match self {
+            Self::Proprioception => "",
+            Self::Touch => "touch_active",
+            Self::TouchPooled => "touch_pooled",
+            Self::Pain => "pain_active",
+            Self::Vestibular => "vestibular_active",
+            Self::EyeLeft | Self::EyeRight => "vision_active",
+        }
+    }
+}
+
+/// What a sense reports in one step, to be changed in place.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Signal<'a> {
+    /// Proprioception, balance, pooled touch.
+    Numbers(&'a mut [f64]),
+    /// Touch and pain. Sensors that are not in its list are zero.
+    Skin(&'a mut SkinValues),
+    /// The images of an eye that are observed.
+    Eye {
+        /// The images; those that are not observed are empty.
+        images: &'a mut EyeImages,
+        /// Rows.
+        height: usize,
+        /// Columns.
+        width: usize,
+    },
+}
+
+impl Signal<'_> {
+    /// Lends the signal to a function that takes it over.
+    pub fn reborrow(&mut self) -> Signal<'_> {
+        match self {
+            Self::Numbers(values) => Signal::Numbers(values),
+            Self::Skin(values) => Signal::Skin(values),
+            Self::Eye { images, height, width } => Signal::Eye {
+                images,
+                height: *height,
+                width: *width,
+            },
+        }
+    }
+}
+
+/// A transform of one sense of one environment. It must not allocate after its first steps.
+pub trait Transform: Send + Sync {
+    /// Describes it in a few words, with units, for `inspect`.
+    fn describe(&self) -> String;
+
+    /// Changes what the sense reports. Random numbers come from the generator of the environment, so that the same seed
+    /// gives the same bits.
+    fn apply(&mut self, signal: Signal<'_>, rng: &mut NumpyRng);
+
+    /// Forgets what it remembers, at the start of an episode.
+    fn reset(&mut self) {}
+
+    /// Appends what it remembers from step to step, for a snapshot.
+    fn save(&self, out: &mut Vec<u8>) {
+        let _ = out;
+    }
+
+    /// Takes over what [`Transform::save`] wrote. Returns `false` if it is something else.
+    fn load(&mut self, bytes: &[u8]) -> bool {
+        bytes.is_empty()
+    }
+
+    /// Returns the memory that it takes, bytes, by which a vector decides how many environments fit.
+    fn memory(&self) -> usize {
+        0
+    }
+}

@@ -1,0 +1,76 @@
+//! Normally distributed random numbers by the ziggurat method (G. Marsaglia and W. W. Tsang, "The Ziggurat Method for
+//! Generating Random Variables", 2000, in the form of J. A. Doornik, 2005).
+
+use std::sync::OnceLock;
+
+/// Number of layers.
+const LAYERS: usize = 128;
+/// Where the tail begins.
+const TAIL: f64 = 3.442619855899;
+/// Area of a layer.
+const AREA: f64 = 9.91256303526217e-3;
+
+/// Right edges of the layers from the bottom, and what share of each is under the curve for certain.
+struct Layers {
+    x: [f64; LAYERS + 1],
+    share: [f64; LAYERS],
+}
+
+/// The density without its factor.
+fn density(x: f64) -> f64 {
+    pxfm::f_exp(-0.5 * x * x)
+}
+
+fn layers() -> &'static Layers {
+    static LAYERS_OF_ALL: OnceLock<Layers> = OnceLock::new();
+    LAYERS_OF_ALL.get_or_init(|| {
+        let mut x = [0.0; LAYERS + 1];
+        let mut f = density(TAIL);
+        (x[0], x[1]) = (AREA / f, TAIL);
+        for i in 2..LAYERS {
+            x[i] = (-2.0 * pxfm::f_log(AREA / x[i - 1] + f)).sqrt();
+            f = density(x[i]);
+        }
+        let share = std::array::from_fn(|i| x[i + 1] / x[i]);
+        Layers { x, share }
+    })
+}
+
+/// Draws a number of the standard normal distribution. `word` gives 64 random bits.
+pub(super) fn normal(mut word: impl FnMut() -> u64) -> f64 {
+    let Layers { x, share } = layers();
+    loop {
+        let bits = word();
+        // the lowest bits choose the layer, the highest 53 the place
+        let layer = bits as usize % LAYERS;
+        let place = 2.0 * unit(bits) - 1.0;
+        if place.abs() < share[layer] {
+            return place * x[layer];
+        }
+        if layer == 0 {
+            return tail(&mut word, place < 0.0);
+        }
+        let at = place * x[layer];
+        let (low, high) = (density(x[layer]), density(x[layer + 1]));
+        if low + unit(word()) * (high - low) < density(at) {
+            return at;
+        }
+    }
+}
+
+/// Draws from beyond [`TAIL`].
+fn tail(word: &mut impl FnMut() -> u64, negative: bool) -> f64 {
+    loop {
+        // 1 - u is never 0
+        let x = -pxfm::f_log(1.0 - unit(word())) / TAIL;
+        let y = -pxfm::f_log(1.0 - unit(word()));
+        if 2.0 * y > x * x {
+            return if negative { -(TAIL + x) } else { TAIL + x };
+        }
+    }
+}
+
+/// Makes a number in [0, 1) of the highest 53 bits.
+pub(super) fn unit(word: u64) -> f64 {
+    (word >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}

@@ -1,0 +1,69 @@
+//! The scene beside the logs of a run, from assets of other people.
+
+use babybench::assets::{AssetSource, MemoryAssets, Overlay};
+use babybench::config::{Behavior, Scene};
+use babybench::mimo::{build_model, embedded};
+use babybench::runs::{read_scene, write_scene_from};
+
+use crate::common::*;
+
+/// Writes the scene of the crib from the embedded assets with some files replaced, and checks that what is read back is
+/// the scene that was meant.
+fn survives(name: &str, replaced: &[(&str, String)]) {
+    let mut memory = MemoryAssets::new();
+    for (path, text) in replaced {
+        memory.insert(path, text.as_bytes()).expect("a path");
+    }
+    let base = embedded();
+    let assets = Overlay::new(vec![&memory, &base]);
+    let config = free(Behavior::SelfTouch, Scene::Crib);
+    let folder = Folder::new(name);
+    let meant = build_model(&config, &assets).expect("a scene");
+    write_scene_from(&config, &assets, folder.path()).expect("a document");
+    assert!(read_scene(folder.path()).expect("it loads") == meant, "{name}");
+}
+
+fn original(path: &str) -> String {
+    let bytes = embedded().read(path).expect("an asset").into_owned();
+    String::from_utf8(bytes).expect("text")
+}
+
+#[test]
+fn an_include_that_brings_nothing_leaves_a_scene_that_loads() {
+    let empty = "<mujocoinclude/>".to_string();
+    for section in [
+        "asset",
+        "worldbody",
+        "equality",
+        "tendon",
+        "default",
+        "visual",
+        "contact",
+    ] {
+        let with = format!("<{section}><include file=\"empty.xml\"/></{section}></mujocoinclude>");
+        let crib = original("babybench/crib.xml").replace("</mujocoinclude>", &with);
+        let name = format!("scene_file_{section}");
+        survives(
+            &name,
+            &[("babybench/crib.xml", crib), ("babybench/empty.xml", empty.clone())],
+        );
+    }
+    survives("scene_file_empty", &[("babybench/crib.xml", empty)]);
+}
+
+#[test]
+fn a_folder_of_textures_is_followed() {
+    let base = original("babybench/base.xml");
+    let moved = base.replace("../tex/rug.png", "rug.png");
+    assert_ne!(moved, base);
+    for folder in ["../tex", "../tex/"] {
+        let compiler = format!("<mujocoinclude>\n<compiler texturedir=\"{folder}\"/>");
+        let moved = moved.replacen("<mujocoinclude>", &compiler, 1);
+        let meta = "babybench/meta_common.xml";
+        let replaced = [
+            ("babybench/base.xml", moved),
+            (meta, original(meta).replace("../tex/", "")),
+        ];
+        survives("scene_file_texturedir", &replaced);
+    }
+}

@@ -1,0 +1,17 @@
+// What draws here: a graphics card, or the processor in its place.
+
+/** What renderers call themselves that compute on the processor. */
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/**
+ * Tells whether WebGL is computed on the processor, where shadows and smooth edges take longer than all the rest.
+ * @returns {boolean}
+ */
+export function drawnInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return false;
+  const named = gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER;
+  const name = String(gl.getParameter(named));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return SOFTWARE.test(name);
+}
