@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds web/dist/: the page, all that a static host needs, and in web/dist/babybench/ the npm package.
 #   web/build.sh [package]   # package: without the page
-# Needs Rust with the target wasm32-unknown-unknown (or RUSTC_WASM, a compiler that has it) and Node.
+# Needs Rust with the target wasm32-unknown-unknown (or RUSTC_WASM, a compiler that has it: scripts/toolchain.sh) and Node.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

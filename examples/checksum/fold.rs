@@ -39,8 +39,29 @@ impl Hash {
         pooled.for_each(|v| self.fold(v.to_bits()));
         let pain = seen.pain.unwrap_or_default().iter();
         pain.for_each(|v| self.fold(u64::from(v.to_bits())));
-        for image in [seen.eye_left, seen.eye_right] {
-            image.unwrap_or_default().iter().for_each(|&v| self.fold(u64::from(v)));
-        }
+        let eyes = [seen.eye_left, seen.eye_right].map(Option::unwrap_or_default);
+        let gray = seen.eye_gray.unwrap_or_default();
+        eyes.into_iter().chain(gray).for_each(|image| self.bytes(image));
+        self.depth(&seen.eye_depth.unwrap_or_default());
+        self.segmentation(&seen.eye_segmentation.unwrap_or_default());
+        let goals = [seen.achieved_goal, seen.desired_goal].map(Option::unwrap_or_default);
+        goals.concat().iter().for_each(|v| self.fold(v.to_bits()));
+    }
+
+    /// Folds bytes, each as a word.
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&v| self.fold(u64::from(v)));
+    }
+
+    /// Folds images of distances.
+    pub fn depth(&mut self, images: &[&[f32]]) {
+        let pixels = images.iter().copied().flatten();
+        pixels.for_each(|v| self.fold(u64::from(v.to_bits())));
+    }
+
+    /// Folds images of geoms.
+    pub fn segmentation(&mut self, images: &[&[i32]]) {
+        let pixels = images.iter().copied().flatten();
+        pixels.for_each(|v| self.fold(u64::from(v.cast_unsigned())));
     }
 }

@@ -1,63 +1,80 @@
-//! Prints checksums of episodes, to be compared with those of another target, profile or number of threads.
+//! Prints checksums of what environments do, to be compared with those of another target, profile or number of threads.
 //!
 //! ```sh
-//! cargo run --release --example checksum               # optionally the number of threads, and the longest episode
+//! cargo run --release --example checksum               # episodes of the examples
+//! cargo run --release --example checksum episode 2 100 # in two threads, up to 100 steps
+//! cargo run --release --example checksum variant       # tasks, actuation models, the other engine, ages; also with threads and steps
 //! cargo run --release --example checksum vector 2      # vectors of environments, stepped by two threads
+//! cargo run --release --example checksum picture       # pictures of rooms and eyes
 //! cargo run --release --example checksum snapshot      # snapshots, their bytes and what follows them
+//! cargo run --release --example checksum keep FOLDER   # writes these snapshots
+//! cargo run --release --example checksum restore FOLDER # prints what `snapshot` prints, from snapshots that another target may have written
 //! cargo build --release --example checksum_wasm --target wasm32-unknown-unknown
-//! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/examples/checksum_wasm.wasm   # or: ... vector, ... snapshot
+//! node examples/checksum/run.mjs target/wasm32-unknown-unknown/release/examples/checksum_wasm.wasm   # or: ... KIND, keep or restore
 //! ```
 
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-mod episode;
+use jobs::{Job, KINDS, Kind};
+
+mod cases;
+mod fold;
+mod jobs;
+mod sums;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1).peekable();
-    if arguments.next_if(|a| a == "snapshot").is_some() {
-        for (index, (name, _)) in episode::CONFIGURATIONS.iter().enumerate() {
-            println!("{name} snapshot {:016x}", episode::snapshot_checksum(index));
-        }
-        return Ok(());
+    if let Some(command) = arguments.next_if(|a| a == "keep" || a == "restore") {
+        let folder = arguments.next().ok_or("a folder of snapshots is missing")?;
+        return exchange(command == "keep", Path::new(&folder));
     }
-    let vector = arguments.next_if(|a| a == "vector").is_some();
+    let named = |a: &String| KINDS.iter().find(|(name, _)| name == a);
+    let kind = arguments.peek().and_then(named).map(|kind| kind.1);
+    if kind.is_some() {
+        arguments.next();
+    }
+    let kind = kind.unwrap_or(Kind::Episode);
     let threads: usize = arguments.next().map_or(Ok(1), |n| n.parse())?;
     let longest: usize = arguments.next().map_or(Ok(usize::MAX), |n| n.parse())?;
-    if vector {
-        for (index, (name, _)) in episode::CONFIGURATIONS.iter().enumerate() {
-            let (steps, threads) = (episode::VECTOR_STEPS, threads.max(1));
-            println!(
-                "{name} {steps} {:016x}",
-                episode::vector_checksum(index, steps, threads)
-            );
-        }
-        return Ok(());
+    // the threads of a vector are its own
+    let at_once = if kind == Kind::Vector { 1 } else { threads };
+    for line in lines(&Job::all(kind, longest), threads.max(1), at_once.max(1))? {
+        println!("{line}");
     }
-    let lengths: Vec<usize> = episode::STEPS.into_iter().filter(|&steps| steps <= longest).collect();
-    let jobs = |job: usize| (job / lengths.len(), lengths[job % lengths.len()]);
-    let total = episode::CONFIGURATIONS.len() * lengths.len();
-    let (next, sums) = (AtomicUsize::new(0), Mutex::new(vec![0; total]));
+    Ok(())
+}
+
+/// Computes lines, some at once.
+fn lines(jobs: &[Job], threads: usize, at_once: usize) -> Result<Vec<String>, Box<dyn std::error::Error>> {
+    let (next, lines) = (AtomicUsize::new(0), Mutex::new(vec![Ok(String::new()); jobs.len()]));
     std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
+        for _ in 0..at_once {
             scope.spawn(|| {
                 loop {
-                    let job = next.fetch_add(1, Ordering::Relaxed);
-                    if job >= total {
-                        break;
-                    }
-                    let (index, steps) = jobs(job);
-                    let sum = episode::checksum(index, steps);
-                    if let Ok(mut sums) = sums.lock() {
-                        sums[job] = sum;
+                    let at = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(at) else { break };
+                    let line = job.line(threads, None);
+                    if let Ok(mut lines) = lines.lock() {
+                        lines[at] = line;
                     }
                 }
             });
         }
     });
-    for (job, sum) in sums.into_inner()?.into_iter().enumerate() {
-        let (index, steps) = jobs(job);
-        println!("{} {steps} {sum:016x}", episode::CONFIGURATIONS[index].0);
+    Ok(lines.into_inner()?.into_iter().collect::<Result<_, _>>()?)
+}
+
+/// Writes the snapshots of all configurations to a folder, or goes on from those that are there.
+fn exchange(keep: bool, folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    for job in Job::all(Kind::Snapshot, 0) {
+        let path = folder.join(job.case.0);
+        if keep {
+            std::fs::write(path, sums::snapshot(job.case)?)?;
+        } else {
+            println!("{}", job.line(1, Some(std::fs::read(path)?))?);
+        }
     }
     Ok(())
 }

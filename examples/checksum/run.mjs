@@ -1,14 +1,38 @@
-// Prints what `cargo run --example checksum` prints, computed by the WebAssembly module given as argument; with `vector` or `snapshot` as
-// second argument, what `cargo run --example checksum -- vector` or `... snapshot` prints.
-import { readFileSync } from "node:fs";
+// Prints what `cargo run --example checksum` prints, computed by the WebAssembly module given as argument.
+//   node examples/checksum/run.mjs MODULE [episode | variant | vector | snapshot | picture | keep FOLDER | restore FOLDER]
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 
-const [path, kind] = process.argv.slice(2);
+const [path, what = "episode", folder = "."] = process.argv.slice(2);
+const KINDS = ["episode", "variant", "vector", "snapshot", "picture"];
 const module = new WebAssembly.Module(readFileSync(path));
-const { checksum, vector_checksum, snapshot_checksum } = new WebAssembly.Instance(module, {}).exports;
-const kinds = { vector: [vector_checksum, [20]], snapshot: [snapshot_checksum, ["snapshot"]] };
-const [sum, lengths] = kinds[kind] ?? [checksum, [0, 10, 100, 1000]];
-for (const [index, name] of ["self_touch", "hand_regard", "test_installation", "infant"].entries()) {
-  for (const steps of lengths) {
-    console.log(name, steps, BigInt.asUintN(64, sum(index, Number(steps) || 0)).toString(16).padStart(16, "0"));
+const { memory, memory_of, line, name, keep, restore } = new WebAssembly.Instance(module, {}).exports;
+
+function room(length) {
+  const at = memory_of(length); // may make the memory grow, which makes its buffer another
+  return new Uint8Array(memory.buffer, at, length);
+}
+const read = (length) => Buffer.from(room(length)).toString();
+function print(length) {
+  const text = read(length);
+  if (text.startsWith("FAILED")) throw new Error(text);
+  console.log(text);
+}
+
+if (what === "keep" || what === "restore") {
+  for (let index = 0, length; (length = name(index)); index++) {
+    const file = join(folder, read(length));
+    if (what === "keep") {
+      const length = keep(index);
+      if (!length) throw new Error(`there is no snapshot of ${file}`);
+      writeFileSync(file, room(length));
+    } else {
+      const bytes = readFileSync(file);
+      room(bytes.length).set(bytes);
+      print(restore(index));
+    }
   }
+} else {
+  if (!KINDS.includes(what)) throw new Error(`there is no kind ${what}; ${KINDS.join(", ")}, keep or restore`);
+  for (let index = 0, length; (length = line(KINDS.indexOf(what), index)); index++) print(length);
 }

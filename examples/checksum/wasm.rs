@@ -1,22 +1,70 @@
-//! A WebAssembly module without imports: `checksum(configuration, steps)`, `vector_checksum(configuration, steps)`,
-//! `snapshot_checksum(configuration)`.
+//! A WebAssembly module without imports: `run.mjs` asks for a line, or puts a snapshot into its memory, and reads what is there.
 
-mod episode;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Returns the checksum of an episode; see `episode.rs`.
-#[unsafe(no_mangle)]
-pub extern "C" fn checksum(configuration: u32, steps: u32) -> u64 {
-    episode::checksum(configuration as usize, steps as usize)
+use jobs::{Job, KINDS, Kind};
+
+mod cases;
+mod fold;
+mod jobs;
+mod sums;
+
+/// What the caller reads, and where he writes a snapshot.
+static BYTES: Mutex<Vec<u8>> = Mutex::new(Vec::new());
+
+fn bytes() -> MutexGuard<'static, Vec<u8>> {
+    BYTES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns the checksum of a vector of environments, which has one thread here; see `episode.rs`.
-#[unsafe(no_mangle)]
-pub extern "C" fn vector_checksum(configuration: u32, steps: u32) -> u64 {
-    episode::vector_checksum(configuration as usize, steps as usize, 7)
+fn answer(text: Result<String, String>) -> usize {
+    let text = text.unwrap_or_else(|error| format!("FAILED: {error}"));
+    *bytes() = text.into_bytes();
+    bytes().len()
 }
 
-/// Returns the checksum of a snapshot and what follows it; see `episode.rs`.
+/// Makes room for a snapshot, and returns where it is; with the length of an answer, where that is.
 #[unsafe(no_mangle)]
-pub extern "C" fn snapshot_checksum(configuration: u32) -> u64 {
-    episode::snapshot_checksum(configuration as usize)
+pub extern "C" fn memory_of(length: usize) -> *mut u8 {
+    let mut bytes = bytes();
+    bytes.resize(length, 0);
+    bytes.as_mut_ptr()
+}
+
+/// Computes a line of a kind, a number in the order of `jobs.rs`, and returns its length: 0 after the last one.
+#[unsafe(no_mangle)]
+pub extern "C" fn line(kind: usize, index: usize) -> usize {
+    let job = KINDS
+        .get(kind)
+        .and_then(|kind| Job::all(kind.1, usize::MAX).get(index).copied());
+    job.map_or(0, |job| answer(job.line(7, None))) // seven threads, of which there is one here
+}
+
+/// Returns the length of a configuration's name: 0 after the last one.
+#[unsafe(no_mangle)]
+pub extern "C" fn name(index: usize) -> usize {
+    let job = Job::all(Kind::Snapshot, 0).get(index).copied();
+    job.map_or(0, |job| answer(Ok(job.case.0.to_owned())))
+}
+
+/// Takes a snapshot of a configuration, and returns its length.
+#[unsafe(no_mangle)]
+pub extern "C" fn keep(index: usize) -> usize {
+    let taken = Job::all(Kind::Snapshot, 0)
+        .get(index)
+        .map(|job| sums::snapshot(job.case));
+    match taken {
+        Some(Ok(snapshot)) => {
+            *bytes() = snapshot;
+            bytes().len()
+        }
+        _ => 0,
+    }
+}
+
+/// Goes on from the snapshot in memory, and returns the length of the line.
+#[unsafe(no_mangle)]
+pub extern "C" fn restore(index: usize) -> usize {
+    let taken = std::mem::take(&mut *bytes());
+    let job = Job::all(Kind::Snapshot, 0).get(index).copied();
+    job.map_or(0, |job| answer(job.line(1, Some(taken))))
 }

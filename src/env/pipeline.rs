@@ -30,16 +30,7 @@ impl Pipeline {
         };
         if let &Signal::Eye { height, width, .. } = like {
             let eye = usize::from(sense == Sense::EyeRight);
-            if let Some(age) = config.eyes.ages(config.age)[eye] {
-                let reference = config.compat == Compat::Reference;
-                let fovy = FOVY;
-                let options = AcuityOptions { age, fovy, reference };
-                add(Box::new(Acuity::new(options, height, width)));
-            }
-            let strength = config.eyes.strengths()[eye];
-            if strength > 0.0 {
-                add(Box::new(Foveation::new(strength, height, width)));
-            }
+            optics(config, eye, height, width).into_iter().for_each(&mut add);
         }
         let (noise, delay) = (&config.noise, &config.delays);
         let (deviation, delay) = match sense {
@@ -126,6 +117,22 @@ impl Pipeline {
     fn stages_mut(&mut self) -> impl Iterator<Item = &mut Stage> {
         self.chains.iter_mut().flatten()
     }
+}
+
+/// Returns what a configuration's eye, 0 for the left and 1 for the right, makes of each image by itself: acuity, foveation.
+pub(super) fn optics(config: &Config, eye: usize, height: usize, width: usize) -> Vec<Box<dyn Transform>> {
+    let mut transforms: Vec<Box<dyn Transform>> = Vec::new();
+    if let Some(age) = config.eyes.ages(config.age)[eye] {
+        let reference = config.compat == Compat::Reference;
+        let fovy = FOVY;
+        let options = AcuityOptions { age, fovy, reference };
+        transforms.push(Box::new(Acuity::new(options, height, width)));
+    }
+    let strength = config.eyes.strengths()[eye];
+    if strength > 0.0 {
+        transforms.push(Box::new(Foveation::new(strength, height, width)));
+    }
+    transforms
 }
 
 /// Takes a part behind its length from the front of bytes.

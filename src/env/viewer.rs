@@ -1,9 +1,12 @@
 //! Pictures of environments for people.
 
-use crate::env::{Blueprint, Env, EnvError, missing_camera};
+use crate::env::{Blueprint, Env, EnvError, missing_camera, pipeline};
 use crate::math::Vec3;
 use crate::model::Model;
 use crate::render::{FreeCamera, Poses, RenderRequest, Renderer, View};
+use crate::sensors::transform::{Signal, Transform};
+use crate::sensors::{EYES, EyeImages};
+use crate::spaces::NumpyRng;
 
 /// The camera of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,11 +74,20 @@ impl From<FreeCamera> for ViewFrom<'_> {
 /// assert_eq!(rgb.len(), 3 * 32 * 24);
 /// # Ok::<(), babybench::EnvError>(())
 /// ```
-#[derive(Debug)]
 pub struct Viewer {
     renderer: Renderer,
     rgb: Vec<u8>,
     rgba: Vec<u8>,
+    /// What the eyes make of their images, from when they were first looked through.
+    optics: Option<[Vec<Box<dyn Transform>>; 2]>,
+}
+
+impl std::fmt::Debug for Viewer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Viewer")
+            .field("renderer", &self.renderer)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Viewer {
@@ -88,6 +100,7 @@ impl Viewer {
             renderer: blueprint.renderer()?,
             rgb: Vec::new(),
             rgba: Vec::new(),
+            optics: None,
         })
     }
 
@@ -147,6 +160,57 @@ impl Viewer {
         self.rgba.clear();
         let pixels = self.rgb.as_chunks::<3>().0;
         self.rgba.extend(pixels.iter().flat_map(|&[r, g, b]| [r, g, b, 255]));
+        Ok(&self.rgba)
+    }
+
+    /// Draws what both eyes see at this moment, with the acuity and the foveation of the configuration; noise and delay belong
+    /// to the observation, which stays as it is. Returns the left and then the right picture, `vision_resolution` pixels wide and
+    /// high: red, green, blue and 255 of each pixel.
+    ///
+    /// ```
+    /// use babybench::env::Viewer;
+    /// use babybench::{Config, Env};
+    ///
+    /// let config = Config { touch_active: false, vision_resolution: 16, ..Config::default() };
+    /// let mut env = Env::new(config)?;
+    /// env.reset(Some(0))?;
+    /// let mut viewer = Viewer::new(env.blueprint())?;
+    /// let pictures = viewer.eyes_rgba(&env)?;
+    /// assert_eq!(pictures.len(), 2 * 4 * 16 * 16);
+    /// let left = pictures.as_chunks::<4>().0.iter().flat_map(|&[r, g, b, _]| [r, g, b]);
+    /// assert!(left.take(3 * 16 * 16).eq(env.observation().eye_left.unwrap_or_default().iter().copied()));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Viewer::draw`].
+    pub fn eyes_rgba(&mut self, env: &Env) -> Result<&[u8], EnvError> {
+        let side = env.config().vision_resolution as usize;
+        let optics = self.optics.take();
+        let mut optics = optics.unwrap_or_else(|| [0, 1].map(|eye| pipeline::optics(env.config(), eye, side, side)));
+        let mut rgba = std::mem::take(&mut self.rgba);
+        rgba.clear();
+        for (eye, transforms) in EYES.into_iter().zip(&mut optics) {
+            self.draw(env, eye, side, side)?;
+            let rgb = std::mem::take(&mut self.rgb);
+            let mut images = EyeImages {
+                rgb,
+                ..EyeImages::default()
+            };
+            for transform in transforms {
+                let signal = Signal::Eye {
+                    images: &mut images,
+                    height: side,
+                    width: side,
+                };
+                transform.apply(signal, &mut NumpyRng::seed(0)); // which neither acuity nor foveation uses
+            }
+            self.rgb = images.rgb;
+            let pixels = self.rgb.as_chunks::<3>().0;
+            rgba.extend(pixels.iter().flat_map(|&[r, g, b]| [r, g, b, 255]));
+        }
+        self.optics = Some(optics);
+        self.rgba = rgba;
         Ok(&self.rgba)
     }
 }

@@ -56,13 +56,26 @@ impl Pain {
         &self.felt
     }
 
-    /// Appends what it remembers from step to step.
+    /// Appends how soft and how sensitive bodies are, and what it remembers from step to step.
     pub(crate) fn save(&self, out: &mut Vec<u8>) {
+        for factor in self.softness.iter().chain(&self.sensitivity) {
+            out.extend_from_slice(&factor.to_le_bytes());
+        }
         self.felt.save(out);
     }
 
     /// Takes over what was saved; `false` if it is something else.
-    pub(crate) fn load(&mut self, mut bytes: &[u8]) -> bool {
+    pub(crate) fn load(&mut self, bytes: &[u8]) -> bool {
+        let factors = self.softness.iter_mut().chain(&mut self.sensitivity);
+        let Some((saved, mut bytes)) = bytes.split_at_checked(8 * factors.size_hint().0) else {
+            return false;
+        };
+        for (factor, word) in factors.zip(saved.as_chunks::<8>().0) {
+            *factor = f64::from_le_bytes(*word);
+            if !factor.is_finite() {
+                return false;
+            }
+        }
         self.felt.load(&mut bytes) && bytes.is_empty()
     }
 

@@ -8,9 +8,7 @@ use babybench::Env;
 use babybench::config::Behavior;
 use babybench::math::{Vec3, column, norm, sub};
 use babybench::model::GeomType;
-use babybench::spaces::NumpyRng;
-use parry3d_f64::query::Ray;
-use rapier3d_f64::prelude::{ColliderHandle, QueryFilter, Vector};
+use rapier3d_f64::prelude::Vector;
 
 /// Steps of every model that the tests look at.
 const STEPS: usize = if cfg!(debug_assertions) { 40 } else { 300 };
@@ -159,8 +157,13 @@ fn contacts_do_not_depend_on_the_past() {
     assert_eq!(differing, 0, "states in which Rapier's pipeline depends on the past");
 }
 
+#[cfg(feature = "rapier")]
 #[test]
 fn rays_hit_the_nearest_geom() {
+    use babybench::spaces::NumpyRng;
+    use parry3d_f64::query::Ray;
+    use rapier3d_f64::prelude::{ColliderHandle, QueryFilter};
+
     let (mut rays, mut hits) = (0, 0);
     let mut rng = NumpyRng::seed(1);
     visit(STEPS, |name, k, env| {

@@ -8,10 +8,10 @@ use babybench::{Blueprint, Env, EnvError, VectorEnv, VectorOptions};
 use testkit::harness::{Need, Trial};
 use testkit::{show, trials};
 
-use crate::common::seen;
+use crate::common::{infant, seen};
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs GPU: eyes_of_many_environments_are_drawn_together, a_vector_draws_all_eyes_in_one_submission, a_picture_does_not_depend_on_its_company, depth_segmentation_and_gray_are_those_of_the_cpu_renderer, several_submissions_may_be_pending, wrong_requests_are_errors, a_lost_device_is_an_error, environments_and_renderers_move_between_threads]
+    trials![needs GPU: eyes_of_many_environments_are_drawn_together, a_vector_draws_all_eyes_in_one_submission, images_of_infants_are_transformed, a_picture_does_not_depend_on_its_company, depth_segmentation_and_gray_are_those_of_the_cpu_renderer, several_submissions_may_be_pending, wrong_requests_are_errors, a_lost_device_is_an_error, environments_and_renderers_move_between_threads]
 }
 
 fn config(scene: Scene) -> Config {
@@ -156,6 +156,22 @@ fn a_vector_draws_all_eyes_in_one_submission() {
             assert_same(&gpu, row.eye_left.unwrap(), alone.get(0).unwrap());
             assert_alike(row.eye_right.unwrap(), &cpu(env, &env.eyes().unwrap()[1]));
         }
+    }
+}
+
+fn images_of_infants_are_transformed() {
+    let drawn = |renderer: RendererKind, steps: u64| {
+        let mut env = Env::new(Config { renderer, ..infant() }).expect("a renderer");
+        env.reset(Some(3)).expect("no divergence");
+        for _ in 0..steps {
+            env.step(&vec![0.5; env.action_space().len()]).expect("no divergence");
+        }
+        let seen = env.observation();
+        [seen.eye_left, seen.eye_right].map(|eye| eye.expect("an eye").to_vec())
+    };
+    // images are as old, as blurred and as noisy as those of the other renderer
+    for (gpu, cpu) in drawn(RendererKind::Wgpu, 9).iter().zip(drawn(RendererKind::Cpu, 9)) {
+        assert_alike(gpu, &cpu);
     }
 }
 

@@ -31,7 +31,7 @@ export class Blueprint {
 
   /**
    * The complete configuration by key.
-   * @returns {Record<string, string | number | boolean>}
+   * @returns {import("./types.js").Config}
    */
   get config() {
     return Object.fromEntries(guarded(() => this.#core.config()));

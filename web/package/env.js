@@ -4,9 +4,14 @@ import { guarded } from "./errors.js";
 import { module } from "./module.js";
 
 /** @typedef {import("./types.js").Observation} Observation */
-/** @typedef {Float32Array | Float64Array | Uint8Array} Numbers */
+/** @typedef {Float32Array | Float64Array | Int32Array | Uint8Array} Numbers */
 
-const KINDS = /** @type {const} */ ({ 1: Uint8Array, 4: Float32Array, 8: Float64Array });
+const KINDS = /** @type {const} */ ({ 1: Uint8Array, 4: Float32Array, 5: Int32Array, 8: Float64Array });
+/** The observation, by the names of its views. */
+const SENSES = [
+  "proprioception", "touch", "touch_pooled", "pain", "vestibular", "achieved_goal", "desired_goal",
+  ...["", "_gray", "_depth", "_segmentation"].flatMap((kind) => [`eye_left${kind}`, `eye_right${kind}`]),
+];
 
 /**
  * An environment. Numbers are views on the module's memory, without copies: they change with the next step.
@@ -23,7 +28,7 @@ export class Env {
   #core;
   /** @type {Map<string, Numbers>} */
   #views = new Map();
-  /** @type {Record<string, string | number | boolean>} */
+  /** @type {import("./types.js").Config} */
   #config;
   #yaml;
   /** @type {Observation} */
@@ -48,30 +53,9 @@ export class Env {
     } finally {
       if (!shared) blueprint.free();
     }
-    const view = (/** @type {string} */ name) => /** @type {any} */ (this.view(name));
-    this.#observation = {
-      get proprioception() {
-        return view("proprioception");
-      },
-      get touch() {
-        return view("touch");
-      },
-      get eye_left() {
-        return view("eye_left");
-      },
-      get eye_right() {
-        return view("eye_right");
-      },
-      get vestibular() {
-        return view("vestibular");
-      },
-      get achieved_goal() {
-        return view("achieved_goal");
-      },
-      get desired_goal() {
-        return view("desired_goal");
-      },
-    };
+    const env = this;
+    const getters = SENSES.map((name) => [name, { enumerable: true, get: () => env.view(name) }]);
+    this.#observation = Object.defineProperties(/** @type {any} */ ({}), Object.fromEntries(getters));
   }
 
   /** The complete configuration by key. */
@@ -216,7 +200,7 @@ export class Env {
     const place = guarded(() => this.#core.view(name));
     if (!place) return null;
     const [kind, at, length] = place;
-    return new KINDS[/** @type {1 | 4 | 8} */ (kind)](buffer, at, length);
+    return new KINDS[/** @type {1 | 4 | 5 | 8} */ (kind)](buffer, at, length);
   }
 
   /** What the last step reports. */
@@ -353,6 +337,16 @@ export class Env {
    */
   deferVision(deferred) {
     guarded(() => this.#core.deferVision(deferred));
+  }
+
+  /**
+   * Draws what both eyes see at this moment, with the acuity and the foveation of the configuration, and leaves the observation, to which
+   * noise and delay belong, as it is. Returns a view of the left and then the right picture, `vision_resolution` pixels wide and
+   * high, as {@link Env.draw} does.
+   */
+  lookThroughEyes() {
+    const [at, length] = guarded(() => this.#core.lookThroughEyes());
+    return new Uint8ClampedArray(/** @type {WebAssembly.Memory} */ (module.memory).buffer, at, length);
   }
 
   /** Draws what the eyes see into the observation. */

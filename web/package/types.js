@@ -1,18 +1,19 @@
 // The types of what goes in and comes out.
 
-/** @typedef {Record<string, string | number | boolean | null | undefined>} Settings values of a configuration by key; null for none */
+/** @typedef {Record<string, string | number | boolean | string[] | null | undefined>} Settings values of a configuration by key; null for none */
+/** @typedef {Record<string, string | number | boolean | string[] | null>} Config every value of a configuration by key */
 
 /**
  * One key of a configuration.
  * @typedef {object} ConfigKey
  * @property {string} name
  * @property {string} section
- * @property {"boolean" | "integer" | "number" | "choice" | "text"} kind
- * @property {string[] | null} options of a choice
+ * @property {"boolean" | "integer" | "number" | "choice" | "list" | "text"} kind
+ * @property {string[] | null} options of a choice, or what a list may hold
  * @property {number | null} min
  * @property {number | null} max
  * @property {string} expected what is allowed, in words
- * @property {string | number | boolean} default
+ * @property {string | number | boolean | string[] | null} default
  * @property {string} doc what it means
  */
 
@@ -21,8 +22,16 @@
  * @typedef {object} Observation
  * @property {Float64Array} proprioception Gymnasium's key `observation`
  * @property {Float32Array | null} touch what the skin feels, N
+ * @property {Float64Array | null} touch_pooled with `touch_pooled`, five for each body with skin: sum of the normal forces, N, number of sensors that feel something, sum of the forces in the frame of the body, N
+ * @property {Float32Array | null} pain of each touch sensor, with `pain_active`
  * @property {Uint8Array | null} eye_left rows from the top; red, green, blue
  * @property {Uint8Array | null} eye_right
+ * @property {Uint8Array | null} eye_left_gray brightness, where `vision_outputs` has `gray`
+ * @property {Uint8Array | null} eye_right_gray
+ * @property {Float32Array | null} eye_left_depth distance from the camera's plane, m, where it has `depth`
+ * @property {Float32Array | null} eye_right_depth
+ * @property {Int32Array | null} eye_left_segmentation ids of geoms, -1 for none, where it has `segmentation`
+ * @property {Int32Array | null} eye_right_segmentation
  * @property {Float64Array | null} vestibular acceleration, m/s^2, and angular velocity, rad/s, of the head
  * @property {Float64Array | null} achieved_goal of a task with goals
  * @property {Float64Array | null} desired_goal

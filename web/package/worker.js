@@ -8,7 +8,7 @@ let next = 0;
 /** What may be asked of an environment by name. */
 const METHODS = new Set([
   "reset", "resetTo", "setState", "setActivity", "step", "sampleAction", "seedActionSpace", "update", "texturePixels",
-  "lock", "unlock", "snapshot", "restore", "applyForce", "releaseForces", "draw", "deferVision", "drawEyes", "checksum", "view",
+  "lock", "unlock", "snapshot", "restore", "applyForce", "releaseForces", "draw", "lookThroughEyes", "deferVision", "drawEyes", "checksum", "view",
 ]);
 const PROPERTIES = new Set(["config", "yaml", "observation", "info", "time", "model", "look", "skin", "proprioceptionNames", "locked"]);
 

@@ -6,6 +6,8 @@
 //! interface, so Rapier's own collision pipeline finds the same contacts on demand.
 
 mod dispatcher;
+#[cfg(not(feature = "rapier"))]
+mod others;
 mod pairs;
 mod scene;
 mod sweep;

@@ -8,9 +8,9 @@ use rapier3d_f64::geometry::{
     ActiveCollisionTypes, BroadPhaseBvh, ColliderBuilder, ColliderHandle, ColliderSet, NarrowPhase, SharedShape,
     SolverFlags,
 };
-use rapier3d_f64::pipeline::{
-    ActiveHooks, CollisionPipeline, PairFilterContext, PhysicsHooks, QueryFilter, QueryPipeline,
-};
+use rapier3d_f64::pipeline::{ActiveHooks, CollisionPipeline, PairFilterContext, PhysicsHooks};
+#[cfg(feature = "rapier")]
+use rapier3d_f64::pipeline::{QueryFilter, QueryPipeline};
 
 use crate::math::{Quat, Vec3};
 use crate::model::{GeomType, Model};
@@ -254,6 +254,7 @@ impl RapierScene {
     }
 
     /// Returns a pipeline for ray casts, shape casts and overlap tests on the scene.
+    #[cfg(feature = "rapier")]
     pub fn queries<'a>(&'a mut self, filter: QueryFilter<'a>) -> QueryPipeline<'a> {
         self.update_queries();
         let sets = self.sets();

@@ -7,7 +7,6 @@ use babybench::config::Part;
 use babybench::env::{Snapshot, ViewFrom, Viewer};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
-use babybench::physics::State;
 use babybench::render::{FreeCamera, Visual};
 use babybench::sensors::Touch;
 use wasm_bindgen::prelude::*;
@@ -15,6 +14,7 @@ use wasm_bindgen::prelude::*;
 use crate::fold;
 use crate::frame::Frame;
 use crate::js::{self, id, ids, list, object, optional};
+use crate::numbers::Numbers;
 use crate::scene;
 
 /// An environment, with what a page draws of it.
@@ -101,7 +101,7 @@ impl Core {
         done(Env::draw_eyes([&mut self.env]))
     }
 
-    /// Returns where numbers stand: kind (1 for u8, 4 for f32, 5 for u32, 8 for f64), address, length. They stay there
+    /// Returns where numbers stand: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. They stay there
     /// until a snapshot is restored; those of the frame move with `update`.
     pub fn view(&self, name: &str) -> Option<Vec<u32>> {
         let (state, seen) = (self.env.state(), self.env.observation());
@@ -116,6 +116,12 @@ impl Core {
             "pain" => Numbers::F32(seen.pain?),
             "eye_left" => Numbers::U8(seen.eye_left?),
             "eye_right" => Numbers::U8(seen.eye_right?),
+            "eye_left_gray" => Numbers::U8(seen.eye_gray?[0]),
+            "eye_right_gray" => Numbers::U8(seen.eye_gray?[1]),
+            "eye_left_depth" => Numbers::F32(seen.eye_depth?[0]),
+            "eye_right_depth" => Numbers::F32(seen.eye_depth?[1]),
+            "eye_left_segmentation" => Numbers::I32(seen.eye_segmentation?[0]),
+            "eye_right_segmentation" => Numbers::I32(seen.eye_segmentation?[1]),
             "poses" => Numbers::F32(&self.frame.poses),
             "bodies" => Numbers::F32(&self.frame.bodies),
             "felt" => Numbers::F32(&self.frame.felt),
@@ -297,14 +303,23 @@ impl Core {
             }),
             Some(other) => return Err(js::error(format!("a free camera has 6 numbers, not {}", other.len()))),
         };
-        let viewer = match self.viewer.take() {
-            Some(viewer) => viewer,
-            None => Viewer::new(self.env.blueprint()).map_err(|e| js::env_error(&e))?,
-        };
-        let viewer = self.viewer.insert(viewer);
+        let mut viewer = self.take_viewer()?;
         let pixels = viewer.draw_rgba(&self.env, from, width, height);
-        let pixels = pixels.map_err(|e| js::env_error(&e))?;
-        Ok(Numbers::U8(pixels).place()[1..].to_vec())
+        let place = pixels.map(|pixels| Numbers::U8(pixels).place()[1..].to_vec());
+        self.viewer = Some(viewer);
+        place.map_err(|e| js::env_error(&e))
+    }
+
+    /// Draws what both eyes see at this moment, with their acuity and foveation, and leaves the observation as it is. Returns where the
+    /// pixels of the left and then the right picture stand, as `draw`.
+    #[wasm_bindgen(js_name = lookThroughEyes)]
+    pub fn look_through_eyes(&mut self) -> Result<Vec<u32>, JsValue> {
+        let mut viewer = self.take_viewer()?;
+        let place = viewer
+            .eyes_rgba(&self.env)
+            .map(|pixels| Numbers::U8(pixels).place()[1..].to_vec());
+        self.viewer = Some(viewer);
+        place.map_err(|e| js::env_error(&e))
     }
 
     /// Returns the checksum of positions, velocities and senses, as `examples/checksum` prints it.
@@ -328,6 +343,12 @@ impl Core {
         Ok(self.visual.insert(visual).clone())
     }
 
+    /// Takes the viewer out, made when it is first needed.
+    fn take_viewer(&mut self) -> Result<Viewer, JsValue> {
+        let viewer = self.viewer.take().map(Ok);
+        viewer.unwrap_or_else(|| Viewer::new(self.env.blueprint()).map_err(|e| js::env_error(&e)))
+    }
+
     /// Describes what a lock changed, by names of joints.
     fn report(&self, report: &LockReport) -> JsValue {
         let names = &self.env.model().jnt_name;
@@ -338,53 +359,6 @@ impl Core {
             ("held", named(&held)),
             ("beyond_limits", named(&report.beyond_limits)),
         ])
-    }
-}
-
-/// Numbers in the memory of the module.
-enum Numbers<'a> {
-    U8(&'a [u8]),
-    F32(&'a [f32]),
-    F64(&'a [f64]),
-}
-
-impl<'a> Numbers<'a> {
-    /// Finds a vector of the state by MuJoCo's name.
-    fn of_state(s: &'a State, name: &str) -> Option<Self> {
-        Some(Self::F64(match name {
-            "qpos" => &s.qpos,
-            "qvel" => &s.qvel,
-            "qacc" => &s.qacc,
-            "ctrl" => &s.ctrl,
-            "act" => &s.act,
-            "actuator_force" => &s.actuator_force,
-            "qfrc_actuator" => &s.qfrc_actuator,
-            "qfrc_constraint" => &s.qfrc_constraint,
-            "sensordata" => &s.sensordata,
-            "xpos" => s.xpos.as_flattened(),
-            "xquat" => s.xquat.as_flattened(),
-            "xmat" => s.xmat.as_flattened(),
-            "xipos" => s.xipos.as_flattened(),
-            "geom_xpos" => s.geom_xpos.as_flattened(),
-            "geom_xmat" => s.geom_xmat.as_flattened(),
-            "site_xpos" => s.site_xpos.as_flattened(),
-            "site_xmat" => s.site_xmat.as_flattened(),
-            "cam_xpos" => s.cam_xpos.as_flattened(),
-            "cam_xmat" => s.cam_xmat.as_flattened(),
-            "subtree_com" => s.subtree_com.as_flattened(),
-            "xfrc_applied" => s.xfrc_applied.as_flattened(),
-            _ => return None,
-        }))
-    }
-
-    /// Returns kind, address and length.
-    fn place(&self) -> [u32; 3] {
-        let (kind, address, len) = match self {
-            Self::U8(v) => (1, v.as_ptr().addr(), v.len()),
-            Self::F32(v) => (4, v.as_ptr().addr(), v.len()),
-            Self::F64(v) => (8, v.as_ptr().addr(), v.len()),
-        };
-        [kind, address as u32, len as u32]
     }
 }
 

@@ -27,8 +27,9 @@ export class App {
   /**
    * @param {import("./stage/stage.js").Stage} stage
    * @param {URL} script of the worker
+   * @param {Worker} worker
    */
-  constructor(stage, script) {
+  constructor(stage, script, worker) {
     this.stage = stage;
     this.script = script;
     /** @type {PageState} */
@@ -45,15 +46,16 @@ export class App {
     this.listeners = new Map();
     this.lastFrame = 0;
     this.lastTick = 0;
-    this.world = this.connect();
+    this.world = this.connect(worker);
   }
 
-  connect() {
+  /** @param {Worker} [worker] a new one by default */
+  connect(worker) {
     return new World(this.script, {
       frame: (frame, moment) => this.see(frame, moment),
       event: (name, data) => this.hear(name, data),
       died: (why) => this.emit("fault", why),
-    });
+    }, worker);
   }
 
   /**

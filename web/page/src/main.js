@@ -14,6 +14,7 @@ import { drawnInSoftware } from "./stage/graphics.js";
 import { HEAT, heatGradient, place, SCALE } from "./stage/heat.js";
 import { Pointer } from "./stage/pointer.js";
 import { Stage } from "./stage/stage.js";
+import { World } from "./world.js";
 import { el } from "./dom.js";
 
 /** Milliseconds between looks through MIMo's eyes. */
@@ -111,9 +112,14 @@ function drops(app) {
 
 async function main() {
   performance.mark("page");
+  const script = new URL("./worker.js", import.meta.url);
+  const worker = World.worker(script); // before the graphics, which take long to open
   const stage = stageOrExplain();
-  if (!stage) return hideVeil();
-  const app = new App(stage, new URL("./worker.js", import.meta.url));
+  if (!stage) {
+    worker.terminate();
+    return hideVeil();
+  }
+  const app = new App(stage, script, worker);
   theme(stage);
   stage.compile();
   legend();

@@ -42,15 +42,16 @@ export interface Action {
 export interface Key {
   name: string;
   section: string;
-  kind: "boolean" | "integer" | "number" | "choice" | "text";
+  kind: "boolean" | "integer" | "number" | "choice" | "list" | "text";
   options: string[] | null;
   min: number | null;
   max: number | null;
   doc: string;
-  default: string | number | boolean;
+  default: Setting;
 }
 
-export type Settings = Record<string, string | number | boolean | null>;
+export type Setting = string | number | boolean | string[] | null;
+export type Settings = Record<string, Setting>;
 
 /** What the page learns once about a world. */
 export interface Scene {
@@ -94,6 +95,13 @@ export interface Score {
   earned: number | null;
   hands: { right: string[]; left: string[]; reachable: number } | null;
   regards: [number, number, number, number] | null;
+}
+
+/** What the eyes notice: left and right picture, RGBA, and how many seconds ago it was before them. */
+export interface Glance {
+  pixels: Uint8ClampedArray<ArrayBuffer>;
+  side: number;
+  late: number;
 }
 
 /** What comes with the numbers of a frame. */

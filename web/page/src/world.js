@@ -12,17 +12,28 @@ export class World {
   /**
    * @param {URL} script
    * @param {{ frame: (frame: Float32Array, moment: Moment) => void, event: (name: string, data: any) => void, died: (why: string) => void }} to
+   * @param {Worker} [worker] one that was started before
    */
-  constructor(script, to) {
+  constructor(script, to, worker = World.worker(script)) {
     this.to = to;
     /** @type {Map<number, { resolve: (value: any) => void, reject: (error: Error) => void, name: string }>} */
     this.waiting = new Map();
     this.next = 1;
     this.alive = true;
-    this.worker = new Worker(script, { type: "module", name: "world" });
+    this.worker = worker;
     this.worker.onmessage = (e) => this.hear(e.data);
     this.worker.onerror = (e) => this.die(e.message || "The worker could not be loaded.");
     this.worker.onmessageerror = () => this.die("A message could not be read.");
+  }
+
+  /**
+   * Starts a worker, which loads the module meanwhile.
+   * @param {URL} script
+   */
+  static worker(script) {
+    const worker = new Worker(script, { type: "module", name: "world" });
+    worker.postMessage({ id: 0, name: "warm", args: [] });
+    return worker;
   }
 
   /** @param {any} d */

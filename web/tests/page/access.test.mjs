@@ -30,6 +30,18 @@ for (const scheme of ["light", "dark"]) {
   });
 }
 
+test("on a wide screen only the panel scrolls, never the page", async () => {
+  const page = await host.open();
+  for (const name of TABS) {
+    await tab(page, name);
+    await page.evaluate(() => document.querySelectorAll("#panels details").forEach((d) => (d.open = true)));
+    await page.waitForTimeout(300);
+    const [all, shown] = await page.evaluate(() => [document.scrollingElement.scrollHeight, document.scrollingElement.clientHeight]);
+    assert.equal(all, shown, name);
+  }
+  await page.context().close();
+});
+
 test("every control is reached by the tab key, in every tab", async () => {
   const page = await host.open();
   for (const name of TABS) {

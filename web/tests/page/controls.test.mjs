@@ -153,6 +153,77 @@ test("MIMo grows, and is the original again", async () => {
   assert.equal(await tall(), original);
 });
 
+test("eyes mature: acuity and foveation show in their pictures", async () => {
+  const edges = async () => {
+    await tab(page, "Watch");
+    await steps(page, 1);
+    const seen = await look(async () => mimo.world.ask("eyes"));
+    let sum = 0;
+    for (let i = 4; i < 4 * seen.side ** 2; i++) if (i % (4 * seen.side) > 3) sum += (seen.pixels[i] - seen.pixels[i - 4]) ** 2;
+    await tab(page, "Setup");
+    return sum;
+  };
+  await tab(page, "Setup");
+  await page.getByRole("group", { name: "Scene" }).getByLabel("Cubes").check({ force: true });
+  await until(page, () => mimo.scene.settings.scene === "cubes");
+  const sharp = await edges();
+  await page.getByLabel("Eyes as sharp as at MIMo’s age").check();
+  await until(page, () => mimo.scene.settings.vision_acuity === true && mimo.scene.settings.vision_active === true);
+  const original = await edges();
+  await page.getByLabel("Age of the body").fill("1");
+  await until(page, () => mimo.scene.settings.age === 1);
+  const infant = await edges();
+  assert.ok(infant < 0.9 * original && original < sharp, `${infant}, ${original}, ${sharp}`);
+  await tab(page, "Watch");
+  await until(page, () => /as sharp as at 1 month/i.test(document.querySelector("#panel-watch").textContent));
+  await tab(page, "Setup");
+  await page.getByLabel("Foveation", { exact: true }).fill("10");
+  await until(page, () => mimo.scene.settings.vision_foveation === 10);
+  const seen = await look(async () => (await mimo.world.ask("eyes")).pixels);
+  await page.getByLabel("Foveation", { exact: true }).fill("0");
+  await until(page, () => mimo.scene.settings.vision_foveation === 0 && mimo.scene.settings.vision_active === true);
+  const flat = await look(async () => (await mimo.world.ask("eyes")).pixels);
+  assert.notDeepEqual(seen, flat);
+  await page.getByLabel("Eyes as sharp as at MIMo’s age").uncheck();
+  await until(page, () => mimo.scene.settings.vision_acuity === false && mimo.scene.settings.vision_active === false);
+  await page.getByRole("button", { name: "Original", exact: true }).click();
+  await until(page, () => mimo.scene.settings.age === null);
+  await page.getByRole("group", { name: "Scene" }).getByLabel("Crib").check({ force: true });
+  await until(page, () => mimo.scene.settings.scene === "crib");
+});
+
+test("senses and movements come late", async () => {
+  await tab(page, "Setup");
+  await page.getByLabel("Delay of the senses").fill("200");
+  await until(page, () => mimo.scene.settings.delay_sensory === 200 && mimo.scene.settings.delay_unit === "ms");
+  await page.getByLabel("Delay of movement").fill("100");
+  await until(page, () => mimo.scene.settings.delay_motor === 100 && mimo.scene.settings.delay_sensory === 200);
+  const after = (policy) => page.evaluate(async (p) => {
+    await mimo.reset(3);
+    mimo.state.policy = p;
+    mimo.move();
+    await mimo.world.ask("step", 15);
+    return mimo.world.ask("checksum");
+  }, policy);
+  assert.equal(await after("random"), await after("zero"), "75 ms of an action that comes after 100 ms");
+  const late = await look(async () => {
+    const late = [];
+    for (let k = 0; k < 10; k++) {
+      late.push((await mimo.world.ask("eyes")).late);
+      await mimo.world.ask("step", 10);
+    }
+    return late;
+  });
+  assert.ok(late[0] < 0.201 && late.slice(5).every((s) => Math.abs(s - 0.2) < 0.001), late.join());
+  const link = await look(() => mimo.address(false));
+  const other = await host.open({ hash: new URL(link).hash });
+  assert.deepEqual(await other.evaluate(() => [mimo.scene.settings.delay_unit, mimo.scene.settings.delay_sensory, mimo.scene.settings.delay_motor]), ["ms", 200, 100]);
+  await other.context().close();
+  for (const what of ["Delay of the senses", "Delay of movement"]) await page.getByLabel(what).fill("0");
+  await until(page, () => mimo.scene.settings.delay_motor === 0 && mimo.scene.settings.delay_sensory === 0);
+  await look(() => Object.assign(mimo.state, { policy: "babbling" }));
+});
+
 test("tasks have scenes of their own", async () => {
   for (const task of ["reach", "standup", "selfbody", "catch", "roll_over"]) {
     await page.getByLabel("Task", { exact: true }).selectOption(task);
@@ -182,12 +253,24 @@ test("scene, behavior, body, actuation, seed and settings", async () => {
   await until(page, () => mimo.scene.settings.touch_scale === 2 && mimo.scene.skin.of.length < 3000);
   await page.getByLabel("touch_eyes").check();
   await until(page, () => mimo.scene.settings.touch_eyes === true);
+  await page.getByLabel("vision_active").check();
+  await until(page, () => mimo.scene.settings.vision_active === true);
+  await page.getByRole("group", { name: "vision_outputs" }).getByLabel("depth").check();
+  await until(page, () => String(mimo.scene.settings.vision_outputs) === "rgb,depth");
+  await page.getByLabel("delay_vision").fill("3");
+  await page.getByLabel("delay_vision").press("Enter");
+  await until(page, () => mimo.scene.settings.delay_vision === 3);
+  await page.getByLabel("delay_vision").fill("");
+  await page.getByLabel("delay_vision").press("Enter");
+  await until(page, () => mimo.scene.settings.delay_vision === null);
   await page.getByText("As a file").click();
   const saved = page.waitForEvent("download");
   await page.getByRole("button", { name: "Save file" }).click();
   assert.match(readFileSync(await (await saved).path(), "utf8"), /touch_scale: 2/);
   await page.locator("#panel-setup input[type=file]").setInputFiles({ name: "a.yml", mimeType: "text/yaml", buffer: Buffer.from("scene: crib\nbehavior: self_touch\n") });
   await until(page, () => mimo.scene.settings.touch_scale === 1);
+  await steps(page, 1); // so that a world at its start is a new one
+  await until(page, () => mimo.moment.steps === 1);
   await page.getByRole("button", { name: "Start the simulation again" }).click();
   await until(page, () => mimo.world.alive && mimo.moment.steps === 0);
 });

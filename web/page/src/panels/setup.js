@@ -1,10 +1,12 @@
-// The configuration: scene, behavior, body, muscles, seed; and every key of the file, from the library's own table.
+// The configuration: scene, behavior, body, muscles, senses, seed; and every key of the file, from the library's own table.
 import { download, el, say } from "../dom.js";
 import { capital } from "../names.js";
 import { button, card, check, choice, drop, slider } from "./controls.js";
+import { senses } from "./senses.js";
 
 /** @typedef {import("../types").Key} Key */
 /** @typedef {import("../types").Scene} Scene */
+/** @typedef {import("../types").Setting} Setting */
 
 /** @type {[string, string][]} */
 const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"]];
@@ -23,7 +25,7 @@ const ORIGINAL = 18;
 
 /** @param {import("../app.js").App} app */
 export function setup(app) {
-  return el("div", {}, scene(app), start(app), file(app), all(app));
+  return el("div", {}, scene(app), senses(app), start(app), file(app), all(app));
 }
 
 /** @param {import("../app.js").App} app */
@@ -134,9 +136,9 @@ function all(app) {
   const list = el("div", { className: "keys" });
   const error = el("p", { className: "error", role: "alert" });
   let filled = false;
-  /** @type {Map<string, (value: string | number | boolean) => void>} */
+  /** @type {Map<string, (value: Setting) => void>} */
   const fields = new Map();
-  const set = async (/** @type {string} */ name, /** @type {string | number | boolean} */ value) => {
+  const set = async (/** @type {string} */ name, /** @type {Setting} */ value) => {
     say(error, "");
     try {
       await app.change({ [name]: value });
@@ -146,7 +148,7 @@ function all(app) {
     }
   };
   const refresh = () => {
-    for (const [name, show] of fields) show(app.state.settings[name] ?? "");
+    for (const [name, show] of fields) show(app.state.settings[name]);
   };
   const details = el("details", { className: "part" }, el("summary", {}, "Every setting"), el("div", {}, error, list));
   details.addEventListener("toggle", async () => {
@@ -169,13 +171,19 @@ function all(app) {
 
 /**
  * @param {Key} key
- * @param {(value: string | number | boolean) => void} changed
- * @returns {{ root: HTMLElement, show: (value: string | number | boolean) => void }}
+ * @param {(value: Setting) => void} changed
+ * @returns {{ root: HTMLElement, show: (value: Setting) => void }}
  */
 function field(key, changed) {
   if (key.kind === "boolean") {
     const box = check(key.name, changed);
     return { root: el("div", {}, box, el("p", { className: "soft small" }, key.doc)), show: (v) => (box.input.checked = v === true) };
+  }
+  if (key.kind === "list") {
+    const chosen = () => boxes.filter((box) => box.input.checked).map((box) => String(box.textContent));
+    const boxes = (key.options ?? []).map((name) => check(name, () => changed(chosen())));
+    const hint = el("p", { className: "soft small" }, capital(key.doc));
+    return { root: el("fieldset", { className: "plain" }, el("legend", {}, key.name), ...boxes, hint), show: (v) => boxes.forEach((box) => (box.input.checked = Array.isArray(v) && v.includes(String(box.textContent)))) };
   }
   const id = `key-${key.name}`;
   const hint = el("small", {}, capital(key.doc));
@@ -185,6 +193,7 @@ function field(key, changed) {
   }
   const number = key.kind !== "text";
   const input = el("input", { id, type: number ? "number" : "text", step: "any", min: key.min, max: key.max });
-  input.addEventListener("change", () => changed(number ? input.valueAsNumber : input.value));
-  return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), input, hint), show: (v) => (input.value = String(v)) };
+  const none = (/** @type {string} */ text) => text === "" && key.default === null;
+  input.addEventListener("change", () => changed(none(input.value) ? null : number ? input.valueAsNumber : input.value));
+  return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), input, hint), show: (v) => (input.value = String(v ?? "")) };
 }

@@ -18,7 +18,9 @@ function eyes(app) {
     const canvas = el("canvas", { width: 64, height: 64, role: "img", "aria-label": `What the ${side} eye sees` });
     return { canvas, figure: el("figure", {}, canvas, el("figcaption", {}, `${capital(side)} eye`)) };
   });
-  app.on("eyes", ({ pixels, side }) => {
+  const note = el("p", { className: "soft small" });
+  app.on("eyes", (/** @type {import("../types").Glance} */ { pixels, side, late }) => {
+    say(note, optics(app.state.settings, late));
     const size = 4 * side * side;
     sides.forEach(({ canvas }, i) => {
       if (canvas.width !== side) canvas.width = canvas.height = side;
@@ -26,7 +28,20 @@ function eyes(app) {
       canvas.getContext("2d")?.putImageData(new ImageData(pixels.subarray(start, start + size), side), 0, 0);
     });
   });
-  return card("What MIMo sees", el("div", { className: "eyes" }, ...sides.map((s) => s.figure)));
+  return card("What MIMo sees", el("div", { className: "eyes" }, ...sides.map((s) => s.figure)), note);
+}
+
+/**
+ * Says what lies between the world and the eyes.
+ * @param {import("../types").Settings} s
+ * @param {number} late s
+ */
+function optics(s, late) {
+  const said = [];
+  if (s.vision_acuity) said.push(`as sharp as at ${s.age ?? 18} month${s.age === 1 ? "" : "s"}`);
+  if (Number(s.vision_foveation) > 0) said.push("the middle enlarged");
+  if (late > 0.0005) said.push(`${Math.round(1000 * late)} ms ago`);
+  return capital(said.join(" · "));
 }
 
 /** @type {Record<string, string>} */

@@ -1,10 +1,9 @@
 // The environment as the page uses it: the package's, with what a page needs put in order.
 import init, { Env, configKeys, memoryBytes } from "babybench/babybench.js";
+import { Glances } from "./glances.js";
 
 /** @typedef {import("../types").Settings} Settings */
 
-/** Pixels along a side of what an eye sees, where the configuration does not say. */
-const EYE = 64;
 /** Parts of the body that a palm can touch: what the score of self-touch counts. */
 const PARTS = 34;
 
@@ -29,6 +28,7 @@ export class PageEnv {
     this.skin = { at: env.skin.positions.slice(), of: Uint16Array.from(env.skin.bodies) };
     this.count = { drawables: this.look.drawables.length, bodies: this.bodies.length, sensors: this.skin.of.length, actions: this.actions.length, joints: this.joints.length };
     this.seconds = this.model.timestep * this.model.frame_skip;
+    this.glances = new Glances(visionDelay(this.settings, this.seconds));
     this.steps = 0;
     this.ownLocks = this.locked().join();
   }
@@ -150,12 +150,12 @@ export class PageEnv {
     };
   }
 
-  /** @returns {{ pixels: Uint8ClampedArray<ArrayBuffer>, side: number }} left eye, then right eye, RGBA */
+  /**
+   * What the eyes notice, as sharp and as late as the configuration says.
+   * @returns {import("../types").Glance}
+   */
   eyes() {
-    const side = Number(this.settings.vision_resolution) || EYE;
-    const pixels = new Uint8ClampedArray(8 * side * side);
-    ["eye_left", "eye_right"].forEach((camera, i) => pixels.set(this.env.draw(camera, side, side), i * 4 * side * side));
-    return { pixels, side };
+    return { side: Number(this.settings.vision_resolution), ...this.glances.take(this.time, this.env.lookThroughEyes().slice()) };
   }
 
   /** @returns {boolean[]} of all joints */
@@ -205,7 +205,7 @@ export class PageEnv {
     return {
       settings: this.settings,
       // tasks have other defaults than those of the table
-      changed: this.env.info.is_success === null ? Object.fromEntries(Object.entries(this.settings).filter(([name, value]) => value !== defaults.get(name))) : this.settings,
+      changed: this.env.info.is_success === null ? Object.fromEntries(Object.entries(this.settings).filter(([name, value]) => String(value) !== String(defaults.get(name)))) : this.settings,
       yaml: this.yaml,
       drawables: this.look.drawables.map(({ texture_scale, texture_offset, ...d }) => ({ ...d, textureScale: texture_scale, textureOffset: texture_offset })),
       textures: this.look.textures.map((faces, t) => faces.map(({ width, height }, f) => ({ width, height, pixels: this.env.texturePixels(t, f) }))),
@@ -222,6 +222,16 @@ export class PageEnv {
   static keys() {
     return configKeys();
   }
+}
+
+/**
+ * How late the eyes are, s.
+ * @param {Settings} settings
+ * @param {number} step s
+ */
+function visionDelay({ delay_vision, delay_sensory, delay_unit }, step) {
+  const delay = Number(delay_vision ?? delay_sensory);
+  return step * (delay_unit === "ms" ? Math.round(delay / 1000 / step) : delay);
 }
 
 /**

@@ -62,6 +62,8 @@ function build(d) {
 /** @type {Record<string, (...args: any[]) => unknown>} */
 const answers = {
   load: () => load(),
+  /** Loads ahead of time; who asks for it later hears what went wrong. */
+  warm: () => load().then(() => {}, () => {}),
 
   /** @param {{ settings: import("../types").Settings | string, locks: string[], snapshot: Uint8Array | null } & Movement} d */
   async make(d) {

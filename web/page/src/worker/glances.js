@@ -1,0 +1,28 @@
+// What the eyes saw, on its way to being seen: vision may be late.
+
+/** Pictures that are kept at most. */
+const KEPT = 256;
+
+export class Glances {
+  /** @param {number} late seconds between seeing and noticing */
+  constructor(late) {
+    this.late = late;
+    /** @type {{ time: number, pixels: Uint8ClampedArray<ArrayBuffer> }[]} */
+    this.waiting = [];
+  }
+
+  /**
+   * Takes what is before the eyes and returns what is noticed, the first picture of an episode until later ones arrive.
+   * @param {number} time s
+   * @param {Uint8ClampedArray<ArrayBuffer>} pixels
+   */
+  take(time, pixels) {
+    const last = this.waiting.at(-1);
+    if (last && time < last.time) this.waiting = [];
+    this.waiting.push({ time, pixels });
+    const arrived = this.waiting.findLastIndex((w) => w.time <= time - this.late + 1e-6);
+    this.waiting.splice(0, Math.max(arrived, this.waiting.length - KEPT, 0));
+    const [seen] = this.waiting;
+    return { pixels: seen.pixels, late: time - seen.time };
+  }
+}
