@@ -10,7 +10,10 @@ use babybench::Env;
 use babybench::env::Snapshot;
 use libfuzzer_sys::fuzz_target;
 
-thread_local! { static ENV: RefCell<Env> = RefCell::new(env::env()); }
+thread_local! {
+    static MIMO: RefCell<Env> = RefCell::new(env::mimo());
+    static SMALL: RefCell<Env> = RefCell::new(env::small());
+}
 
 /// Bytes before what the checksum covers, of which the last eight are the checksum.
 const HEADER: usize = 32;
@@ -23,9 +26,9 @@ fn checksum(bytes: &[u8]) -> u64 {
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
 }
 
-/// Returns a snapshot of the environment with some bytes replaced: data says where, then with what.
-fn changed(data: &[u8], env: &Env) -> Vec<u8> {
-    let mut bytes = env.snapshot().as_bytes().to_vec();
+/// Returns a snapshot with some bytes replaced: data says where, then with what.
+fn changed(data: &[u8], snapshot: &Snapshot) -> Vec<u8> {
+    let mut bytes = snapshot.as_bytes().to_vec();
     for change in data.chunks(10) {
         let [low, high, new @ ..] = change else { continue };
         let at = HEADER + usize::from(u16::from_le_bytes([*low, *high])) % (bytes.len() - HEADER);
@@ -38,29 +41,38 @@ fn changed(data: &[u8], env: &Env) -> Vec<u8> {
     bytes
 }
 
+/// Restores bytes, takes some steps from there, and comes back.
+fn check(env: &mut Env, make: impl FnOnce(&Snapshot) -> Vec<u8>, steps: usize) {
+    let before = env.snapshot();
+    let Ok(snapshot) = Snapshot::from_bytes(make(&before)) else { return };
+    let _ = snapshot.info();
+    if env.restore(&snapshot).is_err() {
+        assert!(env.snapshot() == before, "a refused snapshot changed something");
+        return;
+    }
+    let taken = env.snapshot();
+    env.restore(&taken).expect("it was taken here");
+    assert!(env.snapshot() == taken, "restored, it is another one");
+    let action = vec![0.5; env.action_space().len()];
+    for _ in 0..steps {
+        let Ok(step) = env.step(&action) else { break };
+        assert!(step.observation.proprioception.iter().all(|v| v.is_finite()), "not finite");
+    }
+    env.restore(&before).expect("it was taken here");
+    assert!(env.snapshot() == before, "it does not come back");
+}
+
 fuzz_target!(|data: &[u8]| {
-    ENV.with_borrow_mut(|env| {
-        let bytes = match data.split_first() {
-            Some((0 | 1, rest)) => changed(rest, env),
-            _ => data.to_vec(),
-        };
-        let Ok(snapshot) = Snapshot::from_bytes(bytes) else { return };
-        let before = env.snapshot();
-        let _ = snapshot.info();
-        if env.restore(&snapshot).is_err() {
-            assert!(env.snapshot() == before, "a refused snapshot changed something");
-            return;
+    // the first byte tells whose snapshot is changed
+    match data.split_first() {
+        Some((0 | 1, rest)) => {
+            let steps = usize::from(env::goes_on(data));
+            MIMO.with_borrow_mut(|env| check(env, |own| changed(rest, own), steps));
         }
-        let taken = env.snapshot();
-        env.restore(&taken).expect("it was taken here");
-        assert!(env.snapshot() == taken, "restored, it is another one");
-        // a step costs more than all the rest
-        if data.first() == Some(&1) {
-            let action = vec![0.5; env.action_space().len()];
-            if let Ok(step) = env.step(&action) {
-                assert!(step.observation.proprioception.iter().all(|v| v.is_finite()), "not finite");
-            }
+        Some((kind @ 2..=5, rest)) => {
+            let steps = usize::from(*kind) - 2;
+            SMALL.with_borrow_mut(|env| check(env, |own| changed(rest, own), steps));
         }
-        env.restore(&before).expect("it was taken here");
-    });
+        _ => SMALL.with_borrow_mut(|env| check(env, |_| data.to_vec(), 1)),
+    }
 });

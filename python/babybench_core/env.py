@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from babybench_core import _native, scenes, spaces
-from babybench_core.goals import Infos, compute_reward
+from babybench_core.goals import ComputeReward, compute_reward
 from babybench_core.records import LockReport
 from babybench_core.senses import Proprioception, Touch
 from babybench_core.window import Window
@@ -142,24 +142,25 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self._show()
         return observation, reward, terminated, truncated, self._core.info()
 
-    def compute_reward(
-        self, achieved_goal: npt.ArrayLike, desired_goal: npt.ArrayLike, info: Infos
-    ) -> Union[float, npt.NDArray[np.float64]]:
+    @property
+    def compute_reward(self) -> ComputeReward:
         """Computes what goals would have earned, as Gymnasium-Robotics does; for those of a step, the reward of the step.
 
-        Args:
-            achieved_goal: What was achieved, (goal,) or (K, goal).
-            desired_goal: What was to be achieved, of the same shape.
-            info: The information of the step, or of the K steps.
-
-        Returns:
-            The reward, or K of them.
+        It is called as ``compute_reward(achieved_goal, desired_goal, info)``, with goals of the shape (goal,) and the
+        information of the step, or with K goals, (K, goal), and the information of K steps; it returns the reward, or K of
+        them. Only environments with goals have it, as learners tell by it which these are.
 
         Raises:
-            KeyError: Information without ``reward_terms``.
-            ValueError: Goals of another shape.
+            AttributeError: The observation has no goals.
+            KeyError: When it is called: information without ``reward_terms``.
+            ValueError: When it is called: goals of another shape.
         """
-        return compute_reward(self._core.compute_reward, achieved_goal, desired_goal, info, self._core.reward_terms)
+        if "desired_goal" not in self.observation_space.spaces:
+            raise AttributeError("compute_reward: this environment has no goals")
+        reward, terms = self._core.compute_reward, self._core.reward_terms
+        return lambda achieved_goal, desired_goal, info: compute_reward(
+            reward, achieved_goal, desired_goal, info, terms
+        )
 
     def set_goal(self, desired_goal: npt.ArrayLike) -> Observation:
         """Changes the desired goal of this episode; returns the observation with it.

@@ -11,6 +11,9 @@ import numpy.typing as npt
 Infos = Union[Mapping[str, Any], Sequence[Mapping[str, Any]], npt.NDArray[np.object_]]
 """The information of one step, or of several."""
 
+ComputeReward = Callable[[npt.ArrayLike, npt.ArrayLike, Infos], Union[float, npt.NDArray[np.float64]]]
+"""A function of achieved goals, desired goals and information."""
+
 Reward = Callable[[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike], npt.NDArray[np.float64]]
 
 

@@ -34,13 +34,20 @@ class VecEnv(BaseVecEnv):
 
     Ends of episodes are in ``infos[i]["terminal_observation"]``. Wrappers such as ``VecMonitor`` and ``VecNormalize`` go
     around it; wrappers of single environments do not go in, so intrinsic rewards are those of a vector: see
-    ``examples/ppo_selftouch.py``.
+    ``examples/ppo_selftouch.py``. Observations are fresh arrays, as learners store those before a step when the step is done.
     """
 
     def __init__(self, config: Any = "self_touch", num_envs: Optional[int] = None, **arguments: Any) -> None:
-        """Builds a vector; the arguments are those of :class:`babybench.VectorEnv` but ``autoreset_mode``."""
+        """Builds a vector; the arguments are those of :class:`babybench.VectorEnv` but ``autoreset_mode`` and ``copy``.
+
+        Raises:
+            ValueError: As :class:`babybench.VectorEnv`; ``copy=False``.
+        """
+        if not arguments.setdefault("copy", True):
+            raise ValueError(
+                "copy=False: Stable-Baselines3 stores the observations before a step when the step is done"
+            )
         arguments["autoreset_mode"] = AutoresetMode.SAME_STEP
-        arguments.setdefault("copy", False)  # stable-baselines3 copies into its buffers
         self.envs = VectorEnv(config, num_envs, **arguments)
         self._actions: Optional[npt.NDArray[np.float32]] = None
         super().__init__(self.envs.num_envs, self.envs.single_observation_space, self.envs.single_action_space)

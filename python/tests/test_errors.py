@@ -258,7 +258,9 @@ def test_a_vector_in_a_forked_process_is_refused_and_ends_in_order():
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 def test_an_interrupt_in_the_middle_of_a_step_ends_it_in_order():
     script = textwrap.dedent("""
-        import numpy as np, babybench
+        import signal, numpy as np, babybench
+        # a shell starts what runs in the background with this signal ignored
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         envs = babybench.VectorEnv("hand_regard", 16, threads=2, frame_skip=5)
         envs.reset(seed=0)
         actions = np.zeros(envs.action_space.shape, np.float32)
@@ -279,7 +281,10 @@ def test_an_interrupt_in_the_middle_of_a_step_ends_it_in_order():
         assert process.stdout.readline() == "ready\n"
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
-        assert process.communicate(timeout=60)[0] == "in order\n"
+        try:
+            assert process.communicate(timeout=60)[0] == "in order\n"
+        finally:
+            process.kill()
 
 
 def test_a_vector_that_is_dropped_in_flight_ends_its_threads():

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
+import types
+
 import gymnasium
 import numpy as np
 import pytest
@@ -222,3 +226,34 @@ def test_wrappers_of_vectors_go_around():
     script = actions_of(envs, 6)
     infos = [envs.step(actions)[4] for actions in script][-1]
     assert infos["episode"]["l"].tolist() == [6, 6]
+
+
+def test_observations_for_learners_outlive_the_next_step(monkeypatch):
+    """Stable-Baselines3 stores an observation when the step after it is done; a stand-in suffices where it is missing."""
+    try:
+        import stable_baselines3  # noqa: F401
+    except ImportError:
+
+        class Base:
+            def __init__(self, num_envs, observation_space, action_space):
+                self.num_envs, self.action_space = num_envs, action_space
+                self._seeds = [None] * num_envs
+                self._reset_seeds = self._reset_options = lambda: None
+
+        for name in ("stable_baselines3", "stable_baselines3.common", "stable_baselines3.common.vec_env"):
+            monkeypatch.setitem(sys.modules, name, types.SimpleNamespace(VecEnv=Base))
+    monkeypatch.delitem(sys.modules, "babybench_core.sb3", raising=False)
+    sb3 = importlib.import_module("babybench_core.sb3")
+    monkeypatch.delitem(sys.modules, "babybench_core.sb3")
+    envs = sb3.VecEnv(SMALL, 2)
+    before = envs.reset()
+    kept = {key: values.copy() for key, values in before.items()}
+    envs.step_async(np.full((2, *envs.action_space.shape), 0.5, np.float32))
+    after, *_ = envs.step_wait()
+    for key, values in before.items():
+        np.testing.assert_array_equal(values, kept[key])
+        assert values.flags.writeable
+    assert not np.array_equal(before["observation"], after["observation"])
+    envs.close()
+    with pytest.raises(ValueError, match="copy=False"):
+        sb3.VecEnv(SMALL, 2, copy=False)

@@ -17,14 +17,6 @@ pub struct InfoDetails {
 }
 
 impl InfoDetails {
-    /// Returns the touched parts of a record by name.
-    #[cfg(feature = "eval")]
-    pub(crate) fn of(behavior: &BehaviorInfo, names: &PartNames) -> Self {
-        let mut details = Self::default();
-        details.name_parts(behavior, names);
-        details
-    }
-
     /// Reserves room for the names of all parts, so that no step allocates.
     pub(crate) fn reserve(&mut self, behavior: &BehaviorInfo, names: &PartNames) {
         let room = |_| Vec::with_capacity(names.0.len());

@@ -31,8 +31,8 @@ use std::sync::Arc;
 pub use machine::{from_bytes, from_bytes_with};
 pub(crate) use records::{Node, Root, visit_records};
 use thiserror::Error;
-pub(crate) use writer::ListWriter;
 pub use writer::to_bytes;
+pub(crate) use writer::{DictWriter, ListWriter};
 
 use crate::text::quoted;
 

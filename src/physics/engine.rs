@@ -5,7 +5,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::model::Model;
-use crate::physics::state::State;
+use crate::physics::state::{Contact, State};
 use crate::physics::topology::Topology;
 use crate::physics::world::{PairTable, RapierScene};
 
@@ -217,6 +217,17 @@ pub enum EngineError {
         /// Its value.
         value: f64,
     },
+    /// The simulation diverged in a contact, though positions, velocities and accelerations still are numbers.
+    #[error(
+        "the simulation diverged in step {step} where the geoms {} and {} touch (position or force is no finite number): \
+         make sizes, masses or speeds smaller", .geoms[0], .geoms[1]
+    )]
+    DivergedContact {
+        /// Steps done before.
+        step: u64,
+        /// Names of the geoms, in quotes; the number of one without a name.
+        geoms: [String; 2],
+    },
 }
 
 /// Checks sizes of what a step reads, and that it is finite.
@@ -278,6 +289,23 @@ pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
 /// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
 pub(super) fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
+}
+
+/// Reports the first contact that is not finite. Bodies may be finite all the same: one of 1e30 kg does not feel it.
+pub(super) fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
+    let finite = |c: &Contact| {
+        let numbers = c.pos.iter().chain(&c.frame).chain(&c.force);
+        // an overflow of the sum is a divergence, too
+        (numbers.fold(c.dist, |sum, v| sum + v.abs())).is_finite()
+    };
+    let Some(bad) = s.contact.iter().find(|c| !finite(c)) else {
+        return Ok(());
+    };
+    let geoms = bad.geom.map(|geom| match model.geom_name.get(geom) {
+        Some(name) if !name.is_empty() => format!("{name:?}"),
+        _ => geom.to_string(),
+    });
+    Err(EngineError::DivergedContact { step: s.step, geoms })
 }
 
 /// Checks positions and velocities alone; see [`check_output`].

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::physics::constraint::{Newton, RowBuilder};
 use crate::physics::contact::{ContactOptions, Quirks};
 use crate::physics::dynamics::*;
-use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_input, check_output};
+use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_contacts, check_input, check_output};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
 use crate::physics::vectorize::vectorize;
@@ -181,7 +181,8 @@ impl SoftEngine {
                 sensors(model, s);
             },
         );
-        check_output(&self.model, s)
+        check_output(&self.model, s)?;
+        check_contacts(&self.model, s)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Policies that are ONNX models.
 
 mod bounds;
+#[cfg(test)]
+mod tests;
 mod wire;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -30,8 +32,8 @@ pub enum OnnxError {
     Load(String),
     /// An input is not among the active senses.
     #[error(
-        "the model has an input {found:?}, which is not an active sense; name the inputs after the senses \
-         ({expected}), or use a single input of any other name for all of them in one vector"
+        "the model has an input \"{}\", which is not an active sense; name the inputs after the senses \
+         ({expected}), or use a single input of any other name for all of them in one vector", quoted(.found)
     )]
     Name {
         /// Name of the input.
@@ -43,7 +45,7 @@ pub enum OnnxError {
     #[error("the model has no {0}")]
     Nothing(&'static str),
     /// An input has a shape that does not fit.
-    #[error("the input {name:?} has the shape {found} but must have {expected}")]
+    #[error("the input \"{}\" has the shape {} but must have {expected}", quoted(.name), quoted(.found))]
     Shape {
         /// Name of the input.
         name: String,
@@ -53,7 +55,7 @@ pub enum OnnxError {
         expected: String,
     },
     /// An input has a type that does not fit.
-    #[error("the input {name:?} has the type {found} but must be {expected}")]
+    #[error("the input \"{}\" has the type {found} but must be {expected}", quoted(.name))]
     Type {
         /// Name of the input.
         name: String,
@@ -63,10 +65,10 @@ pub enum OnnxError {
         expected: &'static str,
     },
     /// The model fails when it runs.
-    #[error("the model failed: {0}")]
+    #[error("the model failed: {}", quoted(.0))]
     Run(String),
     /// The output is not an action.
-    #[error("the output {name:?} has {found} but an action has {expected} numbers (f32)")]
+    #[error("the output \"{}\" has {found} but an action has {expected} numbers (f32)", quoted(.name))]
     Output {
         /// Name of the output.
         name: String,
@@ -76,7 +78,7 @@ pub enum OnnxError {
         expected: usize,
     },
     /// The action is not finite.
-    #[error("the output {name:?} is not finite: number {index} is {value}")]
+    #[error("the output \"{}\" is not finite: number {index} is {value}", quoted(.name))]
     NotFinite {
         /// Name of the output.
         name: String,

@@ -26,6 +26,7 @@
 //! Not drawn: shadows, reflections, fog, haze. Planes without a size are drawn as far as the far plane.
 
 mod cpu;
+mod drawable;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod mesh;
@@ -40,6 +41,7 @@ mod visual;
 pub use cpu::CpuRenderer;
 #[cfg(any(feature = "eval", feature = "wgpu"))]
 pub(crate) use cpu::luma;
+pub use drawable::{Drawable, Element, Shape};
 pub use mesh::{Mesh, MeshPart};
 pub use renderer::Renderer;
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
@@ -48,7 +50,7 @@ pub use renderer::SharedGpu;
 pub(crate) use renderer::draw_on;
 pub use texture::{Face, Level, MAX_TEXTURE, Texture};
 pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
-pub use visual::{Aim, Camera, Drawable, Element, Light, Shape, Visual};
+pub use visual::{Aim, Camera, Light, Visual};
 
 use crate::assets::AssetError;
 use crate::text::quoted;

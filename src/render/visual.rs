@@ -2,74 +2,17 @@
 
 use crate::assets::AssetSource;
 use crate::math::{Vec3, unit};
-use crate::model::{GeomType, LightMode, Model, TextureType};
+use crate::model::{LightMode, Model, TextureType};
 use crate::render::RenderError;
+use crate::render::drawable::{Drawable, Element, material};
 use crate::render::mesh::Mesh;
 use crate::render::texture::{Loader, Texture};
 use crate::render::view::{Poses, View};
 
 /// Groups of geoms and sites that are visible.
 const VISIBLE_GROUPS: std::ops::Range<usize> = 0..3;
-/// Default colour of a geom; a geom that has it takes the colour of its material.
-const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
 /// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
-
-/// The element of the model that a [`Drawable`] shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Element {
-    /// A geom, by id.
-    Geom(usize),
-    /// A site, by id.
-    Site(usize),
-}
-
-/// The mesh that a [`Drawable`] uses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Shape {
-    /// A rectangle: [`Mesh::plane`].
-    Plane,
-    /// A sphere or ellipsoid: [`Mesh::sphere`].
-    Sphere,
-    /// A capsule: [`Mesh::capsule`].
-    Capsule,
-    /// A cylinder: [`Mesh::cylinder`].
-    Cylinder,
-    /// A box: [`Mesh::cube`].
-    Box,
-}
-
-impl Shape {
-    /// All shapes, in the order of [`Visual::meshes`].
-    pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
-}
-
-/// A visible geom or site.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Drawable {
-    /// Element of the model.
-    pub element: Element,
-    /// Mesh.
-    pub shape: Shape,
-    /// Scale of the unit shape, m; a capsule's is radius, radius, half length.
-    pub size: [f32; 3],
-    /// Radius of the bounding sphere around its origin, m.
-    pub radius: f32,
-    /// Colour and opacity.
-    pub rgba: [f32; 4],
-    /// Share of the colour that is emitted.
-    pub emission: f32,
-    /// Strength of highlights.
-    pub specular: f32,
-    /// Exponent of highlights.
-    pub exponent: f32,
-    /// Index into [`Visual::textures`].
-    pub texture: Option<usize>,
-    /// Scale of texture coordinates: they are those of the unit shape times this, plus `texture_offset`.
-    pub texture_scale: [f32; 3],
-    /// Offset of texture coordinates, see `texture_scale`.
-    pub texture_offset: f32,
-}
 
 /// A light, as the model has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,7 +86,7 @@ pub struct Camera {
 pub struct Visual {
     /// Visible geoms and sites, in the order of the model.
     pub drawables: Vec<Drawable>,
-    /// Meshes, in the order of [`Shape::ALL`].
+    /// Meshes, in the order of [`Shape::ALL`](crate::render::Shape::ALL).
     pub meshes: [Mesh; 5],
     /// Textures in use.
     pub textures: Vec<Texture>,
@@ -277,6 +220,7 @@ impl Visual {
         let [geoms, sites, bodies] = self.sizes;
         for (what, positions, matrices, expected) in [
             ("geoms", poses.geom_xpos.len(), poses.geom_xmat.len(), geoms),
+            ("geoms", poses.geom_size.len(), poses.geom_size.len(), geoms),
             ("sites", poses.site_xpos.len(), poses.site_xmat.len(), sites),
             (
                 "cameras",
@@ -303,78 +247,8 @@ fn visible(model: &Model) -> impl Iterator<Item = Element> {
     geoms.map(Element::Geom).chain(sites.map(Element::Site))
 }
 
-fn material(model: &Model, element: Element) -> Option<usize> {
-    match element {
-        Element::Geom(g) => model.geom_matid[g],
-        Element::Site(s) => model.site_matid[s],
-    }
-}
-
-fn single<const N: usize>(v: [f64; N]) -> [f32; N] {
+pub(super) fn single<const N: usize>(v: [f64; N]) -> [f32; N] {
     v.map(|x| x as f32)
-}
-
-impl Drawable {
-    fn new(model: &Model, element: Element, far: f32) -> Self {
-        let (kind, size, own) = match element {
-            Element::Geom(g) => (model.geom_type[g], model.geom_size[g], model.geom_rgba[g]),
-            Element::Site(s) => (model.site_type[s], model.site_size[s], model.site_rgba[s]),
-        };
-        let [a, b, c] = single(size);
-        let length = |v: [f32; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-        let extent = |half: f32| if half > 0.0 { half } else { far };
-        let (shape, size, radius) = match kind {
-            GeomType::Plane => (
-                Shape::Plane,
-                [extent(a), extent(b), 1.0],
-                length([extent(a), extent(b), 0.0]),
-            ),
-            GeomType::Sphere => (Shape::Sphere, [a; 3], a),
-            GeomType::Capsule => (Shape::Capsule, [a, a, b], a + b),
-            GeomType::Ellipsoid => (Shape::Sphere, [a, b, c], a.max(b).max(c)),
-            GeomType::Cylinder => (Shape::Cylinder, [a, a, b], length([a, b, 0.0])),
-            GeomType::Box => (Shape::Box, [a, b, c], length([a, b, c])),
-        };
-        let mut drawable = Self {
-            element,
-            shape,
-            size,
-            radius,
-            rgba: single(own),
-            emission: 0.0,
-            specular: 0.5,
-            exponent: 64.0,
-            texture: None,
-            texture_scale: [1.0; 3],
-            texture_offset: 0.0,
-        };
-        if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
-            if drawable.rgba == DEFAULT_RGBA {
-                drawable.rgba = single(m.rgba);
-            }
-            drawable.emission = m.emission as f32;
-            drawable.specular = m.specular as f32;
-            drawable.exponent = m.shininess as f32 * 128.0;
-        }
-        drawable
-    }
-
-    /// Derives texture coordinates from the material's repetition and the kind of texture.
-    fn place_texture(&mut self, model: &Model, textures: &[Texture]) {
-        let (Some(texture), Some(m)) = (self.texture, material(model, self.element)) else {
-            return;
-        };
-        let m = &model.materials[m];
-        let scale = if m.texuniform { self.size } else { [1.0; 3] };
-        match textures[texture] {
-            Texture::Flat(_) => {
-                let [u, v] = single(m.texrepeat);
-                self.texture_scale = [0.5 * u * scale[0], -0.5 * v * scale[1], 0.0];
-                self.texture_offset = -0.5;
-            }
-            Texture::Cube(_) => self.texture_scale = scale,
-        }
-    }
 }
 
 impl Aim {

@@ -4,9 +4,12 @@
 //! Every file is replaced as a whole: a run that is killed leaves the last complete log.
 
 mod episode;
+mod line;
+mod lines;
 mod read;
+mod training;
 
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,12 +17,11 @@ pub use episode::EvaluationLog;
 use read::records;
 pub use read::{RecentRecords, read_recent, read_records, read_records_with, read_training};
 use thiserror::Error;
+pub use training::{TrainingLog, TrainingTotals};
 
-use crate::config::{Compat, Config};
-use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, InfoDetails, PartNames};
-use crate::files::{self, Owner, replace_file, replace_file_with, sweep};
-use crate::formats::pickle::{self, ListWriter, PickleError, Value};
-use crate::json;
+use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info};
+use crate::files::{self, Owner, replace_file, sweep};
+use crate::formats::pickle::{self, PickleError, Value};
 use crate::limits::Limits;
 
 /// An error in reading or writing a log.
@@ -64,9 +66,6 @@ pub enum LogError {
     #[error("cannot write the log: {0}")]
     Write(String),
 }
-
-/// Lines of JSON are written when there are more bytes of them than this.
-const WRITTEN_AT_ONCE: usize = 1 << 16;
 
 /// Returns the folder of the logs in the folder of a run.
 fn folder(save_dir: &Path) -> PathBuf {
@@ -163,152 +162,5 @@ fn record(steps: u64, behavior: BehaviorInfo) -> Info {
         steps,
         behavior,
         ..Info::default()
-    }
-}
-
-/// The log of a training run, saved as often as its configuration says.
-///
-/// Under `compat: api` every episode of at least one step is a record, and the log is saved whenever their number is a
-/// multiple of `save_logs_every`. Under `compat: reference` every reset adds a record, also the first one (an empty
-/// record), and the log is saved when the number of steps of the ended episode is a multiple of `save_logs_every`.
-#[derive(Clone, Debug)]
-pub struct TrainingLog {
-    save_dir: PathBuf,
-    compat: Compat,
-    save_every: u64,
-    records: Vec<Info>,
-    resumed: bool,
-    /// For the names of touched parts in the lines of JSON.
-    names: Option<PartNames>,
-    /// Refuses the folder to other processes that would train into it.
-    _owner: Arc<Owner>,
-}
-
-impl TrainingLog {
-    /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten. Until the
-    /// log and its copies are dropped, other processes cannot train into that folder.
-    ///
-    /// # Errors
-    /// A folder into which another process trains; what the file system says.
-    pub fn create(config: &Config) -> Result<Self, LogError> {
-        let owner = own_folder(config.save_dir.as_ref())?;
-        let log = Self {
-            save_dir: PathBuf::from(&config.save_dir),
-            compat: config.compat,
-            save_every: config.save_logs_every.max(1),
-            records: Vec::new(),
-            resumed: false,
-            names: None,
-            _owner: owner,
-        };
-        if log.compat == Compat::Api {
-            log.save()?;
-        }
-        Ok(log)
-    }
-
-    /// Resumes the log in the configuration's `save_dir`, or creates one if there is none. No empty record is added.
-    ///
-    /// # Errors
-    /// A log that cannot be read, or is of another behavior; a folder into which another process trains.
-    pub fn resume(config: &Config) -> Result<Self, LogError> {
-        let path = training_path(&config.save_dir);
-        if !path.exists() {
-            return Self::create(config);
-        }
-        let owner = own_folder(config.save_dir.as_ref())?;
-        let records = read_records(&path)?;
-        if let Some(found) = records
-            .first()
-            .map(|r| r.behavior.name())
-            .filter(|b| *b != config.behavior.name())
-        {
-            return Err(LogError::Foreign {
-                path,
-                kind: "training",
-                reason: format!("its behavior is {found}, not {}; use another save_dir", config.behavior),
-            });
-        }
-        Ok(Self {
-            save_dir: PathBuf::from(&config.save_dir),
-            compat: config.compat,
-            save_every: config.save_logs_every.max(1),
-            resumed: !records.is_empty(),
-            records,
-            names: None,
-            _owner: owner,
-        })
-    }
-
-    /// Adds names of the touched parts to `training.jsonl`.
-    #[must_use]
-    pub fn with_names(self, names: Option<PartNames>) -> Self {
-        Self { names, ..self }
-    }
-
-    /// Returns the records so far.
-    pub fn records(&self) -> &[Info] {
-        &self.records
-    }
-
-    /// Returns the folder of the run.
-    pub fn save_dir(&self) -> &Path {
-        &self.save_dir
-    }
-
-    /// Records an episode that ended after `steps` steps, and saves when it is time to. An environment that logs
-    /// ([`crate::make_env`]) does so by itself; this is for programs that run many environments into one log.
-    ///
-    /// # Errors
-    /// What the file system says.
-    pub fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
-        let first = std::mem::take(&mut self.resumed);
-        if steps == 0 && (first || self.compat == Compat::Api) {
-            return Ok(());
-        }
-        let behavior = behavior.clone();
-        self.records.push(record(steps, behavior));
-        let count = match self.compat {
-            Compat::Api => self.records.len() as u64,
-            Compat::Reference => steps,
-        };
-        match count % self.save_every {
-            0 => self.save(),
-            _ => Ok(()),
-        }
-    }
-
-    /// Writes `training.pkl` and `training.jsonl`, in which touched parts also have names (`right_hand_parts`,
-    /// `left_hand_parts`).
-    ///
-    /// # Errors
-    /// What the file system says.
-    pub fn save(&self) -> Result<(), LogError> {
-        let path = training_path(&self.save_dir);
-        self.save_lines(path.with_extension("jsonl"))?;
-        let unwritable = |e: PickleError| LogError::Write(e.to_string());
-        let mut list = ListWriter::new();
-        for info in &self.records {
-            list.push(&to_value(info)).map_err(unwritable)?;
-        }
-        write(path, &list.finish())
-    }
-
-    /// Writes the records as lines of JSON, which are not all in memory at the same time: names make them long.
-    fn save_lines(&self, path: PathBuf) -> Result<(), LogError> {
-        replace_file_with(&path, |file| {
-            let mut lines = Vec::new();
-            for info in &self.records {
-                let details = self.names.as_ref().map(|names| InfoDetails::of(&info.behavior, names));
-                let details = details.as_ref();
-                json::line(&mut lines, &Detailed { info, details })?;
-                if lines.len() > WRITTEN_AT_ONCE {
-                    file.write_all(&lines)?;
-                    lines.clear();
-                }
-            }
-            file.write_all(&lines)
-        })
-        .map_err(|source| LogError::Io { path, source })
     }
 }

@@ -5,8 +5,8 @@ use std::ops::Deref;
 use super::logs::TrainingLog;
 use super::training::{RunError, open_training_log};
 use crate::assets::AssetSource;
-use crate::config::{Behavior, Compat};
-use crate::env::{Blueprint, PartNames};
+use crate::config::Compat;
+use crate::env::Blueprint;
 use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions};
 
 /// A [`VectorEnv`] whose episodes are added to one training log as they end.
@@ -77,9 +77,8 @@ impl RunVector {
         let vector = VectorEnv::new(blueprint, n, options)?;
         let log = open_training_log(blueprint, assets, resume)?;
         let config = blueprint.config();
-        let names = (config.behavior == Behavior::SelfTouch).then(|| PartNames::new(blueprint.model()));
         Ok(Self {
-            log: log.with_names(names),
+            log,
             compat: config.compat,
             mask: vec![true; n],
             ids: (0..n).collect(),

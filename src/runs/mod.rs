@@ -7,7 +7,7 @@ mod replay;
 mod scene_file;
 mod training;
 
-pub use logs::{EvaluationLog, LogError, TrainingLog, read_training};
+pub use logs::{EvaluationLog, LogError, TrainingLog, TrainingTotals, read_training};
 pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images};

@@ -178,6 +178,11 @@ pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resu
     Ok(RunEnv::new(env, Some(log)))
 }
 
+/// Returns the names of the parts that can be touched, if that is what is logged.
+fn part_names(blueprint: &Blueprint) -> Option<PartNames> {
+    (blueprint.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(blueprint.model()))
+}
+
 /// Starts the training log in the configuration's `save_dir`, or resumes the one that is there, and writes the scene
 /// beside it.
 pub(super) fn open_training_log(
@@ -186,9 +191,10 @@ pub(super) fn open_training_log(
     resume: bool,
 ) -> Result<TrainingLog, RunError> {
     let config = blueprint.config();
+    let names = part_names(blueprint);
     let log = match resume {
-        true => TrainingLog::resume(config)?,
-        false => TrainingLog::create(config)?,
+        true => TrainingLog::resume_with(config, names)?,
+        false => TrainingLog::create(config)?.with_names(names),
     };
     if resume {
         keep_scene(blueprint, assets)?;

@@ -22,6 +22,7 @@ impl<'a> From<&'a State> for Poses<'a> {
         Self {
             geom_xpos: &s.geom_xpos,
             geom_xmat: &s.geom_xmat,
+            geom_size: &s.params.geom_size,
             site_xpos: &s.site_xpos,
             site_xmat: &s.site_xmat,
             cam_xpos: &s.cam_xpos,

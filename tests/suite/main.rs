@@ -23,6 +23,8 @@ mod rapier_engine;
 mod render;
 #[cfg(feature = "report")]
 mod report;
+#[cfg(feature = "eval")]
+mod resume;
 mod scene;
 #[cfg(feature = "eval")]
 mod scene_file;

@@ -10,7 +10,7 @@ use babybench::math::mat_t_vec;
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::load_str;
 use babybench::physics::{
-    Engine as _, EngineError, RapierEngine, RapierModel, RapierOptions, SoftEngine, SoftOptions, State, compile,
+    Engine, EngineError, RapierEngine, RapierModel, RapierOptions, SoftEngine, SoftOptions, State, compile,
 };
 use babybench::{Blueprint, Config, Env, EnvError, Model};
 
@@ -297,6 +297,48 @@ fn divergence_and_bad_input_are_errors() {
             ..
         }))
     ));
+}
+
+/// Returns the error of the first step that fails, and what the steps before leave in contacts.
+fn diverge(engine: &mut dyn Engine) -> EngineError {
+    let mut state = engine.new_state();
+    for _ in 0..20 {
+        if let Err(error) = engine.step(&mut state) {
+            return error;
+        }
+        for c in &state.contact {
+            assert!(
+                c.dist.is_finite() && c.pos.iter().chain(&c.force).all(|v| v.is_finite()),
+                "{c:?}"
+            );
+        }
+    }
+    panic!("20 steps without an error");
+}
+
+#[test]
+fn a_contact_that_is_no_number_is_an_error_that_names_its_geoms() {
+    // A box of 1e23 m and more: MuJoCo's edges of boxes have no numbers for where it touches.
+    let boxes = |size: &str| format!(r#"<freejoint/><geom type="box" size="{size}"/>"#);
+    let xml = format!(
+        r#"<mujoco><worldbody><geom type="plane" size="0 1 1"/><body pos="0 0 .1">{}</body><body pos="0 0 .2"><freejoint/>
+        <geom type="sphere" size=".6"/></body><body pos="0 0 .3">{}</body></worldbody></mujoco>"#,
+        boxes(".1 .2 .1"),
+        boxes(".1 .1 .21e30")
+    );
+    let model = Arc::new(
+        load_str(&xml, "m.xml", &MemoryAssets::new())
+            .and_then(compile)
+            .expect("a valid model"),
+    );
+    let mut rapier = RapierEngine::new(model.clone(), RapierOptions::default()).expect("a rig");
+    let error = diverge(&mut rapier);
+    println!("{error}");
+    assert!(
+        matches!(&error, EngineError::DivergedContact { step: 2, .. }),
+        "{error:?}"
+    );
+    println!("{}", diverge(&mut SoftEngine::new(model, SoftOptions::default())));
 }
 
 /// A pendulum of two hinges that carries `extra`.

@@ -7,6 +7,7 @@ use babybench::config::{Behavior, Compat, Config, Example, StartingPosition};
 use babybench::env::{BehaviorInfo, Goal, Outcome};
 use babybench::mjcf_loader::load_str;
 use babybench::physics::{Engine, EngineError, FreeBody, SoftEngine, SoftOptions, compile};
+use babybench::render::{CpuRenderer, Poses, View, Visual};
 use babybench::{Env, Model, VectorEnv, VectorOptions};
 use testkit::Rng;
 
@@ -390,8 +391,10 @@ fn goals_of_a_wrong_shape_are_refused() {
 /// A model with a ball of some mass and radius.
 fn ball(mass: f64, radius: f64) -> Arc<Model> {
     let text = format!(
-        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body name='ball' pos='0 0 1'><freejoint/>\
-         <geom size='{radius}' mass='{mass}'/></body><body name='held' pos='1 0 1'><joint/><geom size='.1'/></body></worldbody></mujoco>"
+        "<mujoco><asset><texture name='squares' type='cube' builtin='checker' rgb1='1 0 0' rgb2='0 0 1' width='16' height='16'/>\
+         <material name='skin' texture='squares' texuniform='true'/></asset>\
+         <worldbody><geom type='plane' size='1 1 1'/><camera name='near' pos='0 -.1 1' xyaxes='1 0 0 0 0 1'/>\
+         <body name='ball' pos='0 0 1'><freejoint/><geom size='{radius}' mass='{mass}' material='skin'/></body><body name='held' pos='1 0 1'><joint/><geom size='.1'/></body></worldbody></mujoco>"
     );
     let spec = load_str(&text, "ball.xml", &MemoryAssets::new()).expect("valid");
     Arc::new(compile(spec).expect("valid"))
@@ -399,6 +402,34 @@ fn ball(mass: f64, radius: f64) -> Arc<Model> {
 
 fn engine(model: &Arc<Model>) -> SoftEngine {
     SoftEngine::new(model.clone(), SoftOptions::default())
+}
+
+#[test]
+fn a_changed_ball_looks_like_a_ball_compiled_so() {
+    let picture = |model: &Arc<Model>, change: Option<FreeBody>| {
+        let mut engine = engine(model);
+        let mut state = engine.new_state();
+        if let Some(change) = change {
+            let id = model.body("ball").expect("a ball");
+            state.set_free_body(model, id, change).expect("it is free");
+        }
+        engine.forward(&mut state).expect("no divergence");
+        let visual = Visual::new(model, &MemoryAssets::new()).expect("no files");
+        let view = View {
+            camera: model.camera("near").expect("a camera"),
+            width: 40,
+            height: 40,
+        };
+        let mut out = vec![0; view.rgb_len()];
+        let drawn = CpuRenderer::new().rgb(&visual, &Poses::from(&state), &view, &mut out);
+        drawn.expect("it can be drawn");
+        out
+    };
+    let (small, large) = (ball(0.07, 0.01), ball(0.5, 0.02));
+    let (before, after) = (picture(&small, None), picture(&large, None));
+    assert_ne!(before, after);
+    assert_eq!(picture(&small, Some(FreeBody::sphere(0.5, 0.02))), after);
+    assert_eq!(picture(&large, Some(FreeBody::sphere(0.07, 0.01))), before);
 }
 
 #[test]

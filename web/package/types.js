@@ -80,7 +80,7 @@
 /**
  * What is drawn of a moment; views on the module's memory.
  * @typedef {object} Frame
- * @property {Float32Array} poses 12 for each drawable: position, m, and rotation matrix, row by row
+ * @property {Float32Array} poses 12 for each drawable: position, m, and rotation matrix, row by row, its columns as long as the thing has grown since it was compiled
  * @property {Float32Array} bodies 7 for each body: position, m, and quaternion, w first
  * @property {Float32Array} felt size of the force at each touch sensor, N
  * @property {Float32Array} contacts 8 for each contact: point, m, force on the second body, N, the two bodies

@@ -4,10 +4,10 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use babybench::config::Compat;
-use babybench::eval::{Score, steps as total_steps};
-use babybench::runs::logs::{read_recent, training_path};
-use babybench::runs::{RunVector, start_training_from};
-use babybench::{AutoresetMode, Config, Info};
+use babybench::eval::Score;
+use babybench::runs::logs::{TrainingTotals, read_recent, training_path};
+use babybench::runs::{RunVector, TrainingLog, start_training_from};
+use babybench::{AutoresetMode, Config};
 use clap::Args;
 use indicatif::ProgressBar;
 
@@ -56,7 +56,7 @@ impl Train {
             return self.many_envs(envs, config, &interrupt);
         }
         let mut env = start_training_from(&blueprint, &*assets, self.resume)?;
-        let (seed, done, bar) = self.begin(env.log().map_or(&[][..], |log| log.records()), config)?;
+        let (seed, done, bar) = self.begin(env.log(), config)?;
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
         let mut action = Vec::new();
@@ -82,13 +82,13 @@ impl Train {
             env.reset(None)?;
         }
         env.finish_training()?;
-        self.print_result(env.log().map_or(&[][..], |log| log.records()), config, steps)
+        self.print_result(env.log(), config, steps)
     }
 
     /// Trains in many environments at once; that number i has the seed plus i.
     fn many_envs(&self, mut envs: RunVector, config: &Config, interrupt: &Interrupt) -> Result<(), Box<dyn Error>> {
         say_threads(&envs);
-        let (seed, done, bar) = self.begin(envs.log().records(), config)?;
+        let (seed, done, bar) = self.begin(Some(envs.log()), config)?;
         envs.vector_mut().seed_action_spaces(seed)?;
         let (mut steps, mut saved) = (done, Instant::now());
         let mut actions = Vec::new();
@@ -110,12 +110,13 @@ impl Train {
         }
         bar.finish_and_clear();
         envs.finish_training()?;
-        self.print_result(envs.log().records(), config, steps)
+        self.print_result(Some(envs.log()), config, steps)
     }
 
     /// Says what is resumed. Returns the seed of this run, the number of steps before it, and a progress bar.
-    fn begin(&self, before: &[Info], config: &Config) -> Result<(u64, u64, ProgressBar), Box<dyn Error>> {
-        let (episodes, done) = (before.len() as u64, total_steps(before));
+    fn begin(&self, before: Option<&TrainingLog>, config: &Config) -> Result<(u64, u64, ProgressBar), Box<dyn Error>> {
+        let before = before.map_or_else(TrainingTotals::default, |log| *log.totals());
+        let (episodes, done) = (before.records as u64, before.steps);
         if self.resume && episodes > 0 {
             say!("resuming after {episodes} episodes, {done} steps")?;
         }
@@ -128,26 +129,26 @@ impl Train {
     }
 
     /// Prints what the log holds now, and its score.
-    fn print_result(&self, records: &[Info], config: &Config, steps: u64) -> Result<(), Box<dyn Error>> {
-        let (n, dir) = (records.len(), word(&config.save_dir));
+    fn print_result(&self, log: Option<&TrainingLog>, config: &Config, steps: u64) -> Result<(), Box<dyn Error>> {
+        let Some(log) = log else { return Ok(()) };
+        let (totals, dir) = (log.totals(), word(&config.save_dir));
+        let n = totals.records;
         if steps < self.train_for {
             let goal = self.train_for;
             let done = format!("{n} records, {steps} of {goal} steps are in {dir}; --resume continues from there");
             return Err(Interrupted(done).into());
         }
         say!("{n} records, {steps} steps: {}", config.save_dir)?;
-        let tasks: Vec<_> = records.iter().filter_map(|record| record.behavior.task()).collect();
-        if !tasks.is_empty() {
-            let mean = tasks.iter().map(|task| task.episode_return).sum::<f64>() / tasks.len() as f64;
-            let successes = tasks.iter().filter(|task| task.outcome.is_success).count();
+        if totals.tasks > 0 {
+            let (mean, successes) = (totals.returns / totals.tasks as f64, totals.successes);
             say!(
                 "mean return {mean:.3}, {successes} of {} episodes end in success",
-                tasks.len()
+                totals.tasks
             )?;
             say!("Details: babybench report {dir}")?;
             return Ok(());
         }
-        match Score::new(records) {
+        match Score::new(&log.recent().records) {
             Ok(score) => {
                 say!("{score}")?;
                 if score.episodes == 0 {

@@ -1,11 +1,98 @@
-//! An environment that costs little.
+//! Environments that cost little.
+#![allow(dead_code)]
 
-use babybench::{Config, Env};
+use babybench::config::{ActuationModel, DelayUnit};
+use babybench::env::task::{TaskScene, TaskSizes, TaskView};
+use babybench::env::{Goal, Task};
+use babybench::{Blueprint, Config, Env};
 
-/// Returns an environment without touch and eyes, after a reset.
-pub fn env() -> Env {
+/// A step of MIMo costs as much as hundreds of the small scene: he goes on after one input in so many.
+const RARE: usize = 64;
+
+/// Returns an environment of MIMo without touch and eyes, after a reset.
+pub fn mimo() -> Env {
     let config = Config { touch_active: false, vision_active: false, ..Config::default() };
     let mut env = Env::new(config).expect("the default scene");
+    env.reset(Some(0)).expect("a reset");
+    env
+}
+
+/// Returns whether MIMo goes on after an input.
+pub fn goes_on(data: &[u8]) -> bool {
+    let sum = data.iter().fold(0usize, |sum, &byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
+    (sum ^ sum >> 7) % RARE == 0
+}
+
+/// An arm with muscles above a floor, and a ball, with whatever an environment can remember: goals, the memory of the task, delays,
+/// pain, noise.
+#[derive(Clone, Debug, Default)]
+struct Small {
+    steps: [f64; 2],
+}
+
+impl Task for Small {
+    fn name(&self) -> &str {
+        "small"
+    }
+
+    fn document(&self, _config: &Config) -> String {
+        include_str!("small.xml").to_string()
+    }
+
+    fn touch_spacing(&self) -> &[(&'static str, f64)] {
+        &[("hand", 0.04), ("target", 0.05)]
+    }
+
+    fn sizes(&self) -> TaskSizes {
+        TaskSizes { goal: 2, terms: 1, observation: 1 }
+    }
+
+    fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
+        desired.fill(scene.rng.uniform_in(0.1, 0.3));
+        self.steps = [0.0; 2];
+    }
+
+    fn before_step(&mut self, _action: &mut [f32]) {
+        self.steps[0] += 1.0;
+    }
+
+    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+        achieved.copy_from_slice(&view.state.qpos[..2]);
+        terms.fill(view.state.qvel[0]);
+    }
+
+    fn success(&self, goal: Goal<'_>) -> bool {
+        goal.achieved[0] >= goal.desired[0]
+    }
+
+    fn reward(&self, goal: Goal<'_>) -> f64 {
+        goal.desired[0] - goal.achieved[0]
+    }
+
+    fn memory(&self) -> &[f64] {
+        &self.steps
+    }
+
+    fn memory_mut(&mut self) -> &mut [f64] {
+        &mut self.steps
+    }
+}
+
+/// Returns an environment of a small scene that remembers a great deal, after a reset.
+pub fn small() -> Env {
+    let mut config = Config {
+        vision_active: false,
+        touch_pooled: true,
+        pain_active: true,
+        actuation_model: ActuationModel::Muscle,
+        done_active: false,
+        ..Config::default()
+    };
+    config.pain.threshold = 0.1;
+    config.delays.unit = DelayUnit::Steps;
+    (config.delays.sensory, config.delays.motor) = (2.0, 1.0);
+    config.noise.proprioception = 0.01;
+    let mut env = Blueprint::with_task(config, Small::default()).expect("the small scene").env().expect("an environment");
     env.reset(Some(0)).expect("a reset");
     env
 }

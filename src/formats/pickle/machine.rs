@@ -36,6 +36,7 @@ impl Machine<'_> {
     }
 
     /// Does what the next opcode says; the last one returns the value that is left.
+    #[inline]
     pub(super) fn advance(&mut self) -> Result<Option<Item>, PickleError> {
         self.op = self.at;
         if self.at == 0 && self.bytes.first().is_some_and(|b| *b != 0x80) {
@@ -59,6 +60,7 @@ impl Machine<'_> {
         }
     }
 
+    #[inline]
     fn step(&mut self, opcode: u8) -> Done {
         match opcode {
             0x80 => match self.array()? {
@@ -84,13 +86,30 @@ impl Machine<'_> {
         }
     }
 
+    /// Pushes a byte as an integer, and at most 63 more that follow: lists of small numbers are what logs are made of.
+    #[inline]
+    fn small(&mut self) -> Done {
+        let [number] = self.array()?;
+        self.stack.push(Item::Int(i64::from(number)));
+        let (more, _) = self.bytes.get(self.at..).unwrap_or_default().as_chunks::<2>();
+        for &[opcode, number] in more.iter().take(63) {
+            if opcode != b'K' {
+                break;
+            }
+            self.stack.push(Item::Int(i64::from(number)));
+            self.at += 2;
+        }
+        Ok(())
+    }
+
     /// Pushes a scalar: None, a boolean, an integer or a float.
+    #[inline]
     fn scalar(&mut self, opcode: u8) -> Done {
         let item = match opcode {
+            b'K' => return self.small(),
             b'N' => Item::None,
             0x88 | 0x89 => Item::Bool(opcode == 0x88),
             b'J' => Item::Int(i64::from(i32::from_le_bytes(self.array()?))),
-            b'K' => Item::Int(i64::from(u8::from_le_bytes(self.array()?))),
             b'M' => Item::Int(i64::from(u16::from_le_bytes(self.array()?))),
             b'G' => Item::Float(f64::from_be_bytes(self.array()?)),
             _ => {
@@ -123,6 +142,7 @@ impl Machine<'_> {
     }
 
     /// Writes to the memo, or pushes what it remembers.
+    #[inline]
     fn recall(&mut self, opcode: u8) -> Done {
         let index = match opcode {
             0x94 => self.memo_length,
@@ -136,6 +156,7 @@ impl Machine<'_> {
     }
 
     /// Makes or fills a list, a tuple or a dictionary.
+    #[inline]
     fn collection(&mut self, opcode: u8) -> Done {
         match opcode {
             b'(' => self.marks.push(self.stack.len()),
@@ -151,9 +172,9 @@ impl Machine<'_> {
                 self.push(Object::Tuple(items));
             }
             b'a' => return self.pop().and_then(|item| self.append(vec![item])),
-            b'e' => return self.pop_mark().and_then(|items| self.append(items)),
+            b'e' => return self.append_marked(),
             b's' => return self.pops::<2>().and_then(|pair| self.set_items(&pair)),
-            b'u' => return self.pop_mark().and_then(|items| self.set_items(&items)),
+            b'u' => return self.set_marked(),
             opcode => return Err(PickleError::Opcode { at: self.op, opcode }),
         }
         Ok(())

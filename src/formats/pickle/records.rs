@@ -120,11 +120,38 @@ pub(crate) fn visit_records<E: From<PickleError>>(
     })
 }
 
+/// The length of opcodes with what follows them, if that is always the same and nothing is recalled; otherwise 0.
+const PLAIN: [u8; 256] = {
+    let mut lengths = [1; 256];
+    let others = b".hj\x8aC\x8cXB\x8d\x8e\x96c";
+    let mut k = 0;
+    while k < others.len() {
+        lengths[others[k] as usize] = 0;
+        k += 1;
+    }
+    let longer = b"\x80\x02K\x02q\x02M\x03J\x05r\x05\x95\x09G\x09";
+    k = 0;
+    while k < longer.len() {
+        lengths[longer[k] as usize] = longer[k + 1];
+        k += 2;
+    }
+    lengths
+};
+
 /// Finds the places in the memo that are recalled later. What cannot be read ends the search: reading it fails there, too.
 pub(super) fn recalled(bytes: &[u8], limits: &Limits) -> Vec<bool> {
     let mut recalled = Vec::new();
     let mut rest = bytes;
     while let Some((&opcode, after)) = rest.split_first() {
+        // most opcodes are of these
+        let plain = PLAIN[usize::from(opcode)];
+        if plain > 0 {
+            match rest.get(usize::from(plain)..) {
+                Some(after) => rest = after,
+                None => break,
+            }
+            continue;
+        }
         let number = |n: usize| {
             after
                 .get(..n)
@@ -145,10 +172,8 @@ pub(super) fn recalled(bytes: &[u8], limits: &Limits) -> Vec<bool> {
         let sized = |n: usize| number(n).and_then(|length| usize::try_from(length).ok()?.checked_add(n));
         let length = match opcode {
             b'.' => None,
-            0x80 | b'K' | b'q' | b'h' => Some(1),
-            b'M' => Some(2),
-            b'J' | b'r' | b'j' => Some(4),
-            0x95 | b'G' => Some(8),
+            b'h' => Some(1),
+            b'j' => Some(4),
             0x8a | 0x8c | b'C' => sized(1),
             b'X' | b'B' => sized(4),
             0x8d | 0x8e | 0x96 => sized(8),

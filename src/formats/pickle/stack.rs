@@ -1,7 +1,7 @@
 //! The stack machine of a pickle: bytes in, values on a stack, objects and a memo.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::PickleError;
 use super::numbers::Dtype;
@@ -11,6 +11,24 @@ use crate::limits::Limits;
 
 /// The outcome of an opcode.
 pub(super) type Done = Result<(), PickleError>;
+
+/// How much room is kept of what is no longer used: entries, and lists or dictionaries.
+const KEPT: [usize; 2] = [64, 4096];
+
+/// Room for the items of short lists and the entries of short dictionaries. Records are many and short.
+#[derive(Default)]
+struct Spare {
+    lists: Vec<Vec<Item>>,
+    dicts: Vec<Vec<(Item, Item)>>,
+}
+
+/// Empties a list and keeps its room.
+fn keep<T>(spare: &mut Vec<Vec<T>>, mut list: Vec<T>) {
+    if (1..=KEPT[0]).contains(&list.capacity()) && spare.len() < KEPT[1] {
+        list.clear();
+        spare.push(list);
+    }
+}
 
 /// A pickle being read: the bytes, the stack, the memo and the objects made so far.
 pub(super) struct Machine<'a> {
@@ -26,10 +44,14 @@ pub(super) struct Machine<'a> {
     pub memo_length: usize,
     memo: BTreeMap<usize, Item>,
     recalled: Vec<bool>,
-    /// Objects in the memo, which may be referred to more than once.
-    shared: BTreeSet<usize>,
+    /// Objects in the memo, which may be referred to more than once, by their place.
+    shared: Vec<bool>,
     /// Objects that are no longer used, whose places are.
     free: Vec<usize>,
+    /// Room of lists and dictionaries that are no longer used.
+    spare: Spare,
+    /// Objects that are yet to be released.
+    releasing: Vec<usize>,
     /// What of [`Limits::pickle_numbers`] is left.
     budget: usize,
 }
@@ -48,8 +70,10 @@ impl<'a> Machine<'a> {
             memo_length: 0,
             memo: BTreeMap::new(),
             recalled: recalled(bytes, limits),
-            shared: BTreeSet::new(),
+            shared: Vec::new(),
             free: Vec::new(),
+            spare: Spare::default(),
+            releasing: Vec::new(),
             budget: limits.pickle_numbers,
         }
     }
@@ -60,6 +84,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns the next `n` bytes.
+    #[inline]
     pub fn take(&mut self, n: usize) -> Result<&'a [u8], PickleError> {
         let piece = self.bytes.get(self.at..).and_then(|rest| rest.get(..n));
         let piece = piece.ok_or(PickleError::Truncated { at: self.bytes.len() })?;
@@ -68,6 +93,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Returns the next `N` bytes as an array.
+    #[inline]
     pub fn array<const N: usize>(&mut self) -> Result<[u8; N], PickleError> {
         let mut out = [0; N];
         out.copy_from_slice(self.take(N)?);
@@ -100,6 +126,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Pushes a new object.
+    #[inline]
     pub fn push(&mut self, object: Object<'a>) {
         let place = self.free.pop().unwrap_or(self.objects.len());
         match self.objects.get_mut(place) {
@@ -110,27 +137,42 @@ impl<'a> Machine<'a> {
     }
 
     /// Takes what the list at the bottom of the stack, if the pickle is one, has so far.
+    #[inline]
     pub fn take_records(&mut self) -> Option<Vec<Item>> {
-        match (self.stack.first(), self.objects.first_mut()) {
-            (Some(Item::Object(0)), Some(Object::List(items))) if !items.is_empty() => Some(std::mem::take(items)),
+        match (&self.stack[..], self.objects.first_mut()) {
+            ([Item::Object(0)], Some(Object::List(items))) if !items.is_empty() => Some(std::mem::take(items)),
             _ => None,
         }
     }
 
     /// Frees the places of an item that nothing refers to any more, and of what is in it.
     pub fn release(&mut self, item: Item) {
-        let mut rest = vec![item];
-        while let Some(item) = rest.pop() {
-            let Item::Object(place) = item else { continue };
-            if self.shared.contains(&place) {
-                continue;
-            }
+        self.release_later(item);
+        while let Some(place) = self.releasing.pop() {
             match std::mem::replace(&mut self.objects[place], Object::List(Vec::new())) {
-                Object::List(items) | Object::Tuple(items) => rest.extend(items),
-                Object::Dict(pairs) => rest.extend(pairs.into_iter().flat_map(|(key, value)| [key, value])),
+                Object::List(items) | Object::Tuple(items) => {
+                    items.iter().for_each(|&item| self.release_later(item));
+                    keep(&mut self.spare.lists, items);
+                }
+                Object::Dict(pairs) => {
+                    for &(key, value) in &pairs {
+                        self.release_later(key);
+                        self.release_later(value);
+                    }
+                    keep(&mut self.spare.dicts, pairs);
+                }
                 _ => {}
             }
             self.free.push(place);
+        }
+    }
+
+    #[inline]
+    fn release_later(&mut self, item: Item) {
+        if let Item::Object(place) = item
+            && !self.shared.get(place).copied().unwrap_or(false)
+        {
+            self.releasing.push(place);
         }
     }
 
@@ -169,6 +211,59 @@ impl<'a> Machine<'a> {
         Ok(self.stack.split_off(mark))
     }
 
+    /// Appends the items above the last mark to the list below it.
+    pub fn append_marked(&mut self) -> Done {
+        let (mark, list) = self.below_mark()?;
+        let items = self.stack.len() - mark;
+        self.spend(items)?;
+        match list.and_then(|place| self.objects.get_mut(place)) {
+            Some(Object::List(list)) => {
+                if list.capacity() == 0 && items <= KEPT[0] {
+                    *list = self.spare.lists.pop().unwrap_or_default();
+                }
+                list.extend(self.stack.drain(mark..));
+                Ok(())
+            }
+            _ => Err(self.bad("items for something that is not a list")),
+        }
+    }
+
+    /// Adds the keys and values above the last mark to the dictionary below it.
+    pub fn set_marked(&mut self) -> Done {
+        let (mark, dict) = self.below_mark()?;
+        let items = self.stack.len() - mark;
+        if !items.is_multiple_of(2) {
+            return Err(self.bad("a key without a value"));
+        }
+        self.spend(items)?;
+        match dict.and_then(|place| self.objects.get_mut(place)) {
+            Some(Object::Dict(dict)) => {
+                if dict.capacity() == 0 && items <= KEPT[0] {
+                    *dict = self.spare.dicts.pop().unwrap_or_default();
+                }
+                let (pairs, _) = self.stack[mark..].as_chunks::<2>();
+                dict.extend(pairs.iter().map(|&[key, value]| (key, value)));
+                self.stack.truncate(mark);
+                Ok(())
+            }
+            _ => Err(self.bad("entries for something that is not a dictionary")),
+        }
+    }
+
+    /// Pops the last mark. Returns its place, and the place of the object below it, if it is one.
+    fn below_mark(&mut self) -> Result<(usize, Option<usize>), PickleError> {
+        let mark = self.marks.pop().ok_or_else(|| self.bad("a mark is missing"))?;
+        // as if everything above the mark had been popped
+        if mark <= self.marks.last().copied().unwrap_or(0) {
+            return Err(self.bad("a value is missing"));
+        }
+        let below = match self.stack.get(mark - 1) {
+            Some(Item::Object(place)) => Some(*place),
+            _ => None,
+        };
+        Ok((mark, below))
+    }
+
     /// Returns the top value and leaves it there.
     pub fn top(&mut self) -> Result<Item, PickleError> {
         let item = self.pop()?;
@@ -177,6 +272,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Remembers the top value in the memo.
+    #[inline]
     pub fn put(&mut self, index: usize) -> Done {
         let item = self.top()?;
         if index > self.memo_length {
@@ -186,13 +282,15 @@ impl<'a> Machine<'a> {
         if self.recalled.get(index).copied().unwrap_or(false) {
             self.memo.insert(index, item);
             if let Item::Object(place) = item {
-                self.shared.insert(place);
+                self.shared.resize(self.shared.len().max(place + 1), false);
+                self.shared[place] = true;
             }
         }
         Ok(())
     }
 
     /// Pushes a value of the memo.
+    #[inline]
     pub fn get(&mut self, index: usize) -> Done {
         let item = self.memo.get(&index).copied();
         self.stack
@@ -201,6 +299,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Takes numbers off the budget.
+    #[inline]
     pub fn spend(&mut self, numbers: usize) -> Done {
         let (what, limit) = ("numbers", self.limits.pickle_numbers);
         let left = self.budget.checked_sub(numbers);

@@ -44,13 +44,30 @@ fn what_is_written_reads_back() {
 
 #[test]
 fn a_list_written_item_by_item_is_the_same_list() {
-    let mut writer = ListWriter::new();
+    let mut writer = ListWriter::with_capacity(0);
+    assert_eq!(writer.as_bytes(), to_bytes(&Value::list([])).unwrap());
     // more than are appended at once
-    let items = || (0..2500).map(|k| if k % 1000 == 0 { sample() } else { Value::Int(k) });
-    items().for_each(|item| writer.push(&item).unwrap());
-    let bytes = writer.finish();
-    assert!(bytes == to_bytes(&Value::list(items())).unwrap());
-    assert!(from_bytes(&bytes).unwrap() == Value::list(items()));
+    let long = |k: i64| if k == 7 { 2500 } else { k % 3 };
+    for k in 0..2500 {
+        writer.push(|dict| {
+            dict.ints("list", (0..long(k)).map(|n| n * k));
+            dict.int("int", k - 300);
+            dict.float("float", k as f64 / 3.0);
+            dict.bool("bool", k % 2 == 0);
+            dict.text("text", &"x".repeat(k as usize % 300));
+        });
+    }
+    let list = Value::list((0..2500).map(|k| {
+        Value::dict([
+            ("list", Value::list((0..long(k)).map(|n| Value::Int(n * k)))),
+            ("int", Value::Int(k - 300)),
+            ("float", Value::Float(k as f64 / 3.0)),
+            ("bool", Value::Bool(k % 2 == 0)),
+            ("text", Value::Text("x".repeat(k as usize % 300).into())),
+        ])
+    }));
+    assert!(writer.as_bytes() == to_bytes(&list).unwrap());
+    assert!(from_bytes(writer.as_bytes()).unwrap() == list);
 }
 
 #[test]

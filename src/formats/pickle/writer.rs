@@ -17,36 +17,91 @@ pub fn to_bytes(value: &Value) -> Result<Vec<u8>, PickleError> {
     Ok(writer.out)
 }
 
-/// Writes a list item by item, so that the items need not be in memory at the same time. The bytes are those of
-/// [`to_bytes`] for the whole list.
+/// A list of dictionaries as a pickle that grows, so that what they were made from need not be in memory. The bytes are those
+/// of [`to_bytes`] for the whole list, whenever one looks.
+#[derive(Clone)]
 pub(crate) struct ListWriter {
     writer: Writer,
     items: usize,
 }
 
+/// What ends a pickled list, and the pickle.
+const END: &[u8] = b"e.";
+
 impl ListWriter {
-    /// Begins a list.
-    pub fn new() -> Self {
+    /// Begins a list, with room for so many bytes.
+    pub fn with_capacity(bytes: usize) -> Self {
         let mut writer = Writer::new();
+        writer.out.reserve(bytes);
         writer.begin_list();
+        writer.out.extend(END);
         Self { writer, items: 0 }
     }
 
-    /// Adds an item.
-    ///
-    /// # Errors
-    /// As [`to_bytes`].
-    pub fn push(&mut self, item: &Value) -> Result<(), PickleError> {
-        self.writer.item(self.items, item, 1)?;
+    /// Adds a dictionary, which `fill` fills.
+    pub fn push(&mut self, fill: impl FnOnce(&mut DictWriter)) {
+        let writer = &mut self.writer;
+        writer.out.truncate(writer.out.len() - END.len());
+        writer.begin_item(self.items);
+        writer.out.extend(b"}(");
+        fill(&mut DictWriter { writer });
+        writer.out.push(b'u');
+        writer.out.extend(END);
         self.items += 1;
-        Ok(())
     }
 
-    /// Ends the list and returns the pickle.
-    pub fn finish(mut self) -> Vec<u8> {
+    /// Returns the pickle.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.writer.out
+    }
+}
+
+impl std::fmt::Debug for ListWriter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (items, bytes) = (self.items, self.writer.out.len());
+        write!(f, "ListWriter {{ items: {items}, bytes: {bytes} }}")
+    }
+}
+
+/// Writes the entries of a dictionary.
+pub(crate) struct DictWriter<'w> {
+    writer: &'w mut Writer,
+}
+
+impl DictWriter<'_> {
+    /// Adds a whole number.
+    pub fn int(&mut self, key: &'static str, value: i64) {
+        self.writer.key(key);
+        self.writer.int(value);
+    }
+
+    /// Adds a list of whole numbers.
+    pub fn ints(&mut self, key: &'static str, values: impl Iterator<Item = i64>) {
+        self.writer.key(key);
+        self.writer.begin_list();
+        for (index, value) in values.enumerate() {
+            self.writer.begin_item(index);
+            self.writer.int(value);
+        }
         self.writer.end_list();
-        self.writer.out.push(b'.');
-        self.writer.out
+    }
+
+    /// Adds a number.
+    pub fn float(&mut self, key: &'static str, value: f64) {
+        self.writer.key(key);
+        self.writer.float(value);
+    }
+
+    /// Adds a truth value.
+    pub fn bool(&mut self, key: &'static str, value: bool) {
+        self.writer.key(key);
+        self.writer.bool(value);
+    }
+
+    /// Adds a text.
+    pub fn text(&mut self, key: &'static str, value: &str) {
+        self.writer.key(key);
+        self.writer.text(value);
     }
 }
 
@@ -56,6 +111,7 @@ const BATCH: usize = 1000;
 /// Memo indices of NumPy's constructor, its array type and the type `float64`.
 type Numpy = [u32; 3];
 
+#[derive(Clone)]
 struct Writer {
     out: Vec<u8>,
     keys: BTreeMap<Arc<str>, u32>,
@@ -82,31 +138,22 @@ impl Writer {
         }
         match value {
             Value::None => self.out.push(b'N'),
-            Value::Bool(b) => self.out.push(if *b { 0x88 } else { 0x89 }),
+            Value::Bool(b) => self.bool(*b),
             Value::Int(i) => self.int(*i),
-            Value::Float(f) => {
-                self.out.push(b'G');
-                self.out.extend(f.to_be_bytes());
-            }
+            Value::Float(f) => self.float(*f),
             Value::Text(t) => self.text(t),
             Value::List(items) => {
                 self.begin_list();
                 for (index, item) in items.iter().enumerate() {
-                    self.item(index, item, depth + 1)?;
+                    self.begin_item(index);
+                    self.value(item, depth + 1)?;
                 }
                 self.end_list();
             }
             Value::Dict(items) => {
                 self.out.extend(b"}(");
                 for (key, item) in items.iter() {
-                    match self.keys.get(&**key) {
-                        Some(&index) => self.get(index),
-                        None => {
-                            self.text(key);
-                            let index = self.put();
-                            self.keys.insert(key.clone(), index);
-                        }
-                    }
+                    self.key(key);
                     self.value(item, depth + 1)?;
                 }
                 self.out.push(b'u');
@@ -120,12 +167,23 @@ impl Writer {
         self.out.extend(b"](");
     }
 
-    /// Writes an item of a list by its index.
-    fn item(&mut self, index: usize, item: &Value, depth: usize) -> Result<(), PickleError> {
+    /// Begins an item of a list by its index.
+    fn begin_item(&mut self, index: usize) {
         if index > 0 && index.is_multiple_of(BATCH) {
             self.out.extend(b"e(");
         }
-        self.value(item, depth)
+    }
+
+    /// Writes a key of a dictionary, in full for the first time only.
+    fn key(&mut self, key: &str) {
+        match self.keys.get(key) {
+            Some(&index) => self.get(index),
+            None => {
+                self.text(key);
+                let index = self.put();
+                self.keys.insert(key.into(), index);
+            }
+        }
     }
 
     fn end_list(&mut self) {
@@ -149,6 +207,15 @@ impl Writer {
                 self.out.extend(index.to_le_bytes());
             }
         }
+    }
+
+    fn bool(&mut self, on: bool) {
+        self.out.push(if on { 0x88 } else { 0x89 });
+    }
+
+    fn float(&mut self, number: f64) {
+        self.out.push(b'G');
+        self.out.extend(number.to_be_bytes());
     }
 
     fn int(&mut self, i: i64) {

@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::physics::constraint::RowBuilder;
 use crate::physics::contact::{ContactOptions, Quirks};
 use crate::physics::dynamics::*;
-use crate::physics::engine::{EngineError, Stage, check_input, check_motion, check_output};
+use crate::physics::engine::{EngineError, Stage, check_contacts, check_input, check_motion, check_output};
 use crate::physics::params::Params;
 use crate::physics::rapier::contacts::{ContactAims, ContactHooks, read_contacts};
 use crate::physics::rapier::rig::Rig;
@@ -271,7 +271,8 @@ impl Bridge {
         read_welds(&self.rig, model, s, sets);
         rne_post_constraint(model, s, self.options.double_weld_torque);
         sensors(model, s);
-        check_output(model, s)
+        check_output(model, s)?;
+        check_contacts(model, s)
     }
 
     /// Advances the state by a time step with these accelerations, as MuJoCo does, with implicit joint damping.

@@ -8,8 +8,9 @@ use super::plane::{Basis, Vertex};
 use super::target::{Target, Triangle};
 use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
+use crate::render::drawable::{Drawable, Element, Shape};
 use crate::render::view::{Poses, View};
-use crate::render::visual::{Drawable, Element, Shape, Visual};
+use crate::render::visual::Visual;
 
 /// The geometry of an image.
 #[derive(Debug, Default)]
@@ -121,6 +122,7 @@ impl Frame {
         let eye = Eye::new(visual, poses, view);
         self.clear(visual, view, targets);
         for (i, drawable) in visual.drawables.iter().enumerate() {
+            let drawable = &drawable.sized(poses);
             let (pos, mat) = pose(drawable, poses);
             let [x, y, z] = eye.locate(single(pos));
             let r = drawable.radius;
@@ -200,7 +202,7 @@ impl Frame {
 
     /// Draws a drawable unless it is hidden.
     fn place(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
-        let drawable = &visual.drawables[index];
+        let drawable = &visual.drawables[index].sized(poses);
         let (pos, mat) = pose(drawable, poses);
         if self.hidden(drawable, eye, single(pos)) {
             return;
@@ -216,7 +218,7 @@ impl Frame {
             ..self.draws[index]
         };
         self.placed.push(index as u32);
-        self.add(visual, eye, index);
+        self.add(visual, drawable, eye, index);
     }
 
     /// Writes the distance (m) from the camera's plane to what the middle of each pixel shows, rows from the top; infinity

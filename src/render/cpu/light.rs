@@ -6,9 +6,10 @@ use super::camera::{Eye, V3, single, unit};
 use super::frame::PlacedDrawable;
 use super::lanes::{four, three};
 use crate::math::{Vec3, add, mat_vec, sub};
+use crate::render::drawable::Drawable;
 use crate::render::mesh::MeshPart;
 use crate::render::view::Poses;
-use crate::render::visual::{Aim, Drawable, Light, Visual};
+use crate::render::visual::{Aim, Light, Visual};
 
 /// Weakest highlight that is computed.
 const FAINT: f32 = 1e-4;
@@ -292,6 +293,7 @@ mod tests {
         let poses = Poses {
             geom_xpos: &[],
             geom_xmat: &[],
+            geom_size: &[],
             site_xpos: &[],
             site_xmat: &[],
             cam_xpos: &[],

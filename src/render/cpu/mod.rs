@@ -30,8 +30,9 @@ pub(super) use light::{PlacedLight, place as place_lights};
 use shade::{Pixels, Shader};
 
 use crate::render::RenderError;
+use crate::render::drawable::Element;
 use crate::render::view::{ImageBuffers, Poses, View, fits};
-use crate::render::visual::{Element, Visual};
+use crate::render::visual::Visual;
 
 /// A renderer on the CPU. It keeps its buffers, so that drawing allocates nothing once the largest image has been
 /// drawn.

@@ -8,14 +8,14 @@ use super::facing::Facing;
 use super::frame::Frame;
 use super::plane::Vertex;
 use super::raster::LIMIT;
+use crate::render::drawable::Drawable;
 use crate::render::mesh::{Band, LANES, Mesh};
 use crate::render::patch::ALL;
 use crate::render::visual::Visual;
 
 impl Frame {
-    /// Projects and draws a drawable.
-    pub fn add(&mut self, visual: &Visual, eye: &Eye, index: usize) {
-        let drawable = &visual.drawables[index];
+    /// Projects and draws a drawable, of which the index is given, too.
+    pub fn add(&mut self, visual: &Visual, drawable: &Drawable, eye: &Eye, index: usize) {
         let mesh = &visual.meshes[drawable.shape as usize];
         let draw = self.draws[index];
         self.vertices.resize(draw.end, Vertex::default());

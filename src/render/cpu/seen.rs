@@ -8,9 +8,10 @@ use super::lanes::{four, three};
 use super::light::{self, Corners, PlacedLight};
 use super::shade::Pixels;
 use super::target::{NONE, Target};
+use crate::render::drawable::Drawable;
 use crate::render::mesh::Mesh;
 use crate::render::view::Poses;
-use crate::render::visual::{Drawable, Visual};
+use crate::render::visual::Visual;
 
 /// The triangles and vertices that an image shows.
 #[derive(Debug, Default)]
@@ -99,7 +100,7 @@ impl Seen {
             }
         }
         self.mark(frame);
-        self.light(frame, visual, eye);
+        self.light(frame, visual, poses, eye);
         self.between(frame);
     }
 
@@ -182,12 +183,12 @@ impl Seen {
     }
 
     /// Lights the vertices of meshes.
-    fn light(&mut self, frame: &Frame, visual: &Visual, eye: &Eye) {
+    fn light(&mut self, frame: &Frame, visual: &Visual, poses: &Poses, eye: &Eye) {
         const STRIDE: usize = 8;
         self.lit.clear();
         for &index in &frame.placed {
             let draw = &frame.draws[index as usize];
-            let drawable = &visual.drawables[index as usize];
+            let drawable = &visual.drawables[index as usize].sized(poses);
             let mesh = &visual.meshes[drawable.shape as usize];
             let (mut batch, mut count) = ([0; 4], 0);
             for first in (draw.base..draw.end).step_by(STRIDE) {

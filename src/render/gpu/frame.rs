@@ -5,7 +5,8 @@ use super::pipelines::Output;
 use super::scene::{GpuScene, LIGHTS};
 use crate::render::RenderRequest;
 use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, pose, single};
-use crate::render::visual::{Drawable, Element, Shape, Visual};
+use crate::render::drawable::{Drawable, Element, Shape};
+use crate::render::visual::Visual;
 
 /// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
 pub const INSTANCE: usize = 44;
@@ -157,6 +158,7 @@ impl Frame {
     /// Finds what a view shows.
     fn sort(&mut self, r: &Submission, view: usize, eye: &Eye) {
         for (i, drawable) in r.visual.drawables.iter().enumerate() {
+            let drawable = &drawable.sized(&r.requests[view].poses);
             let (pos, mat) = pose(drawable, &r.requests[view].poses);
             let at = eye.locate(single(pos));
             let Some(whole) = seen(eye, at, drawable.radius, r.visual.far as f32) else {
@@ -265,6 +267,7 @@ fn behind(eye: &Eye, drawable: &Drawable, pos: V3, mat: &crate::math::Mat3) -> b
 }
 
 fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> [f32; INSTANCE] {
+    let drawable = &drawable.sized(&r.requests[view].poses);
     let (pos, mat) = pose(drawable, &r.requests[view].poses);
     let [x, y, z] = eye.model(pos, &mat, drawable.size);
     let [sx, sy, length] = drawable.size;

@@ -7,9 +7,10 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::pipelines::Layouts;
+use crate::render::drawable::{Drawable, Shape};
 use crate::render::mesh::{Mesh, MeshPart};
 use crate::render::texture::{Face, Level, Texture};
-use crate::render::visual::{Drawable, Shape, Visual};
+use crate::render::visual::Visual;
 
 /// Number of lights in the shader.
 pub const LIGHTS: usize = 8;

@@ -190,10 +190,19 @@ impl From<PickleError> for Stop {
 }
 
 /// Hands out the records of a training log, one at a time.
-fn visit(path: &Path, limits: &Limits, mut each: impl FnMut(Info)) -> Result<(), LogError> {
-    let bytes = super::read_bytes(path, limits)?;
+pub(super) fn visit(path: &Path, limits: &Limits, each: impl FnMut(Info)) -> Result<(), LogError> {
+    visit_bytes(&super::read_bytes(path, limits)?, path, limits, each)
+}
+
+/// Hands out the records of the bytes of a training log; `path` stands for them in errors.
+pub(super) fn visit_bytes(
+    bytes: &[u8],
+    path: &Path,
+    limits: &Limits,
+    mut each: impl FnMut(Info),
+) -> Result<(), LogError> {
     let mut records = Records::new(limits);
-    let root = pickle::visit_records(&bytes, limits, |node| {
+    let root = pickle::visit_records(bytes, limits, |node| {
         each(records.next(node).map_err(Stop::Foreign)?);
         Ok(())
     });

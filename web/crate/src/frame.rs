@@ -3,13 +3,14 @@
 use babybench::math::mat_t_vec;
 use babybench::model::Model;
 use babybench::physics::State;
-use babybench::render::{Element, Visual};
+use babybench::render::{Element, Poses, Visual};
 use babybench::sensors::Touch;
 
 /// Poses, feelings and contacts of one moment.
 #[derive(Default)]
 pub struct Frame {
-    /// For each thing that is drawn (12): position, m, and rotation matrix, row by row.
+    /// For each thing that is drawn (12): position, m, and rotation matrix, row by row, whose columns are as long as the thing
+    /// has grown since it was compiled.
     pub poses: Vec<f32>,
     /// For each body (7): position, m, and quaternion, w first.
     pub bodies: Vec<f32>,
@@ -23,12 +24,17 @@ impl Frame {
     /// Takes the poses at the start of the last physics step, and what was felt there.
     pub fn update(&mut self, model: &Model, visual: &Visual, s: &State, touch: Option<&Touch>) {
         self.poses.clear();
+        let placed = Poses::from(s);
         for d in &visual.drawables {
             let (pos, mat) = match d.element {
                 Element::Geom(g) => (&s.geom_xpos[g], &s.geom_xmat[g]),
                 Element::Site(i) => (&s.site_xpos[i], &s.site_xmat[i]),
             };
-            self.poses.extend(pos.iter().chain(mat).map(|&v| v as f32));
+            self.poses.extend(pos.iter().map(|&v| v as f32));
+            let size = d.sized(&placed).size;
+            let grown = |i: usize| if size[i] == d.size[i] { 1.0 } else { size[i] / d.size[i] };
+            self.poses
+                .extend(mat.iter().enumerate().map(|(i, &v)| v as f32 * grown(i % 3)));
         }
         self.bodies.clear();
         for (pos, quat) in s.xpos.iter().zip(&s.xquat) {

@@ -46,7 +46,17 @@ export class App {
     this.listeners = new Map();
     this.lastFrame = 0;
     this.lastTick = 0;
+    /** The last world that is being built, if one is. */
+    this.turn = Promise.resolve();
+    /** Changes that wait for their world, the first of them first. */
+    /** @type {Settings[]} */
+    this.asked = [];
     this.world = this.connect(worker);
+  }
+
+  /** The settings as they will be when everything that was asked for is built. */
+  get settings() {
+    return /** @type {Settings} */ (Object.assign({}, this.state.settings, ...this.asked));
   }
 
   /** @param {Worker} [worker] a new one by default */
@@ -155,7 +165,26 @@ export class App {
    * @param {Uint8Array<ArrayBuffer> | null} snapshot
    * @param {string} [yaml] the settings as a file, which may hold more than the page shows
    */
-  async make(settings, snapshot, yaml) {
+  make(settings, snapshot, yaml) {
+    return this.inTurn(() => this.build(settings, snapshot, yaml));
+  }
+
+  /**
+   * Builds worlds one after the other, so that each starts from what those before it left.
+   * @param {() => Promise<void>} work
+   */
+  inTurn(work) {
+    const done = this.turn.then(work);
+    this.turn = done.catch(() => {});
+    return done;
+  }
+
+  /**
+   * @param {Settings} settings
+   * @param {Uint8Array<ArrayBuffer> | null} snapshot
+   * @param {string} [yaml]
+   */
+  async build(settings, snapshot, yaml) {
     const { seed, policy, held, vigour, speed, locks } = this.state;
     /** @type {Scene} */
     const scene = await this.world.ask("make", { settings: yaml ?? settings, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot });
@@ -184,14 +213,23 @@ export class App {
    * @param {Settings} change
    */
   async change(change) {
-    const settings = { ...this.state.settings, ...change };
-    this.state.locks = [];
-    await this.make(settings, null);
+    this.asked.push(change);
+    try {
+      await this.inTurn(() => {
+        this.state.locks = [];
+        return this.build({ ...this.state.settings, ...change }, null);
+      });
+    } finally {
+      this.asked = this.asked.filter((other) => other !== change);
+      this.emit("state");
+    }
   }
 
   /** Starts the worker again after it died, with what the page knows. */
   async revive() {
     this.world.stop();
+    this.turn = Promise.resolve();
+    this.asked = [];
     this.world = this.connect();
     await this.world.ask("load");
     await this.make(this.state.settings, null);

@@ -84,6 +84,21 @@ test("what is described fits the numbers", () => {
   env.free();
 });
 
+test("a ball of another size is drawn so", () => {
+  const env = new Env({ behavior: "catch" });
+  const grown = (/** @type {number} */ seed) => {
+    env.reset(seed);
+    const { poses } = env.update();
+    const lengths = env.look.drawables.map((_, i) => Math.hypot(poses[12 * i + 3], poses[12 * i + 6], poses[12 * i + 9]));
+    return lengths.flatMap((length, i) => (Math.abs(length - 1) > 1e-5 ? [[i, length]] : []));
+  };
+  const [one, other] = [grown(0), grown(1)];
+  assert.deepEqual([one.length, other.length, one[0][0]], [1, 1, other[0][0]]);
+  assert.notEqual(one[0][1], other[0][1]);
+  assert.match(env.model.bodies[env.look.drawables[one[0][0]].body].name, /target|ball/);
+  env.free();
+});
+
 test("every sense has its view", () => {
   const bare = new Env(crib);
   const { touch_pooled, pain, eye_left, eye_left_depth } = bare.reset(0);

@@ -251,10 +251,20 @@ test("scene, behavior, body, actuation, seed and settings", async () => {
   await page.getByLabel("touch_scale").fill("2");
   await page.getByLabel("touch_scale").press("Enter");
   await until(page, () => mimo.scene.settings.touch_scale === 2 && mimo.scene.skin.of.length < 3000);
-  await page.getByLabel("touch_eyes").check();
-  await until(page, () => mimo.scene.settings.touch_eyes === true);
-  await page.getByLabel("vision_active").check();
-  await until(page, () => mimo.scene.settings.vision_active === true);
+  // quicker than a world is built, with one between that the library refuses: nothing else is lost, and no box jumps back
+  assert.deepEqual(await page.evaluate(async () => {
+    const box = (name) => [...document.querySelectorAll("#panel-setup .keys label")].find((label) => label.textContent === name).querySelector("input");
+    const boxes = ["touch_eyes", "vision_active"].map(box);
+    boxes[0].click();
+    const refused = mimo.change({ touch_scale: -1 }).catch((e) => e.message);
+    boxes[1].click();
+    const seen = [];
+    mimo.on("state", () => seen.push(boxes.every((b) => b.checked)));
+    const message = await refused;
+    await mimo.turn;
+    return [/touch_scale/.test(message), seen.includes(false), mimo.asked.length];
+  }), [true, false, 0]);
+  await until(page, () => mimo.scene.settings.touch_eyes === true && mimo.scene.settings.vision_active === true && mimo.scene.settings.touch_scale === 2);
   await page.getByRole("group", { name: "vision_outputs" }).getByLabel("depth").check();
   await until(page, () => String(mimo.scene.settings.vision_outputs) === "rgb,depth");
   await page.getByLabel("delay_vision").fill("3");

@@ -34,7 +34,7 @@ function eyes(app, change) {
   /** Whether vision is on for these two alone. */
   let lent = false;
   const see = (/** @type {Settings} */ settings) => change(() => {
-    const { vision_active, vision_acuity, vision_foveation } = { ...app.state.settings, ...settings };
+    const { vision_active, vision_acuity, vision_foveation } = { ...app.settings, ...settings };
     const needed = vision_acuity === true || Number(vision_foveation) > 0;
     if (needed && !vision_active) lent = true;
     return { ...settings, vision_active: needed || (vision_active === true && !lent) };
@@ -43,7 +43,7 @@ function eyes(app, change) {
   const foveation = slider("Foveation", { min: 0, max: 20, step: 1, value: 0, format: (v) => (v > 0 ? String(v) : "off") }, () => {});
   foveation.input.addEventListener("change", () => see({ vision_foveation: foveation.input.valueAsNumber }));
   app.on("state", () => {
-    const s = app.state.settings;
+    const s = app.settings;
     acuity.input.checked = s.vision_acuity === true;
     foveation.set(Number(s.vision_foveation) || 0);
     if (s.vision_active !== true) lent = false;
@@ -58,16 +58,16 @@ function eyes(app, change) {
  */
 function delays(app, change) {
   /** Milliseconds of a unit in which the configuration counts delays. */
-  const unit = () => (app.state.settings.delay_unit === "ms" ? 1 : 1000 * (app.scene?.timestep ?? 0.005));
+  const unit = () => (app.settings.delay_unit === "ms" ? 1 : 1000 * (app.scene?.timestep ?? 0.005));
   const set = (/** @type {string} */ key, /** @type {number} */ ms) => change(() => {
-    const counted = DELAYS.filter((name) => typeof app.state.settings[name] === "number");
-    const all = Object.fromEntries(counted.map((name) => [name, unit() * Number(app.state.settings[name])]));
+    const counted = DELAYS.filter((name) => typeof app.settings[name] === "number");
+    const all = Object.fromEntries(counted.map((name) => [name, unit() * Number(app.settings[name])]));
     return { ...all, delay_unit: "ms", [key]: ms };
   });
   const line = (/** @type {string} */ text, /** @type {string} */ key, /** @type {string} */ label) => {
     const made = slider(text, { min: 0, max: 400, step: 5, value: 0, format: (v) => `${Math.round(v)} ms`, label }, () => {});
     made.input.addEventListener("change", () => set(key, made.input.valueAsNumber));
-    app.on("state", () => made.set(unit() * (Number(app.state.settings[key]) || 0)));
+    app.on("state", () => made.set(unit() * (Number(app.settings[key]) || 0)));
     return made;
   };
   const hint = "Nerves take time: what MIMo senses, and what he does, comes this much later.";

@@ -44,7 +44,7 @@ function scene(app) {
   const places = choice("Scene", SCENES, (v) => change({ scene: v }));
   const isTask = (/** @type {unknown} */ name) => TASKS.some(([task]) => task === name);
   const choose = (/** @type {string} */ v) => {
-    const { behavior, age } = app.state.settings;
+    const { behavior, age } = app.settings;
     // what another task left would stand against the defaults of this one
     const kept = { behavior: v, age, vision_active: false, max_episode_steps: 12_000 };
     if (isTask(v)) attempt(() => app.begin(kept));
@@ -59,7 +59,7 @@ function scene(app) {
   const age = slider("Months", { min: 0, max: 24, step: 0.5, value: ORIGINAL, format: String, label: "Age of the body" }, () => {});
   age.input.addEventListener("change", () => change({ age: age.input.valueAsNumber }));
   app.on("state", () => {
-    const s = app.state.settings;
+    const s = app.settings;
     age.set(typeof s.age === "number" ? s.age : ORIGINAL);
     original.disabled = typeof s.age !== "number";
     for (const part of [place, body]) part.hidden = isTask(s.behavior);
@@ -148,7 +148,7 @@ function all(app) {
     }
   };
   const refresh = () => {
-    for (const [name, show] of fields) show(app.state.settings[name]);
+    for (const [name, show] of fields) show(app.settings[name]);
   };
   const details = el("details", { className: "part" }, el("summary", {}, "Every setting"), el("div", {}, error, list));
   details.addEventListener("toggle", async () => {

@@ -1,0 +1,185 @@
+//! Visible geoms and sites: shape, size, colour.
+
+use crate::math::Vec3;
+use crate::model::{GeomType, Model};
+use crate::render::texture::Texture;
+use crate::render::view::Poses;
+use crate::render::visual::single;
+
+/// Default colour of a geom; a geom that has it takes the colour of its material.
+const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
+
+/// The element of the model that a [`Drawable`] shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Element {
+    /// A geom, by id.
+    Geom(usize),
+    /// A site, by id.
+    Site(usize),
+}
+
+/// The mesh that a [`Drawable`] uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Shape {
+    /// A rectangle: [`Mesh::plane`](crate::render::Mesh::plane).
+    Plane,
+    /// A sphere or ellipsoid: [`Mesh::sphere`](crate::render::Mesh::sphere).
+    Sphere,
+    /// A capsule: [`Mesh::capsule`](crate::render::Mesh::capsule).
+    Capsule,
+    /// A cylinder: [`Mesh::cylinder`](crate::render::Mesh::cylinder).
+    Cylinder,
+    /// A box: [`Mesh::cube`](crate::render::Mesh::cube).
+    Box,
+}
+
+impl Shape {
+    /// All shapes, in the order of [`Visual::meshes`](crate::render::Visual::meshes).
+    pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
+}
+
+/// A visible geom or site.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawable {
+    /// Element of the model.
+    pub element: Element,
+    /// Mesh.
+    pub shape: Shape,
+    /// Scale of the unit shape as the model has it, m; a capsule's is radius, radius, half length. Images follow
+    /// [`Poses::geom_size`].
+    pub size: [f32; 3],
+    /// Radius of the bounding sphere around its origin, m.
+    pub radius: f32,
+    /// Colour and opacity.
+    pub rgba: [f32; 4],
+    /// Share of the colour that is emitted.
+    pub emission: f32,
+    /// Strength of highlights.
+    pub specular: f32,
+    /// Exponent of highlights.
+    pub exponent: f32,
+    /// Index into [`Visual::textures`](crate::render::Visual::textures).
+    pub texture: Option<usize>,
+    /// Scale of texture coordinates: they are those of the unit shape times this, plus `texture_offset`.
+    pub texture_scale: [f32; 3],
+    /// Offset of texture coordinates, see `texture_scale`.
+    pub texture_offset: f32,
+    /// Type and size of the element in the model.
+    kind: GeomType,
+    measured: Vec3,
+    /// Half of a side that has no end, m.
+    far: f32,
+    /// Whether the texture keeps its scale when the size changes.
+    texuniform: bool,
+}
+
+/// Returns the material of an element, by id.
+pub(super) fn material(model: &Model, element: Element) -> Option<usize> {
+    match element {
+        Element::Geom(g) => model.geom_matid[g],
+        Element::Site(s) => model.site_matid[s],
+    }
+}
+
+/// Returns the shape of an element of the model, its scale and the radius of its bounding sphere (m). `far` is half of
+/// the side of a plane that has no end.
+fn dimensions(kind: GeomType, size: Vec3, far: f32) -> (Shape, [f32; 3], f32) {
+    let [a, b, c] = single(size);
+    let length = |v: [f32; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    let extent = |half: f32| if half > 0.0 { half } else { far };
+    match kind {
+        GeomType::Plane => {
+            let [a, b] = [extent(a), extent(b)];
+            (Shape::Plane, [a, b, 1.0], length([a, b, 0.0]))
+        }
+        GeomType::Sphere => (Shape::Sphere, [a; 3], a),
+        GeomType::Capsule => (Shape::Capsule, [a, a, b], a + b),
+        GeomType::Ellipsoid => (Shape::Sphere, [a, b, c], a.max(b).max(c)),
+        GeomType::Cylinder => (Shape::Cylinder, [a, a, b], length([a, b, 0.0])),
+        GeomType::Box => (Shape::Box, [a, b, c], length([a, b, c])),
+    }
+}
+
+impl Drawable {
+    pub(super) fn new(model: &Model, element: Element, far: f32) -> Self {
+        let (kind, size, own) = match element {
+            Element::Geom(g) => (model.geom_type[g], model.geom_size[g], model.geom_rgba[g]),
+            Element::Site(s) => (model.site_type[s], model.site_size[s], model.site_rgba[s]),
+        };
+        let (shape, scale, radius) = dimensions(kind, size, far);
+        let mut drawable = Self {
+            element,
+            shape,
+            size: scale,
+            radius,
+            rgba: single(own),
+            emission: 0.0,
+            specular: 0.5,
+            exponent: 64.0,
+            texture: None,
+            texture_scale: [1.0; 3],
+            texture_offset: 0.0,
+            kind,
+            measured: size,
+            far,
+            texuniform: false,
+        };
+        if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
+            if drawable.rgba == DEFAULT_RGBA {
+                drawable.rgba = single(m.rgba);
+            }
+            drawable.emission = m.emission as f32;
+            drawable.specular = m.specular as f32;
+            drawable.exponent = m.shininess as f32 * 128.0;
+            drawable.texuniform = m.texuniform;
+        }
+        drawable
+    }
+
+    /// Returns the drawable with the size that its geom has in these poses.
+    #[inline(always)]
+    pub fn sized(&self, poses: &Poses) -> Self {
+        let size = match self.element {
+            Element::Geom(g) => poses.geom_size.get(g),
+            Element::Site(_) => None,
+        };
+        match size {
+            Some(size) if *size != self.measured => self.resized(*size),
+            _ => *self,
+        }
+    }
+
+    #[cold]
+    fn resized(&self, measured: Vec3) -> Self {
+        let (_, size, radius) = dimensions(self.kind, measured, self.far);
+        let mut other = Self {
+            size,
+            radius,
+            measured,
+            ..*self
+        };
+        if self.texuniform {
+            for k in 0..3 {
+                other.texture_scale[k] *= size[k] / self.size[k];
+            }
+        }
+        other
+    }
+
+    /// Derives texture coordinates from the material's repetition and the kind of texture.
+    pub(super) fn place_texture(&mut self, model: &Model, textures: &[Texture]) {
+        let (Some(texture), Some(m)) = (self.texture, material(model, self.element)) else {
+            return;
+        };
+        let m = &model.materials[m];
+        let scale = if m.texuniform { self.size } else { [1.0; 3] };
+        match textures[texture] {
+            Texture::Flat(_) => {
+                let [u, v] = single(m.texrepeat);
+                self.texture_scale = [0.5 * u * scale[0], -0.5 * v * scale[1], 0.0];
+                self.texture_offset = -0.5;
+            }
+            Texture::Cube(_) => self.texture_scale = scale,
+        }
+    }
+}

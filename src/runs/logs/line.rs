@@ -1,0 +1,159 @@
+//! A record as a line of JSON, byte for byte as `Detailed` serializes it. A long log has millions of them, so what they are made of
+//! most, names and small numbers, is made once.
+
+use std::io;
+
+use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, PartNames, PerHand};
+use crate::json;
+
+/// Makes lines.
+pub(super) struct LineMaker<'n> {
+    names: Option<&'n PartNames>,
+    /// Names of geoms as JSON, by geom, as far as they were needed.
+    quoted: Vec<String>,
+}
+
+impl<'n> LineMaker<'n> {
+    /// Makes lines in which touched parts have names, if there are any.
+    pub fn new(names: Option<&'n PartNames>) -> Self {
+        let quoted = Vec::new();
+        Self { names, quoted }
+    }
+
+    /// Appends the line of a record.
+    ///
+    /// # Errors
+    /// As [`json::line`].
+    pub fn line(&mut self, out: &mut Vec<u8>, info: &Info) -> io::Result<()> {
+        match &info.behavior {
+            BehaviorInfo::SelfTouch { touches } => self.touches(out, touches),
+            BehaviorInfo::HandRegard { counts } => {
+                for (k, (key, count)) in EYE_HAND_PAIRS.iter().zip(counts.to_array()).enumerate() {
+                    out.extend_from_slice(if k == 0 { b"{\"" } else { b", \"" });
+                    out.extend_from_slice(key.as_bytes());
+                    out.extend_from_slice(b"\": ");
+                    number(out, count);
+                }
+            }
+            BehaviorInfo::None | BehaviorInfo::Task(_) => return json::line(out, &Detailed { info, details: None }),
+        }
+        out.extend_from_slice(b", \"steps\": ");
+        number(out, info.steps);
+        out.extend_from_slice(b"}\n");
+        Ok(())
+    }
+
+    fn touches(&mut self, out: &mut Vec<u8>, touches: &PerHand<Vec<usize>>) {
+        out.extend_from_slice(b"{\"right_hand_touches\": ");
+        list(out, &touches.right_hand, |out, geom| number(out, geom as u64));
+        out.extend_from_slice(b", \"left_hand_touches\": ");
+        list(out, &touches.left_hand, |out, geom| number(out, geom as u64));
+        let Some(names) = self.names else { return };
+        out.extend_from_slice(b", \"right_hand_parts\": ");
+        list(out, &touches.right_hand, |out, geom| self.name(out, geom, names));
+        out.extend_from_slice(b", \"left_hand_parts\": ");
+        list(out, &touches.left_hand, |out, geom| self.name(out, geom, names));
+    }
+
+    fn name(&mut self, out: &mut Vec<u8>, geom: usize, names: &PartNames) {
+        match self.quoted.get(geom) {
+            Some(name) => out.extend_from_slice(name.as_bytes()),
+            // whatever numbers a log has, names are kept of few
+            None if geom < KEPT => {
+                let more = self.quoted.len()..=geom;
+                self.quoted.extend(more.map(|geom| json::text(&&*names.get(geom))));
+                self.name(out, geom, names);
+            }
+            None => out.extend_from_slice(json::text(&&*names.get(geom)).as_bytes()),
+        }
+    }
+}
+
+/// The names of so many geoms are kept.
+const KEPT: usize = 1000;
+
+/// Appends a list.
+fn list(out: &mut Vec<u8>, geoms: &[usize], mut item: impl FnMut(&mut Vec<u8>, usize)) {
+    out.push(b'[');
+    for (k, &geom) in geoms.iter().enumerate() {
+        if k > 0 {
+            out.extend_from_slice(b", ");
+        }
+        item(out, geom);
+    }
+    out.push(b']');
+}
+
+/// Appends a number.
+fn number(out: &mut Vec<u8>, mut n: u64) {
+    let (mut digits, mut first) = ([0; 20], 20);
+    loop {
+        first -= 1;
+        digits[first] = b'0' + (n % 10) as u8;
+        n /= 10;
+        if n == 0 {
+            break;
+        }
+    }
+    out.extend_from_slice(&digits[first..]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::env::{InfoDetails, Outcome, TaskInfo};
+
+    #[test]
+    fn lines_are_those_of_serde() {
+        let blueprint = crate::Blueprint::new(crate::Config {
+            touch_active: false,
+            vision_active: false,
+            ..crate::Config::default()
+        });
+        let names = PartNames::new(blueprint.expect("a scene").model());
+        let touches = |right: &[usize], left: &[usize]| BehaviorInfo::SelfTouch {
+            touches: PerHand {
+                right_hand: right.to_vec(),
+                left_hand: left.to_vec(),
+            },
+        };
+        let task = TaskInfo {
+            outcome: Outcome {
+                is_success: true,
+                is_failure: false,
+            },
+            episode_return: -0.1,
+            ..TaskInfo::default()
+        };
+        let behaviors = [
+            BehaviorInfo::None,
+            touches(&[], &[]),
+            touches(&[3, 0, 35, 7], &[12]),
+            touches(&[], &[999, 1000, usize::MAX]),
+            BehaviorInfo::HandRegard {
+                counts: [0, 9, 10, u64::MAX].into(),
+            },
+            BehaviorInfo::Task(task),
+        ];
+        for names in [None, Some(&names)] {
+            let mut maker = LineMaker::new(names);
+            for (steps, behavior) in [0, 1, 100, 12_345, u64::MAX, 7].into_iter().zip(behaviors.clone()) {
+                let details = names.map(|names| {
+                    let mut details = InfoDetails::default();
+                    details.name_parts(&behavior, names);
+                    details
+                });
+                let info = Info {
+                    steps,
+                    behavior,
+                    ..Info::default()
+                };
+                let (mut line, mut expected) = (Vec::new(), Vec::new());
+                maker.line(&mut line, &info).expect("a line");
+                let details = details.as_ref();
+                json::line(&mut expected, &Detailed { info: &info, details }).expect("a line");
+                assert_eq!(String::from_utf8(line), String::from_utf8(expected));
+            }
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! `training.jsonl`: the records of a training log as lines of JSON, for everyone who reads no pickles.
+//!
+//! Lines that are on disk are not made again: a new file is the old one and the new lines.
+
+use std::collections::VecDeque;
+use std::fs::{File, Metadata};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::SystemTime;
+
+use super::LogError;
+use super::line::LineMaker;
+use crate::env::{Info, PartNames};
+use crate::files::{self, replace_file_with};
+
+/// Lines are written, and read, when there are more bytes of them than this.
+const AT_ONCE: usize = 1 << 16;
+
+/// A file that this log has written or looked through.
+#[derive(Clone, Debug)]
+struct Known {
+    records: usize,
+    length: u64,
+    modified: Option<SystemTime>,
+}
+
+impl Known {
+    fn of(records: usize, meta: &Metadata) -> Self {
+        Self {
+            records,
+            length: meta.len(),
+            modified: meta.modified().ok(),
+        }
+    }
+
+    /// Returns whether a file is still the same, as far as one can tell without reading it.
+    fn is(&self, meta: &Metadata) -> bool {
+        meta.is_file() && meta.len() == self.length && meta.modified().ok() == self.modified
+    }
+}
+
+/// The records of a log that is resumed: their number and the first of them.
+#[derive(Clone, Debug)]
+struct Resumed {
+    records: usize,
+    first: Info,
+}
+
+/// What is known of the file of lines beside a training log.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    /// For the names of touched parts.
+    names: Option<PartNames>,
+    resumed: Option<Resumed>,
+    known: Mutex<Option<Known>>,
+}
+
+impl Clone for Lines {
+    fn clone(&self) -> Self {
+        Self {
+            names: self.names.clone(),
+            resumed: self.resumed.clone(),
+            known: Mutex::new(self.known()),
+        }
+    }
+}
+
+impl Lines {
+    /// Starts with the lines that may lie beside a log of so many records, of which `first` is the first one.
+    pub fn of(first: Option<Info>, records: usize) -> Self {
+        Self {
+            resumed: first.map(|first| Resumed { records, first }),
+            ..Self::default()
+        }
+    }
+
+    /// Sets the names of touched parts.
+    pub fn set_names(&mut self, names: Option<PartNames>) {
+        if self.names != names {
+            self.names = names;
+            // lines with other names are made again
+            self.known = Mutex::default();
+        }
+    }
+
+    /// Takes a file for that of so many records, which was just written.
+    pub fn know(&self, path: &Path, records: usize) {
+        let meta = std::fs::metadata(path).ok();
+        let known = meta.map(|meta| Known::of(records, &meta));
+        *self.known.lock().unwrap_or_else(PoisonError::into_inner) = known;
+    }
+
+    fn known(&self) -> Option<Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Brings the file up to date with `total` records, of which `recent` are the last and `visit` hands out all.
+    ///
+    /// # Errors
+    /// What the file system says; what `visit` says.
+    pub fn save(
+        &self,
+        path: &Path,
+        total: usize,
+        recent: &VecDeque<Info>,
+        visit: impl FnOnce(&mut dyn FnMut(&Info)) -> Result<(), LogError>,
+    ) -> Result<(), LogError> {
+        let last = |records: usize| recent.len().checked_sub(total.checked_sub(records)?);
+        let usable = |known: &Known| last(known.records).is_some();
+        let known = self
+            .known()
+            .filter(|known| std::fs::metadata(path).is_ok_and(|meta| known.is(&meta)));
+        let adopt = || {
+            let resumed = self.resumed.as_ref()?;
+            let before = recent.get(last(resumed.records)?.checked_sub(1)?)?;
+            self.adopt(path, resumed, before).ok().flatten()
+        };
+        let known = known.or_else(adopt).filter(usable);
+        let added = known.and_then(|known| self.append(path, &known, recent.range(last(known.records)?..)).ok());
+        if added.is_none() {
+            self.write_all(path, visit)?;
+        }
+        self.know(path, total);
+        Ok(())
+    }
+
+    /// Looks whether a file holds the lines of a log that is resumed: as many, with the same first and last one.
+    fn adopt(&self, path: &Path, resumed: &Resumed, last: &Info) -> io::Result<Option<Known>> {
+        let mut file = files::open(path)?;
+        let meta = file.metadata()?;
+        let mut begins = |line: &[u8], from: SeekFrom| -> io::Result<bool> {
+            file.seek(from)?;
+            let mut found = Vec::new();
+            Read::by_ref(&mut file)
+                .take(line.len() as u64)
+                .read_to_end(&mut found)?;
+            Ok(found == line)
+        };
+        let (mut first, mut end) = (Vec::new(), b"\n".to_vec());
+        let mut maker = LineMaker::new(self.names.as_ref());
+        maker.line(&mut first, &resumed.first)?;
+        maker.line(&mut end, last)?;
+        // the line break of the line before belongs to the end
+        let end = if resumed.records == 1 { &end[1..] } else { &end[..] };
+        let same = begins(&first, SeekFrom::Start(0))? && begins(end, SeekFrom::End(-(end.len() as i64)))?;
+        file.seek(SeekFrom::Start(0))?;
+        Ok((same && breaks(&mut file)? == resumed.records).then(|| Known::of(resumed.records, &meta)))
+    }
+
+    /// Replaces a file by itself and more lines.
+    fn append<'r>(&self, path: &Path, known: &Known, more: impl ExactSizeIterator<Item = &'r Info>) -> io::Result<()> {
+        if more.len() == 0 {
+            return Ok(());
+        }
+        replace_file_with(path, |file| {
+            // the system copies this by itself where it can
+            let copied = io::copy(&mut files::open(path)?, file)?;
+            if copied != known.length {
+                return Err(io::Error::other("it is another file by now"));
+            }
+            let mut writer = self.writer(file);
+            more.for_each(|info| writer.push(info));
+            writer.finish()
+        })
+    }
+
+    /// Writes all lines, of the records that `visit` hands out.
+    pub fn write_all(
+        &self,
+        path: &Path,
+        visit: impl FnOnce(&mut dyn FnMut(&Info)) -> Result<(), LogError>,
+    ) -> Result<(), LogError> {
+        let mut read = Ok(());
+        let written = replace_file_with(path, |file| {
+            let mut writer = self.writer(file);
+            read = visit(&mut |info| writer.push(info));
+            match &read {
+                Ok(()) => writer.finish(),
+                Err(e) => Err(io::Error::other(e.to_string())),
+            }
+        });
+        read?;
+        written.map_err(|source| {
+            let path = path.to_path_buf();
+            LogError::Io { path, source }
+        })
+    }
+
+    fn writer<'l>(&'l self, file: &'l mut File) -> Writer<'l> {
+        Writer {
+            maker: LineMaker::new(self.names.as_ref()),
+            file,
+            buffer: Vec::new(),
+            written: Ok(()),
+        }
+    }
+}
+
+/// Writes lines, which are not all in memory at the same time: names make them long.
+struct Writer<'l> {
+    maker: LineMaker<'l>,
+    file: &'l mut File,
+    buffer: Vec<u8>,
+    /// The first error.
+    written: io::Result<()>,
+}
+
+impl Writer<'_> {
+    fn push(&mut self, info: &Info) {
+        if self.written.is_err() {
+            return;
+        }
+        self.written = self.maker.line(&mut self.buffer, info);
+        if self.written.is_ok() && self.buffer.len() > AT_ONCE {
+            self.written = self.file.write_all(&self.buffer);
+            self.buffer.clear();
+        }
+    }
+
+    fn finish(self) -> io::Result<()> {
+        self.written?;
+        self.file.write_all(&self.buffer)
+    }
+}
+
+/// Counts the line breaks of a file.
+fn breaks(file: &mut File) -> io::Result<usize> {
+    // in pieces whose number of line breaks is a byte, many at a time
+    let piece = |bytes: &[u8]| usize::from(bytes.iter().map(|&byte| u8::from(byte == b'\n')).sum::<u8>());
+    let (mut count, mut buffer) = (0, vec![0; AT_ONCE]);
+    loop {
+        match file.read(&mut buffer)? {
+            0 => return Ok(count),
+            n => count += buffer[..n].chunks(usize::from(u8::MAX)).map(piece).sum::<usize>(),
+        }
+    }
+}

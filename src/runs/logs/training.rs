@@ -1,0 +1,288 @@
+//! The log of a training run.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use super::lines::Lines;
+use super::read::{RecentRecords, visit, visit_bytes};
+use super::{LogError, own_folder, record, training_path, write};
+use crate::config::{Compat, Config};
+use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames};
+use crate::files::Owner;
+use crate::formats::pickle::{DictWriter, ListWriter};
+use crate::limits::Limits;
+
+/// What the records of a training log add up to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct TrainingTotals {
+    /// Number of records.
+    pub records: usize,
+    /// Number of steps.
+    pub steps: u64,
+    /// Number of records of a task with a goal.
+    pub tasks: usize,
+    /// Number of those that ended in success.
+    pub successes: usize,
+    /// Sum of the returns of those.
+    pub returns: f64,
+}
+
+impl TrainingTotals {
+    fn add(&mut self, info: &Info) {
+        self.records += 1;
+        self.steps = self.steps.saturating_add(info.steps);
+        if let Some(task) = info.behavior.task() {
+            self.tasks += 1;
+            self.successes += usize::from(task.outcome.is_success);
+            self.returns += task.episode_return;
+        }
+    }
+}
+
+/// The log of a training run, saved as often as its configuration says.
+///
+/// Under `compat: api` every episode of at least one step is a record, and the log is saved whenever their number is a
+/// multiple of `save_logs_every`. Under `compat: reference` every reset adds a record, also the first one (an empty
+/// record), and the log is saved when the number of steps of the ended episode is a multiple of `save_logs_every`.
+///
+/// Records are kept as the bytes of the file, some tens of bytes each.
+#[derive(Clone, Debug)]
+pub struct TrainingLog {
+    save_dir: PathBuf,
+    compat: Compat,
+    save_every: u64,
+    /// `training.pkl` as it would be saved.
+    pickle: ListWriter,
+    totals: TrainingTotals,
+    recent: VecDeque<Info>,
+    /// All records, once somebody has asked for them.
+    records: OnceLock<Vec<Info>>,
+    resumed: bool,
+    lines: Lines,
+    /// Refuses the folder to other processes that would train into it.
+    _owner: Arc<Owner>,
+}
+
+impl TrainingLog {
+    /// How many records [`TrainingLog::recent`] has at most: as many as scores look at.
+    pub const RECENT: usize = 10_001;
+
+    /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten. Until the
+    /// log and its copies are dropped, other processes cannot train into that folder.
+    ///
+    /// # Errors
+    /// A folder into which another process trains; what the file system says.
+    pub fn create(config: &Config) -> Result<Self, LogError> {
+        let owner = own_folder(config.save_dir.as_ref())?;
+        let log = Self::empty(config, owner, 0);
+        if log.compat == Compat::Api {
+            log.save()?;
+        }
+        Ok(log)
+    }
+
+    fn empty(config: &Config, owner: Arc<Owner>, bytes: usize) -> Self {
+        Self {
+            save_dir: PathBuf::from(&config.save_dir),
+            compat: config.compat,
+            save_every: config.save_logs_every.max(1),
+            pickle: ListWriter::with_capacity(bytes),
+            totals: TrainingTotals::default(),
+            recent: VecDeque::new(),
+            records: OnceLock::new(),
+            resumed: false,
+            lines: Lines::default(),
+            _owner: owner,
+        }
+    }
+
+    /// Resumes the log in the configuration's `save_dir`, or creates one if there is none. No empty record is added.
+    ///
+    /// # Errors
+    /// A log that cannot be read, or is of another behavior; a folder into which another process trains.
+    pub fn resume(config: &Config) -> Result<Self, LogError> {
+        let path = training_path(&config.save_dir);
+        if !path.exists() {
+            return Self::create(config);
+        }
+        let mut log = Self::before(config, &path)?;
+        let mut first = None;
+        log.read(config, &path, &mut first, &mut |_| ())?;
+        log.lines = Lines::of(first, log.totals.records);
+        Ok(log)
+    }
+
+    /// Resumes a log as [`TrainingLog::resume`] does, with the names of the touched parts. Where there are no lines beside the
+    /// log, as in a folder of the kit, they are written while it is read.
+    pub(in crate::runs) fn resume_with(config: &Config, names: Option<PartNames>) -> Result<Self, LogError> {
+        let path = training_path(&config.save_dir);
+        let beside = path.with_extension("jsonl");
+        if !path.exists() || beside.exists() {
+            return Ok(Self::resume(config)?.with_names(names));
+        }
+        let mut log = Self::before(config, &path)?;
+        let (mut lines, mut first) = (Lines::default(), None);
+        lines.set_names(names);
+        lines.write_all(&beside, |each| log.read(config, &path, &mut first, each))?;
+        lines.know(&beside, log.totals.records);
+        log.lines = lines;
+        Ok(log)
+    }
+
+    /// Returns a log without records that has room for those in a file.
+    fn before(config: &Config, path: &Path) -> Result<Self, LogError> {
+        let owner = own_folder(config.save_dir.as_ref())?;
+        let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len().min(Limits::DEFAULT.pickle_bytes as u64));
+        Ok(Self::empty(config, owner, bytes as usize))
+    }
+
+    /// Reads the records of a file, each of which `each` sees. Keeps the first one in `first`.
+    fn read(
+        &mut self,
+        config: &Config,
+        path: &Path,
+        first: &mut Option<Info>,
+        each: &mut dyn FnMut(&Info),
+    ) -> Result<(), LogError> {
+        visit(path, &Limits::DEFAULT, |info| {
+            first.get_or_insert_with(|| info.clone());
+            each(&info);
+            self.push(info);
+        })?;
+        self.resumed = first.is_some();
+        let found = first.as_ref().map(|r| r.behavior.name());
+        match found.filter(|b| *b != config.behavior.name()) {
+            Some(found) => Err(LogError::Foreign {
+                path: path.to_path_buf(),
+                kind: "training",
+                reason: format!("its behavior is {found}, not {}; use another save_dir", config.behavior),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Adds names of the touched parts to `training.jsonl`.
+    #[must_use]
+    pub fn with_names(mut self, names: Option<PartNames>) -> Self {
+        self.lines.set_names(names);
+        self
+    }
+
+    fn push(&mut self, info: Info) {
+        self.totals.add(&info);
+        self.pickle.push(|dict| fill(dict, &info));
+        if let Some(records) = self.records.get_mut() {
+            records.push(info.clone());
+        }
+        if self.recent.len() >= Self::RECENT {
+            self.recent.pop_front();
+        }
+        self.recent.push_back(info);
+    }
+
+    /// Returns the records so far. They are made when this is first called, a hundred bytes and more each;
+    /// [`TrainingLog::recent`] and [`TrainingLog::totals`] are at hand.
+    pub fn records(&self) -> &[Info] {
+        self.records.get_or_init(|| {
+            let mut records = Vec::with_capacity(self.totals.records);
+            // what was pushed can be read, but for a record of another behavior, at which a log ends
+            let _ = self.visit(|info| records.push(info));
+            records
+        })
+    }
+
+    /// Hands out the records so far, one at a time.
+    fn visit(&self, each: impl FnMut(Info)) -> Result<(), LogError> {
+        // whatever is in memory already
+        let limits = Limits {
+            pickle_bytes: usize::MAX,
+            pickle_numbers: usize::MAX,
+            pickle_objects: usize::MAX,
+            records: usize::MAX,
+            record_touches: usize::MAX,
+            geoms: usize::MAX,
+            ..Limits::DEFAULT
+        };
+        visit_bytes(self.pickle.as_bytes(), &training_path(&self.save_dir), &limits, each)
+    }
+
+    /// Returns the last records, at most [`TrainingLog::RECENT`], and the number of all.
+    pub fn recent(&self) -> RecentRecords {
+        RecentRecords {
+            total: self.totals.records,
+            records: self.recent.iter().cloned().collect(),
+        }
+    }
+
+    /// Returns what the records so far add up to.
+    pub fn totals(&self) -> &TrainingTotals {
+        &self.totals
+    }
+
+    /// Returns the folder of the run.
+    pub fn save_dir(&self) -> &Path {
+        &self.save_dir
+    }
+
+    /// Records an episode that ended after `steps` steps, and saves when it is time to. An environment that logs
+    /// ([`crate::make_env`]) does so by itself; this is for programs that run many environments into one log.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
+        let first = std::mem::take(&mut self.resumed);
+        if steps == 0 && (first || self.compat == Compat::Api) {
+            return Ok(());
+        }
+        let info = record(steps, behavior.clone());
+        self.push(info);
+        let count = match self.compat {
+            Compat::Api => self.totals.records as u64,
+            Compat::Reference => steps,
+        };
+        match count % self.save_every {
+            0 => self.save(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes `training.pkl` and `training.jsonl`, in which touched parts also have names (`right_hand_parts`,
+    /// `left_hand_parts`).
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn save(&self) -> Result<(), LogError> {
+        let path = training_path(&self.save_dir);
+        let all = |each: &mut dyn FnMut(&Info)| self.visit(|info| each(&info));
+        self.lines
+            .save(&path.with_extension("jsonl"), self.totals.records, &self.recent, all)?;
+        write(path, self.pickle.as_bytes())
+    }
+}
+
+/// Writes a record with the keys of the kit, in its order.
+fn fill(dict: &mut DictWriter, info: &Info) {
+    let count = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
+    match &info.behavior {
+        BehaviorInfo::None => {}
+        BehaviorInfo::SelfTouch { touches } => {
+            let geom = |geom: &usize| count(*geom as u64);
+            dict.ints("right_hand_touches", touches.right_hand.iter().map(geom));
+            dict.ints("left_hand_touches", touches.left_hand.iter().map(geom));
+        }
+        BehaviorInfo::HandRegard { counts } => {
+            for (key, number) in EYE_HAND_PAIRS.into_iter().zip(counts.to_array()) {
+                dict.int(key, count(number));
+            }
+        }
+        BehaviorInfo::Task(info) => {
+            dict.text("task", info.task.name());
+            dict.bool("is_success", info.outcome.is_success);
+            dict.bool("is_failure", info.outcome.is_failure);
+            dict.float("return", info.episode_return);
+        }
+    }
+    dict.int("steps", count(info.steps));
+}
