@@ -10,13 +10,14 @@ wasm=wasm32-unknown-unknown
 package=web/dist/babybench
 if ! [ -d web/node_modules ]; then npm ci --prefix web --ignore-scripts --no-audit --no-fund; fi
 
+cargo build --locked --release -p babybench-bindgen
+
 # The modules: 128-bit vector instructions are in every browser since 2023 and in node since 16.
 # One after the other: together, each would have the features of both.
 for module in babybench-web babybench-onnx; do
   env RUSTFLAGS='-C target-feature=+simd128' ${RUSTC_WASM:+RUSTC="$RUSTC_WASM"} cargo build --locked --profile web \
     --target "$wasm" --target-dir "$target/wasm" -p "$module"
 done
-cargo build --locked --release -p babybench-bindgen
 
 rm -rf "$package"
 mkdir -p "$package"

@@ -342,14 +342,8 @@ class Parts:
     def gear(self) -> _Floats:
         """Returns the gears of the actuators, (nu,); with muscles their torques, N m."""
     @property
-    def start(self) -> tuple[_Floats, _Floats]:
-        """Returns positions and velocities at the start of the last physics step."""
-    @property
     def efc_force(self) -> _Floats:
         """Returns the force of each constraint row, N or N m."""
-    @property
-    def eq_active(self) -> npt.NDArray[np.uint8]:
-        """Returns which equality constraints hold now, (neq,)."""
     @property
     def eq_active0(self) -> npt.NDArray[np.uint8]:
         """Returns which equality constraints hold after a reset, (neq,)."""
@@ -361,8 +355,15 @@ class Parts:
         """Returns the touch of the last observation, (n,), N."""
     def fill(self, arrays: Sequence[_Floats]) -> None:
         """Writes what is known of the state into arrays of the same lengths, in the order of ``FILLED``."""
+    def fill_start(self, eq_active: npt.NDArray[np.uint8], position: Sequence[_Floats]) -> None:
+        """Writes which equality constraints hold now, and positions and velocities at the start of the last physics step."""
+    def fill_position(self, position: Sequence[_Floats]) -> None:
+        """Writes the present positions and velocities."""
     def differences(self, arrays: Sequence[_Floats]) -> int:
-        """Tells which of ``qpos``, ``qvel``, ``ctrl``, ``act`` and ``qfrc_applied`` differ from the state: bits 0 to 4."""
+        """Tells which of ``qpos``, ``qvel``, ``ctrl``, ``act`` and ``qfrc_applied`` differ from the state, bits 0 to 4.
+
+        Bit 5 tells whether ``xfrc_applied``, where it is given as the sixth, is not zero.
+        """
 
 @final
 class Blocks:

@@ -3,11 +3,11 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use babybench::physics::State;
-use numpy::{PyArray1, PyReadonlyArrayDyn, PyReadwriteArrayDyn};
+use numpy::{PyArray1, PyReadonlyArrayDyn, PyReadwriteArray1, PyReadwriteArrayDyn};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{Pair, read};
+use crate::arrays::read;
 use crate::env::Env;
 use crate::errors::detached;
 use crate::observation::sparse;
@@ -158,14 +158,6 @@ impl Parts {
         self.with(|env, _| Ok(PyArray1::from_slice(py, env.state().reference_gear())))
     }
 
-    #[getter]
-    fn start<'py>(&self, py: Python<'py>) -> PyResult<Pair<'py, f64>> {
-        self.with(|_, m| {
-            let (qpos, qvel) = &m.start;
-            Ok((PyArray1::from_slice(py, qpos), PyArray1::from_slice(py, qvel)))
-        })
-    }
-
     /// Returns the proprioception of the last observation.
     #[getter]
     fn proprioception<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
@@ -176,17 +168,6 @@ impl Parts {
     #[getter]
     fn touch<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f32>>>> {
         self.with(|env, _| env.touch_observed().map(|touch| sparse(py, touch)).transpose())
-    }
-
-    /// Returns which equality constraints hold now.
-    #[getter]
-    fn eq_active<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
-        self.with(|env, _| {
-            Ok(PyArray1::from_iter(
-                py,
-                env.state().params.eq_active.iter().map(|&on| u8::from(on)),
-            ))
-        })
     }
 
     /// Returns which equality constraints hold after a reset.
@@ -207,12 +188,44 @@ impl Parts {
         self.with(|env, _| fill(env.state(), &mut arrays))
     }
 
-    /// Tells which of `qpos`, `qvel`, `ctrl`, `act` and `qfrc_applied` differ from the state: bits 0 to 4.
+    /// Writes which equality constraints hold now, and the positions and velocities of which everything computed is.
+    fn fill_start(
+        &self,
+        mut eq_active: PyReadwriteArray1<'_, u8>,
+        mut position: [PyReadwriteArrayDyn<'_, f64>; 2],
+    ) -> PyResult<()> {
+        self.with(|env, m| {
+            let active = &env.state().params.eq_active;
+            for (out, &on) in eq_active.as_slice_mut()?.iter_mut().zip(active) {
+                *out = u8::from(on);
+            }
+            let [qpos, qvel] = &mut position;
+            write("qpos", &m.start.0, Some(qpos))?;
+            write("qvel", &m.start.1, Some(qvel))
+        })
+    }
+
+    /// Writes the present positions and velocities.
+    fn fill_position(&self, mut position: [PyReadwriteArrayDyn<'_, f64>; 2]) -> PyResult<()> {
+        self.with(|env, _| {
+            let [qpos, qvel] = &mut position;
+            write("qpos", &env.state().qpos, Some(qpos))?;
+            write("qvel", &env.state().qvel, Some(qvel))
+        })
+    }
+
+    /// Tells which of `qpos`, `qvel`, `ctrl`, `act` and `qfrc_applied` differ from the state, bits 0 to 4, and whether
+    /// `xfrc_applied`, where it is given as the sixth, is not zero, bit 5.
     fn differences(&self, arrays: Vec<PyReadonlyArrayDyn<'_, f64>>) -> PyResult<u32> {
         self.with(|env, _| {
             let s = env.state();
             let own = [&s.qpos, &s.qvel, &s.ctrl, &s.act, &s.qfrc_applied];
             let mut bits = 0;
+            if let Some(forces) = arrays.get(own.len())
+                && forces.as_array().iter().any(|&force| force != 0.0)
+            {
+                bits |= 1 << own.len();
+            }
             for (k, (own, array)) in own.into_iter().zip(&arrays).enumerate() {
                 let other = array.as_slice().map_err(|e| PyValueError::new_err(e.to_string()))?;
                 // the kit's muscles are no MuJoCo's: there is no act then

@@ -46,9 +46,14 @@ class Live:
         if self.stale:
             return
         data, parts, engine = self.data, self.core.parts, self.core.engine
-        bits = parts.differences(self.state)
+        bits = parts.differences(self.watched)
         if not bits:
             return
+        if bits & 32:
+            raise ValueError(
+                "data.xfrc_applied is not served: turn the force into a generalised one with "
+                "mujoco.mj_applyFT(model, data, force, torque, point, body, data.qfrc_applied)"
+            )
         if bits & 0b11:
             forwarded = not np.array_equal(data.xpos, engine.state_array("xpos"))
             (parts.forward if forwarded else parts.set_position)(data.qpos, data.qvel)
@@ -61,6 +66,11 @@ class Live:
     def state(self) -> list[Any]:
         """Returns the arrays that can be written to."""
         return [getattr(self.data, name) for name in STATE]
+
+    @property
+    def watched(self) -> list[Any]:
+        """Returns the arrays in which writing is noticed: arguments of ``Parts.differences``."""
+        return self.state
 
 
 class ViewLive(Live):

@@ -78,6 +78,8 @@ class MujocoLive(Live):
         self.constraint = [getattr(mujoco, name) for name in _CONSTRAINT]
         self.arrays = [getattr(self.data, name) for name in core.parts.FILLED]
         self._state = [getattr(self.data, name) for name in STATE]
+        self._forces = self.data.xfrc_applied
+        self._eq_active = self.data.eq_active
         self.muscle = core.config["actuation_model"] == "muscle"
         self.refresh()
         self.idle = self._references()
@@ -99,23 +101,22 @@ class MujocoLive(Live):
         """Brings the state up to date."""
         data, model, parts = self.data, self.model, self.core.parts
         parts.fill(self.arrays)
-        data.eq_active[:] = parts.eq_active
         if self.muscle:
             model.actuator_gear[:, 0] = parts.gear
         data.time = self.core.engine.time
-        self._compute([*self.position, *self.constraint] if self.whole else self.position)
+        self._compute(self.position)
         if self.whole:
+            self._compute(self.constraint)
             self._fill_forces()
+        parts.fill_position(self._state[:2])
         self.stale, self.partial = False, not self.whole
 
     def _compute(self, functions: list[Any]) -> None:
-        """Calls functions of MuJoCo with the positions and velocities that all computed numbers are of."""
-        data, (qpos, qvel) = self.data, self._state[:2]
-        present = qpos.copy(), qvel.copy()
-        qpos[:], qvel[:] = self.core.parts.start
+        """Calls functions of MuJoCo with the positions and velocities that all computed numbers are of, which stay there."""
+        model, data = self.model, self.data
+        self.core.parts.fill_start(self._eq_active, self._state[:2])
         for function in functions:
-            function(self.model, data)
-        qpos[:], qvel[:] = present
+            function(model, data)
 
     def complete(self) -> None:
         """Computes contacts and constraints, now and from now on with every step."""
@@ -125,7 +126,10 @@ class MujocoLive(Live):
         data, core = self.data, self.core
         if not np.array_equal(data.xpos, core.engine.state_array("xpos")):
             return  # a script has computed another state
+        qpos, qvel = self._state[:2]
+        present = qpos.copy(), qvel.copy()  # a script may have written them
         self._compute(self.constraint)
+        qpos[:], qvel[:] = present
         self._fill_forces()
 
     def _fill_forces(self) -> None:
@@ -133,11 +137,7 @@ class MujocoLive(Live):
         if len(forces) == self.data.nefc:
             self.data.efc_force[:] = forces
 
-    def pull(self) -> None:
-        """Reads back what a script has written."""
-        if not self.stale and self.data.xfrc_applied.any():
-            raise ValueError(
-                "data.xfrc_applied is not served: turn the force into a generalised one with "
-                "mujoco.mj_applyFT(model, data, force, torque, point, body, data.qfrc_applied)"
-            )
-        super().pull()
+    @property
+    def watched(self) -> list[Any]:
+        """Returns the arrays that can be written to, and external forces, which cannot."""
+        return [*self._state, self._forces]

@@ -135,8 +135,8 @@ export class App {
 
   /** Starts the worker's world for the first time, from the link if it holds a state. */
   async start() {
-    await this.world.ask("load");
-    performance.mark("module");
+    // not waited for: the page has graphics to prepare, and the worker goes on by itself
+    this.world.ask("load").then(() => performance.mark("module"), () => {});
     let opened = null;
     try {
       opened = await link.decode(location.hash);

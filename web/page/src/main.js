@@ -121,7 +121,6 @@ async function main() {
   }
   const app = new App(stage, script, worker);
   theme(stage);
-  stage.compile();
   legend();
   notices(app);
   const openHelp = help();
@@ -139,7 +138,9 @@ async function main() {
   // for the console, and for those who test the page
   Object.assign(globalThis, { mimo: app, mimoHelp: openHelp });
   try {
-    const continued = await app.start();
+    const started = app.start();
+    stage.compile();
+    const continued = await started;
     glances(app);
     stage.after.push(hideVeil, () => performance.mark("first frame"));
     stage.invalidate();

@@ -13,16 +13,18 @@ export class Bodies extends Group {
   /**
    * @param {Scene} scene
    * @param {{ rim: { value: Color }, focus: { value: number } }} shared
+   * @param {boolean} plain whether shapes may be coarse
    */
-  constructor(scene, shared) {
+  constructor(scene, shared, plain) {
     super();
+    this.plain = plain;
     this.drawables = scene.drawables.map((d) => {
       const colour = d.texture === null ? null : mean(d, scene.textures[d.texture]);
       return colour ? { ...d, texture: null, rgba: /** @type {Drawable["rgba"]} */ ([...colour, d.rgba[3]]) } : d;
     });
     this.bodyNames = scene.bodies.map((b) => b.name);
     this.stretch = this.drawables.map(stretch);
-    this.textures = scene.textures.map(texture);
+    this.textures = scene.textures.map((faces) => texture(faces, plain));
     /** @type {Map<string, number[]>} */
     const groups = new Map();
     this.drawables.forEach((d, i) => {
@@ -45,7 +47,7 @@ export class Bodies extends Group {
   batch(of, shared) {
     const first = this.drawables[of[0]];
     const map = first.texture === null ? null : this.textures[first.texture];
-    const mesh = new InstancedMesh(geometry(first), material(first, map, shared, this.furniture(first)), of.length);
+    const mesh = new InstancedMesh(geometry(first, this.plain), material(first, map, shared, this.furniture(first)), of.length);
     of.forEach((i, k) => {
       const [r, g, b] = this.drawables[i].rgba;
       mesh.setColorAt(k, new Color().setRGB(r, g, b, SRGBColorSpace));

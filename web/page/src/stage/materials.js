@@ -26,14 +26,16 @@ function image(face) {
 
 /**
  * @param {TextureFace[]} faces one, or six sides of a cube
+ * @param {boolean} plain whether to do without smaller images for what is far away, which take long to make on a processor
  * @returns {DataTexture | CubeTexture}
  */
-export function texture(faces) {
+export function texture(faces, plain) {
+  const minFilter = plain ? LinearFilter : LinearMipmapLinearFilter;
   if (faces.length === 6) {
     const cube = new CubeTexture(/** @type {any} */ (faces.map(image)));
     cube.colorSpace = SRGBColorSpace;
-    cube.generateMipmaps = true;
-    cube.minFilter = LinearMipmapLinearFilter;
+    cube.generateMipmaps = !plain;
+    cube.minFilter = minFilter;
     cube.magFilter = LinearFilter;
     cube.needsUpdate = true;
     return cube;
@@ -41,9 +43,9 @@ export function texture(faces) {
   const t = image(faces[0]);
   t.wrapS = t.wrapT = RepeatWrapping;
   t.magFilter = LinearFilter;
-  t.minFilter = LinearMipmapLinearFilter;
-  t.generateMipmaps = true;
-  t.anisotropy = 8;
+  t.minFilter = minFilter;
+  t.generateMipmaps = !plain;
+  t.anisotropy = plain ? 1 : 8;
   return t;
 }
 

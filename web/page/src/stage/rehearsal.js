@@ -21,5 +21,5 @@ export function rehearsal(shared) {
     bodies: ["world", "crib_feet"].map((name) => ({ name, parent: 0, mass: 0, invweight: 0, movable: false })),
     skin: { at: new Float32Array(3), of: new Uint16Array(1) },
   });
-  return new Group().add(new Bodies(scene, shared), new Skin(scene));
+  return new Group().add(new Bodies(scene, shared, true), new Skin(scene));
 }

@@ -27,17 +27,18 @@ export function shapeKey(d) {
 
 /**
  * @param {Drawable} d
+ * @param {boolean} plain whether a third of the corners will do
  * @returns {import("three").BufferGeometry}
  */
-export function geometry(d) {
-  const small = Math.max(...d.size) < 0.02;
+export function geometry(d, plain) {
+  const small = plain || Math.max(...d.size) < 0.02;
   switch (d.shape) {
     case "plane":
       return new PlaneGeometry(2, 2);
     case "sphere":
-      return new SphereGeometry(1, 40, 24);
+      return plain ? new SphereGeometry(1, 24, 14) : new SphereGeometry(1, 40, 24);
     case "cylinder":
-      return new CylinderGeometry(1, 1, 2, 64).rotateX(Math.PI / 2);
+      return new CylinderGeometry(1, 1, 2, plain ? 32 : 64).rotateX(Math.PI / 2);
     case "box":
       return new BoxGeometry(2, 2, 2);
     case "capsule":

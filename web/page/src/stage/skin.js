@@ -2,10 +2,13 @@
 import {
   BufferAttribute,
   DataTexture,
+  DynamicDrawUsage,
   FloatType,
   Group,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
+  InstancedInterleavedBuffer,
+  InterleavedBufferAttribute,
   Matrix3,
   Mesh,
   NearestFilter,
@@ -28,6 +31,7 @@ attribute float body;
 attribute float felt;
 uniform sampler2D poses;
 uniform float dot0;
+uniform float glow;
 uniform vec3 eyePoint;
 varying vec2 vCorner;
 varying float vHeat;
@@ -39,7 +43,7 @@ void main() {
   vec3 n = turn(q, normalSpacing.xyz);
   vec3 p = origin + turn(q, at);
   vHeat = clamp(log(1.0 + 20.0 * felt) / log(201.0), 0.0, 1.0);
-  float radius = vHeat > 0.0 ? normalSpacing.w * (0.75 + 0.75 * vHeat) : dot0;
+  float radius = vHeat > 0.0 ? glow * normalSpacing.w * (0.75 + 0.75 * vHeat) : dot0;
   vec3 side = normalize(abs(n.z) < 0.9 ? cross(n, vec3(0.0, 0.0, 1.0)) : cross(n, vec3(1.0, 0.0, 0.0)));
   vec3 up = cross(n, side);
   vCorner = position.xy;
@@ -68,24 +72,34 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
+/** Numbers of a sensor that glows: where it is, its normal and spacing, its body, its force. */
+const GLOWING = { at: 3, normalSpacing: 4, body: 1, felt: 1 };
+const STRIDE = 9;
+
+/**
+ * A geometry of discs.
+ * @param {Record<string, InstancedBufferAttribute | InterleavedBufferAttribute>} attributes of each disc
+ * @param {number} count
+ */
+function discs(attributes, count) {
+  const g = new InstancedBufferGeometry();
+  g.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+  g.setIndex([0, 1, 2, 0, 2, 3]);
+  for (const [name, attribute] of Object.entries(attributes)) g.setAttribute(name, attribute);
+  g.instanceCount = count;
+  return g;
+}
+
 export class Skin extends Group {
   /** @param {Scene} scene */
   constructor(scene) {
     super();
     const { at, of } = scene.skin;
     const count = of.length;
-    this.felt = new InstancedBufferAttribute(new Float32Array(count), 1);
+    this.felt = new InstancedBufferAttribute(new Float32Array(count), 1).setUsage(DynamicDrawUsage);
     this.poses = new DataTexture(new Float32Array(8 * scene.bodies.length), 2, scene.bodies.length, RGBAFormat, FloatType);
     this.poses.minFilter = this.poses.magFilter = NearestFilter;
-    const g = new InstancedBufferGeometry();
-    g.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
-    g.setIndex([0, 1, 2, 0, 2, 3]);
-    g.setAttribute("at", new InstancedBufferAttribute(at, 3));
-    g.setAttribute("body", new InstancedBufferAttribute(Float32Array.from(of), 1));
-    g.setAttribute("felt", this.felt);
     this.facing = new InstancedBufferAttribute(new Float32Array(4 * count), 4);
-    g.setAttribute("normalSpacing", this.facing);
-    g.instanceCount = count;
     this.scene = scene;
     this.oriented = false;
     this.uniforms = {
@@ -94,29 +108,45 @@ export class Skin extends Group {
       dot0: { value: 0 },
       dotColor: { value: new Vector3(1, 0.93, 0.84) },
     };
-    const pass = (/** @type {number} */ strength, /** @type {boolean} */ behind) =>
-      new ShaderMaterial({
+    // all sensors as dots, and apart from them those that glow: most feel nothing
+    this.still = discs(
+      { at: new InstancedBufferAttribute(at, 3), body: new InstancedBufferAttribute(Float32Array.from(of), 1), felt: this.felt, normalSpacing: this.facing },
+      count,
+    );
+    this.glowing = new InstancedInterleavedBuffer(new Float32Array(STRIDE * count), STRIDE).setUsage(DynamicDrawUsage);
+    let first = 0;
+    const columns = Object.entries(GLOWING).map(([name, width]) => {
+      first += width;
+      return [name, new InterleavedBufferAttribute(this.glowing, width, first - width)];
+    });
+    this.glows = discs(Object.fromEntries(columns), 0);
+    const pass = (/** @type {InstancedBufferGeometry} */ geometry, /** @type {number} */ strength, /** @type {boolean} */ behind) => {
+      const own = geometry === this.still ? { glow: { value: 0 } } : { glow: { value: 1 }, dot0: { value: 0 } };
+      const material = new ShaderMaterial({
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,
-        uniforms: { ...this.uniforms, strength: { value: strength }, ...(behind ? { dot0: { value: 0 } } : {}) },
+        uniforms: { ...this.uniforms, strength: { value: strength }, ...own },
         transparent: true,
         depthWrite: false,
         depthTest: !behind,
       });
-    // what lies under a hand or below the back shines through faintly
-    for (const [strength, behind] of /** @type {[number, boolean][]} */ ([[0.22, true], [1, false]])) {
-      const mesh = new Mesh(g, pass(strength, behind));
+      const mesh = new Mesh(geometry, material);
       mesh.frustumCulled = false;
       mesh.renderOrder = behind ? 4 : 3;
       this.add(mesh);
-    }
-    this.geometry = g;
+      return mesh;
+    };
+    this.all = pass(this.still, 0, false);
+    pass(this.glows, 1, false);
+    // what lies under a hand or below the back shines through faintly
+    pass(this.glows, 0.22, true);
     this.visible = count > 0;
   }
 
   /** @param {boolean} on */
   set dots(on) {
     this.uniforms.dot0.value = on ? 0.0011 : 0;
+    this.all.visible = on;
   }
 
   /**
@@ -171,15 +201,28 @@ export class Skin extends Group {
     this.poses.needsUpdate = true;
     const keep = FADE ** seconds;
     const shown = /** @type {Float32Array} */ (this.felt.array);
+    const { at, of } = this.scene.skin;
+    const [facing, glowing] = [this.facing.array, this.glowing.array];
+    let end = 0;
     for (let i = 0; i < shown.length; i++) {
       const faded = shown[i] * keep;
       shown[i] = Math.max(felt[i], faded < 0.004 ? 0 : faded);
+      if (shown[i] === 0) continue;
+      for (let k = 0; k < 3; k++) glowing[end++] = at[3 * i + k];
+      for (let k = 0; k < 4; k++) glowing[end++] = facing[4 * i + k];
+      glowing[end++] = of[i];
+      glowing[end++] = shown[i];
     }
     this.felt.needsUpdate = true;
+    this.glows.instanceCount = end / STRIDE;
+    this.glowing.clearUpdateRanges();
+    this.glowing.addUpdateRange(0, end);
+    this.glowing.needsUpdate = end > 0;
   }
 
   dispose() {
-    this.geometry.dispose();
+    this.still.dispose();
+    this.glows.dispose();
     this.poses.dispose();
     for (const child of this.children) /** @type {any} */ (child).material.dispose();
   }

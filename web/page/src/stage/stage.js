@@ -23,6 +23,7 @@ export class Stage {
    */
   constructor(canvas, plain) {
     this.canvas = canvas;
+    this.plain = plain;
     /** Pixels drawn for a pixel of the page, at most. */
     this.sharpness = plain ? 0.7 : 2;
     this.renderer = new WebGLRenderer({ canvas, antialias: !plain, powerPreference: "high-performance" });
@@ -61,7 +62,9 @@ export class Stage {
     /** How far away the camera looks, m. */
     this.focus = { value: 2 };
     this.shared = { rim: this.studio.rim, focus: this.focus };
-    /** Whether the shaders are there; before, nothing is drawn. */
+    /** Whether everything of the scene is in its place; before, nothing is drawn. */
+    this.placed = false;
+    /** Whether the shaders are there, likewise. */
     this.compiled = false;
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
@@ -78,6 +81,10 @@ export class Stage {
     // kept, so that what was compiled is
     this.rehearsed = rehearsal(this.shared).add(this.studio.ground.clone());
     await this.renderer.compileAsync(this.rehearsed, this.orbit.camera, this.root);
+    // some graphics finish a shader only when something is drawn with it; the scene is still veiled
+    this.root.add(this.rehearsed);
+    this.renderer.render(this.root, this.orbit.camera);
+    this.root.remove(this.rehearsed);
     this.compiled = true;
     performance.mark("shaders");
     this.invalidate();
@@ -92,12 +99,13 @@ export class Stage {
     this.scene = scene;
     // the page has its own ground
     const drawables = scene.drawables.map((d) => (d.shape === "plane" && d.body === 0 ? { ...d, rgba: /** @type {[number, number, number, number]} */ ([0, 0, 0, 0]) } : d));
-    this.bodies = new Bodies({ ...scene, drawables }, this.shared);
+    this.bodies = new Bodies({ ...scene, drawables }, this.shared, this.plain);
     this.skin = new Skin(scene);
     this.skin.dots = this.dots;
     this.skin.visible &&= this.glow;
     this.root.add(this.bodies, this.skin);
     this.jump = true;
+    this.placed = false;
     if (fresh) this.home();
   }
 
@@ -126,6 +134,7 @@ export class Stage {
     if (this.bodyPoses.length !== bodyPoses.length) this.bodyPoses = new Float32Array(bodyPoses.length);
     this.bodyPoses.set(bodyPoses);
     bodies.place(poses);
+    this.placed = true;
     skin.feel(poses, bodyPoses, frame.subarray(l.felt, l.action), this.jump ? 1e3 : seconds);
     this.arrows.show(frame.subarray(l.contacts, l.contacts + CONTACT * moment.contacts), moment.contacts);
     this.centre(this.followed);
@@ -186,7 +195,7 @@ export class Stage {
 
   /** Draws in the next frame of the screen. */
   invalidate() {
-    if (this.pending || !this.scene || !this.compiled) return;
+    if (this.pending || !this.placed || !this.compiled) return;
     this.pending = requestAnimationFrame(() => {
       this.pending = 0;
       this.draw();

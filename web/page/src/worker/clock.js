@@ -1,4 +1,4 @@
-// The pace of a world: as many steps as the time that has passed asks for, and never more than a frame can bear.
+// The pace of a world: as many steps as the time that has passed asks for, however long frames take to be drawn.
 
 /** Longest stretch of steps without a look at messages, ms. */
 const BUDGET = 24;
@@ -42,7 +42,6 @@ export class Clock {
 
   beat() {
     this.timer = setTimeout(() => this.beat(), BEAT);
-    if (!this.ready()) return;
     const now = performance.now();
     const passed = (now - this.last) / 1000;
     this.last = now;
@@ -57,7 +56,8 @@ export class Clock {
       if (!done) return;
       this.cost += 0.1 * ((performance.now() - now) / done - this.cost);
       this.pace += 0.05 * ((done * this.seconds()) / Math.max(passed, 1e-3) - this.pace);
-      this.show(done);
+      // the last frame is shown in any case
+      if (this.ready() || !this.playing) this.show(done);
     } catch (e) {
       this.play(false);
       this.fail(e);

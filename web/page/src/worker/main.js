@@ -67,6 +67,7 @@ const answers = {
 
   /** @param {{ settings: import("../types").Settings | string, locks: string[], snapshot: Uint8Array | null } & Movement} d */
   async make(d) {
+    await load();
     live?.clock.play(false);
     const last = live && { settings: live.env.yaml, snapshot: live.env.snapshot(), seed: 0, locks: [] };
     // two worlds at once would take twice the memory, and leave it in pieces
