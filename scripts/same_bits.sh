@@ -4,8 +4,8 @@
 # Rows: threads debug avx2 avx512 nehalem i686 aarch64 riscv64 s390x wasm wasm-simd128. Each builds the example `checksum` for its
 # target and compares its lines (episodes, tasks and variants, vectors, snapshots, pictures) with those of one thread of a release build for every x86-64.
 # It restores the snapshots that this build wrote and goes on, and this build restores those of the row. An emulated processor computes a step as
-# long as this one computes fifty, so episodes end after 10 steps there. Other processors need Debian's qemu-user-static and gcc-ARCH-linux-gnu; a row that
-# cannot run on this machine says why. PROGRAM names a release build of the example that is there already. The result is in docs/same-bits.md.
+# long as this one computes fifty, so episodes end after 10 steps there. Other processors need Debian's qemu-user-static (of backports, or of Debian 13, for
+# s390x) and gcc-ARCH-linux-gnu; a row that cannot run on this machine says why. PROGRAM names a release build of the example that is there already. The result is in docs/same-bits.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=${CARGO_TARGET_DIR:-$PWD/target}
@@ -81,6 +81,11 @@ emulated() { # NAME TARGET
   emulator=qemu-$(processor "$2")-static
   if ! command -v "$emulator" >/dev/null || ! command -v "$(linker "$2")" >/dev/null; then
     say "$name" "not run: needs $emulator and $(linker "$2")" '' '' ''
+    return
+  fi
+  if [ "${2%%-*}" = s390x ] && [ "$("$emulator" --version | sed -n 's/^qemu.* version \([0-9]*\).*/\1/p')" -lt 8 ]; then
+    # MDEBR, which multiplies in single precision with a result in double, takes its second factor for a double
+    say "$name" "not run: $emulator is older than QEMU 8, which multiplies wrongly" '' '' ''
     return
   fi
   program=$(build "${2%%-*}" "$2" '-C target-feature=+crt-static' release)

@@ -16,11 +16,13 @@ const crib = { behavior: "self_touch", scene: "crib", vision_active: false };
 
 before(() => init());
 
-test("the module is small", () => {
-  const bytes = readFileSync(join(folder, "core_bg.wasm"));
-  const gzip = gzipSync(bytes, { level: 9 }).length;
-  console.log(`core_bg.wasm: ${bytes.length} bytes, ${gzip} gzip`);
-  assert.ok(bytes.length <= 2.8e6 && gzip <= 1.25e6, `${bytes.length}, ${gzip}`);
+test("the modules are small", () => {
+  for (const name of ["core_bg.wasm", "onnx_core_bg.wasm"]) {
+    const bytes = readFileSync(join(folder, name));
+    const gzip = gzipSync(bytes, { level: 9 }).length;
+    console.log(`${name}: ${bytes.length} bytes, ${gzip} gzip`);
+    assert.ok(bytes.length <= 2.8e6 && gzip <= 1.25e6, `${name}: ${bytes.length}, ${gzip}`);
+  }
 });
 
 test("a program elsewhere installs and runs it", () => {
