@@ -4,6 +4,7 @@
 //!   environments, seeds and actions. Figures are medians of the ratios of pairs; the spread is between the quartiles.
 //!   Threads are compared by the clock, which needs a machine that does nothing else, and by the time that all processors
 //!   spend; loops by the latter.
+//! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
 //! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps.
 
 #[path = "../tests/common/allocations.rs"]
@@ -46,9 +47,10 @@ fn vector(blueprint: &Blueprint, threads: usize) -> VectorEnv {
     envs
 }
 
-/// Times two programs on the same actions in turn, and prints how many times faster the second is.
+/// Times two programs on the same actions in turn, so many steps of so many environments at a time, and prints how many times faster the second is.
 fn pair(
     name: &str,
+    [steps, envs]: [usize; 2],
     clock: fn() -> f64,
     actions: &[Vec<f32>],
     mut one: impl FnMut(&[f32]),
@@ -60,7 +62,7 @@ fn pair(
         clock() - start
     };
     let (mut ratios, mut us) = (Vec::new(), [Vec::new(), Vec::new()]);
-    for (k, actions) in actions.chunks_exact(STEPS).enumerate() {
+    for (k, actions) in actions.chunks_exact(steps).enumerate() {
         // whoever is first changes from pair to pair
         let times = if k % 2 == 0 {
             [time(&mut one, actions), time(&mut other, actions)]
@@ -72,7 +74,7 @@ fn pair(
             ratios.push(times[0] / times[1]);
             us.iter_mut()
                 .zip(times)
-                .for_each(|(us, t)| us.push(t * 1e6 / (STEPS * ENVS) as f64));
+                .for_each(|(us, t)| us.push(t * 1e6 / (steps * envs) as f64));
         }
     }
     let [low, median, high] = quartiles(ratios);
@@ -169,6 +171,7 @@ fn threads(name: &str, blueprint: &Blueprint) {
     };
     pair(
         &format!("threads/{name}/{} threads over 1", two.threads()),
+        [STEPS, ENVS],
         wall_time,
         &actions,
         |a| run(&mut one, a),
@@ -176,6 +179,7 @@ fn threads(name: &str, blueprint: &Blueprint) {
     );
     pair(
         &format!("threads/{name}/processor time, {} threads over 1", two.threads()),
+        [STEPS, ENVS],
         process_time,
         &actions,
         |a| run(&mut one, a),
@@ -184,6 +188,7 @@ fn threads(name: &str, blueprint: &Blueprint) {
     let mut arrays = Arrays::default();
     pair(
         &format!("threads/{name}/1 thread over a loop that collects"),
+        [STEPS, ENVS],
         cpu_time,
         &actions,
         |a| step_plain(&mut envs, a, &mut over, Some(&mut arrays)),
@@ -191,6 +196,7 @@ fn threads(name: &str, blueprint: &Blueprint) {
     );
     pair(
         &format!("threads/{name}/1 thread over a loop that does not collect"),
+        [STEPS, ENVS],
         cpu_time,
         &actions,
         |a| step_plain(&mut envs, a, &mut over, None),
@@ -206,10 +212,42 @@ fn threads(name: &str, blueprint: &Blueprint) {
     let mut halves_too = halves_of(len);
     pair(
         &format!("threads/{name}/send and recv: {} threads over 1", two_again.threads()),
+        [STEPS, ENVS],
         wall_time,
         &actions,
         |a| halves(&mut one_again, a),
         |a| halves_too(&mut two_again, a),
+    );
+}
+
+/// Steps of one environment in each half of a pair.
+const EYE_STEPS: usize = 64;
+
+fn eyes(name: &str, blueprint: &Blueprint) {
+    let [mut one, mut two] = [1, 2].map(|threads| {
+        let mut env = blueprint.env().expect("available");
+        env.set_vision_threads(threads);
+        env.reset(Some(0)).expect("no divergence");
+        env
+    });
+    let actions = |_| {
+        let mut actions = Vec::new();
+        one.sample_action(&mut actions);
+        actions
+    };
+    let actions: Vec<Vec<f32>> = (0..PAIRS * EYE_STEPS).map(actions).collect();
+    let run = |env: &mut Env, action: &[f32]| {
+        if black_box(env.step(action).expect("no divergence")).truncated {
+            env.reset(None).expect("no divergence");
+        }
+    };
+    pair(
+        &format!("eyes/{name}, {} threads over 1", two.vision_threads()),
+        [EYE_STEPS, 1],
+        wall_time,
+        &actions,
+        |a| run(&mut one, a),
+        |a| run(&mut two, a),
     );
 }
 
@@ -279,6 +317,9 @@ fn main() {
             "without eyes"
         };
         let blueprint = Blueprint::new(config).expect("available");
+        if wants(&format!("eyes/{name}")) && blueprint.config().vision_active {
+            self::eyes(name, &blueprint);
+        }
         if wants(&format!("memory/{name}")) {
             memory(&format!("{name}, {eyes}"), &blueprint);
         }

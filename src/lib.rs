@@ -129,6 +129,7 @@ pub mod runs;
 pub mod sensors;
 pub mod spaces;
 mod text;
+mod threads;
 pub mod vector;
 
 pub use config::Config;

@@ -4,6 +4,7 @@
 mod allocations;
 mod common;
 
+use babybench::Config;
 use babybench::config::Example;
 use common::*;
 
@@ -17,7 +18,12 @@ fn invariant_4_a_step_allocates_nothing_after_warm_up() {
     let mut failed = Vec::new();
     let tasks = Example::TASKS.map(|task| (task.name, task.config().expect("valid")));
     let examples = EXAMPLES.map(|(name, _)| (name, example(name)));
-    for (name, config) in examples.into_iter().chain(tasks).chain([("infant", infant())]) {
+    let two_threads = Config {
+        vision_threads: 2,
+        ..infant()
+    };
+    let infants = [("infant", infant()), ("infant, 2 threads", two_threads)];
+    for (name, config) in examples.into_iter().chain(tasks).chain(infants) {
         let mut env = env(config);
         env.reset(Some(0)).expect("no divergence");
         random_steps(&mut env, WARM_UP);

@@ -60,12 +60,12 @@ impl Job {
         }
     }
 
-    /// Computes the line. Vectors have `threads`; a snapshot is taken, or is the one that is given.
+    /// Computes the line. Vectors and eyes have `threads`; a snapshot is taken, or is the one that is given.
     pub fn line(&self, threads: usize, taken: Option<Vec<u8>>) -> Result<String, String> {
         let (name, steps) = (self.case.0, self.steps);
         let (what, sum) = match self.kind {
-            Kind::Episode => (steps.to_string(), sums::episode(self.case, steps)),
-            Kind::Variant => (steps.to_string(), sums::variant(self.case, steps)),
+            Kind::Episode => (steps.to_string(), sums::episode(self.case, steps, threads)),
+            Kind::Variant => (steps.to_string(), sums::variant(self.case, steps, threads)),
             Kind::Vector => (steps.to_string(), sums::vector(self.case, steps, threads)),
             Kind::Snapshot => ("snapshot".to_owned(), self.snapshot(taken)),
             Kind::Picture => ("picture".to_owned(), sums::pictures(self.case)),

@@ -26,9 +26,16 @@ fn walk(env: &mut Env, steps: usize) -> Sum {
     Ok(hash.0)
 }
 
-/// Returns positions, velocities and all senses after random steps from seed 0.
-pub fn episode(case: Case, steps: usize) -> Sum {
+/// Makes an environment whose eyes are drawn by one or two threads.
+fn seeing(case: Case, threads: usize) -> Result<Env, Box<dyn std::error::Error>> {
     let mut env = blueprint(case, |config| config)?.env()?;
+    env.set_vision_threads(threads);
+    Ok(env)
+}
+
+/// Returns positions, velocities and all senses after random steps from seed 0.
+pub fn episode(case: Case, steps: usize, threads: usize) -> Sum {
+    let mut env = seeing(case, threads)?;
     let mut action = Vec::new();
     env.reset(Some(0))?;
     for _ in 0..steps {
@@ -39,8 +46,8 @@ pub fn episode(case: Case, steps: usize) -> Sum {
 }
 
 /// Returns rewards, ends of episodes and the last senses of random steps from seed 0.
-pub fn variant(case: Case, steps: usize) -> Sum {
-    let mut env = blueprint(case, |config| config)?.env()?;
+pub fn variant(case: Case, steps: usize, threads: usize) -> Sum {
+    let mut env = seeing(case, threads)?;
     env.reset(Some(0))?;
     let mut hash = Hash(walk(&mut env, steps)?);
     hash.fold(fold::bits(&env));

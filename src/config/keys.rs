@@ -122,6 +122,7 @@ const fn whole_from_1_to(max: u64) -> KeyKind {
 const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
 const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
 const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
+const EYES: KeyKind = whole_from_1_to(2);
 const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
 const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
 
@@ -224,6 +225,7 @@ pub(super) static KEYS: &[Key] = keys! {
         vision_active = vision_active, Bool, "The images of both eyes are observed.";
         vision_resolution = vision_resolution, PIXELS, "Width and height of an eye's image, pixels.";
         vision_outputs = vision_outputs, List(VisionOutput::NAMES), "The images of each eye that are observed.";
+        vision_threads = vision_threads, EYES, "Threads that draw the eyes of an environment alone: 2 is faster by the clock, to the same bytes.";
         vision_acuity = eyes.acuity, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
         vision_acuity_left = eyes.acuity_left, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";
         vision_acuity_right = eyes.acuity_right, ACUITY_AGE, "The age of the right eye's acuity, months; none for that of both eyes.";

@@ -124,6 +124,9 @@ pub struct Config {
     pub vision_resolution: u32,
     /// Images of each eye that are observed.
     pub vision_outputs: VisionOutputs,
+    /// Number of threads that draw the eyes of an environment on the CPU, 1 or 2, to the same bytes. Vectors of environments
+    /// have threads of their own, and draw each environment with one.
+    pub vision_threads: u32,
     /// How sharp the eyes see, and where (`vision_acuity` ...).
     pub eyes: EyeOptions,
     /// Whether touch is observed; see [`Config::touch_enabled`].
@@ -183,6 +186,7 @@ impl Default for Config {
             vision_active: true,
             vision_resolution: 64,
             vision_outputs: VisionOutputs::default(),
+            vision_threads: 1,
             eyes: EyeOptions::default(),
             touch_active: true,
             touch_scale: 1.0,

@@ -86,6 +86,23 @@ impl Env {
         Ok((vision, &self.physics.state))
     }
 
+    /// Sets by how many threads the eyes are drawn: with 2, a thread of its own draws the right eye, to the same bytes. It
+    /// takes the place of [`Config::vision_threads`](crate::Config::vision_threads); see
+    /// [`Renderer::set_threads`](crate::render::Renderer::set_threads). Without eyes nothing happens.
+    pub fn set_vision_threads(&mut self, threads: usize) {
+        if let Some(vision) = &mut self.senses.vision {
+            vision.set_threads(threads);
+        }
+    }
+
+    /// Returns by how many threads the eyes are drawn: 1 or 2.
+    pub fn vision_threads(&self) -> usize {
+        self.senses
+            .vision
+            .as_ref()
+            .map_or(1, |vision| vision.renderer().threads())
+    }
+
     /// Sets whether resets and steps leave the eyes' images as they are, for [`Env::draw_eyes`] to draw, once for each.
     pub fn defer_vision(&mut self, deferred: bool) {
         self.senses.vision_deferred = deferred;

@@ -42,7 +42,9 @@ impl Senses {
         let proprioception = Proprioception::new(model, config, actuation.observation_len());
         let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
         let vision = if config.vision_active {
-            let eyes = Vision::with_renderer(model, blueprint.renderer()?, config.vision_resolution as usize);
+            let mut renderer = blueprint.renderer()?;
+            renderer.set_threads(config.vision_threads as usize);
+            let eyes = Vision::with_renderer(model, renderer, config.vision_resolution as usize);
             Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?)
         } else {
             None

@@ -30,6 +30,7 @@ mod drawable;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
 mod mesh;
+mod pair;
 mod patch;
 mod plain;
 mod renderer;

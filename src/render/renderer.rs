@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 use super::gpu::{Channel, Depth, GpuRenderer, Gray, Rgb, Segmentation};
+use super::pair::Pair;
 use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Visual};
 
 /// A renderer on a GPU that several environments share.
@@ -22,7 +23,11 @@ pub struct Renderer {
 
 #[derive(Debug)]
 enum Backend {
-    Cpu(Box<CpuRenderer>),
+    Cpu {
+        renderer: Box<CpuRenderer>,
+        /// What draws every second image, if a thread of its own does.
+        pair: Option<Pair>,
+    },
     #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     Gpu(SharedGpu),
 }
@@ -32,7 +37,10 @@ impl Renderer {
     pub fn cpu(visual: Arc<Visual>) -> Self {
         Self {
             visual,
-            backend: Backend::Cpu(Box::default()),
+            backend: Backend::Cpu {
+                renderer: Box::default(),
+                pair: None,
+            },
         }
     }
 
@@ -51,10 +59,30 @@ impl Renderer {
         &self.visual
     }
 
+    /// Sets whether two images are drawn at once on the CPU, by the caller and one more thread, which starts with the first
+    /// such pair: 2, or 1, with which a renderer begins. The bytes are the same. More than 2 means 2, and 0 means 1; without
+    /// the feature `parallel`, in WebAssembly, on one core, and where the system gives no thread, the caller draws alone.
+    pub fn set_threads(&mut self, threads: usize) {
+        match &mut self.backend {
+            Backend::Cpu { pair, .. } if threads > 1 && Pair::is_of_use() => drop(pair.get_or_insert_default()),
+            Backend::Cpu { pair, .. } => *pair = None,
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            Backend::Gpu(_) => {}
+        }
+    }
+
+    /// Returns how many threads draw on the CPU: 1 or 2. 1 if images are drawn on a GPU.
+    pub fn threads(&self) -> usize {
+        match &self.backend {
+            Backend::Cpu { pair: Some(_), .. } => 2,
+            _ => 1,
+        }
+    }
+
     /// Returns how often the renderer on the CPU went through the geometry; 0 if images are drawn on a GPU.
     pub fn passes(&self) -> u64 {
         match &self.backend {
-            Backend::Cpu(renderer) => renderer.passes(),
+            Backend::Cpu { renderer, pair } => renderer.passes() + pair.as_ref().map_or(0, Pair::passes),
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             Backend::Gpu(_) => 0,
         }
@@ -65,7 +93,7 @@ impl Renderer {
     pub fn shared_gpu(&self) -> Option<&SharedGpu> {
         match &self.backend {
             Backend::Gpu(gpu) => Some(gpu),
-            Backend::Cpu(_) => None,
+            Backend::Cpu { .. } => None,
         }
     }
 
@@ -80,8 +108,16 @@ impl Renderer {
         images: impl IntoIterator<Item = ImageBuffers<'o>>,
     ) -> Result<(), RenderError> {
         match &mut self.backend {
-            Backend::Cpu(renderer) => pairs(requests, images)
-                .try_for_each(|(request, images)| renderer.draw(&self.visual, &request.poses, &request.view, images)),
+            Backend::Cpu { renderer, pair } => {
+                let mut rest = pairs(requests, images);
+                while let Some(first) = rest.next() {
+                    match pair.as_mut().and_then(|pair| Some((pair, rest.next()?))) {
+                        Some((pair, second)) => pair.draw(&self.visual, renderer, [first, second])?,
+                        None => renderer.draw(&self.visual, &first.0.poses, &first.0.view, first.1)?,
+                    }
+                }
+                Ok(())
+            }
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             Backend::Gpu(gpu) => draw_on(gpu, requests, images),
         }

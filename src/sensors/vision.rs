@@ -137,6 +137,11 @@ impl Vision {
         &self.renderer
     }
 
+    /// Sets whether a thread of its own draws the right eye: see [`Renderer::set_threads`].
+    pub fn set_threads(&mut self, threads: usize) {
+        self.renderer.set_threads(threads);
+    }
+
     /// Draws both images, left and right, of length [`Self::len`] each. Poses are those of the start of the last physics
     /// step, as in the reference.
     ///

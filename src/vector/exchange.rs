@@ -167,7 +167,7 @@ impl VectorEnv {
     fn receive(&mut self, n: usize, out: &mut Buffers<'_>) -> Result<(), VectorError> {
         self.check_sent(n)?;
         self.pool.wait_for(n);
-        if let Some(slot) = self.pool.take_panicked() {
+        if let Some(slot) = self.pool.take_where(|slot| slot.panicked.is_some()) {
             self.in_flight -= 1;
             let env = slot.index;
             let error = panicked(&slot);

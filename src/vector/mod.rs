@@ -24,7 +24,6 @@ mod error;
 mod exchange;
 mod memory;
 mod options;
-mod pool;
 mod rows;
 mod seeds;
 mod single;
@@ -39,7 +38,7 @@ pub use seeds::Seeds;
 use crate::config::RendererKind;
 use crate::env::{Blueprint, Env, EnvError};
 use crate::spaces::{BoxSpace, ObservationSpace};
-use pool::Pool;
+use crate::threads::Pool;
 use rows::{InfoRows, Layout, Rows};
 use slot::Slot;
 
@@ -67,7 +66,7 @@ use slot::Slot;
 pub struct VectorEnv {
     /// The environments; those in flight are with the pool.
     slots: Vec<Option<Box<Slot>>>,
-    pool: Pool,
+    pool: Pool<Slot>,
     in_flight: usize,
     /// Number of calls of `send`, so that an environment that is named twice is found.
     sends: u64,
@@ -154,12 +153,14 @@ impl VectorEnv {
         let (action_space, observation_space) = (envs[0].action_space().clone(), envs[0].observation_space());
         let slots = envs.into_iter().enumerate().map(|(index, mut env)| {
             env.defer_vision(deferred);
+            env.set_vision_threads(1); // the vector has threads of its own
             Some(Box::new(Slot::new(index, env, mode)))
         });
         let (threads, clipped) = options::threads(options.threads, n);
         Ok(Self {
             slots: slots.collect(),
-            pool: Pool::new(threads, n)?,
+            // a vector of one thread has none beside the caller's
+            pool: Pool::new(if threads > 1 { threads } else { 0 }, n)?,
             in_flight: 0,
             sends: 0,
             threads,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::threads::PARALLEL;
+
 /// When an environment whose episode has ended starts the next one, as in Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AutoresetMode {
@@ -87,9 +89,6 @@ pub(super) fn threads(wanted: usize, envs: usize) -> (usize, Option<ClippedThrea
     }
     (given.max(1), clipped)
 }
-
-/// Whether this build has threads.
-pub(super) const PARALLEL: bool = cfg!(all(feature = "parallel", not(target_arch = "wasm32")));
 
 #[cfg(test)]
 mod tests {

@@ -5,6 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand};
 use crate::sensors::EyeImages;
+use crate::threads::Job;
 use crate::vector::AutoresetMode;
 
 /// What an environment is to do.
@@ -39,6 +40,14 @@ pub(super) struct Slot {
     pub panicked: Option<String>,
 }
 
+impl Job for Slot {
+    fn run(&mut self) {
+        if let Err(payload) = catch_unwind(AssertUnwindSafe(|| self.perform())) {
+            self.panicked = Some(message(&*payload));
+        }
+    }
+}
+
 impl Slot {
     pub fn new(index: usize, env: Env, mode: AutoresetMode) -> Self {
         let action = Vec::with_capacity(env.action_space().len());
@@ -70,13 +79,6 @@ impl Slot {
     pub fn can_step(&self) -> bool {
         let resets = self.started && self.mode != AutoresetMode::Disabled;
         self.panicked.is_none() && (self.env.ready() || resets)
-    }
-
-    /// Does the task. A panic is kept for the caller.
-    pub fn run(&mut self) {
-        if let Err(payload) = catch_unwind(AssertUnwindSafe(|| self.perform())) {
-            self.panicked = Some(message(&*payload));
-        }
     }
 
     fn perform(&mut self) {
@@ -122,6 +124,7 @@ impl Slot {
             let deferred = self.env.vision_is_deferred();
             self.env = self.env.blueprint().env()?;
             self.env.defer_vision(deferred);
+            self.env.set_vision_threads(1);
             self.panicked = None;
         }
         Ok(())

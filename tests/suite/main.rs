@@ -9,6 +9,7 @@ mod common;
 
 mod actuation;
 mod configurations;
+mod eyes_at_once;
 #[cfg(feature = "eval")]
 mod invariants;
 #[cfg(all(feature = "eval", feature = "npz"))]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// The rooms of `src/`, from the ground up. A room may use those on lines before its own; rooms on one line know nothing
 /// of each other.
 const ROOMS: &[&[&str]] = &[
-    &["math", "limits", "files", "json", "text"],
+    &["math", "limits", "files", "json", "text", "threads"],
     &["model", "assets", "spaces"],
     &["mjcf_loader", "formats"],
     &["physics"],

@@ -1,25 +1,31 @@
-//! Threads that run environments, first come, first served. Without threads the caller runs them.
+//! Threads that do jobs, first come, first served. Without threads the caller does them.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-use crate::vector::options::PARALLEL;
-use crate::vector::slot::Slot;
+/// Whether this build has threads.
+pub const PARALLEL: bool = cfg!(all(feature = "parallel", not(target_arch = "wasm32")));
 
-/// A queue of environments to run, one of those that have run, and the threads between them.
+/// Something to do, with all that it needs and all that comes of it.
+pub trait Job: Send + 'static {
+    /// Does it. A panic must be caught and kept for the caller.
+    fn run(&mut self);
+}
+
+/// A queue of jobs to do, one of those that are done, and the threads between them.
 ///
-/// Environments move through the queues by value, in boxes, so that no step allocates and nothing is shared. A vector
-/// of one thread has none beside the caller's. Otherwise there are as many as asked for; when the caller helps, the last of
-/// them rests. Whoever has to wait looks out for a moment before it goes to sleep, as waking up takes longer than many a step.
-pub(super) struct Pool {
-    shared: Arc<Shared>,
+/// Jobs move through the queues by value, in boxes, so that nothing is allocated and nothing is shared. When the caller helps,
+/// the last thread rests. Whoever has to wait looks out for a moment before it goes to sleep, as waking up takes longer than
+/// many a job.
+pub struct Pool<J: Job> {
+    shared: Arc<Shared<J>>,
     workers: Vec<JoinHandle<()>>,
 }
 
-struct Shared {
-    queues: Mutex<Queues>,
+struct Shared<J> {
+    queues: Mutex<Queues<J>>,
     /// Tells the threads that there is something to do.
     work: Condvar,
     /// Tells the last thread, which is left asleep while the caller helps.
@@ -36,27 +42,26 @@ struct Shared {
 /// Looks that a thread takes before it sleeps: some 30 us.
 const PATIENCE: u32 = 1000;
 
-#[derive(Default)]
-struct Queues {
-    tasks: VecDeque<Box<Slot>>,
-    done: VecDeque<Box<Slot>>,
+struct Queues<J> {
+    jobs: VecDeque<Box<J>>,
+    done: VecDeque<Box<J>>,
     /// Number of threads.
     threads: usize,
-    /// Number of threads that may take tasks, the first ones.
+    /// Number of threads that may take jobs, the first ones.
     active: usize,
-    /// Number of finished environments that the caller waits for, if it does.
+    /// Number of finished jobs that the caller waits for, if it does.
     wanted: Option<usize>,
     stop: bool,
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Queues> {
-        // environments panic in `Slot::run`, never under the lock
+impl<J> Shared<J> {
+    fn lock(&self) -> MutexGuard<'_, Queues<J>> {
+        // jobs run, and panic, without the lock
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Looks out, without the lock, for a count to move on by `by` from where it stands; for a moment.
-    fn look_out(&self, queues: MutexGuard<'_, Queues>, count: &AtomicUsize, by: usize) {
+    fn look_out(&self, queues: MutexGuard<'_, Queues<J>>, count: &AtomicUsize, by: usize) {
         let start = count.load(Ordering::Relaxed);
         drop(queues);
         for _ in 0..self.patience {
@@ -68,7 +73,7 @@ impl Shared {
     }
 
     /// Waits for something to do, for a thread that has found nothing.
-    fn idle<'a>(&'a self, mut queues: MutexGuard<'a, Queues>, index: usize) -> MutexGuard<'a, Queues> {
+    fn idle<'a>(&'a self, mut queues: MutexGuard<'a, Queues<J>>, index: usize) -> MutexGuard<'a, Queues<J>> {
         if index < queues.active {
             let before = self.handed.load(Ordering::Relaxed);
             self.look_out(queues, &self.handed, 1);
@@ -86,15 +91,20 @@ impl Shared {
     }
 }
 
-impl Pool {
-    /// Starts the threads for `envs` environments.
-    pub fn new(threads: usize, envs: usize) -> std::io::Result<Self> {
-        let threads = if PARALLEL && threads > 1 { threads } else { 0 };
+impl<J: Job> Pool<J> {
+    /// Starts threads for at most `jobs` jobs at a time. A build without threads starts none.
+    ///
+    /// # Errors
+    /// The system gives no more threads.
+    pub fn new(threads: usize, jobs: usize) -> std::io::Result<Self> {
+        let threads = if PARALLEL { threads } else { 0 };
         let queues = Queues {
-            tasks: VecDeque::with_capacity(envs),
-            done: VecDeque::with_capacity(envs),
+            jobs: VecDeque::with_capacity(jobs),
+            done: VecDeque::with_capacity(jobs),
             threads,
-            ..Queues::default()
+            active: 0,
+            wanted: None,
+            stop: false,
         };
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let shared = Arc::new(Shared {
@@ -119,11 +129,10 @@ impl Pool {
         Ok(pool)
     }
 
-    /// Hands environments over. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others
-    /// rests.
-    pub fn submit(&self, slots: impl Iterator<Item = Box<Slot>>, help: bool) {
+    /// Hands jobs over. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others rests.
+    pub fn submit(&self, jobs: impl Iterator<Item = Box<J>>, help: bool) {
         let mut queues = self.shared.lock();
-        queues.tasks.extend(slots);
+        queues.jobs.extend(jobs);
         queues.active = queues.threads.saturating_sub(usize::from(help));
         self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
@@ -135,17 +144,17 @@ impl Pool {
         }
     }
 
-    /// Returns the next environment that has run; the caller helps to run them. Nothing comes back if nothing is under way.
-    pub fn next(&self, under_way: usize) -> Option<Box<Slot>> {
+    /// Returns the next job that is done; the caller helps to do them. Nothing comes back if nothing is under way.
+    pub fn next(&self, under_way: usize) -> Option<Box<J>> {
         let mut queues = self.shared.lock();
         loop {
-            if let Some(slot) = queues.done.pop_front() {
-                return Some(slot);
+            if let Some(job) = queues.done.pop_front() {
+                return Some(job);
             }
-            if let Some(mut slot) = queues.tasks.pop_front() {
+            if let Some(mut job) = queues.jobs.pop_front() {
                 drop(queues);
-                slot.run();
-                return Some(slot);
+                job.run();
+                return Some(job);
             }
             if under_way == 0 {
                 return None;
@@ -154,7 +163,7 @@ impl Pool {
         }
     }
 
-    /// Waits until `wanted` environments have run, which must be under way. Without threads the caller runs them, in order.
+    /// Waits until `wanted` jobs are done, which must be under way. Without threads the caller does them, in order.
     pub fn wait_for(&self, wanted: usize) {
         let mut queues = self.shared.lock();
         while queues.done.len() < wanted {
@@ -162,30 +171,30 @@ impl Pool {
                 queues = self.wait(queues, wanted);
                 continue;
             }
-            let Some(mut slot) = queues.tasks.pop_front() else {
+            let Some(mut job) = queues.jobs.pop_front() else {
                 return;
             };
             drop(queues);
-            slot.run();
+            job.run();
             queues = self.shared.lock();
-            queues.done.push_back(slot);
+            queues.done.push_back(job);
         }
     }
 
-    /// Returns the finished environment that panicked first, if one did.
-    pub fn take_panicked(&self) -> Option<Box<Slot>> {
+    /// Returns the first finished job of a kind, if there is one.
+    pub fn take_where(&self, kind: impl FnMut(&Box<J>) -> bool) -> Option<Box<J>> {
         let mut queues = self.shared.lock();
-        let at = queues.done.iter().position(|slot| slot.panicked.is_some())?;
+        let at = queues.done.iter().position(kind)?;
         queues.done.remove(at)
     }
 
-    /// Returns a finished environment, the first first.
-    pub fn take(&self) -> Option<Box<Slot>> {
+    /// Returns a finished job, the first first.
+    pub fn take(&self) -> Option<Box<J>> {
         self.shared.lock().done.pop_front()
     }
 
-    /// Waits for the threads until `wanted` environments have run, or for less.
-    fn wait<'a>(&'a self, queues: MutexGuard<'a, Queues>, wanted: usize) -> MutexGuard<'a, Queues> {
+    /// Waits for the threads until `wanted` jobs are done, or for less.
+    fn wait<'a>(&'a self, queues: MutexGuard<'a, Queues<J>>, wanted: usize) -> MutexGuard<'a, Queues<J>> {
         let missing = wanted.saturating_sub(queues.done.len());
         self.shared.look_out(queues, &self.shared.finished, missing);
         let mut queues = self.shared.lock();
@@ -200,39 +209,39 @@ impl Pool {
     }
 }
 
-/// Ends the threads, each when the environment in its hands has run.
-impl Drop for Pool {
+/// Ends the threads, each when the job in its hands is done.
+impl<J: Job> Drop for Pool<J> {
     fn drop(&mut self) {
         let mut queues = self.shared.lock();
         queues.stop = true;
-        queues.tasks.clear();
+        queues.jobs.clear();
         self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
         self.shared.work.notify_all();
         self.shared.spare.notify_one();
         for worker in self.workers.drain(..) {
-            // it cannot have panicked: what panics is caught in `Slot::run`
+            // it cannot have panicked: a job keeps its panic
             let _ = worker.join();
         }
     }
 }
 
 /// Runs a thread of the pool until there is no more work.
-fn work(shared: &Shared, index: usize) {
+fn work<J: Job>(shared: &Shared<J>, index: usize) {
     let mut queues = shared.lock();
     while !queues.stop {
-        let task = match index < queues.active {
-            true => queues.tasks.pop_front(),
+        let job = match index < queues.active {
+            true => queues.jobs.pop_front(),
             false => None,
         };
-        let Some(mut slot) = task else {
+        let Some(mut job) = job else {
             queues = shared.idle(queues, index);
             continue;
         };
         drop(queues);
-        slot.run();
+        job.run();
         queues = shared.lock();
-        queues.done.push_back(slot);
+        queues.done.push_back(job);
         shared.finished.fetch_add(1, Ordering::Relaxed);
         if queues.wanted.is_some_and(|wanted| queues.done.len() >= wanted) {
             shared.ready.notify_one();
@@ -246,7 +255,11 @@ mod tests {
 
     #[test]
     fn threads_end_with_the_pool() {
-        let pool = Pool::new(3, 4).expect("threads");
+        struct Nothing;
+        impl Job for Nothing {
+            fn run(&mut self) {}
+        }
+        let pool = Pool::<Nothing>::new(3, 4).expect("threads");
         assert_eq!(pool.workers.len(), if PARALLEL { 3 } else { 0 });
         // each thread holds what it shares with the pool as long as it lives
         let alive = Arc::downgrade(&pool.shared);

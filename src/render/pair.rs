@@ -1,0 +1,259 @@
+//! Two images at a time: a thread draws the second while the caller draws the first.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::math::{Mat3, Vec3};
+use crate::render::view::ImageBuffers;
+use crate::render::{CpuRenderer, Poses, RenderError, RenderRequest, View, Visual};
+use crate::threads::{Job, PARALLEL, Pool};
+
+/// A thread that draws images, and what it draws them with. The thread starts with the first pair of images.
+#[derive(Default)]
+pub struct Pair {
+    /// The drawing, when it is not with the thread.
+    drawing: Option<Box<Drawing>>,
+    thread: Option<Thread>,
+}
+
+/// A thread, in the process that has it.
+struct Thread {
+    pool: Pool<Drawing>,
+    process: u32,
+}
+
+impl Pair {
+    /// Returns whether a second thread would be of use: this build has threads, and the machine another core.
+    pub fn is_of_use() -> bool {
+        PARALLEL && std::thread::available_parallelism().is_ok_and(|cores| cores.get() > 1)
+    }
+
+    /// Draws two images of a scene: the first with the caller's renderer.
+    ///
+    /// # Errors
+    /// As [`CpuRenderer::draw`], the first image's first.
+    pub fn draw(
+        &mut self,
+        visual: &Arc<Visual>,
+        own: &mut CpuRenderer,
+        [first, second]: [(&RenderRequest, ImageBuffers<'_>); 2],
+    ) -> Result<(), RenderError> {
+        let draw_first = || own.draw(visual, &first.0.poses, &first.0.view, first.1);
+        let mut drawing = match self.drawing.take() {
+            Some(drawing) => drawing,
+            None => Box::new(Drawing::new(visual)),
+        };
+        drawing.take_up(second.0, &second.1);
+        let drawn = match self.thread() {
+            Some(Thread { pool, .. }) => {
+                pool.submit(std::iter::once(drawing), false);
+                // a panic has to wait until the thread is done
+                let drawn = catch_unwind(AssertUnwindSafe(draw_first));
+                drawing = pool.next(1).expect("a drawing is under way");
+                drawn.unwrap_or_else(|payload| resume_unwind(payload))
+            }
+            // the system gives no thread: the caller draws both
+            None => {
+                drawing.run();
+                draw_first()
+            }
+        };
+        if let Some(payload) = drawing.panic().take() {
+            resume_unwind(payload);
+        }
+        let outcome = drawn.and(drawing.hand_over(second.1));
+        self.drawing = Some(drawing);
+        outcome
+    }
+
+    /// Returns how often the thread went through the geometry of a scene.
+    pub fn passes(&self) -> u64 {
+        self.drawing.as_ref().map_or(0, |drawing| drawing.renderer.passes())
+    }
+
+    /// Returns the thread, which is started where there is none yet. A process that was forked from another starts its own.
+    fn thread(&mut self) -> Option<&Thread> {
+        let process = std::process::id();
+        if self.thread.as_ref().is_some_and(|thread| thread.process != process) {
+            self.leave_behind();
+        }
+        if self.thread.is_none() {
+            let pool = Pool::new(1, 1).ok()?;
+            self.thread = Some(Thread { pool, process });
+        }
+        self.thread.as_ref()
+    }
+
+    /// Leaves a thread alone that stayed behind in the process that this one was forked from: nobody could wait for it.
+    fn leave_behind(&mut self) {
+        std::mem::forget(self.thread.take());
+    }
+}
+
+impl Drop for Pair {
+    fn drop(&mut self) {
+        if self.thread.as_ref().is_some_and(|t| t.process != std::process::id()) {
+            self.leave_behind();
+        }
+    }
+}
+
+impl std::fmt::Debug for Pair {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Pair").finish_non_exhaustive()
+    }
+}
+
+/// An image to draw, in memory of its own.
+struct Drawing {
+    visual: Arc<Visual>,
+    renderer: CpuRenderer,
+    poses: PosesBuffer,
+    view: View,
+    rgb: Image<u8>,
+    gray: Image<u8>,
+    depth: Image<f32>,
+    segmentation: Image<i32>,
+    outcome: Result<(), RenderError>,
+    /// What a panic said. Only the mutex lets a renderer with a pair be shared between threads.
+    panicked: Mutex<Option<Box<dyn Any + Send>>>,
+}
+
+impl Drawing {
+    fn new(visual: &Arc<Visual>) -> Self {
+        Self {
+            visual: visual.clone(),
+            renderer: CpuRenderer::new(),
+            poses: PosesBuffer::default(),
+            view: View {
+                camera: View::FREE,
+                width: 0,
+                height: 0,
+            },
+            rgb: Image::default(),
+            gray: Image::default(),
+            depth: Image::default(),
+            segmentation: Image::default(),
+            outcome: Ok(()),
+            panicked: Mutex::new(None),
+        }
+    }
+
+    /// Takes over what is to be drawn, and makes room for as many values as `images` has.
+    fn take_up(&mut self, request: &RenderRequest, images: &ImageBuffers<'_>) {
+        self.view = request.view;
+        self.poses.copy_from(&request.poses);
+        self.rgb.make_room(images.rgb.as_deref());
+        self.gray.make_room(images.gray.as_deref());
+        self.depth.make_room(images.depth.as_deref());
+        self.segmentation.make_room(images.segmentation.as_deref());
+    }
+
+    fn panic(&mut self) -> &mut Option<Box<dyn Any + Send>> {
+        self.panicked.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Copies what was drawn.
+    fn hand_over(&mut self, images: ImageBuffers<'_>) -> Result<(), RenderError> {
+        std::mem::replace(&mut self.outcome, Ok(()))?;
+        self.rgb.hand_over(images.rgb);
+        self.gray.hand_over(images.gray);
+        self.depth.hand_over(images.depth);
+        self.segmentation.hand_over(images.segmentation);
+        Ok(())
+    }
+}
+
+impl Job for Drawing {
+    fn run(&mut self) {
+        let images = ImageBuffers {
+            rgb: self.rgb.wanted(),
+            gray: self.gray.wanted(),
+            depth: self.depth.wanted(),
+            segmentation: self.segmentation.wanted(),
+        };
+        let (renderer, visual, poses, view) = (&mut self.renderer, &self.visual, self.poses.lend(), &self.view);
+        let drawn = catch_unwind(AssertUnwindSafe(|| renderer.draw(visual, &poses, view, images)));
+        match drawn {
+            Ok(outcome) => self.outcome = outcome,
+            Err(payload) => *self.panic() = Some(payload),
+        }
+    }
+}
+
+/// Memory of an image, which is wanted or not.
+#[derive(Default)]
+struct Image<T> {
+    values: Vec<T>,
+    is_wanted: bool,
+}
+
+impl<T: Copy + Default> Image<T> {
+    fn make_room(&mut self, like: Option<&[T]>) {
+        self.is_wanted = like.is_some();
+        self.values.resize(like.map_or(0, <[T]>::len), T::default());
+    }
+
+    fn wanted(&mut self) -> Option<&mut [T]> {
+        self.is_wanted.then_some(&mut self.values)
+    }
+
+    fn hand_over(&self, out: Option<&mut [T]>) {
+        if let Some(out) = out {
+            out.copy_from_slice(&self.values);
+        }
+    }
+}
+
+/// A copy of poses.
+#[derive(Default)]
+struct PosesBuffer {
+    geom_xpos: Vec<Vec3>,
+    geom_xmat: Vec<Mat3>,
+    geom_size: Vec<Vec3>,
+    site_xpos: Vec<Vec3>,
+    site_xmat: Vec<Mat3>,
+    cam_xpos: Vec<Vec3>,
+    cam_xmat: Vec<Mat3>,
+    free: Option<(Vec3, Mat3)>,
+    xpos: Vec<Vec3>,
+    xmat: Vec<Mat3>,
+    subtree_com: Vec<Vec3>,
+}
+
+impl PosesBuffer {
+    fn copy_from(&mut self, poses: &Poses) {
+        fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
+            to.clear();
+            to.extend_from_slice(from);
+        }
+        copy(&mut self.geom_xpos, poses.geom_xpos);
+        copy(&mut self.geom_xmat, poses.geom_xmat);
+        copy(&mut self.geom_size, poses.geom_size);
+        copy(&mut self.site_xpos, poses.site_xpos);
+        copy(&mut self.site_xmat, poses.site_xmat);
+        copy(&mut self.cam_xpos, poses.cam_xpos);
+        copy(&mut self.cam_xmat, poses.cam_xmat);
+        self.free = poses.free;
+        copy(&mut self.xpos, poses.xpos);
+        copy(&mut self.xmat, poses.xmat);
+        copy(&mut self.subtree_com, poses.subtree_com);
+    }
+
+    fn lend(&self) -> Poses<'_> {
+        Poses {
+            geom_xpos: &self.geom_xpos,
+            geom_xmat: &self.geom_xmat,
+            geom_size: &self.geom_size,
+            site_xpos: &self.site_xpos,
+            site_xmat: &self.site_xmat,
+            cam_xpos: &self.cam_xpos,
+            cam_xmat: &self.cam_xmat,
+            free: self.free,
+            xpos: &self.xpos,
+            xmat: &self.xmat,
+            subtree_com: &self.subtree_com,
+        }
+    }
+}
