@@ -1,10 +1,11 @@
 //! What pictures cost beside MuJoCo's own renderer.
 
 use std::path::Path;
+use std::time::Instant;
 
 use babybench::config::{Behavior, Scene};
 use babybench::formats::npz::Npz;
-use babybench::render::{CpuRenderer, Poses, View};
+use babybench::render::{Poses, RenderRequest, Renderer, View};
 use babybench::{Config, Env};
 use conformance::live::speed::{cpu_time, quartiles};
 
@@ -27,10 +28,13 @@ pub fn print(python: &Path) -> Result<(), String> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let rows = rows(python)?;
     println!(
-        "CPU time of pictures, ms: MuJoCo 3.3.0's renderer (OSMesa in one thread) and ours, the same states and cameras.\n"
+        "CPU time of pictures, ms: MuJoCo 3.3.0's renderer (OSMesa in one thread) and ours, the same states and cameras; by the \
+         clock, how long both eyes take one thread and two (`vision_threads: 2`), by turns.\n"
     );
-    println!("| scene | pictures | MuJoCo | ours | ours, dearest | times faster, least | p50 |");
-    println!("|---|---|--:|--:|--:|--:|--:|");
+    println!(
+        "| scene | pictures | MuJoCo | ours | ours, dearest | times faster, least | p50 | clock, one thread | two |"
+    );
+    println!("|---|---|--:|--:|--:|--:|--:|--:|--:|");
     for scene in Scene::ALL {
         let name = scene.to_string();
         let states = Npz::open(data.join(format!("render_{name}.npz")))
@@ -52,12 +56,14 @@ pub fn print(python: &Path) -> Result<(), String> {
         for eyes in [true, false] {
             let rows = rows.iter().filter(|r| r.scene == name && r.eyes == eyes);
             let (mut theirs, mut ours, mut ratio) = (Vec::new(), Vec::new(), Vec::new());
+            let mut clock = [Vec::new(), Vec::new()];
             for row in rows {
                 let qpos = states
                     .data
                     .get(row.state * nq..(row.state + 1) * nq)
                     .ok_or_else(|| format!("render_{name}.npz has no state {}", row.state))?;
-                let spent = spent(&mut env, qpos, eyes)?;
+                let Spent { cpu: spent, wall } = spent(&mut env, qpos, eyes)?;
+                clock.iter_mut().zip(wall).for_each(|(all, ms)| all.push(ms));
                 theirs.push(row.mujoco);
                 ours.push(spent);
                 ratio.push(row.mujoco / spent);
@@ -70,7 +76,13 @@ pub fn print(python: &Path) -> Result<(), String> {
             } else {
                 "corner, 480 x 480"
             };
-            println!("| {name} | {what} | {theirs:.2} | {ours:.3} | {dearest:.3} | {least:.1} | {ratio:.1} |");
+            let [one, two] = clock.map(|v| match eyes {
+                true => format!("{:.3}", quartiles(v)[1]),
+                false => String::new(),
+            });
+            println!(
+                "| {name} | {what} | {theirs:.2} | {ours:.3} | {dearest:.3} | {least:.1} | {ratio:.1} | {one} | {two} |"
+            );
         }
     }
     Ok(())
@@ -107,8 +119,16 @@ fn rows(python: &Path) -> Result<Vec<Row>, String> {
         .collect()
 }
 
-/// Measures the median CPU time of our pictures, ms.
-fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<f64, String> {
+/// What our pictures of a state cost, medians, ms.
+struct Spent {
+    /// CPU time of one thread.
+    cpu: f64,
+    /// By the clock, with one thread and with two.
+    wall: [f64; 2],
+}
+
+/// Measures what our pictures of a state cost.
+fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<Spent, String> {
     let qvel = vec![0.0; env.state().qvel.len()];
     env.reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
     let visual = env.blueprint().visual().map_err(|e| e.to_string())?;
@@ -117,22 +137,38 @@ fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<f64, String> {
     } else {
         (&["corner"], 480, 10)
     };
-    let mut renderer = CpuRenderer::new();
-    let mut picture = vec![0; 3 * size * size];
-    let mut times = Vec::new();
+    let request = |name: &&str| {
+        let camera = env.model().camera(name).ok_or_else(|| format!("no camera {name}"))?;
+        let view = View {
+            camera,
+            width: size,
+            height: size,
+        };
+        let poses = Poses::from(env.state());
+        Ok(RenderRequest { poses, view })
+    };
+    let requests = names.iter().map(request).collect::<Result<Vec<_>, String>>()?;
+    let mut pictures = vec![vec![0; 3 * size * size]; requests.len()];
+    let mut renderers = [1, 2].map(|threads| {
+        let mut renderer = Renderer::cpu(visual.clone());
+        renderer.set_threads(threads);
+        renderer
+    });
+    let (mut cpu, mut wall) = (Vec::new(), [Vec::new(), Vec::new()]);
     for _ in 0..repeat {
-        let start = cpu_time();
-        for name in names {
-            let view = View {
-                camera: env.model().camera(name).ok_or_else(|| format!("no camera {name}"))?,
-                width: size,
-                height: size,
-            };
-            renderer
-                .rgb(&visual, &Poses::from(env.state()), &view, &mut picture)
-                .map_err(|e| e.to_string())?;
+        for (renderer, wall) in renderers.iter_mut().zip(&mut wall) {
+            let alone = renderer.threads() == 1;
+            let (clock, start) = (Instant::now(), cpu_time());
+            let drawn = renderer.rgb(&requests, pictures.iter_mut().map(|picture| &mut picture[..]));
+            drawn.map_err(|e| e.to_string())?;
+            if alone {
+                cpu.push(1e3 * (cpu_time() - start));
+            }
+            wall.push(1e3 * clock.elapsed().as_secs_f64());
         }
-        times.push(1e3 * (cpu_time() - start));
     }
-    Ok(quartiles(times)[1])
+    Ok(Spent {
+        cpu: quartiles(cpu)[1],
+        wall: wall.map(|v| quartiles(v)[1]),
+    })
 }
