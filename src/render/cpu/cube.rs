@@ -4,7 +4,7 @@ use std::ops::Neg;
 
 use wide::{f32x4, u32x4};
 
-use super::lanes::{four, three};
+use super::lanes::{at_least, four, integers, three};
 use super::light::Vectors;
 use super::sample::{Coordinates, MipLevels, across, are_settled, channels, texels, upward, whole};
 use crate::render::texture::{Face, Level};
@@ -179,7 +179,7 @@ impl Spots {
         let (left, top) = (whole(x), whole(y));
         let (across, down) = (x - left, y - top);
         let last = size - 1.0;
-        let within = |v: f32x4| v.max(f32x4::splat(-1.0)).fast_min(last);
+        let within = |v: f32x4| at_least(v, f32x4::splat(-1.0)).fast_min(last);
         let (left, top) = (within(left), within(top));
         let least = left.fast_min(top).simd_ge(f32x4::ZERO);
         Self {
@@ -188,7 +188,7 @@ impl Spots {
             across,
             down,
             // textures are small enough for exact indices
-            first: (top * size + left).fast_trunc_int().to_array(),
+            first: integers(top * size + left).to_array(),
             inside: (least & left.fast_max(top).simd_lt(last)).to_bitmask(),
         }
     }

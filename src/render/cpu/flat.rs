@@ -3,6 +3,7 @@
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4, u16x8, u32x4};
 
+use super::lanes::{at_least, integers};
 use super::light::Vectors;
 use super::sample::{Coordinates, MipLevels, across, are_settled, channels, texels, upward, whole};
 use crate::render::texture::{Face, Level};
@@ -71,7 +72,7 @@ impl RepeatedAxis {
         let at = (at - whole(at)) * n - 0.5;
         let low = whole(at);
         // NaN coordinates give an arbitrary texel
-        let index = |v: f32x4| v.max(f32x4::ZERO).fast_min(n - 1.0);
+        let index = |v: f32x4| at_least(v, f32x4::ZERO).fast_min(n - 1.0);
         let (before, after) = (low, low + 1.0);
         Self {
             before: index(before.simd_lt(f32x4::ZERO).select(n - 1.0, before)),
@@ -84,8 +85,8 @@ impl RepeatedAxis {
     #[inline(always)]
     fn weight(&self) -> u16x8 {
         let one = f32::from(ONE);
-        let weight = whole(self.between * one + 0.5).max(f32x4::ZERO);
-        let weight = weight.fast_min(f32x4::splat(one)).fast_trunc_int();
+        let weight = at_least(whole(self.between * one + 0.5), f32x4::ZERO);
+        let weight = integers(weight.fast_min(f32x4::splat(one)));
         cast(weight | weight << 16)
     }
 }
@@ -111,7 +112,7 @@ impl<'a> Spots<'a> {
     #[inline(always)]
     fn places(&self, row: f32x4, column: f32x4) -> [i32; 4] {
         // textures are small enough for exact indices
-        (row * self.level.width as f32 + column).fast_trunc_int().to_array()
+        integers(row * self.level.width as f32 + column).to_array()
     }
 
     /// Looks up bilinearly; `first` are the texels before.

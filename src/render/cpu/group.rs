@@ -2,7 +2,7 @@
 
 use wide::{f32x4, i32x4};
 
-use super::lanes::{four, three};
+use super::lanes::{four, integers, three};
 use super::plane::{Plane, Vertex};
 use super::raster::{Depth, Edges, MEDIUM};
 use super::sampling::{GRAIN, Sampling};
@@ -70,7 +70,7 @@ impl Waiting {
         };
         let (small, medium) = (within(PIXEL), within(MEDIUM));
         let edges = LaneEdges::new(three(|k| x[k] - extent[0].low), three(|k| y[k] - extent[1].low));
-        let low = [extent[0].low.fast_trunc_int(), extent[1].low.fast_trunc_int()];
+        let low = [integers(extent[0].low), integers(extent[1].low)];
         let covered = if small == 0 { [0; 4] } else { edges.covered::<S>(low) };
         let turned = edges.counterclockwise();
         let pixels = [extent[0].pixels(), extent[1].pixels()];
@@ -119,7 +119,7 @@ impl Extent {
     fn new([a, b, c]: &[f32x4; 3]) -> Self {
         let low = a.fast_min(*b).fast_min(*c);
         // no sample is nearer to the edges of a pixel than a grain
-        let first = (low.fast_trunc_int() + i32x4::splat(GRAIN - 1)) >> 8_u32;
+        let first = (integers(low) + i32x4::splat(GRAIN - 1)) >> 8_u32;
         let first = first & !(first >> 31_u32);
         Self {
             low,
@@ -131,7 +131,7 @@ impl Extent {
     /// Returns the first and the last pixels that the triangles may cover; the last may lie beyond the image.
     #[inline(always)]
     fn pixels(&self) -> [[i32; 4]; 2] {
-        let high = (self.low + self.reach).fast_trunc_int();
+        let high = integers(self.low + self.reach);
         let last = (high - i32x4::splat(GRAIN)) >> 8_u32;
         [(self.pixel >> 8_u32).to_array(), last.to_array()]
     }

@@ -1,5 +1,8 @@
-//! Arrays of a few elements, made without a loop. (`array::map` of closures that may panic is a call for each array, which
-//! costs more than what is done here.)
+//! Arrays of a few elements, made without a loop (`array::map` of closures that may panic is a call for each array, which
+//! costs more than what is done here), and what costs less in lanes when one knows more of the numbers than `wide` does.
+
+use wide::bytemuck::cast;
+use wide::{f32x4, i32x4};
 
 /// Makes three elements from their indices.
 #[inline(always)]
@@ -11,4 +14,70 @@ pub fn three<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
 #[inline(always)]
 pub fn four<T>(mut of: impl FnMut(usize) -> T) -> [T; 4] {
     [of(0), of(1), of(2), of(3)]
+}
+
+/// Returns `v` where it is above `low`, which is a number, and `low` elsewhere, also where `v` is none.
+///
+/// [`f32x4::max`] looks for NaN on either side, which compilers see through on x86, but not in WebAssembly.
+#[inline(always)]
+pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
+    match cfg!(target_arch = "wasm32") {
+        true => low.fast_max(v),
+        false => v.max(low),
+    }
+}
+
+/// Converts whole numbers between -2^22 and 2^22. What comes of others is no use, and not the same everywhere.
+///
+/// What WebAssembly has for it saturates, for which x86 needs seven instructions.
+#[inline(always)]
+pub fn integers(v: f32x4) -> i32x4 {
+    match cfg!(target_arch = "wasm32") {
+        // the last bits of a sum with 1.5 * 2^23 are the other number
+        true => cast::<_, i32x4>(v + 12_582_912.0) - i32x4::splat(0x4b40_0000),
+        false => v.fast_trunc_int(),
+    }
+}
+
+/// Rounds numbers between 0 and 2^20 down that are whole quarters.
+#[inline(always)]
+pub fn rounded_down(quarters: f32x4) -> i32x4 {
+    match cfg!(target_arch = "wasm32") {
+        // the nearest integer is that below
+        true => integers(quarters - 0.375),
+        false => quarters.fast_trunc_int(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_the_least() {
+        let of = |v: f32, low: f32| at_least(f32x4::splat(v), f32x4::splat(low)).to_array()[3];
+        for (v, low, expected) in [
+            (2.0, 0.0, 2.0),
+            (-2.0, 0.0, 0.0),
+            (-2.0, -1.0, -1.0),
+            (f32::NAN, 0.0, 0.0),
+            (f32::NAN, -1.0, -1.0),
+            (f32::INFINITY, 0.0, f32::INFINITY),
+            (f32::NEG_INFINITY, -1.0, -1.0),
+        ] {
+            assert_eq!(of(v, low), expected, "{v} {low}");
+        }
+        assert!(of(-0.0, 0.0).is_sign_positive());
+    }
+
+    #[test]
+    fn whole_numbers_are_integers() {
+        for v in [0, 1, -1, 2, 255, -256, 65_535, 1 << 20, (1 << 22) - 1, 1 - (1 << 22)] {
+            assert_eq!(integers(f32x4::splat(v as f32)).to_array(), [v; 4]);
+        }
+        for quarters in 0..1024 {
+            let v = f32x4::splat(quarters as f32 * 0.25);
+            assert_eq!(rounded_down(v).to_array(), [quarters / 4; 4]);
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
-use super::lanes::three;
+use super::lanes::{at_least, three};
 use super::plane::{Basis, Plane, Vertex};
 use super::sampling::{GRAIN, GRAIN_BITS, Sampling};
 
@@ -123,7 +123,7 @@ impl Depth {
             f32x4::new(self.plane.at(sx, sy))
         };
         // NaN counts as farthest
-        z.max(f32x4::ZERO).fast_min(f32x4::ONE)
+        at_least(z, f32x4::ZERO).fast_min(f32x4::ONE)
     }
 }
 

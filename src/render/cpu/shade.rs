@@ -4,7 +4,7 @@ use wide::{f32x4, i32x4, u32x4};
 
 use super::camera::Eye;
 use super::frame::Frame;
-use super::lanes::{four, three};
+use super::lanes::{at_least, four, rounded_down, three};
 use super::light::Vectors;
 use super::plane::{Basis, Planes};
 use super::sample::channels;
@@ -229,13 +229,13 @@ fn bytes(colours: &Vectors) -> Vectors {
 fn rounded(colour: f32x4) -> f32x4 {
     // adding 2^23 rounds to the nearest integer
     const SHIFT: f32 = 8_388_608.0;
-    (colour.max(f32x4::ZERO).fast_min(f32x4::ONE) * 255.0 + SHIFT) - SHIFT
+    (at_least(colour, f32x4::ZERO).fast_min(f32x4::ONE) * 255.0 + SHIFT) - SHIFT
 }
 
-/// Returns red, green and blue of each pixel in bytes, rounded down.
+/// Returns red, green and blue of each pixel in bytes, rounded down; the colours are whole quarters.
 #[inline(always)]
 fn packed(colours: &Vectors) -> [[u8; 4]; 4] {
-    let [r, g, b] = three(|k| colours[k].fast_trunc_int());
+    let [r, g, b] = three(|k| rounded_down(colours[k]));
     let joined: i32x4 = r | g << 8 | b << 16;
     joined.to_array().map(i32::to_le_bytes)
 }
@@ -247,7 +247,7 @@ fn by_pixel(&[r, g, b]: &Vectors) -> [f32x4; 4] {
 
 /// Lays a colour over one in bytes.
 fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
-    let over = over.max(f32x4::ZERO).fast_min(f32x4::ONE);
+    let over = at_least(over, f32x4::ZERO).fast_min(f32x4::ONE);
     rounded(over * f32x4::splat(alpha) + under / f32x4::splat(255.0) * f32x4::splat(1.0 - alpha))
 }
 

@@ -2,6 +2,7 @@
 
 use wide::{f32x4, i32x4};
 
+use super::lanes::integers;
 use super::sampling::Sampling;
 
 /// Triangles below this extent are small, 1/256 pixels: of each kind of sample, at most one lies within.
@@ -52,7 +53,7 @@ impl Quads {
         let range = |k: usize| {
             let low = a[k].fast_min(b[k]).fast_min(c[k].fast_min(d[k]));
             let high = a[k].fast_max(b[k]).fast_max(c[k].fast_max(d[k]));
-            (low.fast_trunc_int(), (high - low).fast_trunc_int())
+            (integers(low), integers(high - low))
         };
         let (x, y) = (range(0), range(1));
         let beyond = |(low, reach): (i32x4, i32x4), place: i32| -> i32x4 {
