@@ -234,6 +234,8 @@ def test_a_vector_in_a_forked_process_is_refused_and_ends_in_order():
         import os, numpy as np, babybench
         envs = babybench.VectorEnv("self_touch", 4, threads=2, touch_scale=2.0)
         env = babybench.make("self_touch", touch_scale=2.0)
+        eyes = babybench.make("hand_regard", touch_active=False, vision_threads=2)
+        eyes.reset(seed=0)
         envs.reset(seed=0)
         envs.step(envs.action_space.sample())
         child = os.fork()
@@ -244,12 +246,17 @@ def test_a_vector_in_a_forked_process_is_refused_and_ends_in_order():
                 assert "another process" in str(error), error
                 env.reset(seed=0)  # one environment has no threads
                 env.step(env.action_space.sample())
+                alone = babybench.make("hand_regard", touch_active=False)
+                seen, sought = [e.reset(seed=1)[0]["eye_right"] for e in (eyes, alone)]  # its thread stayed behind
+                assert (seen == sought).all()
+                del eyes
                 babybench.VectorEnv("self_touch", 2, threads=2, touch_scale=2.0).reset(seed=0)
                 del envs
                 print("refused", flush=True)
             os._exit(0)
         assert os.waitpid(child, 0)[1] == 0
         envs.step(envs.action_space.sample())
+        eyes.step(eyes.action_space.sample())
         print("goes on")
     """)
     assert (done.stdout.split("\n")[:2], done.stderr) == (["refused", "goes on"], "")

@@ -129,6 +129,8 @@ def start_cold() -> None:
 
 def drive(config: dict[str, Any], steps: int) -> dict[str, Any]:
     """Runs an environment and records it."""
+    # trimesh casts random rays where it is unsure whether a point of skin lies inside a mesh, and may take it for one outside
+    np.random.seed(SEED)
     env = bb_utils.make_env(config)
     u = env.unwrapped
     env.action_space.seed(SEED)
