@@ -35,12 +35,14 @@ struct Shared<J> {
     /// Counts what was handed over, and what has run; both change under the lock.
     handed: AtomicUsize,
     finished: AtomicUsize,
-    /// How often a thread looks out before it sleeps.
+    /// How often a thread, or the caller, looks out before it sleeps.
     patience: u32,
 }
 
-/// Looks that a thread takes before it sleeps: some 30 us.
+/// Looks before going to sleep: some 30 us.
 const PATIENCE: u32 = 1000;
+/// Looks where jobs are short and come one by one, some 0.3 ms: to sleep and wake up would cost more than it spares.
+const LONG_PATIENCE: u32 = 10 * PATIENCE;
 
 struct Queues<J> {
     jobs: VecDeque<Box<J>>,
@@ -97,6 +99,21 @@ impl<J: Job> Pool<J> {
     /// # Errors
     /// The system gives no more threads.
     pub fn new(threads: usize, jobs: usize) -> std::io::Result<Self> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        // without a core for each, whoever looks out keeps another from working
+        Self::start(threads, jobs, if threads > cores { 0 } else { PATIENCE })
+    }
+
+    /// Starts a thread for one job at a time, beside a caller who does another. Both stay awake from one job to the next where
+    /// these follow each other closely.
+    ///
+    /// # Errors
+    /// As [`Pool::new`].
+    pub fn of_one() -> std::io::Result<Self> {
+        Self::start(1, 1, LONG_PATIENCE)
+    }
+
+    fn start(threads: usize, jobs: usize, patience: u32) -> std::io::Result<Self> {
         let threads = if PARALLEL { threads } else { 0 };
         let queues = Queues {
             jobs: VecDeque::with_capacity(jobs),
@@ -106,7 +123,6 @@ impl<J: Job> Pool<J> {
             wanted: None,
             stop: false,
         };
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let shared = Arc::new(Shared {
             queues: Mutex::new(queues),
             work: Condvar::new(),
@@ -114,8 +130,7 @@ impl<J: Job> Pool<J> {
             ready: Condvar::new(),
             handed: AtomicUsize::new(0),
             finished: AtomicUsize::new(0),
-            // without a core for each, whoever looks out keeps another from working
-            patience: if threads > cores { 0 } else { PATIENCE },
+            patience,
         });
         let mut pool = Self {
             shared,
@@ -127,6 +142,11 @@ impl<J: Job> Pool<J> {
             pool.workers.push(thread.spawn(move || work(&shared, index))?);
         }
         Ok(pool)
+    }
+
+    /// Wakes a thread that [`Pool::of_one`] started, as there will be something to do in a moment.
+    pub fn wake(&self) {
+        self.shared.spare.notify_one();
     }
 
     /// Hands jobs over. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others rests.

@@ -346,6 +346,9 @@ impl Env {
         let mut applied = std::mem::take(&mut self.applied);
         applied.clear();
         applied.extend_from_slice(action);
+        if let Some(vision) = &self.senses.vision {
+            vision.renderer().prepare();
+        }
         let (mut scene, task) = self.play();
         task.before_step(&mut applied);
         let stepped = scene

@@ -67,6 +67,13 @@ impl Pair {
         outcome
     }
 
+    /// Wakes the thread, if there is one in this process, as there will be two images to draw in a moment.
+    pub fn wake(&self) {
+        if let Some(thread) = self.thread.as_ref().filter(|t| t.process == std::process::id()) {
+            thread.pool.wake();
+        }
+    }
+
     /// Returns how often the thread went through the geometry of a scene.
     pub fn passes(&self) -> u64 {
         self.drawing.as_ref().map_or(0, |drawing| drawing.renderer.passes())
@@ -79,7 +86,7 @@ impl Pair {
             self.leave_behind();
         }
         if self.thread.is_none() {
-            let pool = Pool::new(1, 1).ok()?;
+            let pool = Pool::of_one().ok()?;
             self.thread = Some(Thread { pool, process });
         }
         self.thread.as_ref()

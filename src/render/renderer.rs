@@ -71,6 +71,14 @@ impl Renderer {
         }
     }
 
+    /// Tells that two images will be wanted in less than some 0.1 ms, so that the second thread can wake up in the meantime. With
+    /// one thread nothing happens.
+    pub fn prepare(&self) {
+        if let Backend::Cpu { pair: Some(pair), .. } = &self.backend {
+            pair.wake();
+        }
+    }
+
     /// Returns how many threads draw on the CPU: 1 or 2. 1 if images are drawn on a GPU.
     pub fn threads(&self) -> usize {
         match &self.backend {
