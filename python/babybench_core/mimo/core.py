@@ -46,6 +46,7 @@ class Core:
         names: Names of all elements, by kind.
         settled: Whether no script can have written to the state since it was last read back.
         observed: Number of observations so far.
+        felt: How often touch has been felt at this instant.
         width, height: Size of pictures for people, pixels.
     """
 
@@ -57,7 +58,7 @@ class Core:
         self.parts = _native.Parts(self.engine)
         self.names: dict[str, list[str]] = {kind: list(names) for kind, names in self.blueprint.model_names.items()}
         self.place = None if scene.place is None else scene.place["pos"]
-        self.observed = 0
+        self.observed = self.felt = 0
         self.plain_actuation = True
         self.timestep = float(self.blueprint.model_options["timestep"])
         array = self.blueprint.model_array
@@ -100,6 +101,7 @@ class Core:
         """Forgets what was read of the state, which is another one now."""
         self._fresh = False
         self._contacts = self._poses = None
+        self.felt = 0
 
     def changed(self, computed: bool = True) -> None:
         """Takes note that the state is another one."""

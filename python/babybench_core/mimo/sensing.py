@@ -115,9 +115,12 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
 
     def _get_obs(self) -> Observation:
         """Returns the present observation."""
-        self._core.observe()
-        if getattr(self, "_plain", False):
-            return self._core.observation()
+        core = self._core
+        core.observe()
+        # what is felt again at one instant is something else
+        if getattr(self, "_plain", False) and not core.felt:
+            core.felt = int(self.touch is not None)
+            return core.observation()
         observation: Observation = {"observation": self.get_proprio_obs()}
         if self.touch:
             observation["touch"] = self.get_touch_obs().ravel()

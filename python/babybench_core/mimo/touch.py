@@ -102,7 +102,11 @@ class DiscreteTouch(Touch):
 
 
 class TrimeshTouch(Touch):
-    """Sensors spread over the surface of the bodies, which feel the forces of contacts near them."""
+    """Sensors spread over the surface of the bodies, which feel the forces of contacts near them.
+
+    MIMo's own asks for normals by :meth:`get_contact_normal`, which inverts them in place where the sensing body is the first
+    of a contact. So what uses the frame of a contact, and what is felt a second time at one instant, has such normals inverted.
+    """
 
     VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {"force_vector": 3, "force_vector_global": 3, "normal_force": 3}
     VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = ["nearest", "spread_linear"]
@@ -139,6 +143,9 @@ class TrimeshTouch(Touch):
         self._shown = self._felt = -1
         self._outputs: dict[int, NDArray[np.float32]] = {}
         self._contacts: list[tuple[int, int, Array]] = []
+        self._framed: dict[str, NDArray[Any]] | None = None
+        self._inverted = False
+        self._sensed = np.isin(env._core.body_of_geom, list(self.sensor_positions))
         # a subclass that changes a step computes all of them in Python
         self._own = any(getattr(type(self), step) is not getattr(TrimeshTouch, step) for step in self._steps)
 
@@ -203,26 +210,36 @@ class TrimeshTouch(Touch):
         distance = contacts["dist"][contact_id]
         if distance >= 0:
             return point
-        sign = self._sides(contact_id, body_id)
-        first = self._core.body_of_geom[contacts["geom1"][contact_id]]
-        if sign > 0 and self.has_sensors(int(first)):
-            # MIMo's own has inverted the normal in place by then
-            sign = -1.0
-        normal = utils.world_rot_to_body(self._core.poses, contacts["frame"][contact_id][:3], body_id)
-        return np.asarray(point + sign * normal * distance / 2)
+        return np.asarray(point + self.get_contact_normal(contact_id, body_id) * distance / 2)
 
     def get_raw_force(self, contact_id: int, body_id: int) -> Array:
         """Returns the force of a contact on a body in the frame of the contact, N: normal, two tangents."""
         return np.asarray(self._core.contacts()["force"][contact_id][:3] * self._sides(contact_id, body_id))
 
     def get_contact_normal(self, contact_id: int, body_id: int) -> Array:
-        """Returns the unit normal of a contact into a body, frame of the body."""
-        normal = self._core.contacts()["frame"][contact_id][:3] * self._sides(contact_id, body_id)
+        """Returns the unit normal of a contact into a body, frame of the body; inverts it in place for that of the first geom."""
+        normal = self._frames()[contact_id][:3]
+        normal *= self._sides(contact_id, body_id)
         return utils.world_rot_to_body(self._core.poses, normal, body_id)
+
+    def _frames(self) -> Array:
+        """Returns the frames of all contacts, (n, 9), as MIMo's own has left them."""
+        contacts = self._core.contacts()
+        if self._framed is not contacts:
+            self._framed, self._inverted = contacts, False
+        if self._core.felt and not self._own and not self._inverted:
+            self._inverted = True  # as the engine, which felt first, does not
+            self._invert(contacts)
+        return contacts["frame"]
+
+    def _invert(self, contacts: dict[str, NDArray[Any]]) -> None:
+        """Inverts the normals that are inverted when everything is felt once."""
+        active = (abs(contacts["force"][:, 0]) >= _LEAST_FORCE) & (contacts["dist"] < 0)
+        contacts["frame"][active & self._sensed[contacts["geom1"]], :3] *= -1
 
     def force_vector_global(self, contact_id: int, body_id: int) -> Array:
         """Returns the force of a contact on a body, world, N."""
-        frame = np.reshape(self._core.contacts()["frame"][contact_id], (3, 3))
+        frame = np.reshape(self._frames()[contact_id], (3, 3))
         return np.asarray(frame.T.dot(self.get_raw_force(contact_id, body_id)))
 
     def force_vector(self, contact_id: int, body_id: int) -> Array:
@@ -231,7 +248,7 @@ class TrimeshTouch(Touch):
 
     def normal_force(self, contact_id: int, body_id: int) -> Array:
         """Returns MIMo's normal force of a contact on a body: along the first column of the contact's frame; body frame, N."""
-        frame = np.reshape(self._core.contacts()["frame"][contact_id], (3, 3))
+        frame = np.reshape(self._frames()[contact_id], (3, 3))
         force = self.get_raw_force(contact_id, body_id)[0] * frame[:, 0]
         return utils.world_rot_to_body(self._core.poses, force, body_id)
 
@@ -252,7 +269,17 @@ class TrimeshTouch(Touch):
     @property
     def contact_tuples(self) -> list[tuple[int, int, Array]]:
         """Returns what :meth:`get_contacts` found when touch was last felt."""
-        return self._contacts if self._felt == self._core.observed else self.get_contacts()
+        if self._felt == self._core.observed:
+            return self._contacts
+        felt = self._core.felt and not self._own
+        self._frames()
+        contacts = self._core.contacts()
+        if felt:  # as they were before
+            self._invert(contacts)
+        sides = self.get_contacts()
+        if felt:
+            self._invert(contacts)
+        return sides
 
     # --- output ---
 
@@ -276,9 +303,11 @@ class TrimeshTouch(Touch):
 
     def get_touch_obs(self) -> NDArray[np.float32]:
         """Feels, and returns the output of all bodies, by ascending id: (sensors, touch_size), N."""
-        self._core.observe()
-        if not self._own:
-            return self._core.touch().reshape(self._shape)
+        core = self._core
+        core.observe()
+        first, core.felt = not core.felt, core.felt + 1
+        if first and not self._own:
+            return core.touch().reshape(self._shape)
         sides = self.get_contacts()
         self.sensor_outputs = self.get_empty_sensor_dict(self.touch_size)
         for contact, body, force in sides:

@@ -149,6 +149,10 @@ def drive(config: dict[str, Any], steps: int) -> dict[str, Any]:
             {key: list(value) if isinstance(value, list) else value for key, value in info.items()}
         )
         recorded["rest"].append((type(reward).__name__, reward, terminated, truncated))
+    # what is felt once more at the same instant, with normals that the kit has inverted in place
+    recorded["again"] = observation(u._get_obs())
+    if u.touch:
+        recorded["again"]["contacts"] = np.array([[c, b, *force] for c, b, force in u.touch.get_contacts()])
     # the same state on both sides, with everything computed there
     joints = u.proprioception.joint_qpos.ravel()
     moved, speed = np.round(u.init_qpos, 4), np.round(u.init_qvel / 2, 4)

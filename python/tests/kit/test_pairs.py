@@ -82,6 +82,15 @@ def test_the_eyes_see_what_the_kits_eyes_see(recordings: Recordings, config: str
         assert share < 1e-5
 
 
+@pytest.mark.parametrize("who", ["mujoco", "alone"])
+@pytest.mark.parametrize("config", ["selftouch", "test_installation"])
+def test_what_is_felt_again_at_one_instant_has_normals_inverted(recordings: Recordings, config: str, who: str) -> None:
+    kit, own = recordings(config, "kit"), recordings(config, who)
+    assert np.abs(kit["again"]["touch"] - kit["observations"][-1]["touch"]).max() > 1
+    for key in ("touch", "contacts"):
+        assert furthest([kit["again"]], [own["again"]], key) < 1e-5
+
+
 def test_a_state_that_a_script_writes_is_sensed(recordings: Recordings) -> None:
     for who in ("mujoco", "alone"):
         kit, own = recordings("selftouch", "kit"), recordings("selftouch", who)
