@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -47,6 +48,8 @@ class Core:
         settled: Whether no script can have written to the state since it was last read back.
         observed: Number of observations so far.
         felt: How often touch has been felt at this instant.
+        frames: What returns the frames of all contacts, (n, 9), as touch has left them, with or without reading back what a
+            script has written; ``None`` without touch.
         width, height: Size of pictures for people, pixels.
     """
 
@@ -59,6 +62,7 @@ class Core:
         self.names: dict[str, list[str]] = {kind: list(names) for kind, names in self.blueprint.model_names.items()}
         self.place = None if scene.place is None else scene.place["pos"]
         self.observed = self.felt = 0
+        self.frames: Callable[[bool], Array] | None = None
         self.plain_actuation = True
         self.timestep = float(self.blueprint.model_options["timestep"])
         array = self.blueprint.model_array
@@ -173,12 +177,21 @@ class Core:
         felt = self.parts.touch
         return np.zeros(0, np.float32) if felt is None else felt
 
-    def contacts(self) -> dict[str, NDArray[Any]]:
-        """Returns the contacts of the present state as columns."""
-        self.pull()
+    def contacts(self, pull: bool = True) -> dict[str, NDArray[Any]]:
+        """Returns the contacts of the present state as columns; by choice without reading back what a script has written."""
+        if pull:
+            self.pull()
         if self._contacts is None:
             self._contacts = self.engine.contacts()
         return self._contacts
+
+    def show_normals(self, frames: Array) -> None:
+        """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""
+        if self.frames is None or not self.felt:
+            return
+        known = self.frames(False)
+        if len(known) == len(frames):
+            frames[np.einsum("ij,ij->i", known[:, :3], frames[:, :3]) < 0, :3] *= -1
 
     @property
     def poses(self) -> Poses:

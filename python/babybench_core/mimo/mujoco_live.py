@@ -46,6 +46,14 @@ def data_class(mujoco: ModuleType) -> Any:
         call.__doc__ = method.__doc__
         return call
 
+    contact = completed(base.contact.fget)
+
+    def shown(self: Any) -> Any:
+        found, live = contact(self), self._live()
+        if live is not None:
+            live.show_normals(found)
+        return found
+
     names = [
         name
         for name, member in vars(base).items()
@@ -55,6 +63,7 @@ def data_class(mujoco: ModuleType) -> Any:
     for name in names:
         member = getattr(base, name)
         own[name] = property(completed(member.fget), member.fset, doc=member.__doc__)
+    own["contact"] = property(shown, base.contact.fset, doc=base.contact.__doc__)
     for name in ("actuator", "tendon", "ten", "__copy__", "__deepcopy__"):
         if hasattr(base, name):
             own[name] = completed(getattr(base, name))
@@ -131,6 +140,11 @@ class MujocoLive(Live):
         self._compute(self.constraint)
         qpos[:], qvel[:] = present
         self._fill_forces()
+
+    def show_normals(self, contacts: Any) -> None:
+        """Inverts normals as MIMo's own touch does, in contacts of the engine's state."""
+        if self.core.felt and not self.stale and np.array_equal(self.data.xpos, self.core.engine.state_array("xpos")):
+            self.core.show_normals(contacts.frame)
 
     def _fill_forces(self) -> None:
         forces = self.core.parts.efc_force

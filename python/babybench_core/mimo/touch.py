@@ -145,6 +145,7 @@ class TrimeshTouch(Touch):
         self._contacts: list[tuple[int, int, Array]] = []
         self._framed: dict[str, NDArray[Any]] | None = None
         self._inverted = False
+        env._core.frames = self._frames
         self._sensed = np.isin(env._core.body_of_geom, list(self.sensor_positions))
         # a subclass that changes a step computes all of them in Python
         self._own = any(getattr(type(self), step) is not getattr(TrimeshTouch, step) for step in self._steps)
@@ -222,9 +223,9 @@ class TrimeshTouch(Touch):
         normal *= self._sides(contact_id, body_id)
         return utils.world_rot_to_body(self._core.poses, normal, body_id)
 
-    def _frames(self) -> Array:
+    def _frames(self, pull: bool = True) -> Array:
         """Returns the frames of all contacts, (n, 9), as MIMo's own has left them."""
-        contacts = self._core.contacts()
+        contacts = self._core.contacts(pull)
         if self._framed is not contacts:
             self._framed, self._inverted = contacts, False
         if self._core.felt and not self._own and not self._inverted:

@@ -321,6 +321,8 @@ class DataView(_Named):
         if self._contacts is None:
             self.__dict__["_contacts"] = ContactList(self._env.contacts())
         contacts: ContactList = self._contacts
+        if self._sync is not None:
+            self._sync.core.show_normals(contacts.frame)
         return contacts
 
     @property

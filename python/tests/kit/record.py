@@ -150,7 +150,8 @@ def drive(config: dict[str, Any], steps: int) -> dict[str, Any]:
         )
         recorded["rest"].append((type(reward).__name__, reward, terminated, truncated))
     # what is felt once more at the same instant, with normals that the kit has inverted in place
-    recorded["again"] = observation(u._get_obs())
+    frames = np.array([contact.frame for contact in u.data.contact])
+    recorded["again"] = {**observation(u._get_obs()), "frames": frames}
     if u.touch:
         recorded["again"]["contacts"] = np.array([[c, b, *force] for c, b, force in u.touch.get_contacts()])
     # the same state on both sides, with everything computed there

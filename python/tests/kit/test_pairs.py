@@ -87,7 +87,8 @@ def test_the_eyes_see_what_the_kits_eyes_see(recordings: Recordings, config: str
 def test_what_is_felt_again_at_one_instant_has_normals_inverted(recordings: Recordings, config: str, who: str) -> None:
     kit, own = recordings(config, "kit"), recordings(config, who)
     assert np.abs(kit["again"]["touch"] - kit["observations"][-1]["touch"]).max() > 1
-    for key in ("touch", "contacts"):
+    assert (np.linalg.det(kit["again"]["frames"].reshape(-1, 3, 3)) < 0).any()
+    for key in ("touch", "contacts", "frames"):
         assert furthest([kit["again"]], [own["again"]], key) < 1e-5
 
 
