@@ -88,7 +88,8 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Raises:
             FileNotFoundError: There is no such file or folder.
-            ValueError: An unknown key, a value that is not allowed, assets that cannot be read.
+            ValueError: An unknown key, a value that is not allowed, assets that cannot be read. A keyword that is no key is
+                a ``TypeError``, too.
         """
         modes = self.metadata["render_modes"]
         if render_mode is not None and render_mode not in modes:

@@ -13,6 +13,15 @@ from babybench_core._native import Blueprint, config_examples, config_from_mappi
 ConfigLike = Union[Mapping[str, object], str, "os.PathLike[str]", None]
 """A configuration: its keys, the name of an example, the path of a YAML file, or nothing for the defaults."""
 
+
+class UnexpectedKeyword(TypeError, ValueError):
+    """A keyword that is no key of the configuration.
+
+    It is a ``ValueError``, as the same key in a file is, and a ``TypeError``, by which libraries that offer an environment
+    more than it takes know that they should do without.
+    """
+
+
 _shared: WeakValueDictionary[tuple[object, ...], Blueprint] = WeakValueDictionary()
 
 
@@ -27,15 +36,23 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: An unknown key or a value that is not allowed; the text names it and what is allowed.
-        TypeError: A value of a type that no key has.
+        TypeError: A value of a type that no key has, or a keyword that is no key.
     """
+    found: Mapping[str, object]
     if config is None:
-        return config_from_mapping(keys)
-    if isinstance(config, Mapping):
-        return config_from_mapping({**config, **keys})
-    examples = config_examples()
-    found = examples.get(os.fspath(config)) or _read_file(Path(config), list(examples))
-    return config_from_mapping({**found, **keys}) if keys else found
+        found = {}
+    elif isinstance(config, Mapping):
+        found = config
+    else:
+        examples = config_examples()
+        found = examples.get(os.fspath(config)) or _read_file(Path(config), list(examples))
+    try:
+        return config_from_mapping({**found, **keys})
+    except ValueError as error:
+        for key in keys:
+            if f"unknown key `{key}`" in str(error):
+                raise UnexpectedKeyword(f"got an unexpected keyword argument {key!r}: {error}") from None
+        raise
 
 
 def _read_file(path: Path, examples: list[str]) -> dict[str, Any]:

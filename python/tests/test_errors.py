@@ -43,6 +43,20 @@ def test_configurations_that_are_not_allowed(config, error, text):
         babybench.Env(config)
 
 
+@pytest.mark.parametrize("make", [babybench.Env, babybench.VectorEnv, babybench.make])
+def test_a_keyword_that_is_no_key_is_an_unexpected_one(make):
+    # TorchRL offers frameskip to every environment, and does without where a TypeError says so
+    for config in ("self_touch", SMALL):
+        with pytest.raises(
+            TypeError, match=r"unexpected keyword argument 'frameskip'.*did you mean `frame_skip`"
+        ) as caught:
+            make(config, frameskip=1)
+        assert isinstance(caught.value, ValueError)  # as the same key in a file is
+    with pytest.raises(ValueError, match="did you mean `crib`") as caught:
+        make(SMALL, scene="crip")
+    assert not isinstance(caught.value, TypeError)
+
+
 def test_files_name_the_line(tmp_path):
     file = tmp_path / "my.yml"
     file.write_text("behavior: self_touch\nscene: garden\n", "utf-8")
