@@ -23,7 +23,17 @@ fn values(kind: KeyKind) -> Values {
             )
         }
         KeyKind::Whole { min, max } => (
-            vec![min.to_string(), max.to_string(), "1_000".to_string(), "+7".to_string()],
+            // other ways of writing numbers, where these are allowed
+            [
+                (min, min.to_string()),
+                (max, max.to_string()),
+                (1_000, "1_000".to_string()),
+                (1, "+1".to_string()),
+            ]
+            .into_iter()
+            .filter(|(value, _)| (min..=max).contains(value))
+            .map(|(_, text)| text)
+            .collect(),
             &["1.0", "010", "1e3", "'1'", "many", "true", "0x10", "1__", "{a: 1}"][..6],
             vec!["-1".to_string(), (i128::from(max) + 1).to_string(), "9".repeat(99)]
                 .into_iter()
