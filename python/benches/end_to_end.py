@@ -93,7 +93,9 @@ def main() -> None:
         script = ["examples/random_selftouch.py", "--train_for", str(chosen.random_steps)]
         title = f"random policy, {chosen.random_steps:,} steps"
         by_turns(title, [chosen.kit_python, *script], [sys.executable, *script], room, chosen.rounds)
-        if chosen.learning_steps == 0 or not (has_learner(chosen.kit_python) and has_learner(sys.executable)):
+        if chosen.learning_steps == 0:
+            return
+        if not (has_learner(chosen.kit_python) and has_learner(sys.executable)):
             print("\nPPO is left out: it needs Stable-Baselines3 on both sides.")
             return
         steps = str(chosen.learning_steps)

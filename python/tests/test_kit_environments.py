@@ -231,3 +231,35 @@ def test_a_video_without_opencv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     frames = [np.full((48, 72, 3), k, np.uint8) for k in range(5)]
     bb_utils.evaluation_video(frames, tmp_path / "v.avi", resolution=(72, 48))
     assert (tmp_path / "v.avi").read_bytes()[:4] == b"RIFF"
+
+
+# --- parameters of the senses ---
+
+
+def test_none_turns_a_sense_off() -> None:
+    env = BabyBenchSelfTouchEnv(touch_params=None, vision_params=None)
+    assert list(env.reset()[0]) == ["observation", "vestibular"]
+    assert env.touch is env.vision is None
+    env = gym.make("BabyBench-SelfTouch", touch_params=None, vestibular_params=None, max_episode_steps=3).unwrapped
+    assert list(env.reset()[0]) == ["observation", "eye_left", "eye_right"]
+    # a configuration says how a sense is, not that it is one
+    env = BabyBenchEnv(touch_params=None, config={**CONFIG, "touch_active": False}, training=False)
+    assert env.touch is None
+    with pytest.raises(TypeError, match="touch_params is None"):
+        BabyBenchEnv(touch_params=None, config={**CONFIG, "touch_active": True}, training=False)
+
+
+def test_defaults_that_a_script_has_changed_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    from mimoEnv.babybench.base import TOUCH_PARAMS, VISION_PARAMS
+
+    for eye in VISION_PARAMS.values():
+        for side in eye:
+            monkeypatch.setitem(eye, side, 24)
+    monkeypatch.setitem(TOUCH_PARAMS, "response_function", "nearest")
+    env = BabyBenchSelfTouchEnv()
+    assert env.reset()[0]["eye_left"].shape == (24, 24, 3)
+    assert env.touch is not None
+    assert env.touch.response_type == "nearest"
+    scales = dict(TOUCH_PARAMS["scales"])
+    env = BabyBenchSelfTouchEnv(config={**CONFIG, "touch_active": True, "touch_scale": 2}, training=False)
+    assert TOUCH_PARAMS["scales"] == scales  # one environment does not change the next

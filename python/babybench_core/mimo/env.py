@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import pickle
 from collections.abc import Iterable, Mapping
@@ -46,7 +47,8 @@ class BabyBenchEnv(MIMoEnv):
     Args:
         model_path: The scene.
         frame_skip: Physics steps of 5 ms for each step.
-        proprio_params, vision_params, vestibular_params, touch_params: Parameters of the senses; a configuration replaces them.
+        proprio_params, vision_params, vestibular_params, touch_params: Parameters of the senses; ``None`` turns one off. A
+            configuration replaces them.
         actuation_model: The class of the actuation model; a configuration replaces it.
         width, height: Size of pictures for people, pixels.
         config: The configuration of BabyBench.
@@ -61,10 +63,10 @@ class BabyBenchEnv(MIMoEnv):
         self,
         model_path: str | os.PathLike[str] = SCENE_NAME,
         frame_skip: int = 1,
-        proprio_params: dict[str, Any] | None = None,
-        vision_params: dict[str, Any] | None = None,
-        vestibular_params: dict[str, Any] | None = None,
-        touch_params: dict[str, Any] | None = None,
+        proprio_params: dict[str, Any] | None = tables.PROPRIOCEPTION_PARAMS,
+        vision_params: dict[str, Any] | None = tables.VISION_PARAMS,
+        vestibular_params: dict[str, Any] | None = tables.VESTIBULAR_PARAMS,
+        touch_params: dict[str, Any] | None = tables.TOUCH_PARAMS,
         actuation_model: type[ActuationModel] = SpringDamperModel,
         width: int = DEFAULT_SIZE,
         height: int = DEFAULT_SIZE,
@@ -73,10 +75,10 @@ class BabyBenchEnv(MIMoEnv):
         """Compiles the scene and lets MIMo settle."""
         config: Mapping[str, Any] | None = kwargs.get("config")
         senses: dict[str, Any] = {
-            "proprio_params": proprio_params or tables.proprioception_params(),
-            "vision_params": vision_params or tables.vision_params(64),
-            "vestibular_params": vestibular_params or tables.vestibular_params(),
-            "touch_params": touch_params or tables.touch_params(),
+            "proprio_params": copy.deepcopy(proprio_params),
+            "vision_params": copy.deepcopy(vision_params),
+            "vestibular_params": copy.deepcopy(vestibular_params),
+            "touch_params": copy.deepcopy(touch_params),
         }
         self.behavior = self.save_dir = self.save_logs_every = self.training = None
         if config is not None:
@@ -217,7 +219,11 @@ def _configure(senses: dict[str, Any], config: Mapping[str, Any]) -> None:
     if config.get("touch_active") is False or (config.get("touch_active") is not None and scale == 0):
         senses["touch_params"] = None
         return
-    touch = senses["touch_params"] = dict(senses["touch_params"])
+    touch = senses["touch_params"]
+    if touch is None:
+        if config.get("touch_active") is None:
+            return
+        raise TypeError("touch_params is None, but the configuration has touch_active")
     if scale is not None:
         on = {part for part in tables.PARTS if config.get(f"touch_{part}", part != "eyes") is True}
         touch["scales"] = {b: s * scale for b, s in touch["scales"].items() if tables.PART_OF_BODY[b] in on}

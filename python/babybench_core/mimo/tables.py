@@ -88,3 +88,10 @@ def proprioception_params() -> dict[str, Any]:
 def vestibular_params() -> dict[str, Any]:
     """Returns parameters of the sense of balance."""
     return {"sensors": ["vestibular_acc", "vestibular_gyro"]}
+
+
+# What BabyBench's environments take where they are given nothing. As in the kit, scripts can change them.
+PROPRIOCEPTION_PARAMS = proprioception_params()
+VISION_PARAMS = vision_params(64)
+VESTIBULAR_PARAMS = vestibular_params()
+TOUCH_PARAMS = touch_params()

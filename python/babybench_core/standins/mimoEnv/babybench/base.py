@@ -8,6 +8,7 @@ from babybench_core.mimo.actuation import MuscleModel, PositionalModel, SpringDa
 from babybench_core.mimo.assets import assets_folder
 from babybench_core.mimo.env import DEFAULT_SIZE, SCENE_NAME, BabyBenchEnv, MIMoEnv
 from babybench_core.mimo.tables import PART_OF_BODY as BODY_GROUPS
+from babybench_core.mimo.tables import PROPRIOCEPTION_PARAMS, TOUCH_PARAMS, VESTIBULAR_PARAMS, VISION_PARAMS
 
 __all__ = [
     "ACTUATION_MODELS",
@@ -25,11 +26,7 @@ __all__ = [
     "SpringDamperModel",
 ]
 
-TOUCH_PARAMS = tables.touch_params()
 TOUCH_PARAMS_V2 = tables.touch_params(tables.SPACING_V2)
-VISION_PARAMS = tables.vision_params(64)
-VESTIBULAR_PARAMS = tables.vestibular_params()
-PROPRIOCEPTION_PARAMS = tables.proprioception_params()
 
 
 def __getattr__(name: str) -> str:
