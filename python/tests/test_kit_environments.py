@@ -242,7 +242,7 @@ def test_none_turns_a_sense_off() -> None:
     assert env.touch is env.vision is None
     env = gym.make("BabyBench-SelfTouch", touch_params=None, vestibular_params=None, max_episode_steps=3).unwrapped
     assert list(env.reset()[0]) == ["observation", "eye_left", "eye_right"]
-    # a configuration says how a sense is, not that it is one
+    # a configuration cannot turn on a sense that has no parameters
     env = BabyBenchEnv(touch_params=None, config={**CONFIG, "touch_active": False}, training=False)
     assert env.touch is None
     with pytest.raises(TypeError, match="touch_params is None"):

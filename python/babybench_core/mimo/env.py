@@ -223,7 +223,9 @@ def _configure(senses: dict[str, Any], config: Mapping[str, Any]) -> None:
     if touch is None:
         if config.get("touch_active") is None:
             return
-        raise TypeError("touch_params is None, but the configuration has touch_active")
+        raise TypeError(
+            "touch_params is None, but the configuration has touch_active: give parameters, or leave the key out"
+        )
     if scale is not None:
         on = {part for part in tables.PARTS if config.get(f"touch_{part}", part != "eyes") is True}
         touch["scales"] = {b: s * scale for b, s in touch["scales"].items() if tables.PART_OF_BODY[b] in on}
