@@ -203,6 +203,27 @@ pub fn quat_rotate(q: Quat, v: Vec3) -> Vec3 {
     ]
 }
 
+/// Returns the rotation vector (axis times angle, rad, at most pi long) that turns the unit quaternion `from` into `to`,
+/// in the frame of `from` (MuJoCo's `mju_subQuat`).
+pub fn rotation_between(from: Quat, to: Quat) -> Vec3 {
+    let q = quat_mul(quat_conj(from), to);
+    let (axis, sine) = unit([q[1], q[2], q[3]]);
+    let angle = 2.0 * pxfm::f_atan2(sine, q[0]);
+    // the short way round
+    let short = if angle > std::f64::consts::PI {
+        angle - 2.0 * std::f64::consts::PI
+    } else {
+        angle
+    };
+    scale(axis, short)
+}
+
+/// Returns the quaternion that stands in `numbers` from `at` on.
+#[inline(always)]
+pub fn quat_at(numbers: &[f64], at: usize) -> Quat {
+    [numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]]
+}
+
 /// Returns the quaternion of a rotation by `angle` (rad) about the unit vector `axis`.
 #[inline(always)]
 pub fn axis_angle_to_quat(axis: Vec3, angle: f64) -> Quat {

@@ -2,7 +2,7 @@
 
 usage: python contact_pairs.py [--poses N] [--seed S] [--out FILE]      (needs mujoco==3.3.0 and numpy)
 
-N poses for each of the 14 pairs of shapes (default 500, the committed file); a larger FILE is read by the test in place
+N poses for each of the 20 pairs of shapes (default 500, the committed file); a larger FILE is read by the test in place
 of the committed one when BB_CONTACT_PAIRS names it.
 
 Kinds of poses, by turns: random orientation at a depth between 1e-6 and 1e-2 m, deep in each other, the same with a
@@ -24,6 +24,7 @@ TYPES = {
     "plane": mujoco.mjtGeom.mjGEOM_PLANE,
     "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
     "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
+    "ellipsoid": mujoco.mjtGeom.mjGEOM_ELLIPSOID,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
     "box": mujoco.mjtGeom.mjGEOM_BOX,
 }
@@ -77,6 +78,7 @@ class Pair:
                 "plane": 0.0,
                 "sphere": r,
                 "capsule": r + h,
+                "ellipsoid": size.max(),
                 "cylinder": np.sqrt(r * r + h * h),
                 "box": np.sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]),
             }[name]

@@ -8,7 +8,7 @@
 //! attributes are listed by [`elements`]. Everything else is an error that names the place. Ignored are only the
 //! memory reservations in `size`, the matrix format `jacobian`, and the colours in `visual/rgba` of what only MuJoCo's
 //! viewer draws: none changes a compiled array of physics. User data (`user` of actuators and cameras, `nuser_*`) are kept
-//! and mean nothing. Contact cones are elliptic also where a document leaves `cone` out, where MuJoCo's would be pyramidal.
+//! and mean nothing.
 //!
 //! Text may come from anywhere. Whatever it says, loading ends with a [`Spec`] or a [`LoadError`]; [`Limits`] bound stack
 //! and memory.

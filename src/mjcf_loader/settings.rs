@@ -1,7 +1,7 @@
 //! Tables of what concerns the whole document: compiler, options, sizes, visual settings, statistics.
 
 use crate::math::Vec3;
-use crate::model::{self, Options, Statistic};
+use crate::model::{self, ConeType, JacobianFormat, Options, Statistic};
 
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
 use super::attribute::{FLAG, Kind, TEXT, int, real, reals, words};
@@ -37,11 +37,11 @@ table! {
         "ls_iterations" ls_iterations: usize = 50, int(0, MAX_COUNT), "Maximum number of line-search iterations per Newton iteration.";
         "ls_tolerance" ls_tolerance: f64 = 0.01, real(NonNegative), "Tolerance of the line search.";
         "impratio" impratio: f64 = 1.0, real(Positive), "Ratio of frictional to normal constraint impedance.";
+        "cone" cone: ConeType = ConeType::Pyramidal, words! { "pyramidal" => ConeType::Pyramidal, "elliptic" => ConeType::Elliptic }, "Shape of the friction cones.";
+        "jacobian" jacobian: JacobianFormat = JacobianFormat::Auto, words! { "dense" => JacobianFormat::Dense, "sparse" => JacobianFormat::Sparse, "auto" => JacobianFormat::Auto }, "Format of the constraint Jacobian in MuJoCo. It changes no accelerations; sparse, also equalities without effect keep their rows.";
         "ccd_iterations" ccd_iterations: usize = 50, int(0, MAX_COUNT), "Maximum number of iterations of the convex collision routine.";
         "ccd_tolerance" ccd_tolerance: f64 = 1e-6, real(NonNegative), "Tolerance of the convex collision routine, m.";
         check "integrator", Kind::Word(&["Euler"]), "Integrator; only implicit damping with Euler's method.";
-        check "cone", Kind::Word(&["elliptic"]), "Friction cones; elliptic also when this is not given.";
-        check "jacobian", Kind::Word(&["dense", "sparse", "auto"]), "Format of matrices in MuJoCo. Ignored: it changes no result.";
         check "solver", Kind::Word(&["Newton"]), "Solver; only Newton's method.";
     }
 }
@@ -111,7 +111,7 @@ table! {
         "meanmass" meanmass: f64 = 0.0, real(Positive), "Mean mass of the bodies, kg.";
         "meansize" meansize: f64 = 0.0, real(Positive), "Mean size of the bodies, m.";
         "extent" extent: f64 = 0.0, real(Positive), "Extent of the model, m.";
-        "center" center: Vec3 = [0.0; 3], reals(3, Any), "Centre of the model, m.";
+        "center" center: Vec3 = [f64::NAN; 3], reals(3, Any), "Centre of the model, m; NaN means computed.";
     }
 }
 

@@ -152,8 +152,8 @@ fn values_are_checked() {
     );
     check("<option timestep='0'/>", "mujoco/option: timestep: 0 must be positive");
     check(
-        "<option cone='pyramidal'/>",
-        "mujoco/option: cone=\"pyramidal\": not one of elliptic",
+        "<option cone='round'/>",
+        "mujoco/option: cone=\"round\": not one of pyramidal, elliptic",
     );
     check(
         "<compiler autolimits='1'/>",

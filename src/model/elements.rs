@@ -285,6 +285,41 @@ pub struct Light {
     pub exponent: f64,
 }
 
+/// The shape of the friction cones of contacts (`<option cone>`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum ConeType {
+    /// Pyramids: each contact has `2 (dim - 1)` edges, rows whose force is not negative. MuJoCo's default.
+    #[default]
+    Pyramidal,
+    /// Elliptic cones: each contact has `dim` rows, the normal first.
+    Elliptic,
+}
+
+/// The format of the constraint Jacobian in MuJoCo (`<option jacobian>`).
+///
+/// Ours has one format. What the choice still decides is which equalities without any effect MuJoCo keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum JacobianFormat {
+    /// Dense matrices.
+    Dense,
+    /// Sparse matrices.
+    Sparse,
+    /// Sparse from 60 degrees of freedom on.
+    #[default]
+    Auto,
+}
+
+impl JacobianFormat {
+    /// Tells whether MuJoCo stores the Jacobian of a model with `nv` degrees of freedom sparsely (`mj_isSparse`).
+    pub fn is_sparse(self, nv: usize) -> bool {
+        match self {
+            Self::Dense => false,
+            Self::Sparse => true,
+            Self::Auto => nv >= 60,
+        }
+    }
+}
+
 /// The options of solver and integrator (`<option>`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -302,6 +337,10 @@ pub struct Options {
     pub ls_tolerance: f64,
     /// Ratio of frictional to normal constraint impedance.
     pub impratio: f64,
+    /// Shape of the friction cones.
+    pub cone: ConeType,
+    /// Format of the constraint Jacobian in MuJoCo.
+    pub jacobian: JacobianFormat,
     /// Greatest number of iterations of the convex collision routine.
     pub ccd_iterations: usize,
     /// Tolerance of the convex collision routine, m.

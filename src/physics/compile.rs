@@ -1,7 +1,7 @@
 //! The last step from a document to a model: the constants that need dynamics.
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
-use crate::model::{Arrays, Constants, Model};
+use crate::model::{Arrays, Constants, JointType, Model};
 use crate::physics::dynamics::constants;
 
 const NO_ACCELERATION: &str =
@@ -33,10 +33,17 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     Ok(Model::new(arrays, constants))
 }
 
-/// Refuses constants that are not finite.
+/// Largest inverse weight of a degree of freedom, times its inertia, of a model that is taken. It is 1 where the others hold
+/// still on their own, and grows with the condition of the inertia; beyond this it consists of rounding errors.
+const MAX_WEIGHT: f64 = 1e13;
+
+/// Refuses constants that are not finite, or that a singular inertia leaves to rounding errors.
 fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), LoadError> {
     for (d, (weight, inertia)) in constants.dof_invweight0.iter().zip(&constants.dof_m0).enumerate() {
-        if !weight.is_finite() || !inertia.is_finite() {
+        // those of a free joint are means over three directions, which differ as the body's axes do
+        let alone = arrays.jnt_type[arrays.dof_jntid[d]] != JointType::Free;
+        let singular = alone && (*weight < 0.0 || weight * inertia > MAX_WEIGHT);
+        if !weight.is_finite() || !inertia.is_finite() || singular {
             return Err(places.body_error(arrays.dof_bodyid[d], NO_ACCELERATION));
         }
     }
@@ -52,8 +59,9 @@ fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), 
     }
     let stat = &constants.stat;
     let scalars = [stat.meaninertia, stat.meanmass, stat.meansize, stat.extent];
-    match scalars.iter().chain(&stat.center).all(|value| value.is_finite()) {
-        true => Ok(()),
-        false => Err(places.body_error(0, NO_STATISTICS)),
+    if scalars.iter().chain(&stat.center).all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(places.body_error(0, NO_STATISTICS))
     }
 }

@@ -156,7 +156,7 @@ const DOCUMENTS: &[(&str, &str)] = &[
     ("negative time step", "<mujoco><option timestep='-1'/></mujoco>"),
     ("no time step", "<mujoco><option timestep='0'/></mujoco>"),
     ("unknown integrator", "<mujoco><option integrator='RK4'/></mujoco>"),
-    ("other cone", "<mujoco><option cone='pyramidal'/></mujoco>"),
+    ("other cone", "<mujoco><option cone='round'/></mujoco>"),
     (
         "iterations without end",
         "<mujoco><option iterations='2147483648'/></mujoco>",

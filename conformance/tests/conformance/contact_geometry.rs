@@ -71,6 +71,7 @@ fn geom_type(mujoco: i64) -> GeomType {
         0 => GeomType::Plane,
         2 => GeomType::Sphere,
         3 => GeomType::Capsule,
+        4 => GeomType::Ellipsoid,
         5 => GeomType::Cylinder,
         6 => GeomType::Box,
         other => panic!("geom type {other}"),
@@ -136,7 +137,7 @@ fn contacts_of_single_pairs_equal_mujocos() {
         } = tally;
         show!("{first:?}-{second:?} | {poses} | {touching} | {contacts} | {mismatches}");
     }
-    assert_eq!(tallies.len(), 14, "every pair of shapes is there");
+    assert_eq!(tallies.len(), 20, "every pair of shapes is there");
     for (pair, tally) in &tallies {
         assert!(tally.touching * 2 > tally.poses, "{pair:?} hardly touch");
         assert_eq!(

@@ -13,6 +13,7 @@ mod live_mujoco;
 mod live_one_step;
 mod live_rollout;
 mod logs;
+mod meanings;
 mod mutations;
 mod rapier_engine;
 mod recordings;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         live_one_step::trials(),
         live_rollout::trials(),
         logs::trials(),
+        meanings::trials(),
         mutations::trials(),
         rapier_engine::trials(),
         recordings::trials(),

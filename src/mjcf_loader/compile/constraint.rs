@@ -73,9 +73,16 @@ pub(super) fn compile_equality(
             polycoef,
         }) => {
             let find = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
+            let (joint1, joint2) = (
+                find("joint1", joint1)?,
+                joint2.as_ref().map(|name| find("joint2", name)).transpose()?,
+            );
+            if joint2 == Some(joint1) {
+                return Err(context.invalid(at, "a joint cannot follow itself"));
+            }
             EqualityKind::Joint {
-                joint1: find("joint1", joint1)?,
-                joint2: joint2.as_ref().map(|name| find("joint2", name)).transpose()?,
+                joint1,
+                joint2,
                 polycoef: *polycoef,
             }
         }

@@ -45,6 +45,16 @@ impl Rows<'_> {
         &mut self.efc.blocks[last]
     }
 
+    /// Takes the last block back, before it has rows.
+    #[inline(always)]
+    pub(super) fn drop_block(&mut self) {
+        let e = &mut *self.efc;
+        if let Some(b) = e.blocks.pop() {
+            e.cols.truncate(b.col);
+            e.jac.truncate(b.jac);
+        }
+    }
+
     /// Adds to the entry of a degree of freedom in the last block, whose dimension is 1. Degrees of freedom come
     /// ascending.
     #[inline(always)]

@@ -165,6 +165,15 @@ impl Cone {
         self.line = line;
     }
 
+    /// Returns the cost at `jar + alpha jv`.
+    pub(super) fn cost(&self, alpha: f64) -> f64 {
+        let mut there = *self;
+        for k in 0..self.dim {
+            there.jar[k] += alpha * self.jv[k];
+        }
+        there.evaluate()
+    }
+
     /// Adds first and second derivative of the cost at `jar + alpha jv`.
     #[inline(always)]
     pub(super) fn add_slopes(&self, alpha: f64, first: &mut f64, second: &mut f64) {

@@ -1,9 +1,9 @@
 //! The Hessian `M + J' C J` of an island: sparsity, assembly, factorisation.
 
-use crate::physics::constraint::Efc;
 use crate::physics::constraint::cone::Zone;
 use crate::physics::constraint::island::Island;
 use crate::physics::constraint::jacobian::Jacobian;
+use crate::physics::constraint::{Efc, MAX_ROWS};
 use crate::physics::tiles::{
     Lanes, Pattern, Tile, ZERO, add_outer_products, factor_diagonal, scale_rows, solve, solve_columns,
     sub_transposed_product, sub_transposed_product_diagonal,
@@ -108,8 +108,12 @@ impl Hessian {
             }
         }
         for (row, j) in &island.several {
-            let (now, before) = weight(*row);
-            if now != before {
+            // each row of a weld keeps its weight, but the edges of a pyramid come and go one by one
+            let differs = |k| {
+                let (now, before) = weight(row + k);
+                now != before
+            };
+            if (0..j.dim).any(differs) {
                 for &c in island.cols(j) {
                     self.changed[c as usize] = true;
                 }
@@ -164,11 +168,11 @@ impl Hessian {
             }
         }
         for (row, j) in &island.several {
-            let mut weight = [0.0; 6];
+            let mut weight = [0.0; MAX_ROWS];
             for (k, w) in weight.iter_mut().enumerate().take(j.dim) {
                 *w = island.scalar_rows[(row + k) / 4].weight[(row + k) % 4];
             }
-            if weight[0] != 0.0 && self.touches_changed(island, j) {
+            if weight.iter().any(|w| *w != 0.0) && self.touches_changed(island, j) {
                 self.weigh_diagonal(j.values(efc), &weight, j.dim);
                 self.add_weighted(island, j, efc);
             }
@@ -193,7 +197,7 @@ impl Hessian {
 
     /// Computes `weighted = diag(weight) J`.
     #[inline(always)]
-    fn weigh_diagonal(&mut self, jac: &[Lanes], weight: &[f64; 6], dim: usize) {
+    fn weigh_diagonal(&mut self, jac: &[Lanes], weight: &[f64], dim: usize) {
         self.weighted.clear();
         for rows in jac.chunks_exact(dim) {
             self.weighted

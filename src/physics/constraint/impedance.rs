@@ -17,12 +17,25 @@ pub struct Impedance {
 const MINIMP: f64 = 0.0001;
 const MAXIMP: f64 = 0.9999;
 
-/// Computes the impedance of a row. `solref` is (time constant, damping ratio), or, when not positive, (-stiffness,
-/// -damping); a time constant below two time steps counts as two time steps. `solimp` is (dmin, dmax, width, midpoint,
+/// What holds where a `solref` mixes the two ways of giving it.
+const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
+
+/// Tells whether a `solref` is neither zero nor mixed, that is, positive and not positive: MuJoCo takes such a
+/// `solreffriction` for one that was not given.
+#[inline(always)]
+pub(super) fn is_solref(solref: [f64; 2]) -> bool {
+    solref != [0.0; 2] && (solref[0] > 0.0) == (solref[1] > 0.0)
+}
+
+/// Computes the impedance of a row. `solref` is (time constant, damping ratio), or, when neither is positive, (-stiffness,
+/// -damping); where only one of the two is positive it counts as (0.02, 1), MuJoCo's default. A time constant below two
+/// time steps counts as two time steps. `solimp` is (dmin, dmax, width, midpoint,
 /// power): the impedance grows from dmin to dmax as `|pos|` goes from 0 to width, along two power curves that meet at
 /// the midpoint. `pos` is the violation, m or rad.
 #[inline(always)]
 pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, timestep: f64) -> Impedance {
+    let mixed = (solref[0] > 0.0) != (solref[1] > 0.0);
+    let solref = if mixed { DEFAULT_SOLREF } else { solref };
     let dmin = solimp[0].clamp(MINIMP, MAXIMP);
     let dmax = solimp[1].clamp(MINIMP, MAXIMP);
     let width = solimp[2].max(0.0);

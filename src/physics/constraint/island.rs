@@ -3,7 +3,7 @@
 use crate::physics::constraint::cone::{Cone, Zone};
 use crate::physics::constraint::jacobian::{Jacobian, Single, add_transposed_product, product};
 use crate::physics::constraint::scalar_rows::{NO_ROWS, NONE, ScalarRows};
-use crate::physics::constraint::{Block, ConstraintType, Efc};
+use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS};
 use crate::physics::state::State;
 use crate::physics::tiles::{Lanes, Pattern, Tile, mul, total};
 use crate::physics::topology::Topology;
@@ -232,7 +232,7 @@ impl Island {
             self.scalar_rows[s.row / 4].jv[s.row % 4] = s.value * x[s.slot / 4][s.slot % 4];
         }
         for &(row, j) in &self.several {
-            let v = product(&self.cols, &efc.jac, &j, x);
+            let v: [f64; MAX_ROWS] = product(&self.cols, &efc.jac, &j, x);
             for (k, v) in v.iter().enumerate().take(j.dim) {
                 self.scalar_rows[(row + k) / 4].jv[(row + k) % 4] = *v;
             }
@@ -312,7 +312,7 @@ impl Island {
             out[s.slot / 4][s.slot % 4] += s.value * self.scalar_rows[s.row / 4].force[s.row % 4];
         }
         for (row, j) in &self.several {
-            let mut force = [0.0; 6];
+            let mut force = [0.0; MAX_ROWS];
             for (k, f) in force.iter_mut().enumerate().take(j.dim) {
                 *f = self.scalar_rows[(row + k) / 4].force[(row + k) % 4];
             }

@@ -32,10 +32,10 @@ impl Jacobian {
     }
 }
 
-/// Computes `J x`.
+/// Computes `J x` of at most `N` rows.
 #[inline(always)]
-pub(super) fn product(cols: &[u32], jac: &[Lanes], j: &Jacobian, x: &[Lanes]) -> [f64; 6] {
-    let mut out = [0.0; 6];
+pub(super) fn product<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, x: &[Lanes]) -> [f64; N] {
+    let mut out = [0.0; N];
     let mut first = 0;
     while first + 3 <= j.dim {
         let [a, b, c] = some_products::<3>(cols, jac, j, first, x);
@@ -67,7 +67,7 @@ fn some_products<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, firs
 
 /// Computes `out += J' force`.
 #[inline(always)]
-pub(super) fn add_transposed_product(cols: &[u32], jac: &[Lanes], j: &Jacobian, force: &[f64; 6], out: &mut [Lanes]) {
+pub(super) fn add_transposed_product(cols: &[u32], jac: &[Lanes], j: &Jacobian, force: &[f64], out: &mut [Lanes]) {
     let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
     for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
         let out = &mut out[c as usize];

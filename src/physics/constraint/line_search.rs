@@ -15,7 +15,7 @@ pub(super) struct LineSearch<'a> {
 impl LineSearch<'_> {
     /// Computes the first and second derivative of the cost at `alpha`.
     #[inline(always)]
-    fn derivatives(&self, alpha: f64) -> (f64, f64) {
+    pub(super) fn derivatives(&self, alpha: f64) -> (f64, f64) {
         let (mut first, mut second) = ([0.0; 4], [0.0; 4]);
         for q in &self.island.scalar_rows {
             q.add_slopes(alpha, &mut first, &mut second);
@@ -26,6 +26,13 @@ impl LineSearch<'_> {
             c.add_slopes(alpha, &mut g, &mut h);
         }
         (g, h)
+    }
+
+    /// Computes the cost at `alpha`, less that of the inertia at 0.
+    pub(super) fn cost(&self, alpha: f64) -> f64 {
+        let rows = self.island.scalar_rows.iter().map(|q| q.cost(alpha));
+        let cones = self.island.cones.iter().map(|(c, _)| c.cost(alpha));
+        alpha * (self.slope + 0.5 * alpha * self.curvature) + rows.sum::<f64>() + cones.sum::<f64>()
     }
 
     /// Finds the step length at which the derivative vanishes to within `tolerance`, from a first guess.

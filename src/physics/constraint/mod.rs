@@ -3,8 +3,9 @@
 //! A constraint row `i` has a Jacobian row `J_i`, a reference acceleration `aref_i = -b vel_i - k imp pos_i`, and a
 //! regularisation `R_i = (1 - imp)/imp * diagApprox_i`, with impedance `imp` from `solimp` and stiffness `k`, damping
 //! `b` from `solref`. The solver minimises `1/2 (a - a_smooth)' M (a - a_smooth) + sum s_i(J a - aref)` over
-//! accelerations `a`, where `s_i` is a quadratic on the active side of each constraint and, for contacts, that of the
-//! elliptic friction cone ("Computation" chapter of MuJoCo's documentation).
+//! accelerations `a`, where `s_i` is a quadratic on the active side of each constraint and, for contacts with an elliptic
+//! friction cone, that of the cone ("Computation" chapter of MuJoCo's documentation). A pyramidal cone is a set of
+//! one-sided rows, one for each edge.
 
 mod append;
 mod cone;
@@ -14,6 +15,7 @@ mod island;
 mod jacobian;
 mod line_search;
 mod newton;
+mod primal_search;
 mod rows;
 mod scalar_rows;
 mod view;
@@ -44,9 +46,14 @@ pub enum ConstraintType {
     LimitTendon,
     /// A contact without friction: the force is not negative.
     ContactFrictionless,
+    /// A contact with a pyramidal friction cone: the force along each edge is not negative.
+    ContactPyramidal,
     /// A contact with an elliptic friction cone.
     ContactElliptic,
 }
+
+/// Most rows of a block: the edges of a pyramid with six dimensions.
+pub(crate) const MAX_ROWS: usize = 10;
 
 /// Rows that belong together and share their columns.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use crate::math::MINVAL;
-use crate::model::Model;
-use crate::physics::constraint::Efc;
+use crate::model::{ConeType, Model};
+use crate::physics::constraint::cone::Cone;
 use crate::physics::constraint::hessian::Hessian;
 use crate::physics::constraint::island::Island;
 use crate::physics::constraint::line_search::LineSearch;
+use crate::physics::constraint::{Block, ConstraintType, Efc};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 use crate::physics::vectorize::vectorize;
@@ -43,7 +44,7 @@ impl Newton {
             trees: Vec::with_capacity(nv),
             block_tree: Vec::with_capacity(blocks),
             blocks: Vec::with_capacity(blocks),
-            block_adr: Vec::with_capacity(nv + 2),
+            block_adr: Vec::with_capacity(nv + 3),
         }
     }
 
@@ -57,7 +58,12 @@ impl Newton {
         s.solver_iterations = 0;
         if s.efc.nefc() > 0 {
             let mut efc = std::mem::take(&mut s.efc);
-            self.find_islands(topology, &efc);
+            self.find_islands(topology, &efc, cut_off(model));
+            let idle = self.block_adr[topology.ntree()]..self.blocks.len();
+            for &k in &self.blocks[idle] {
+                let block = efc.blocks[k as usize];
+                push_alone(&block, &mut efc);
+            }
             for root in 0..topology.ntree() {
                 let blocks = self.block_adr[root]..self.block_adr[root + 1];
                 if blocks.is_empty() {
@@ -75,8 +81,12 @@ impl Newton {
         }
         for c in &mut s.contact {
             c.force = [0.0; 6];
-            if let Some(row) = c.efc_address {
-                c.force[..c.dim].copy_from_slice(&s.efc.force[row..row + c.dim]);
+            match c.efc_address {
+                Some(row) if model.opt.cone == ConeType::Pyramidal && c.dim > 1 => {
+                    c.force = decode_pyramid(&s.efc.force[row..row + 2 * (c.dim - 1)], &c.friction);
+                }
+                Some(row) => c.force[..c.dim].copy_from_slice(&s.efc.force[row..row + c.dim]),
+                None => {}
             }
         }
         s.qacc_warmstart.copy_from_slice(&s.qacc);
@@ -84,14 +94,19 @@ impl Newton {
 
     /// Finds the islands and sorts the blocks by island.
     ///
-    /// Trees that share a block belong together; the island's name is its first tree.
+    /// Trees that share a block belong together, with `all` any trees; the island's name is its first tree.
     #[inline(always)]
-    fn find_islands(&mut self, topology: &Topology, efc: &Efc) {
+    fn find_islands(&mut self, topology: &Topology, efc: &Efc, all: bool) {
         let ntree = topology.ntree();
         self.parent.clear();
         self.parent.extend(0..ntree);
         self.block_tree.clear();
         for b in &efc.blocks {
+            if b.ncol == 0 {
+                // behind all trees
+                self.block_tree.push(ntree as u32);
+                continue;
+            }
             let first = topology.tile_tree(efc.cols[b.col] as usize);
             let mut last = first;
             for &tile in &efc.cols[b.col + 1..b.col + b.ncol] {
@@ -103,6 +118,9 @@ impl Newton {
                 }
             }
             self.block_tree.push(first as u32);
+        }
+        if all {
+            self.parent.fill(0);
         }
         for t in 0..ntree {
             self.parent[t] = find(&mut self.parent, t);
@@ -118,12 +136,12 @@ impl Newton {
         }
         // counting sort
         self.block_adr.clear();
-        self.block_adr.resize(ntree + 2, 0);
+        self.block_adr.resize(ntree + 3, 0);
         for tree in &mut self.block_tree {
-            *tree = self.parent[*tree as usize] as u32;
+            *tree = self.parent.get(*tree as usize).map_or(*tree, |&root| root as u32);
             self.block_adr[*tree as usize + 2] += 1;
         }
-        for t in 0..ntree {
+        for t in 0..ntree + 1 {
             self.block_adr[t + 2] += self.block_adr[t + 1];
         }
         self.blocks.clear();
@@ -170,10 +188,14 @@ impl Newton {
                 island,
             };
             let tolerance = model.opt.tolerance * model.opt.ls_tolerance * along.length / scale;
-            let alpha = vectorize(
-                #[inline(always)]
-                || line.minimise(1.0, tolerance, model.opt.ls_iterations),
-            );
+            let alpha = if cut_off(model) {
+                line.follow(tolerance, model.opt.ls_iterations)
+            } else {
+                vectorize(
+                    #[inline(always)]
+                    || line.minimise(1.0, tolerance, model.opt.ls_iterations),
+                )
+            };
             if alpha == 0.0 {
                 break;
             }
@@ -188,6 +210,46 @@ impl Newton {
         }
         island.store(topology, efc, s);
     }
+}
+
+/// Computes the forces of a contact or weld that nothing can move: those that its rows ask for at no acceleration.
+fn push_alone(b: &Block, efc: &mut Efc) {
+    if b.kind == ConstraintType::ContactElliptic {
+        let mut cone = Cone::new(b, efc);
+        cone.jar = cone.aref.map(|a| -a);
+        cone.evaluate();
+        efc.force[b.row..b.row + b.dim].copy_from_slice(&cone.force[..b.dim]);
+    } else {
+        let least = if b.kind == ConstraintType::Equality {
+            f64::NEG_INFINITY
+        } else {
+            0.0
+        };
+        for row in b.row..b.row + b.dim {
+            efc.force[row] = (efc.d[row] * efc.aref[row]).max(least);
+        }
+    }
+}
+
+/// Numbers of iterations below this are taken for a wish to stop early. Newton's method and its line search hardly ever
+/// need as many.
+const FEW_ITERATIONS: usize = 20;
+
+/// Tells whether a model may stop the solver before it converges. Then all trees are solved as one island, those without
+/// constraints too, as they start from the last acceleration, and searched as MuJoCo does it: so it stops where MuJoCo stops.
+fn cut_off(model: &Model) -> bool {
+    model.opt.iterations < FEW_ITERATIONS || model.opt.ls_iterations < FEW_ITERATIONS
+}
+
+/// Returns the force and torque in the frame of a contact that the forces along the edges of its pyramid add up to
+/// (MuJoCo's `mju_decodePyramid`).
+fn decode_pyramid(edges: &[f64], friction: &[f64; 5]) -> [f64; 6] {
+    let mut force = [0.0; 6];
+    for (k, (edge, f)) in edges.chunks_exact(2).zip(friction).enumerate() {
+        force[0] += edge[0] + edge[1];
+        force[k + 1] = (edge[0] - edge[1]) * f;
+    }
+    force
 }
 
 /// Finds the root of a tree's island, with path halving.

@@ -1,7 +1,7 @@
 //! Constraint rows without a friction cone, four at a time.
 
 use crate::physics::constraint::{Block, ConstraintType, Efc};
-use crate::physics::tiles::Lanes;
+use crate::physics::tiles::{Lanes, total};
 
 /// No row.
 pub(super) const NONE: u32 = u32::MAX;
@@ -48,9 +48,10 @@ impl ScalarRows {
     pub(super) fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
         let (low, high) = match b.kind {
             ConstraintType::FrictionDof => (-b.frictionloss, b.frictionloss),
-            ConstraintType::LimitJoint | ConstraintType::LimitTendon | ConstraintType::ContactFrictionless => {
-                (f64::NEG_INFINITY, 0.0)
-            }
+            ConstraintType::LimitJoint
+            | ConstraintType::LimitTendon
+            | ConstraintType::ContactFrictionless
+            | ConstraintType::ContactPyramidal => (f64::NEG_INFINITY, 0.0),
             ConstraintType::Equality | ConstraintType::ContactElliptic => (f64::NEG_INFINITY, f64::INFINITY),
         };
         (self.d[k], self.r[k], self.aref[k]) = (efc.d[row], efc.r[row], efc.aref[row]);
@@ -69,6 +70,17 @@ impl ScalarRows {
             cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
         }
         cost
+    }
+
+    /// Returns the cost at `jar + alpha jv`.
+    pub(super) fn cost(&self, alpha: f64) -> f64 {
+        let mut cost = [0.0; 4];
+        for k in 0..4 {
+            let jar = self.jar[k] + alpha * self.jv[k];
+            let clamped = clamp(self.d[k] * jar, self.low[k], self.high[k]);
+            cost[k] = clamped * (jar - 0.5 * self.r[k] * clamped);
+        }
+        total(&cost)
     }
 
     /// Adds first and second derivatives of the cost at `jar + alpha jv`.

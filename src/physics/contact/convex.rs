@@ -1,9 +1,10 @@
-//! Pairs without a formula of their own: capsules with cylinders, cylinders with cylinders and cylinders with boxes.
+//! Pairs without a formula of their own: ellipsoids with everything but planes, capsules with cylinders, cylinders with
+//! cylinders and cylinders with boxes.
 
 use super::epa::epa;
 use super::gjk::{Limits, Simplex, gjk};
 use super::polytope::Polytope;
-use super::support::{Capsule, Cuboid, Cylinder, Difference, Segment, Support};
+use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
 use super::{BIG, BareContact, ContactOptions, PlacedGeom, add_scaled, column, dot, sub};
 use crate::math::{Vec3, add, scale, unit};
 use crate::model::GeomType;
@@ -16,49 +17,66 @@ pub(super) fn convex(
     options: &ContactOptions,
     polytope: &mut Polytope,
 ) -> Option<BareContact> {
-    let cylinder = |geom| Cylinder::new(geom, margin);
+    use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Sphere};
+    let (rod, egg) = (|g| Cylinder::new(g, margin), |g| Ellipsoid::new(g, margin));
+    let mut find = Search {
+        a,
+        b,
+        margin,
+        options,
+        polytope,
+    };
     match (a.kind, b.kind) {
-        (GeomType::Capsule, GeomType::Cylinder) => {
-            let core = Difference {
-                a: Segment::new(a),
-                b: cylinder(b),
-            };
-            if let Shallow::Known(touch) = shallow(&core, a, b, margin, options) {
-                return touch;
-            }
-            let whole = Difference {
-                a: Capsule::new(a, margin),
-                b: cylinder(b),
-            };
-            deep(&whole, a, b, margin, options, polytope)
-        }
-        (GeomType::Cylinder, GeomType::Cylinder) => {
-            let shape = Difference {
-                a: cylinder(a),
-                b: cylinder(b),
-            };
-            deep(&shape, a, b, margin, options, polytope)
-        }
-        (GeomType::Cylinder, GeomType::Box) => {
-            let shape = Difference {
-                a: cylinder(a),
-                b: Cuboid::new(b, margin),
-            };
-            deep(&shape, a, b, margin, options, polytope)
-        }
+        (Sphere, Egg) => find.rounded(Point::new(a), Ball::new(a, margin), egg(b)),
+        (Pill, Egg) => find.rounded(Segment::new(a), Capsule::new(a, margin), egg(b)),
+        (Pill, Rod) => find.rounded(Segment::new(a), Capsule::new(a, margin), rod(b)),
+        (Egg, Egg) => find.deep(egg(a), egg(b)),
+        (Egg, Rod) => find.deep(egg(a), rod(b)),
+        (Egg, Box) => find.deep(egg(a), Cuboid::new(b, margin)),
+        (Rod, Rod) => find.deep(rod(a), rod(b)),
+        (Rod, Box) => find.deep(rod(a), Cuboid::new(b, margin)),
         _ => None,
     }
 }
 
-/// The distance between a capsule's segment and the other shape.
+/// Two geoms, and what to find their contact with.
+struct Search<'a, 'g> {
+    a: &'a PlacedGeom<'g>,
+    b: &'a PlacedGeom<'g>,
+    margin: f64,
+    options: &'a ContactOptions,
+    polytope: &'a mut Polytope,
+}
+
+impl Search<'_, '_> {
+    /// Finds the contact of a sphere or capsule, which is all that is near its `core`: from the distance of the core, which
+    /// is exact, or, where the core is inside the other shape, from the overlap of the `whole`.
+    #[inline(always)]
+    fn rounded<O: Support>(&mut self, core: impl Support, whole: impl Support, other: O) -> Option<BareContact> {
+        let core = Difference { a: core, b: other };
+        match shallow(&core, self.a, self.b, self.margin, self.options) {
+            Shallow::Known(touch) => touch,
+            Shallow::Unknown => self.deep(whole, core.b),
+        }
+    }
+
+    /// Finds the overlap of two shapes.
+    #[inline(always)]
+    fn deep(&mut self, a: impl Support, b: impl Support) -> Option<BareContact> {
+        let shape = Difference { a, b };
+        deep(&shape, self.a, self.b, self.margin, self.options, self.polytope)
+    }
+}
+
+/// The distance between the core of a sphere or capsule, its centre or segment, and the other shape.
 enum Shallow {
-    /// The segment is outside: the contact, if there is one.
+    /// The core is outside: the contact, if there is one.
     Known(Option<BareContact>),
-    /// The segment itself touches the other shape.
+    /// The core itself touches the other shape.
     Unknown,
 }
 
-/// Finds the contact of a capsule whose segment is outside the other shape: the distance from the segment less the
+/// Finds the contact of a sphere or capsule whose core is outside the other shape: the distance from the core less the
 /// radius.
 fn shallow<A: Support, B: Support>(
     core: &Difference<A, B>,

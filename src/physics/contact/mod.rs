@@ -13,13 +13,13 @@
 //!
 //! | pair | method | contacts |
 //! |---|---|---|
-//! | plane with sphere, capsule, cylinder, box | deepest points | up to 1, 2, 4, 4 |
+//! | plane with sphere, capsule, ellipsoid, cylinder, box | deepest points | up to 1, 2, 1, 4, 4 |
 //! | sphere with sphere, capsule, cylinder, box | nearest points | up to 1 |
 //! | capsule with capsule, box | nearest points, a second one along the capsule | up to 2 |
 //! | box with box | separating axes, then clipping | up to 24 |
-//! | capsule with cylinder, cylinder with cylinder, cylinder with box | GJK and EPA | up to 1 |
+//! | ellipsoid with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1 |
 //!
-//! Planes with planes and everything with an ellipsoid touch nothing.
+//! Planes touch no planes.
 //!
 //! ```
 //! use babybench::math::MAT3_ID;
@@ -231,10 +231,11 @@ pub fn collide(
     scratch: &mut Scratch,
     out: &mut Vec<ContactPoint>,
 ) {
-    use GeomType::{Box, Capsule, Cylinder, Plane, Sphere};
+    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere};
     match (a.kind, b.kind) {
         (Plane, Sphere) => plane::plane_sphere(a, b, margin, out),
         (Plane, Capsule) => plane::plane_capsule(a, b, margin, out),
+        (Plane, Ellipsoid) => plane::plane_ellipsoid(a, b, margin, out),
         (Plane, Cylinder) => plane::plane_cylinder(a, b, margin, out),
         (Plane, Box) => plane::plane_box(a, b, margin, out),
         (Sphere, Sphere) => push(round::sphere_sphere(a, b, margin), out),
@@ -244,7 +245,9 @@ pub fn collide(
         (Capsule, Capsule) => round::capsule_capsule(a, b, margin, out),
         (Capsule, Box) => capsule_box::capsule_box(a, b, margin, &options.quirks, out),
         (Box, Box) => box_box::box_box(a, b, margin, &options.quirks, &mut scratch.box_points, out),
-        (Capsule, Cylinder) | (Cylinder, Cylinder) | (Cylinder, Box) => {
+        (Sphere | Capsule | Ellipsoid, Ellipsoid)
+        | (Capsule | Ellipsoid | Cylinder, Cylinder)
+        | (Ellipsoid | Cylinder, Box) => {
             push(convex::convex(a, b, margin, options, &mut scratch.polytope), out);
         }
         _ => {}

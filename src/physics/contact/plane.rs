@@ -1,7 +1,7 @@
-//! Planes with spheres, capsules, cylinders and boxes.
+//! Planes with spheres, capsules, ellipsoids, cylinders and boxes.
 
 use super::{ContactPoint, PlacedGeom, add_scaled, column, dot, frame, sub};
-use crate::math::{MINVAL, Vec3, add, cross, scale, unit};
+use crate::math::{MINVAL, Vec3, add, cross, mat_t_vec, mat_vec, scale, unit};
 
 /// Returns the distance and position of the contact of a plane (point and unit normal) and a ball.
 #[inline(always)]
@@ -34,6 +34,22 @@ pub(super) fn plane_capsule(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &m
             out.push(ContactPoint { dist, pos, frame });
         }
     }
+}
+
+/// Finds the contact of a plane and an ellipsoid: its lowest point.
+pub(super) fn plane_ellipsoid(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<ContactPoint>) {
+    let normal = a.axis();
+    let down = mat_t_vec(b.mat, scale(normal, -1.0));
+    // MuJoCo's order of operations here is not that of the convex routines
+    let ball = unit(std::array::from_fn(|k| down[k] * b.size[k])).0;
+    let lowest = add(mat_vec(b.mat, std::array::from_fn(|k| ball[k] * b.size[k])), b.pos);
+    let dist = dot(sub(lowest, a.pos), normal);
+    if dist > margin || dist.is_nan() {
+        return;
+    }
+    let frame = frame::from_normal(normal);
+    let pos = add_scaled(lowest, normal, -0.5 * dist);
+    out.push(ContactPoint { dist, pos, frame });
 }
 
 /// Finds the contacts of a plane and a cylinder: the lowest point of the lower rim, the lowest of the upper rim, then

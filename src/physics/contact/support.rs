@@ -1,7 +1,7 @@
 //! Support points of convex geoms, and of the Minkowski difference of two.
 
 use super::{PlacedGeom, add_scaled, sub};
-use crate::math::{Mat3, Vec3, add, mat_t_vec, mat_vec, scale};
+use crate::math::{Mat3, Vec3, add, mat_t_vec, mat_vec, norm, scale};
 
 /// A convex shape, known by its farthest points.
 pub(super) trait Support {
@@ -163,6 +163,83 @@ impl Support for Cuboid<'_> {
             along(local[2], self.size[2]),
         ];
         self.pose.place(point, dir)
+    }
+}
+
+/// An ellipsoid, grown by half the margin.
+pub(super) struct Ellipsoid<'a> {
+    pose: Pose<'a>,
+    size: Vec3,
+}
+
+impl<'a> Ellipsoid<'a> {
+    /// Creates an ellipsoid grown by half the margin.
+    pub(super) fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
+        Ellipsoid {
+            pose: Pose::new(geom, margin),
+            size: geom.size,
+        }
+    }
+}
+
+impl Support for Ellipsoid<'_> {
+    /// Returns the farthest point: that of the unit ball which the ellipsoid is when its axes are scaled away.
+    #[inline(always)]
+    fn support(&self, dir: Vec3) -> Vec3 {
+        let local = mat_t_vec(self.pose.mat, dir);
+        let scaled: Vec3 = std::array::from_fn(|k| local[k] * self.size[k]);
+        let inverse = 1.0 / norm(scaled);
+        self.pose
+            .place(std::array::from_fn(|k| scaled[k] * (self.size[k] * inverse)), dir)
+    }
+}
+
+/// The centre of a sphere.
+pub(super) struct Point {
+    pos: Vec3,
+}
+
+impl Point {
+    /// Returns the centre of a sphere, which the margin does not grow.
+    pub(super) fn new(geom: &PlacedGeom) -> Self {
+        Point { pos: geom.pos }
+    }
+}
+
+impl Support for Point {
+    #[inline(always)]
+    fn support(&self, _dir: Vec3) -> Vec3 {
+        self.pos
+    }
+}
+
+/// A sphere, grown by half the margin.
+pub(super) struct Ball {
+    pos: Vec3,
+    radius: f64,
+    grown: f64,
+}
+
+impl Ball {
+    /// Creates a sphere grown by half the margin.
+    pub(super) fn new(geom: &PlacedGeom, margin: f64) -> Self {
+        Ball {
+            pos: geom.pos,
+            radius: geom.size[0],
+            grown: 0.5 * margin,
+        }
+    }
+}
+
+impl Support for Ball {
+    #[inline(always)]
+    fn support(&self, dir: Vec3) -> Vec3 {
+        let point = add_scaled(self.pos, dir, self.radius);
+        if self.grown > 0.0 {
+            add_scaled(point, dir, self.grown)
+        } else {
+            point
+        }
     }
 }
 

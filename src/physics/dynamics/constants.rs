@@ -125,6 +125,10 @@ impl<'a> Weights<'a> {
                     weights[d..d + 3].fill((w[0] + w[1] + w[2]) / 3.0);
                     weights[d + 3..d + 6].fill((w[3] + w[4] + w[5]) / 3.0);
                 }
+                // whatever the armature
+                _ if slides_alone(self.model, self.model.jnt_bodyid[j]) => {
+                    weights[d] = 1.0 / self.model.body_mass[self.model.jnt_bodyid[j]];
+                }
                 _ => weights[d] = self.of(&[(d, 1.0)]),
             }
         }
@@ -180,19 +184,25 @@ fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
     model.lights.iter().map(pose).collect()
 }
 
-/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a child of the world without children
-/// whose joints all slide along axes of its frame, which is that of its inertia.
+/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a body without moving children,
+/// in the world or in a static body of the world, whose joints all slide along axes of its frame, which is that of its
+/// inertia (`body_simple` 2).
 fn slides_alone(model: &Arrays, b: usize) -> bool {
+    // what is smaller counts as zero in MuJoCo's compiler
+    const EPS: f64 = 1e-14;
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
-    let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > MINVAL).count() == 1;
+    let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > EPS).count() == 1;
+    let parent = model.body_parentid[b];
+    let on_the_ground = model.body_parentid[parent] == 0 && model.body_jntnum[parent] == 0;
     // a child, if there is one, comes next
-    model.body_parentid[b] == 0
+    on_the_ground
         && model.body_parentid.get(b + 1) != Some(&b)
         && model.body_sameframe[b] == SameFrame::Body
         && !joints.is_empty()
-        && joints
-            .into_iter()
-            .all(|j| model.jnt_type[j] == JointType::Slide && along_axis(j))
+        && joints.into_iter().all(|j| {
+            let at_origin = SameFrame::of(model.jnt_pos[j], QUAT_ID, [0.0; 3], QUAT_ID) == SameFrame::Body;
+            model.jnt_type[j] == JointType::Slide && along_axis(j) && at_origin
+        })
 }
 
 /// Returns mean inertia, mass and size, extent and centre: as given, else computed.
@@ -204,8 +214,14 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
         nv => dof_m0.iter().sum::<f64>() / nv as f64,
     };
     let others = model.nbody().saturating_sub(1).max(1) as f64;
-    let meanmass = model.body_mass[1..].iter().sum::<f64>() / others;
-    let meansize = sizes(model, s)[1..].iter().map(|v| v.max(1e-5)).sum::<f64>() / others;
+    let meanmass = match model.nbody() {
+        1 => 1.0,
+        _ => model.body_mass[1..].iter().sum::<f64>() / others,
+    };
+    let meansize = match model.nbody() {
+        1 => 0.2,
+        _ => sizes(model, s)[1..].iter().map(|v| v.max(1e-5)).sum::<f64>() / others,
+    };
     let (low, high) = bounds(model, s);
     let extent = (0..3).map(|k| high[k] - low[k]).fold(1e-5, f64::max);
 
@@ -218,8 +234,10 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
     set(&mut stat.meaninertia, meaninertia);
     set(&mut stat.meanmass, meanmass);
     set(&mut stat.meansize, meansize);
-    if stat.extent == 0.0 {
+    if stat.center[0].is_nan() {
         stat.center = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
+    }
+    if stat.extent == 0.0 {
         stat.extent = extent.max(2.0 * meansize);
     }
     stat
@@ -248,6 +266,10 @@ fn bounds(model: &Arrays, s: &State) -> (Vec3, Vec3) {
             _ => model.geom_rbound[g],
         };
         include(s.geom_xpos[g], radius);
+    }
+    if low[0] > high[0] {
+        // an empty world
+        return ([-1.0; 3], [1.0; 3]);
     }
     (low, high)
 }

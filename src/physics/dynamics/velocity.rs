@@ -1,5 +1,6 @@
 //! Velocities, bias forces and passive forces.
 
+use crate::math::{quat_at, quat_normalize, rotation_between};
 use crate::model::{Arrays, JointType, Model};
 use crate::physics::spatial::*;
 use crate::physics::state::State;
@@ -77,9 +78,22 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
     }
     for j in 0..model.njnt() {
         let k = s.params.jnt_stiffness[j];
-        if k != 0.0 && model.jnt_type[j] != JointType::Free {
-            let q = model.jnt_qposadr[j];
-            s.qfrc_passive[model.jnt_dofadr[j]] -= k * (s.qpos[q] - model.qpos_spring[q]);
+        if k == 0.0 {
+            continue;
+        }
+        let (q, d) = (model.jnt_qposadr[j], model.jnt_dofadr[j]);
+        let scalars = if model.jnt_type[j] == JointType::Free { 3 } else { 1 };
+        for i in 0..scalars {
+            s.qfrc_passive[d + i] -= k * (s.qpos[q + i] - model.qpos_spring[q + i]);
+        }
+        if model.jnt_type[j] == JointType::Free {
+            let turn = rotation_between(
+                quat_at(&model.qpos_spring, q + 3),
+                quat_normalize(quat_at(&s.qpos, q + 3)),
+            );
+            for i in 0..3 {
+                s.qfrc_passive[d + 3 + i] -= k * turn[i];
+            }
         }
     }
     for t in 0..model.ntendon() {

@@ -8,7 +8,7 @@ use rapier3d_f64::geometry::{ContactData, ContactManifold, NarrowPhase, SolverFl
 use rapier3d_f64::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
 
 use crate::math::*;
-use crate::model::Model;
+use crate::model::{ConeType, Model};
 use crate::physics::constraint::ConstraintType;
 use crate::physics::contact::frame::from_normal;
 use crate::physics::rapier::rig::Rig;
@@ -77,12 +77,21 @@ impl ContactAims {
         for block in &s.efc.blocks {
             if !matches!(
                 block.kind,
-                ConstraintType::ContactElliptic | ConstraintType::ContactFrictionless
+                ConstraintType::ContactElliptic
+                    | ConstraintType::ContactPyramidal
+                    | ConstraintType::ContactFrictionless
             ) {
                 continue;
             }
             let c = &s.contact[block.id];
-            let aim = |r: usize| s.efc.vel[block.row + r] + h * s.efc.aref[block.row + r];
+            let row = |r: usize| s.efc.vel[block.row + r] + h * s.efc.aref[block.row + r];
+            // the edges of a pyramid are the normal plus and minus a tangent times its friction
+            let edge = |r: usize| (row(2 * r - 2), row(2 * r - 1));
+            let aim = |r: usize| match (block.kind, r) {
+                (ConstraintType::ContactPyramidal, 0) => 0.5 * (edge(1).0 + edge(1).1),
+                (ConstraintType::ContactPyramidal, r) => 0.5 * (edge(r).0 - edge(r).1) / c.friction[r - 1],
+                _ => row(r),
+            };
             self.aims[block.id] = Some(ContactAim {
                 geom: c.geom,
                 velocity: std::array::from_fn(|r| if r < c.dim { aim(r) } else { 0.0 }),
@@ -171,7 +180,6 @@ pub(super) fn read_contacts(
     s: &mut State,
     stranger: Option<usize>,
 ) {
-    let h = model.opt.timestep;
     s.contact.truncate(hooks.aims.aims.len());
     s.contact.iter_mut().for_each(|c| c.force = [0.0; 6]);
     for pair in narrow.contact_pairs() {
@@ -180,7 +188,7 @@ pub(super) fn read_contacts(
             match geoms {
                 [Some(a), Some(b)] => {
                     if let Some(k) = hooks.contact(a, b, manifold) {
-                        read_own(manifold, a, &mut s.contact[k], &mut s.efc.force, h);
+                        read_own(model, manifold, a, &mut s.contact[k], &mut s.efc.force);
                     }
                 }
                 [Some(own), None] => read_foreign(model, manifold, (own, 0), stranger, s),
@@ -197,14 +205,24 @@ fn force(manifold: &ContactManifold, point: &ContactData, h: f64) -> Vec3 {
     scale([f.x, f.y, f.z], 1.0 / h)
 }
 
-fn read_own(manifold: &ContactManifold, first: usize, c: &mut Contact, rows: &mut [f64], h: f64) {
+fn read_own(model: &Model, manifold: &ContactManifold, first: usize, c: &mut Contact, rows: &mut [f64]) {
     let Some(point) = manifold.points.first() else { return };
     let sign = if c.geom[0] == first { 1.0 } else { -1.0 };
-    let f = mat_vec(&c.frame, scale(force(manifold, &point.data, h), sign));
+    let f = mat_vec(&c.frame, scale(force(manifold, &point.data, model.opt.timestep), sign));
     c.force[..3].copy_from_slice(&f);
     if let Some(row) = c.efc_address {
-        let n = c.dim.min(3);
-        rows[row..row + n].copy_from_slice(&f[..n]);
+        if model.opt.cone == ConeType::Pyramidal && c.dim > 1 {
+            // as evenly as it goes (MuJoCo's `mju_encodePyramid`)
+            let edges = &mut rows[row..row + 2 * (c.dim - 1)];
+            let share = c.force[0] / (c.dim - 1) as f64;
+            for (k, edge) in edges.chunks_exact_mut(2).enumerate() {
+                let along = (c.force[k + 1] / c.friction[k]).clamp(-share, share);
+                edge.copy_from_slice(&[0.5 * (share + along), 0.5 * (share - along)]);
+            }
+        } else {
+            let n = c.dim.min(3);
+            rows[row..row + n].copy_from_slice(&f[..n]);
+        }
     }
 }
 

@@ -117,7 +117,12 @@ impl RapierRows {
                         couple(rig, row, target, h, sets);
                     }
                 }
-                (ConstraintType::ContactFrictionless | ConstraintType::ContactElliptic, _) => {}
+                (
+                    ConstraintType::ContactFrictionless
+                    | ConstraintType::ContactPyramidal
+                    | ConstraintType::ContactElliptic,
+                    _,
+                ) => {}
             }
         }
         self.load_links(rig, model, inertia, s, sets);

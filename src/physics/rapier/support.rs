@@ -1,6 +1,6 @@
 //! What Rapier's multibodies can represent.
 
-use crate::model::{EqualityKind, JointType, Model};
+use crate::model::{EqualityKind, GeomType, JointType, Model};
 use crate::physics::rapier::RapierError;
 use crate::physics::topology::Topology;
 
@@ -35,6 +35,14 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         {
             let what = "a joint equality must be between two joints of the same tree";
             return Err(RapierError::unsupported("equality", &model.eq_name[e], what));
+        }
+    }
+    for g in 0..model.ngeom() {
+        let touches = model.geom_contype[g] | model.geom_conaffinity[g] != 0
+            || model.pair_geom.iter().any(|pair| pair.contains(&g));
+        if model.geom_type[g] == GeomType::Ellipsoid && touches {
+            let what = "Parry has no ellipsoid that things could touch";
+            return Err(RapierError::unsupported("geom", &model.geom_name[g], what));
         }
     }
     Ok(())

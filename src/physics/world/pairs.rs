@@ -43,7 +43,11 @@ pub struct PairTable {
 /// All pairs, and which of them two geoms are.
 #[derive(Clone, Debug)]
 struct Table {
+    /// The first pair of two geoms, row by row.
     index: Vec<u32>,
+    /// The next pair of the same geoms, for each pair: an explicit pair may be written more than once, and counts as
+    /// often.
+    next: Vec<u32>,
     pairs: Vec<Pair>,
 }
 
@@ -59,12 +63,14 @@ impl PairTable {
         let table = (ngeom <= TABULATED).then(|| {
             let pairs = list(model, &rules);
             let mut index = vec![NONE; ngeom * ngeom];
-            for (k, p) in pairs.iter().enumerate() {
+            let mut next = vec![NONE; pairs.len()];
+            for (k, p) in pairs.iter().enumerate().rev() {
                 let [a, b] = p.geom;
+                next[k] = index[a * ngeom + b];
                 index[a * ngeom + b] = k as u32;
                 index[b * ngeom + a] = k as u32;
             }
-            Table { index, pairs }
+            Table { index, next, pairs }
         });
         Self { rules, table }
     }
@@ -78,7 +84,7 @@ impl PairTable {
     /// Tells whether two geoms may touch.
     pub fn may_touch(&self, a: usize, b: usize) -> bool {
         match &self.table {
-            Some(_) => self.tabulated(a, b).is_some(),
+            Some(_) => self.tabulated(a, b).next().is_some(),
             None => self.rules.allow(a, b),
         }
     }
@@ -91,27 +97,29 @@ impl PairTable {
         }
     }
 
-    /// Returns the place of the pair of two geoms among those that are listed, if they may touch.
+    /// Returns the places of the pairs of two geoms among those that are listed; none if they may not touch.
     #[inline]
-    pub(super) fn tabulated(&self, a: usize, b: usize) -> Option<usize> {
-        let table = self.table.as_ref()?;
-        match table.index[a * self.rules.ngeom() + b] {
-            NONE => None,
-            k => Some(k as usize),
-        }
+    pub(super) fn tabulated(&self, a: usize, b: usize) -> impl Iterator<Item = usize> {
+        let table = self.table.as_ref();
+        let mut at = table.map_or(NONE, |table| table.index[a * self.rules.ngeom() + b]);
+        std::iter::from_fn(move || {
+            let k = (at != NONE).then_some(at as usize)?;
+            at = table.map_or(NONE, |table| table.next[k]);
+            Some(k)
+        })
     }
 
-    /// Returns the place of the pair of two geoms in contact order, if they may touch.
+    /// Returns the places of the pairs of two geoms in contact order; none if they may not touch.
     #[inline]
-    pub(super) fn order(&self, a: usize, b: usize) -> Option<Order> {
-        self.rules.order(a, b)
+    pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = Order> {
+        self.rules.orders(a, b)
     }
 
-    /// Makes the pair of two geoms that may touch.
-    pub(super) fn pair(&self, model: &Model, a: usize, b: usize) -> Pair {
-        match self.rules.explicit(a, b) {
-            Some(p) => explicit(model, p),
-            None => dynamic(model, self.rules.ordered(a, b)),
+    /// Makes the pair at a place in contact order of two geoms that may touch.
+    pub(super) fn pair(&self, model: &Model, order: Order, a: usize, b: usize) -> Pair {
+        match order {
+            (_, _, false, p, _) => explicit(model, p as usize),
+            _ => dynamic(model, self.rules.ordered(a, b)),
         }
     }
 }
@@ -124,8 +132,8 @@ fn list(model: &Model, rules: &ContactRules) -> Vec<Pair> {
     }
     for a in 0..model.ngeom() {
         for b in a + 1..model.ngeom() {
-            if rules.explicit(a, b).is_none()
-                && let Some(order) = rules.order(a, b)
+            if !rules.is_explicit(a, b)
+                && let Some(order) = rules.dynamic_order(a, b)
             {
                 found.push((order, dynamic(model, rules.ordered(a, b))));
             }

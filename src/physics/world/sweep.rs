@@ -16,6 +16,8 @@ const SLACK: f64 = 1e-7;
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     geom: usize,
+    /// Distance up to which any of the geom's pairs has contacts, m.
+    margin: f64,
     /// Whether it can touch what never moves.
     moves: bool,
     low: Vec3,
@@ -46,10 +48,18 @@ impl Sweep {
         let moves = |g: usize| {
             model.body_weldid[model.geom_bodyid[g]] != 0 || model.pair_geom.iter().any(|pair| pair.contains(&g))
         };
+        // the boxes of two geoms reach as far as their pair's margin together if either reaches as far alone
+        let mut margin = model.geom_margin.clone();
+        for (pair, &own) in model.pair_geom.iter().zip(&model.pair_margin) {
+            for &g in pair {
+                margin[g] = margin[g].max(own);
+            }
+        }
         let boxes: Vec<Bounds> = (0..model.ngeom())
             .filter(|&g| table.takes_part(g))
             .map(|geom| Bounds {
                 geom,
+                margin: margin[geom],
                 moves: moves(geom),
                 low: [0.0; 3],
                 high: [0.0; 3],
@@ -91,8 +101,8 @@ impl Sweep {
                 self.select_near();
                 self.broad_phase_untabulated(table, s.step)?;
                 let candidates = std::mem::take(&mut self.untabulated);
-                for &(_, [a, b]) in &candidates {
-                    self.narrow_phase(model, &table.pair(model, a as usize, b as usize), s);
+                for &(order, [a, b]) in &candidates {
+                    self.narrow_phase(model, &table.pair(model, order, a as usize, b as usize), s);
                     within(Limits::DEFAULT.contacts, s.contact.len(), "contacts", s.step)?;
                 }
                 self.untabulated = candidates;
@@ -140,7 +150,7 @@ impl Sweep {
                 continue;
             }
             let g = b.geom;
-            let slack = SLACK + model.geom_margin[g];
+            let slack = SLACK + b.margin;
             [b.low, b.high] = aabb(
                 model.geom_type[g],
                 s.params.geom_size[g],
@@ -190,9 +200,7 @@ impl Sweep {
         self.candidates.clear();
         let candidates = &mut self.candidates;
         overlaps(&self.near, |a, b| {
-            if let Some(k) = table.tabulated(a, b) {
-                candidates.push(k as u32);
-            }
+            candidates.extend(table.tabulated(a, b).map(|k| k as u32));
             true
         });
         self.candidates.sort_unstable();
@@ -204,9 +212,7 @@ impl Sweep {
         let candidates = &mut self.untabulated;
         candidates.clear();
         overlaps(&self.near, |a, b| {
-            if let Some(order) = table.order(a, b) {
-                candidates.push((order, [a as u32, b as u32]));
-            }
+            candidates.extend(table.orders(a, b).map(|order| (order, [a as u32, b as u32])));
             near += 1;
             near <= limit
         });

@@ -13,7 +13,9 @@ fn external(model: &Model, engine: &dyn Engine, s: &State) -> Vec<f64> {
     let mut out = vec![0.0; model.nv];
     for (k, row) in s.efc_rows().enumerate() {
         let outside = match row.kind {
-            ConstraintType::ContactElliptic | ConstraintType::ContactFrictionless => true,
+            ConstraintType::ContactElliptic
+            | ConstraintType::ContactPyramidal
+            | ConstraintType::ContactFrictionless => true,
             ConstraintType::Equality => matches!(model.eq_kind[row.id], EqualityKind::Weld { .. }),
             ConstraintType::FrictionDof | ConstraintType::LimitJoint | ConstraintType::LimitTendon => false,
         };

@@ -65,21 +65,25 @@ impl ContactRules {
     /// Tells whether a geom may touch any other, as far as its own properties say.
     pub(super) fn takes_part(&self, g: usize) -> bool {
         let geom = &self.geoms[g];
-        let bits = geom.contype | geom.conaffinity != 0 && geom.kind != GeomType::Ellipsoid;
-        bits || self.explicit.iter().any(|(geoms, _)| geoms.contains(&(g as u32)))
+        geom.contype | geom.conaffinity != 0 || self.explicit.iter().any(|(geoms, _)| geoms.contains(&(g as u32)))
     }
 
-    /// Returns the number of the explicit pair of two geoms; of several, the last.
-    pub(super) fn explicit(&self, a: usize, b: usize) -> Option<usize> {
+    /// Returns the numbers of the explicit pairs of two geoms, ascending: a pair may be written more than once.
+    fn explicit(&self, a: usize, b: usize) -> impl Iterator<Item = u32> {
         let geoms = sorted(a, b);
-        let end = self.explicit.partition_point(|e| e.0 <= geoms);
-        let (found, p) = *self.explicit.get(end.checked_sub(1)?)?;
-        (found == geoms).then_some(p as usize)
+        let start = self.explicit.partition_point(|e| e.0 < geoms);
+        let same = self.explicit[start..].iter().take_while(move |e| e.0 == geoms);
+        same.map(|e| e.1)
+    }
+
+    /// Tells whether two geoms are an explicit pair.
+    pub(super) fn is_explicit(&self, a: usize, b: usize) -> bool {
+        self.explicit(a, b).next().is_some()
     }
 
     /// Tells whether two geoms may touch.
     pub fn allow(&self, a: usize, b: usize) -> bool {
-        self.explicit(a, b).is_some() || self.collide(a, b)
+        self.is_explicit(a, b) || self.collide(a, b)
     }
 
     /// Orders two geoms by type, then by body.
@@ -88,11 +92,22 @@ impl ContactRules {
         if key(a) <= key(b) { [a, b] } else { [b, a] }
     }
 
-    /// Returns the place of two geoms in contact order, if they may touch.
-    pub(super) fn order(&self, a: usize, b: usize) -> Option<Order> {
-        if let Some(p) = self.explicit(a, b) {
-            return Some(self.explicit_order(p, a, b));
-        }
+    /// Returns the places of the pairs of two geoms in contact order; none if they may not touch. An explicit pair stands
+    /// for what their own properties say.
+    pub(super) fn orders(&self, a: usize, b: usize) -> impl Iterator<Item = Order> {
+        let mut explicit = self.explicit(a, b).peekable();
+        let dynamic = if explicit.peek().is_none() {
+            self.dynamic_order(a, b)
+        } else {
+            None
+        };
+        explicit
+            .map(move |p| self.explicit_order(p as usize, a, b))
+            .chain(dynamic)
+    }
+
+    /// Returns the place in contact order of two geoms that are no explicit pair, if they may touch.
+    pub(super) fn dynamic_order(&self, a: usize, b: usize) -> Option<Order> {
         self.collide(a, b).then(|| {
             let ([lo, hi], [x, y]) = (self.bodies(a, b), self.ordered(a, b));
             (lo, hi, true, x as u32, y as u32)
@@ -112,8 +127,7 @@ impl ContactRules {
     /// Tells whether two geoms may touch that are no explicit pair.
     fn collide(&self, a: usize, b: usize) -> bool {
         let (x, y) = (&self.geoms[a], &self.geoms[b]);
-        let none = |kind: GeomType| kind == GeomType::Ellipsoid;
-        if none(x.kind) || none(y.kind) || (x.kind == GeomType::Plane && y.kind == GeomType::Plane) {
+        if x.kind == GeomType::Plane && y.kind == GeomType::Plane {
             return false;
         }
         if x.contype & y.conaffinity == 0 && y.contype & x.conaffinity == 0 {
