@@ -9,8 +9,8 @@ use std::sync::Arc;
 use babybench::config::{Behavior, Config, Scene};
 use babybench::mimo::{build_model, embedded};
 use babybench::physics::RapierOptions;
+use babybench::physics::rapier::rapier3d_f64::prelude::*; // the version of Rapier that the library is built with
 use babybench::physics::rapier::{Bridge, Sets};
-use rapier3d_f64::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let config = Config {

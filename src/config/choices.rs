@@ -186,7 +186,7 @@ choices! {
 choices! {
     /// The physics engine (`engine`).
     EngineKind {
-        /// Joint-space dynamics with MuJoCo's soft constraints; Rapier holds the scene.
+        /// Joint-space dynamics with MuJoCo's soft constraints.
         #[default]
         Soft = "soft",
         /// Rapier's own pipeline with multibody joints. Needs the cargo feature `rapier`, a default one.

@@ -114,12 +114,12 @@ impl Env {
         &mut self.physics.state
     }
 
-    /// Returns the physics engine, with the live scene in Rapier.
+    /// Returns the physics engine.
     pub fn engine(&self) -> &dyn Engine {
         &*self.physics.engine
     }
 
-    /// Returns the physics engine, to run queries on the live scene.
+    /// Returns the physics engine, to advance copies of the state with it.
     pub fn engine_mut(&mut self) -> &mut dyn Engine {
         &mut *self.physics.engine
     }

@@ -13,6 +13,8 @@ mod outcome;
 mod parts;
 mod physics;
 mod pipeline;
+#[cfg(feature = "rapier")]
+mod rapier;
 mod senses;
 #[cfg(feature = "serde")]
 mod serial;

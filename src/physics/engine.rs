@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::model::Model;
 use crate::physics::state::{Contact, State};
 use crate::physics::topology::Topology;
-use crate::physics::world::{PairTable, RapierScene};
+use crate::physics::world::PairTable;
 
 /// Coordinates and velocities beyond this count as divergence (MuJoCo's `mjMAXVAL`).
 const MAXVAL: f64 = 1e10;
@@ -23,12 +23,6 @@ pub trait Engine: Send + Sync {
 
     /// Returns the geom pairs that may touch, in contact order.
     fn pairs(&self) -> &PairTable;
-
-    /// Returns the live scene in Rapier, with the poses of the last forward or step.
-    fn scene(&self) -> &RapierScene;
-
-    /// Returns the live scene, to run Rapier's collision pipeline and queries on.
-    fn scene_mut(&mut self) -> &mut RapierScene;
 
     /// Returns a state at `qpos0`, at rest, of which nothing has been computed.
     fn new_state(&self) -> State {
@@ -71,8 +65,6 @@ pub trait Engine: Send + Sync {
 pub enum Stage {
     /// Poses and inertia.
     Kinematics,
-    /// Writing poses to the scene in Rapier.
-    Scene,
     /// Contacts.
     Collision,
     /// Constraint rows.
@@ -89,9 +81,8 @@ pub enum Stage {
 
 impl Stage {
     /// Lists all stages, in the order of a step.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::Kinematics,
-        Self::Scene,
         Self::Collision,
         Self::Constraints,
         Self::Forces,
@@ -104,7 +95,6 @@ impl Stage {
     pub fn name(self) -> &'static str {
         match self {
             Self::Kinematics => "kinematics",
-            Self::Scene => "scene",
             Self::Collision => "collision",
             Self::Constraints => "constraints",
             Self::Forces => "forces",

@@ -1,7 +1,7 @@
 //! `Model` + `State` -> next `State`.
 //!
-//! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space, on a scene that lives in Rapier.
-//! With the feature `rapier`, `RapierEngine` lets Rapier's own pipeline solve the same model, as multibodies.
+//! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space. With the feature `rapier`, `RapierEngine` lets
+//! Rapier's own pipeline solve the same model, as multibodies, and `RapierScene` mirrors a state for its queries.
 
 mod compile;
 mod constraint;
@@ -27,7 +27,7 @@ pub use engine::{Engine, EngineError, Probe, Stage};
 pub use free_body::FreeBody;
 pub use params::Params;
 #[cfg(feature = "rapier")]
-pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions};
+pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions, RapierScene};
 pub use soft::{SoftEngine, SoftModel, SoftOptions};
 pub use state::{Contact, State};
 pub use topology::Topology;

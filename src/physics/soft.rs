@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use crate::model::Model;
 use crate::physics::constraint::{Newton, RowBuilder};
-use crate::physics::contact::{ContactOptions, Quirks};
+use crate::physics::contact::Quirks;
 use crate::physics::dynamics::*;
 use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_contacts, check_input, check_output};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
 use crate::physics::vectorize::vectorize;
-use crate::physics::world::{PairTable, RapierScene, Sweep};
+use crate::physics::world::{PairTable, Sweep, contact_options};
 
 /// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
 /// sensors.
@@ -25,7 +25,7 @@ pub struct SoftOptions {
     pub disable_contacts: bool,
 }
 
-/// Advances a state by MuJoCo's formulation in joint space, with the scene in Rapier.
+/// Advances a state by MuJoCo's formulation in joint space.
 ///
 /// A step computes kinematics, inertia, contacts, constraint rows, velocities, forces, solves for the acceleration with
 /// Newton's method, and integrates with semi-implicit Euler and implicit joint damping. After warm-up it allocates
@@ -36,7 +36,6 @@ pub struct SoftEngine {
     topology: Arc<Topology>,
     pairs: Arc<PairTable>,
     sweep: Sweep,
-    scene: RapierScene,
     rows: RowBuilder,
     newton: Newton,
     integrator: Integrator,
@@ -76,15 +75,10 @@ impl SoftModel {
     /// Returns a new engine.
     pub fn engine(&self) -> SoftEngine {
         let (model, topology, pairs) = (&self.model, &self.topology, &self.pairs);
-        let contact = ContactOptions {
-            ccd_tolerance: model.opt.ccd_tolerance,
-            ccd_iterations: model.opt.ccd_iterations,
-            quirks: self.options.contact_quirks,
-        };
+        let contact = contact_options(model, self.options.contact_quirks);
         SoftEngine {
             options: self.options,
             sweep: Sweep::new(model, pairs, contact),
-            scene: RapierScene::new(model, pairs, contact),
             rows: RowBuilder::new(model, topology),
             newton: Newton::with_capacity(topology, model.nv, RESERVED_CONTACTS),
             integrator: Integrator::default(),
@@ -132,8 +126,6 @@ impl SoftEngine {
             #[inline(always)]
             || bodies.update(model, s),
         );
-        self.mark(Some(Stage::Scene));
-        self.scene.sync(&self.model, s);
         self.mark(Some(Stage::Collision));
         if self.options.disable_contacts {
             s.contact.clear();
@@ -197,14 +189,6 @@ impl Engine for SoftEngine {
 
     fn pairs(&self) -> &PairTable {
         &self.pairs
-    }
-
-    fn scene(&self) -> &RapierScene {
-        &self.scene
-    }
-
-    fn scene_mut(&mut self) -> &mut RapierScene {
-        &mut self.scene
     }
 
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError> {

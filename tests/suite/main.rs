@@ -26,6 +26,7 @@ mod render;
 mod report;
 #[cfg(feature = "eval")]
 mod resume;
+#[cfg(feature = "rapier")]
 mod scene;
 #[cfg(feature = "eval")]
 mod scene_file;

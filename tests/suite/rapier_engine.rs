@@ -43,7 +43,7 @@ fn every_scene_resets_steps_and_truncates() {
             assert!(step.observation.proprioception.iter().all(|v| v.is_finite()));
             assert_eq!(step.truncated, k == 5);
         }
-        let found = env.engine_mut().scene_mut().pipeline_contacts().len();
+        let found = env.rapier_scene().expect("its own state").contacts().len();
         let felt = env.state().contact.iter().filter(|c| c.force[0] > 0.0).count();
         println!("{behavior}/{scene}: {found} contacts in the scene, {felt} with a force");
         assert!(found > 0 && felt > 0, "{behavior}/{scene}");

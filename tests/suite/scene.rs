@@ -1,39 +1,47 @@
-//! The live scene in Rapier: it holds the state's poses, its collision pipeline finds the solver's contacts, and its
+//! The mirror of a scene in Rapier: it has the state's poses, its collision pipeline finds the solver's contacts, and its
 //! queries see what is there.
 
 use std::collections::BTreeMap;
 
 use crate::common::*;
 use babybench::Env;
-use babybench::config::Behavior;
+use babybench::config::{Behavior, Scene};
 use babybench::math::{Vec3, column, norm, sub};
 use babybench::model::GeomType;
-use rapier3d_f64::prelude::Vector;
+use babybench::physics::rapier::rapier3d_f64::prelude::{ColliderHandle, QueryFilter, Ray, Vector};
+use babybench::physics::{EngineError, FreeBody, RapierScene};
+use babybench::spaces::NumpyRng;
 
 /// Steps of every model that the tests look at.
 const STEPS: usize = if cfg!(debug_assertions) { 40 } else { 300 };
 
-/// Runs every model with random actions; `look` sees the environment after each step.
-fn visit(steps: usize, mut look: impl FnMut(&str, usize, &mut Env)) {
+/// Runs every model with random actions; `look` sees the environment after each step, and its mirror.
+fn visit(steps: usize, mut look: impl FnMut(&str, usize, &mut Env, &RapierScene)) {
     for (behavior, scene) in MODELS {
         let mut env = env(free(behavior, scene));
         env.reset(Some(0)).expect("no divergence");
+        let mut mirror = mirror(&env);
         let name = format!("{behavior}/{scene}");
         for k in 0..steps {
             random_steps(&mut env, 1);
-            look(&name, k, &mut env);
+            mirror.sync(env.state()).expect("its own state");
+            look(&name, k, &mut env, &mirror);
         }
     }
+}
+
+fn mirror(env: &Env) -> RapierScene {
+    env.rapier_scene().expect("its own state")
 }
 
 #[test]
 fn colliders_and_bodies_have_the_poses_of_the_state() {
     let mut worst = 0.0_f64;
-    visit(STEPS / 2, |name, k, env| {
-        let (model, s, scene) = (env.model(), env.state(), env.engine().scene());
+    visit(STEPS / 2, |name, k, env, scene| {
+        let (model, s) = (env.model(), env.state());
         for g in 0..model.ngeom() {
             let collider = &scene.colliders()[scene.collider_handle(g).expect("every geom has a collider")];
-            assert_eq!(collider.user_data, g as u128);
+            assert_eq!(scene.collider_handle(g).and_then(|c| scene.geom_of(c)), Some(g));
             let p = collider.position();
             let t = p.translation;
             worst = worst.max(norm(sub([t.x, t.y, t.z], s.geom_xpos[g])));
@@ -74,15 +82,9 @@ fn by_pair(contacts: impl Iterator<Item = ([usize; 2], f64)>) -> ByPair {
 fn the_collision_pipeline_finds_the_contacts_of_the_solver() {
     let (mut states, mut points, mut missing, mut counts, mut depths, mut worst) = (0, 0, 0, 0, 0, 0.0_f64);
     let mut curved_only = true;
-    visit(STEPS, |name, k, env| {
+    visit(STEPS, |name, k, env, scene| {
         let ours = by_pair(env.state().contact.iter().map(|c| (c.geom, c.dist)));
-        let theirs = by_pair(
-            env.engine_mut()
-                .scene_mut()
-                .pipeline_contacts()
-                .into_iter()
-                .map(|c| (c.geom, c.dist)),
-        );
+        let theirs = by_pair(scene.contacts().into_iter().map(|c| (c.geom, c.dist)));
         let model = env.model().clone();
         states += 1;
         points += env.state().contact.len();
@@ -132,7 +134,7 @@ fn the_collision_pipeline_finds_the_contacts_of_the_solver() {
 #[test]
 fn contacts_do_not_depend_on_the_past() {
     let mut differing = 0;
-    visit(STEPS, |name, k, env| {
+    visit(STEPS, |name, k, env, scene| {
         if k % 10 != 9 {
             return;
         }
@@ -143,8 +145,7 @@ fn contacts_do_not_depend_on_the_past() {
         let mut again = env.state().clone();
         env.engine_mut().forward(&mut again).expect("no divergence");
         assert_eq!(now.contact, again.contact, "{name}, step {k}: solver");
-        let old = env.engine_mut().scene_mut().pipeline_contacts();
-        let new = fresh.scene_mut().pipeline_contacts();
+        let (old, new) = (scene.contacts(), mirror(env).contacts());
         if old != new {
             differing += 1;
             println!(
@@ -157,22 +158,15 @@ fn contacts_do_not_depend_on_the_past() {
     assert_eq!(differing, 0, "states in which Rapier's pipeline depends on the past");
 }
 
-#[cfg(feature = "rapier")]
 #[test]
 fn rays_hit_the_nearest_geom() {
-    use babybench::spaces::NumpyRng;
-    use parry3d_f64::query::Ray;
-    use rapier3d_f64::prelude::{ColliderHandle, QueryFilter};
-
     let (mut rays, mut hits) = (0, 0);
     let mut rng = NumpyRng::seed(1);
-    visit(STEPS, |name, k, env| {
+    visit(STEPS, |name, k, env, scene| {
         if k % 20 != 19 {
             return;
         }
         let centre = env.state().xpos[2];
-        let scene = env.engine_mut().scene_mut();
-        scene.update_queries();
         for _ in 0..100 {
             let mut at = |scale: f64| -> Vec3 { std::array::from_fn(|_| scale * (2.0 * rng.uniform() - 1.0)) };
             let (offset, aim) = (at(0.6), at(0.3));
@@ -207,10 +201,59 @@ fn rays_hit_the_nearest_geom() {
 
 #[test]
 fn every_body_and_geom_can_be_found_in_the_scene() {
-    let env = env(free(Behavior::None, babybench::config::Scene::Crib));
-    let scene = env.engine().scene();
+    let env = env(free(Behavior::None, Scene::Crib));
+    let scene = mirror(&env);
     assert_eq!(scene.bodies().len(), env.model().nbody());
     assert_eq!(scene.colliders().len(), env.model().ngeom());
     assert_eq!(scene.collider_handle(env.model().ngeom()), None);
     assert_eq!(scene.body_handle(env.model().nbody()), None);
+    assert_eq!(scene.geom_of(ColliderHandle::invalid()), None);
+}
+
+#[test]
+fn a_fresh_scene_stands_at_qpos0() {
+    let env = env(free(Behavior::None, Scene::Cubes));
+    let mut engine = env.blueprint().engine();
+    let mut start = engine.new_state();
+    engine.forward(&mut start).expect("no divergence");
+    let scene = RapierScene::new(env.model().clone(), Default::default());
+    for b in 0..env.model().nbody() {
+        let t = scene.bodies()[scene.body_handle(b).expect("every body has one")].translation();
+        let error = norm(sub([t.x, t.y, t.z], start.xpos[b]));
+        assert!(error < 1e-14, "{}: {error:e} m", env.model().body_name[b]);
+    }
+}
+
+#[test]
+fn a_scene_follows_another_size() {
+    let mut env = env(free(Behavior::None, Scene::Cubes));
+    env.reset(Some(0)).expect("no divergence");
+    let model = env.model().clone();
+    let ball = model.body("red_sphere").expect("a ball");
+    let mut scene = mirror(&env);
+    env.state_mut()
+        .set_free_body(&model, ball, FreeBody::sphere(1.0, 0.3))
+        .expect("free");
+    scene.sync(env.state()).expect("its own state");
+    let [x, y, z] = env.state().xpos[ball];
+    let ray = Ray::new(Vector::new(x, y, z + 2.0), -Vector::Z);
+    let (collider, distance) = scene
+        .queries(QueryFilter::default())
+        .cast_ray(&ray, 10.0, true)
+        .expect("a hit");
+    assert_eq!(scene.geom_of(collider), Some(model.body_geomadr[ball]));
+    assert!((distance - 1.7).abs() < 1e-12, "{distance}");
+}
+
+#[test]
+fn a_scene_refuses_states_of_other_models() {
+    let (crib, cubes) = (
+        env(free(Behavior::None, Scene::Crib)),
+        env(free(Behavior::None, Scene::Cubes)),
+    );
+    let before = mirror(&crib).contacts();
+    let mut scene = mirror(&crib);
+    let error = scene.sync(cubes.state()).expect_err("another model");
+    assert!(matches!(error, EngineError::Shape { .. }), "{error}");
+    assert_eq!(scene.contacts(), before, "nothing is changed");
 }

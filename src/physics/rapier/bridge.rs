@@ -15,10 +15,10 @@ use crate::physics::params::Params;
 use crate::physics::rapier::contacts::{ContactAims, ContactHooks, read_contacts};
 use crate::physics::rapier::rig::Rig;
 use crate::physics::rapier::rows::{RapierRows, read_welds, softness};
-use crate::physics::rapier::{RapierError, RapierOptions, Sets};
+use crate::physics::rapier::{ContactDispatcher, RapierError, RapierOptions, Sets};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
-use crate::physics::world::{ContactDispatcher, PairTable, Sweep};
+use crate::physics::world::{PairTable, Sweep, contact_options};
 
 /// A model in a Rapier world that may hold anything else: it hands a [`State`] to Rapier before a step of the world,
 /// and takes the result out of it.
@@ -77,11 +77,7 @@ impl Bridge {
         rig: Arc<Rig>,
         options: RapierOptions,
     ) -> Self {
-        let contact = ContactOptions {
-            ccd_tolerance: model.opt.ccd_tolerance,
-            ccd_iterations: model.opt.ccd_iterations,
-            quirks: Quirks::default(),
-        };
+        let contact = contact_options(&model, Quirks::default());
         Self {
             sweep: Sweep::new(&model, &pairs, contact),
             rows: RapierRows::default(),
@@ -120,10 +116,6 @@ impl Bridge {
     /// Returns the model's bodies and colliders in the world.
     pub fn rig(&self) -> &Rig {
         &self.rig
-    }
-
-    pub(super) fn contact_options(&self) -> ContactOptions {
-        self.contact
     }
 
     /// Creates a state at `qpos0`, at rest, with nothing computed yet.
@@ -200,38 +192,36 @@ impl Bridge {
     /// # Errors
     /// Fails if the state does not fit the model or is not finite.
     pub fn before(&mut self, s: &mut State, sets: &mut Sets) -> Result<(), EngineError> {
-        self.compute(s, &mut |_, _| {})?;
+        self.compute(s, &mut |_| {})?;
         self.load(s, sets);
         Ok(())
     }
 
-    /// Computes poses, contacts, constraint rows and forces; `stage` is told which part begins, with what there is so
-    /// far.
-    pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage, &State)) -> Result<(), EngineError> {
+    /// Computes poses, contacts, constraint rows and forces; `stage` is told which part begins.
+    pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage)) -> Result<(), EngineError> {
         let (model, topology) = (&*self.model, &*self.topology);
         check_input(model, s)?;
         check_params(model, &s.params)?;
         // values that Rapier cannot handle never reach it
         check_motion(model, s)?;
-        stage(Stage::Kinematics, s);
+        stage(Stage::Kinematics);
         kinematics(model, s);
         cameras(model, s);
         com_pos(model, s);
         crb(model, topology, s);
         self.inertia.update(model, s);
-        stage(Stage::Scene, s);
-        stage(Stage::Collision, s);
+        stage(Stage::Collision);
         if self.options.disable_contacts {
             s.contact.clear();
         } else {
             self.sweep.contacts(model, &self.pairs, s)?;
         }
-        stage(Stage::Constraints, s);
+        stage(Stage::Constraints);
         self.builder.build(model, topology, s);
-        stage(Stage::Forces, s);
+        stage(Stage::Forces);
         fwd_velocity(model, s, &mut self.bias);
         fwd_actuation(model, &mut self.inertia, s);
-        stage(Stage::Solver, s);
+        stage(Stage::Solver);
         Ok(())
     }
 

@@ -3,8 +3,8 @@
 //! Contacts are found by the sweep, as the rows of the step need them beforehand. Rapier's narrow phase finds the same
 //! ones with the same routines; while it does, the hooks give each the velocity that its row asks for.
 
-use parry3d_f64::math::Vector;
 use rapier3d_f64::geometry::{ContactData, ContactManifold, NarrowPhase, SolverFlags};
+use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
 
 use crate::math::*;
@@ -12,8 +12,8 @@ use crate::model::{ConeType, Model};
 use crate::physics::constraint::ConstraintType;
 use crate::physics::contact::frame::from_normal;
 use crate::physics::rapier::rig::Rig;
+use crate::physics::rapier::scene::{geom_pose, pose};
 use crate::physics::state::{Contact, State};
-use crate::physics::world::{geom_pose, pose};
 
 /// The aim of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]

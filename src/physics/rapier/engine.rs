@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use parry3d_f64::math::Vector;
 use rapier3d_f64::dynamics::{
     CCDSolver, ImpulseJointSet, IntegrationParameters, IslandManager, MultibodyJointSet, RigidBodySet, SoftBodySet,
 };
 use rapier3d_f64::geometry::{BroadPhaseBvh, ColliderSet};
+use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::PhysicsPipeline;
 
 use crate::model::Model;
@@ -16,7 +16,7 @@ use crate::physics::rapier::rig::Rig;
 use crate::physics::rapier::{RapierError, RapierOptions, Sets};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
-use crate::physics::world::{PairTable, RapierScene};
+use crate::physics::world::PairTable;
 
 /// The sets of a world of our own.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +74,6 @@ impl RapierModel {
         let (model, pairs) = (self.model.clone(), self.pairs.clone());
         let bridge = Bridge::new(model, self.topology.clone(), pairs, self.rig.clone(), self.options);
         RapierEngine {
-            scene: RapierScene::new(&self.model, &self.pairs, bridge.contact_options()),
             parameters: bridge.parameters(),
             pristine: self.pristine.clone(),
             bridge,
@@ -91,7 +90,6 @@ impl RapierModel {
 /// step allocates.
 pub struct RapierEngine {
     bridge: Bridge,
-    scene: RapierScene,
     pristine: Arc<OwnedSets>,
     parameters: IntegrationParameters,
     probe: Option<Probe>,
@@ -128,14 +126,10 @@ impl RapierEngine {
 
     /// Computes everything that follows from the state, in a fresh copy of the world.
     fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
-        let (scene, probe) = (&mut self.scene, &mut self.probe);
-        let model = self.bridge.model().clone();
-        self.bridge.compute(s, &mut |stage, s| {
+        let probe = &mut self.probe;
+        self.bridge.compute(s, &mut |stage| {
             if let Some(p) = probe {
                 p(Some(stage));
-            }
-            if stage == Stage::Scene {
-                scene.sync(&model, s);
             }
         })?;
         let mut world = OwnedSets::clone(&self.pristine);
@@ -172,14 +166,6 @@ impl Engine for RapierEngine {
 
     fn pairs(&self) -> &PairTable {
         self.bridge.pairs()
-    }
-
-    fn scene(&self) -> &RapierScene {
-        &self.scene
-    }
-
-    fn scene_mut(&mut self) -> &mut RapierScene {
-        &mut self.scene
     }
 
     fn forward(&mut self, s: &mut State) -> Result<(), EngineError> {

@@ -1,10 +1,10 @@
 //! Principal axes and moments of inertia in the order that Rapier needs.
 
-use parry3d_f64::math::{Pose, Vector};
+use rapier3d_f64::parry::math::{Pose, Vector};
 
 use crate::math::{quat_mul, quat_normalize};
 use crate::model::Model;
-use crate::physics::world::pose;
+use crate::physics::rapier::scene::pose;
 
 /// Returns the principal axes of a body, with the moments ascending, and the moments.
 ///

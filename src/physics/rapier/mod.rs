@@ -1,7 +1,8 @@
 //! Rapier's own pipeline as a physics engine.
 //!
 //! [`RapierEngine`] simulates a model behind the [`Engine`](crate::physics::Engine) trait; [`Bridge`] puts a model into
-//! a Rapier world of your own, beside anything else.
+//! a Rapier world of your own, beside anything else. [`RapierScene`] is the other direction: a mirror of a state, for
+//! Rapier's ray casts and shape queries.
 //!
 //! | of the model | in Rapier |
 //! |---|---|
@@ -25,10 +26,12 @@
 
 mod bridge;
 mod contacts;
+mod dispatcher;
 mod engine;
 mod inertial;
 mod rig;
 mod rows;
+mod scene;
 mod support;
 
 use rapier3d_f64::dynamics::{ImpulseJointSet, MultibodyJointSet, RigidBodySet};
@@ -38,8 +41,12 @@ use thiserror::Error;
 
 pub use bridge::Bridge;
 pub use contacts::ContactHooks;
+pub use dispatcher::ContactDispatcher;
 pub use engine::{RapierEngine, RapierModel};
+/// Rapier, as it is part of this interface: [`rapier3d_f64::parry`] is the Parry beneath it.
+pub use rapier3d_f64;
 pub use rig::Rig;
+pub use scene::{RapierScene, SceneContact};
 
 /// Borrows the sets of a Rapier world.
 #[derive(Debug)]

@@ -1,22 +1,22 @@
 //! The model as Rapier's bodies: a multibody for each articulated tree, a plain body for each free object.
 
-use parry3d_f64::mass_properties::MassProperties;
-use parry3d_f64::math::{Pose, Rotation, Vector};
 use rapier3d_f64::dynamics::{
     GenericJoint, ImpulseJointHandle, JointAxesMask, Multibody, RigidBodyBuilder, RigidBodyHandle,
 };
 use rapier3d_f64::geometry::{ActiveCollisionTypes, ColliderBuilder, ColliderHandle};
+use rapier3d_f64::parry::mass_properties::MassProperties;
+use rapier3d_f64::parry::math::{Pose, Rotation, Vector};
 use rapier3d_f64::pipeline::ActiveHooks;
 
 use crate::math::*;
 use crate::model::{EqualityKind, JointType, Model};
 use crate::physics::dynamics::mul_m;
 use crate::physics::rapier::inertial::inertial;
+use crate::physics::rapier::scene::{collider_order, geom_pose, pose, shape};
 use crate::physics::rapier::support::check;
 use crate::physics::rapier::{RapierError, Sets};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
-use crate::physics::world::{collider_order, geom_pose, pose, shape};
 
 /// A free joint of the model.
 #[derive(Clone, Copy, Debug)]

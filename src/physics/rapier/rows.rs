@@ -6,10 +6,10 @@
 
 use std::f64::consts::PI;
 
-use parry3d_f64::math::{Pose, Vector};
 use rapier3d_f64::dynamics::{
     GenericJoint, JointAxesMask, JointLimits, JointMotor, MotorModel, MultibodyDofCoupling, SpringCoefficients,
 };
+use rapier3d_f64::parry::math::{Pose, Vector};
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};

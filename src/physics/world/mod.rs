@@ -1,20 +1,22 @@
-//! The model as a Rapier scene, and the contacts in it.
+//! Which geoms may touch, and which do.
 //!
-//! Rapier holds every body and geom, with its pose written back each step, so ray casts, shape queries and debug
-//! rendering work on the live scene. Contacts for the solver come from a sweep over the same geoms with the contact
-//! routines of [`crate::physics::contact`] on world poses; the same routines are behind Rapier's query-dispatcher
-//! interface, so Rapier's own collision pipeline finds the same contacts on demand.
+//! A sweep over the boxes of all geoms finds the pairs that may touch; the routines of [`crate::physics::contact`] work
+//! on world poses, as contact geometry is discontinuous in their last bits.
 
-mod dispatcher;
-#[cfg(not(feature = "rapier"))]
-mod others;
 mod pairs;
-mod scene;
 mod sweep;
 
-pub use dispatcher::ContactDispatcher;
+use crate::model::Model;
+use crate::physics::contact::{ContactOptions, Quirks};
+
 pub use pairs::{ContactRules, Pair, PairTable};
-pub use scene::{RapierScene, SceneContact};
-#[cfg(feature = "rapier")]
-pub(crate) use scene::{collider_order, geom_pose, pose, shape};
 pub(crate) use sweep::Sweep;
+
+/// Returns the options of the contact routines that a model asks for, with the given peculiarities.
+pub(super) fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {
+    ContactOptions {
+        ccd_tolerance: model.opt.ccd_tolerance,
+        ccd_iterations: model.opt.ccd_iterations,
+        quirks,
+    }
+}

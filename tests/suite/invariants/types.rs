@@ -6,7 +6,7 @@ use babybench::eval::{EvaluationError, ScoreError};
 use babybench::mjcf_loader::LoadError;
 use babybench::physics::{Engine, EngineError, Params, SoftEngine, State};
 #[cfg(feature = "rapier")]
-use babybench::physics::{RapierEngine, RapierModel};
+use babybench::physics::{RapierEngine, RapierModel, RapierScene};
 use babybench::policy::PolicyError;
 use babybench::render::{CpuRenderer, RenderError, Renderer, Visual};
 use babybench::runs::LogError;
@@ -41,6 +41,8 @@ fn what_environments_share_is_shared_between_threads() {
     is_shared::<Params>();
     #[cfg(feature = "rapier")]
     is_shared::<RapierModel>();
+    #[cfg(feature = "rapier")]
+    is_shared::<RapierScene>();
     is_shared::<Snapshot>();
     is_shared::<Info>();
     is_shared::<BoxSpace>();

@@ -1,25 +1,19 @@
 //! The contact routines behind Rapier's query-dispatcher interface.
 
-use parry3d_f64::math::{Mat3 as ParryMat3, Pose, Vector};
-use parry3d_f64::query::details::NormalConstraints;
-use parry3d_f64::query::{
-    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, NonlinearRigidMotion,
+use rapier3d_f64::parry::math::{Mat3 as ParryMat3, Pose, Vector};
+use rapier3d_f64::parry::query::details::NormalConstraints;
+use rapier3d_f64::parry::query::{
+    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher, NonlinearRigidMotion,
     PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection,
     TrackedContact, Unsupported,
 };
-use parry3d_f64::shape::{PackedFeatureId, Shape, TypedShape};
-
-#[cfg(feature = "rapier")]
-use parry3d_f64::query::DefaultQueryDispatcher as Others;
+use rapier3d_f64::parry::shape::{PackedFeatureId, Shape, TypedShape};
 
 use crate::math::{MAT3_ID, Mat3, Vec3, add_scaled};
 use crate::model::GeomType;
 use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
-#[cfg(not(feature = "rapier"))]
-use crate::physics::world::others::Unsupporting as Others;
 
 /// A query dispatcher with the contact manifolds of [`crate::physics::contact`], and Parry's for everything else.
-/// Without the feature `rapier`, everything else is `Unsupported`.
 ///
 /// It keeps no memory of earlier steps, unlike Parry's own manifolds, and ignores the prediction distance: a contact is
 /// a contact when the shapes touch. Points come in the same order as from [`collide`]; those of one normal share a
@@ -37,7 +31,7 @@ impl ContactDispatcher {
     }
 
     /// Creates a manifold of its own for each point, with the point's place in the list of the pair as `subshape1`.
-    /// Rapier's solver takes at most four points of a manifold; the contact routines find up to eight.
+    /// Rapier's solver takes at most four points of a manifold; the contact routines find up to 24.
     pub fn one_point_manifolds(self) -> Self {
         Self { split: true, ..self }
     }
@@ -120,7 +114,7 @@ impl ContactDispatcher {
 
 impl<M: Default + Clone, C: Default + Copy> PersistentQueryDispatcher<M, C> for ContactDispatcher
 where
-    Others: PersistentQueryDispatcher<M, C>,
+    DefaultQueryDispatcher: PersistentQueryDispatcher<M, C>,
 {
     fn contact_manifolds(
         &self,
@@ -132,7 +126,7 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let Some((points, flipped)) = self.points(pos12, g1, g2) else {
-            return Others.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+            return DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         };
         for m in manifolds.iter_mut() {
             m.points.clear();
@@ -175,7 +169,7 @@ where
         prediction: f64,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        Others.contact_manifold_convex_convex(pos12, g1, g2, normals1, normals2, prediction, manifold)
+        DefaultQueryDispatcher.contact_manifold_convex_convex(pos12, g1, g2, normals1, normals2, prediction, manifold)
     }
 }
 
@@ -186,11 +180,11 @@ impl QueryDispatcher for ContactDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        Others.intersection_test(pos12, g1, g2)
+        DefaultQueryDispatcher.intersection_test(pos12, g1, g2)
     }
 
     fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
-        Others.distance(pos12, g1, g2)
+        DefaultQueryDispatcher.distance(pos12, g1, g2)
     }
 
     fn contact(
@@ -200,7 +194,7 @@ impl QueryDispatcher for ContactDispatcher {
         g2: &dyn Shape,
         prediction: f64,
     ) -> Result<Option<Contact>, Unsupported> {
-        Others.contact(pos12, g1, g2, prediction)
+        DefaultQueryDispatcher.contact(pos12, g1, g2, prediction)
     }
 
     fn closest_points(
@@ -210,7 +204,7 @@ impl QueryDispatcher for ContactDispatcher {
         g2: &dyn Shape,
         max_dist: f64,
     ) -> Result<ClosestPoints, Unsupported> {
-        Others.closest_points(pos12, g1, g2, max_dist)
+        DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist)
     }
 
     fn cast_shapes(
@@ -221,7 +215,7 @@ impl QueryDispatcher for ContactDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        Others.cast_shapes(pos12, velocity, g1, g2, options)
+        DefaultQueryDispatcher.cast_shapes(pos12, velocity, g1, g2, options)
     }
 
     fn cast_shapes_nonlinear(
@@ -234,6 +228,6 @@ impl QueryDispatcher for ContactDispatcher {
         end: f64,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        Others.cast_shapes_nonlinear(motion1, g1, motion2, g2, start, end, stop_at_penetration)
+        DefaultQueryDispatcher.cast_shapes_nonlinear(motion1, g1, motion2, g2, start, end, stop_at_penetration)
     }
 }

@@ -1,0 +1,38 @@
+//! The scene of an environment in Rapier, for its queries.
+
+use crate::env::{Env, EnvError};
+use crate::physics::contact::Quirks;
+use crate::physics::rapier::RapierScene;
+
+impl Env {
+    /// Makes a mirror of the scene in Rapier, in step with [`Env::state`], for ray casts and shape queries. After a step,
+    /// [`RapierScene::sync`] brings it up to date for much less than making it costs.
+    ///
+    /// ```
+    /// use babybench::physics::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let mut scene = env.rapier_scene()?;
+    ///
+    /// let [x, y, z] = env.state().xpos[env.model().body("head").ok_or("MIMo has a head")?];
+    /// let from_above = Ray::new(Vector::new(x, y, z + 1.0), -Vector::Z);
+    /// let (collider, distance) = scene.queries(QueryFilter::default()).cast_ray(&from_above, 10.0, true).ok_or("a hit")?;
+    /// let body = env.model().geom_bodyid[scene.geom_of(collider).ok_or("a geom")?];
+    /// println!("{} is {distance:.2} m below", env.model().body_name[body]);
+    ///
+    /// env.step(&vec![0.0; env.action_space().len()])?;
+    /// scene.sync(env.state())?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`RapierScene::sync`].
+    pub fn rapier_scene(&self) -> Result<RapierScene, EnvError> {
+        // the peculiarities of contact geometry that both engines keep
+        let mut scene = RapierScene::new(self.model().clone(), Quirks::default());
+        scene.sync(self.state())?;
+        Ok(scene)
+    }
+}
