@@ -39,6 +39,7 @@ impl Env {
     /// [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the behavior is `hand_regard`. Less than 15 degrees
     /// count.
     pub fn gaze_angles(&self) -> Option<PerEyeAndHand<f64>> {
+        self.physics.check_shape().ok()?;
         let mut now = Info::default();
         self.task.describe(Some(&self.physics.state), &mut now);
         now.details.gaze_angles
@@ -60,6 +61,7 @@ impl Env {
     /// A wrong length, numbers that are not finite; nothing is changed then.
     pub fn set_goal(&mut self, desired: &[f64]) -> Result<(), EnvError> {
         check_vector("desired_goal", desired, self.goals.desired.len())?;
+        self.physics.check_shape()?;
         self.goals.desired.copy_from_slice(desired);
         self.judge();
         Ok(())
@@ -146,6 +148,7 @@ impl Env {
 
     /// Returns what the eyes see of the present state, left and right, to be drawn by any renderer, if vision is active.
     pub fn eyes(&self) -> Option<[RenderRequest<'_>; 2]> {
+        self.physics.check_shape().ok()?;
         self.senses.vision.as_ref().map(|v| v.requests(&self.physics.state))
     }
 

@@ -83,6 +83,7 @@ impl Env {
 
     fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
         let vision = self.senses.vision.as_mut().ok_or(EnvError::NoVision)?;
+        self.physics.check_shape()?;
         Ok((vision, &self.physics.state))
     }
 
@@ -141,6 +142,7 @@ impl Env {
         for env in environments {
             let state = &env.physics.state;
             let Some(vision) = &mut env.senses.vision else { continue };
+            env.physics.check_shape()?;
             #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             if vision.renderer().shared_gpu().is_some() {
                 on_gpus.push(env);

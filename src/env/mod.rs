@@ -343,6 +343,7 @@ impl Env {
             return Err(EnvError::NotReset);
         }
         self.check_action(action)?;
+        self.physics.check_shape()?;
         self.mark(Some(EnvStage::Actuation));
         let frame_skip = self.blueprint.config().frame_skip;
         let mut applied = std::mem::take(&mut self.applied);
@@ -403,6 +404,7 @@ impl Env {
     }
 
     fn sense(&mut self) -> Result<(), EnvError> {
+        self.physics.check_shape()?;
         let model = self.blueprint.model();
         let (state, task) = (&self.physics.state, &*self.task);
         let append = |out: &mut [f64]| task.observe(state, out);

@@ -38,6 +38,7 @@ impl Env {
         let model = self.blueprint.model();
         check_vector("qpos", qpos, model.nq)?;
         check_vector("qvel", qvel, model.nv)?;
+        self.physics.check_shape()?;
         self.physics.state.qpos.copy_from_slice(qpos);
         self.physics.state.qvel.copy_from_slice(qvel);
         Ok(())
@@ -49,6 +50,7 @@ impl Env {
     /// An action of wrong length or with numbers that are not finite, which changes nothing.
     pub fn set_action(&mut self, action: &[f32]) -> Result<(), EnvError> {
         self.check_action(action)?;
+        self.physics.check_shape()?;
         let model = self.blueprint.model();
         let action = self.motor.pass(action);
         self.actuation.set_action(model, &mut self.physics.state, action);
@@ -57,6 +59,9 @@ impl Env {
 
     /// Updates the actuators, as before each physics step of a step but the first.
     pub fn substep(&mut self) {
+        if self.physics.check_shape().is_err() {
+            return; // the physics step that follows says so
+        }
         let model = self.blueprint.model();
         self.actuation.substep(model, &mut self.physics.state);
     }
@@ -81,6 +86,9 @@ impl Env {
 
     /// Counts what the behavior counts, in [`Env::info`].
     pub fn track(&mut self) {
+        if self.physics.check_shape().is_err() {
+            return; // the next step says so
+        }
         self.task.count(&self.physics.state, &mut self.info);
         self.task.describe(Some(&self.physics.state), &mut self.info);
     }

@@ -4,7 +4,7 @@ use crate::actuation::Actuation;
 use crate::env::{Blueprint, EnvError};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
-use crate::physics::{Engine, Params, State};
+use crate::physics::{Engine, EngineError, Params, State};
 
 /// An engine and the state that it advances.
 pub(super) struct Physics {
@@ -27,8 +27,14 @@ impl Physics {
         }
     }
 
+    /// Checks that the vectors of the state, which a program may change, still fit the model.
+    pub fn check_shape(&self) -> Result<(), EngineError> {
+        self.engine.check_shape(&self.state)
+    }
+
     /// Locks joints now and for later episodes.
     pub fn lock(&mut self, model: &Model, target: LockTarget<'_>, angle: f64) -> Result<LockReport, EnvError> {
+        self.check_shape()?;
         let report = lock(model, &mut self.state.params, target, angle)?;
         self.keep_locks(model, &report);
         Ok(report)
@@ -36,6 +42,7 @@ impl Physics {
 
     /// Unlocks joints now and for later episodes.
     pub fn unlock(&mut self, model: &Model, target: LockTarget<'_>) -> Result<LockReport, EnvError> {
+        self.check_shape()?;
         let report = unlock(model, &mut self.state.params, target)?;
         self.keep_locks(model, &report);
         Ok(report)

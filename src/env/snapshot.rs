@@ -7,9 +7,12 @@ pub(super) use format::fingerprint;
 pub use format::{Snapshot, SnapshotError, SnapshotInfo};
 
 use crate::env::{BehaviorInfo, Env, PerHand, TaskInfo};
+use crate::physics::Row as _;
 use crate::spaces::NumpyRng;
 use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
 
+/// Room for so many vectors of numbers.
+const VECTORS: usize = 40;
 /// Whole numbers at the front of the payload.
 const WHOLE: usize = 10;
 /// The largest counter: no run gets there, and counting on from it does not overflow.
@@ -18,32 +21,10 @@ const MAX_COUNT: u64 = 1 << 62;
 impl Env {
     /// Returns the vectors of numbers of a snapshot, in their order.
     fn numbers(&self) -> Vec<&[f64]> {
-        let (s, p) = (&self.physics.state, &self.physics.state.params);
-        vec![
-            std::slice::from_ref(&s.time),
-            &s.qpos,
-            &s.qvel,
-            &s.ctrl,
-            &s.act,
-            &s.actuator_target,
-            &s.muscle_force,
-            &s.muscle_torque,
-            &s.qfrc_applied,
-            s.xfrc_applied.as_flattened(),
-            &s.qacc_warmstart,
-            &p.eq_offset,
-            &p.jnt_stiffness,
-            &p.dof_damping,
-            &p.actuator_gear,
-            &p.gravity,
-            &p.dof_invweight0,
-            &p.body_mass,
-            &p.body_subtreemass,
-            p.body_inertia.as_flattened(),
-            p.body_invweight0.as_flattened(),
-            p.geom_size.as_flattened(),
-            &p.geom_rbound,
-            &self.physics.base.eq_offset,
+        let mut out = Vec::with_capacity(VECTORS);
+        self.physics.state.numbers(&mut out);
+        out.extend([
+            &self.physics.base.eq_offset[..],
             &self.senses.proprioception_values,
             &self.senses.vestibular_values,
             &self.goals.achieved,
@@ -52,38 +33,16 @@ impl Env {
             self.task.memory(),
             std::slice::from_ref(&self.episode.reward),
             &self.senses.pooled_values,
-        ]
+        ]);
+        out
     }
 
     /// Returns the vectors of [`Env::numbers`], to write to.
     fn numbers_mut(&mut self) -> Vec<&mut [f64]> {
-        let s = &mut self.physics.state;
-        let p = &mut s.params;
-        vec![
-            std::slice::from_mut(&mut s.time),
-            &mut s.qpos,
-            &mut s.qvel,
-            &mut s.ctrl,
-            &mut s.act,
-            &mut s.actuator_target,
-            &mut s.muscle_force,
-            &mut s.muscle_torque,
-            &mut s.qfrc_applied,
-            s.xfrc_applied.as_flattened_mut(),
-            &mut s.qacc_warmstart,
-            &mut p.eq_offset,
-            &mut p.jnt_stiffness,
-            &mut p.dof_damping,
-            &mut p.actuator_gear,
-            &mut p.gravity,
-            &mut p.dof_invweight0,
-            &mut p.body_mass,
-            &mut p.body_subtreemass,
-            p.body_inertia.as_flattened_mut(),
-            p.body_invweight0.as_flattened_mut(),
-            p.geom_size.as_flattened_mut(),
-            &mut p.geom_rbound,
-            &mut self.physics.base.eq_offset,
+        let mut out = Vec::with_capacity(VECTORS);
+        self.physics.state.numbers_mut(&mut out);
+        out.extend([
+            &mut self.physics.base.eq_offset[..],
             &mut self.senses.proprioception_values,
             &mut self.senses.vestibular_values,
             &mut self.goals.achieved,
@@ -92,12 +51,24 @@ impl Env {
             self.task.memory_mut(),
             std::slice::from_mut(&mut self.episode.reward),
             &mut self.senses.pooled_values,
-        ]
+        ]);
+        out
     }
 
-    fn flags(&self) -> [&[bool]; 3] {
-        let p = &self.physics.state.params;
-        [&p.eq_active, &p.actuator_forcelimited, &self.physics.base.eq_active]
+    /// Returns the vectors of flags of a snapshot, in their order.
+    fn flags(&self) -> Vec<&[bool]> {
+        let mut out = Vec::with_capacity(VECTORS);
+        self.physics.state.flags(&mut out);
+        out.push(&self.physics.base.eq_active);
+        out
+    }
+
+    /// Returns the vectors of [`Env::flags`], to write to.
+    fn flags_mut(&mut self) -> Vec<&mut [bool]> {
+        let mut out = Vec::with_capacity(VECTORS);
+        self.physics.state.flags_mut(&mut out);
+        out.push(&mut self.physics.base.eq_active);
+        out
     }
 
     /// Takes a snapshot of the present moment, to come back to with [`Env::restore`].
@@ -184,18 +155,18 @@ impl Env {
         {
             return Err(damaged("a counter is out of range"));
         }
+        if self.physics.check_shape().is_err() {
+            // a program has cleared a vector, which leaves no room for its numbers
+            self.physics.state = self.physics.engine.new_state();
+            self.actuation.prepare(self.blueprint.model(), &mut self.physics.state);
+        }
         let (behavior, memory) = self.parse(&r, counts)?;
         self.load_memory(memory)?;
 
         for numbers in self.numbers_mut() {
             r.fill(numbers);
         }
-        let p = &mut self.physics.state.params;
-        for flags in [
-            &mut p.eq_active,
-            &mut p.actuator_forcelimited,
-            &mut self.physics.base.eq_active,
-        ] {
+        for flags in self.flags_mut() {
             r.fill_flags(flags);
         }
         self.physics.state.step = step;

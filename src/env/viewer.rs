@@ -126,6 +126,7 @@ impl Viewer {
         width: usize,
         height: usize,
     ) -> Result<&[u8], EnvError> {
+        env.physics.check_shape()?;
         let mut poses = Poses::from(env.state());
         let camera = match from.into() {
             ViewFrom::Camera(name) => {

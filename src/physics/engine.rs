@@ -44,6 +44,14 @@ pub trait Engine: Send + Sync {
         state.efc.jacobian_row(self.topology(), row)
     }
 
+    /// Checks that the vectors of a state have the lengths that the model needs, as every forward and step do.
+    ///
+    /// # Errors
+    /// The first vector that has another length.
+    fn check_shape(&self, state: &State) -> Result<(), EngineError> {
+        check_shape(self.model(), self.topology(), state)
+    }
+
     /// Computes everything that follows from `qpos`, `qvel` and `ctrl`, without advancing.
     ///
     /// # Errors
@@ -220,60 +228,16 @@ pub enum EngineError {
     },
 }
 
-/// Checks sizes of what a step reads, and that it is finite.
-pub(super) fn check_input(m: &Model, s: &State) -> Result<(), EngineError> {
-    let p = &s.params;
-    // empty without muscles
-    let muscles = if s.muscle_torque.is_empty() { 0 } else { m.nu() };
-    let fields: [(&'static str, &[f64], usize); 11] = [
-        ("qpos", &s.qpos, m.nq),
-        ("qvel", &s.qvel, m.nv),
-        ("ctrl", &s.ctrl, m.nu()),
-        ("muscle_torque", &s.muscle_torque, muscles),
-        ("qfrc_applied", &s.qfrc_applied, m.nv),
-        ("xfrc_applied", s.xfrc_applied.as_flattened(), 6 * m.nbody()),
-        ("params.gravity", &p.gravity, 3),
-        ("params.eq_offset", &p.eq_offset, m.neq()),
-        ("params.jnt_stiffness", &p.jnt_stiffness, m.njnt()),
-        ("params.dof_damping", &p.dof_damping, m.nv),
-        ("params.actuator_gear", &p.actuator_gear, m.nu()),
-    ];
-    // the solver ignores a warm start that it cannot use
-    let lengths = [
-        ("qacc_warmstart", s.qacc_warmstart.len(), m.nv),
-        ("params.eq_active", p.eq_active.len(), m.neq()),
-        ("params.actuator_forcelimited", p.actuator_forcelimited.len(), m.nu()),
-        ("params.dof_invweight0", p.dof_invweight0.len(), m.nv),
-        ("params.body_mass", p.body_mass.len(), m.nbody()),
-        ("params.body_subtreemass", p.body_subtreemass.len(), m.nbody()),
-        ("params.body_inertia", p.body_inertia.len(), m.nbody()),
-        ("params.body_invweight0", p.body_invweight0.len(), m.nbody()),
-        ("params.geom_size", p.geom_size.len(), m.ngeom()),
-        ("params.geom_rbound", p.geom_rbound.len(), m.ngeom()),
-    ];
-    for (what, found, expected) in lengths {
-        if found != expected {
-            return Err(EngineError::Shape { what, found, expected });
-        }
-    }
-    for (what, values, expected) in fields {
-        if values.len() != expected {
-            return Err(EngineError::Shape {
-                what,
-                found: values.len(),
-                expected,
-            });
-        }
-        // without branches first: numbers are nearly always finite
-        let finite = values.iter().fold(true, |all, v| all & (v.abs() <= f64::MAX));
-        if finite {
-            continue;
-        }
-        if let Some((index, &value)) = values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            return Err(EngineError::NotFinite { what, index, value });
-        }
-    }
-    Ok(())
+/// Checks the sizes of all that a step reads and writes, and that what it reads is finite.
+pub(super) fn check_input(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
+    check_shape(m, topology, s)?;
+    s.finite()?;
+    s.params.finite()
+}
+
+fn check_shape(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
+    s.fits(m, topology)?;
+    s.params.fits(m)
 }
 
 /// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.

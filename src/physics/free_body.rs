@@ -65,6 +65,7 @@ impl State {
         if body >= count {
             return Err(EngineError::NoBody { body, count });
         }
+        self.params.fits(model)?;
         let joint = model.body_jntadr[body];
         let alone = model.body_parentid[body] == 0
             && !model.body_parentid.contains(&body)

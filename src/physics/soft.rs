@@ -146,7 +146,7 @@ impl SoftEngine {
     }
 
     fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
-        check_input(&self.model, s)?;
+        check_input(&self.model, &self.topology, s)?;
         self.fwd_position(s)?;
         self.mark(Some(Stage::Forces));
         let (model, bias, bodies) = (&*self.model, &mut self.bias, &mut self.bodies);

@@ -108,6 +108,11 @@ impl<'a> TaskScene<'a> {
         if let Some(motor) = &mut self.motor {
             motor.clear();
         }
+        if self.engine.check_shape(self.state).is_err() {
+            // a program has cleared a vector; what is forgotten need not have been whole
+            *self.state = self.engine.new_state();
+            self.actuation.prepare(self.model, self.state);
+        }
         let s = &mut *self.state;
         s.time = 0.0;
         s.step = 0;

@@ -200,7 +200,7 @@ impl Bridge {
     /// Computes poses, contacts, constraint rows and forces; `stage` is told which part begins.
     pub(super) fn compute(&mut self, s: &mut State, stage: &mut dyn FnMut(Stage)) -> Result<(), EngineError> {
         let (model, topology) = (&*self.model, &*self.topology);
-        check_input(model, s)?;
+        check_input(model, topology, s)?;
         check_params(model, &s.params)?;
         // values that Rapier cannot handle never reach it
         check_motion(model, s)?;

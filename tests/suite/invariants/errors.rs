@@ -1,5 +1,6 @@
 //! Invariant 8: a bad action leaves the state untouched, a diverged state is an error and never an observation.
 
+use babybench::config::{ActuationModel, Behavior, Config};
 use babybench::physics::{EngineError, State};
 use babybench::{Env, EnvError};
 
@@ -215,6 +216,16 @@ fn a_state_of_another_shape_is_a_typed_error() {
         ("params.actuator_forcelimited", |s| {
             s.params.actuator_forcelimited.clear()
         }),
+        ("xfrc_applied", |s| s.xfrc_applied.clear()),
+        ("params.geom_size", |s| s.params.geom_size.clear()),
+        ("xpos", |s| s.xpos.clear()),
+        ("xanchor", |s| s.xanchor.truncate(3)),
+        ("geom_xmat", |s| s.geom_xmat.clear()),
+        ("cam_xpos", |s| s.cam_xpos.clear()),
+        ("cdof", |s| s.cdof.clear()),
+        ("qacc", |s| s.qacc.push(0.0)),
+        ("cfrc_int", |s| s.cfrc_int.clear()),
+        ("sensordata", |s| s.sensordata.clear()),
     ] {
         let mut engine = blueprint(body_only("self_touch")).engine();
         let mut state = engine.new_state();
@@ -225,6 +236,108 @@ fn a_state_of_another_shape_is_a_typed_error() {
             "{error:?}"
         );
     }
+}
+
+/// Every public vector of a state, each cleared.
+const CLEARED: &[fn(&mut State)] = &[
+    |s| s.qpos.clear(),
+    |s| s.qvel.clear(),
+    |s| s.ctrl.clear(),
+    |s| s.act.clear(),
+    |s| s.actuator_target.clear(),
+    |s| s.muscle_force.clear(),
+    |s| s.muscle_torque.clear(),
+    |s| s.qfrc_applied.clear(),
+    |s| s.xfrc_applied.clear(),
+    |s| s.qacc_warmstart.clear(),
+    |s| s.params.eq_active.clear(),
+    |s| s.params.eq_offset.clear(),
+    |s| s.params.jnt_stiffness.clear(),
+    |s| s.params.dof_damping.clear(),
+    |s| s.params.dof_invweight0.clear(),
+    |s| s.params.actuator_gear.clear(),
+    |s| s.params.actuator_forcelimited.clear(),
+    |s| s.params.body_mass.clear(),
+    |s| s.params.body_subtreemass.clear(),
+    |s| s.params.body_inertia.clear(),
+    |s| s.params.body_invweight0.clear(),
+    |s| s.params.geom_size.clear(),
+    |s| s.params.geom_rbound.clear(),
+    |s| s.xpos.clear(),
+    |s| s.xquat.clear(),
+    |s| s.xmat.clear(),
+    |s| s.xipos.clear(),
+    |s| s.ximat.clear(),
+    |s| s.xanchor.clear(),
+    |s| s.xaxis.clear(),
+    |s| s.geom_xpos.clear(),
+    |s| s.geom_xmat.clear(),
+    |s| s.site_xpos.clear(),
+    |s| s.site_xmat.clear(),
+    |s| s.cam_xpos.clear(),
+    |s| s.cam_xmat.clear(),
+    |s| s.subtree_com.clear(),
+    |s| s.cdof.clear(),
+    |s| s.contact.clear(),
+    |s| s.cvel.clear(),
+    |s| s.qfrc_bias.clear(),
+    |s| s.qfrc_passive.clear(),
+    |s| s.actuator_force.clear(),
+    |s| s.qfrc_actuator.clear(),
+    |s| s.qfrc_smooth.clear(),
+    |s| s.qacc_smooth.clear(),
+    |s| s.qfrc_constraint.clear(),
+    |s| s.qacc.clear(),
+    |s| s.cacc.clear(),
+    |s| s.cfrc_ext.clear(),
+    |s| s.cfrc_int.clear(),
+    |s| s.sensordata.clear(),
+];
+
+/// Clears each public vector of the state in turn; `goes_on` are those without which a step goes on.
+fn clear_each(config: Config, goes_on: &[usize]) {
+    let blueprint = blueprint(config);
+    let mut env = blueprint.env().expect("an environment");
+    let action = vec![0.1; env.action_space().len()];
+    for (k, clear) in CLEARED.iter().enumerate() {
+        env.reset(Some(0)).expect("a reset makes the state whole again");
+        let before = env.snapshot();
+        clear(env.state_mut());
+        let stepped = env.step(&action).map(drop);
+        match stepped {
+            Ok(()) => assert!(goes_on.contains(&k), "vector {k} is not missed"),
+            Err(EnvError::Engine(EngineError::Shape { found: 0, .. })) => {
+                assert!(env.observe().is_err(), "vector {k}");
+                let [mut left, mut right] = [0, 1].map(|_| vec![0; 16 * 16]);
+                assert!(env.eye_gray([&mut left, &mut right]).is_err(), "vector {k}");
+                assert!(env.eyes().is_none() && env.gaze_angles().is_none(), "vector {k}");
+                let start = [env.blueprint().init_qpos(), env.blueprint().init_qvel()].map(<[f64]>::to_vec);
+                assert!(env.set_state(&start[0], &start[1]).is_err(), "vector {k}");
+                env.restore(&before).expect("room for what it holds");
+                env.step(&action).expect("a state that is whole again");
+            }
+            Err(other) => panic!("vector {k}: {other}"),
+        }
+    }
+}
+
+#[test]
+fn a_vector_of_the_state_that_is_cleared_is_a_typed_error() {
+    let config = Config {
+        vision_resolution: 16,
+        ..Config::of(Behavior::HandRegard)
+    };
+    let by_motors = [3, 4, 5, 6, 38]; // what muscles have, and contacts
+    clear_each(config.clone(), &by_motors);
+    let actuation_model = ActuationModel::Muscle;
+    // what the actuation of a step makes anew
+    clear_each(
+        Config {
+            actuation_model,
+            ..config
+        },
+        &by_motors,
+    );
 }
 
 #[test]
