@@ -9,7 +9,7 @@ use crate::physics::dynamics::*;
 use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_contacts, check_input, check_output};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorize;
+use crate::physics::vectorize::vectorized;
 use crate::physics::world::{PairTable, Sweep, contact_options};
 
 /// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
@@ -109,39 +109,21 @@ impl SoftEngine {
     /// Computes the position stage: poses, inertia, contacts, constraint rows.
     fn fwd_position(&mut self, s: &mut State) -> Result<(), EngineError> {
         self.mark(Some(Stage::Kinematics));
-        let (model, topology, bodies) = (&*self.model, &*self.topology, &mut self.bodies);
-        vectorize(
-            #[inline(always)]
-            || {
-                kinematics(model, s);
-                cameras(model, s);
-                com_pos(model, s);
-            },
-        );
-        vectorize(
-            #[inline(always)]
-            || crb(model, topology, s),
-        );
-        vectorize(
-            #[inline(always)]
-            || bodies.update(model, s),
-        );
+        vectorized!({
+            kinematics(&self.model, s);
+            cameras(&self.model, s);
+            com_pos(&self.model, s);
+        });
+        vectorized!(crb(&self.model, &self.topology, s));
+        vectorized!(self.bodies.update(&self.model, s));
         self.mark(Some(Stage::Collision));
         if self.options.disable_contacts {
             s.contact.clear();
         } else {
-            let (sweep, model, pairs) = (&mut self.sweep, &*self.model, &*self.pairs);
-            vectorize(
-                #[inline(always)]
-                || sweep.contacts(model, pairs, s),
-            )?;
+            vectorized!(self.sweep.contacts(&self.model, &self.pairs, s))?;
         }
         self.mark(Some(Stage::Constraints));
-        let (rows, model, topology) = (&mut self.rows, &*self.model, &*self.topology);
-        vectorize(
-            #[inline(always)]
-            || rows.build(model, topology, s),
-        );
+        vectorized!(self.rows.build(&self.model, &self.topology, s));
         Ok(())
     }
 
@@ -149,30 +131,15 @@ impl SoftEngine {
         check_input(&self.model, &self.topology, s)?;
         self.fwd_position(s)?;
         self.mark(Some(Stage::Forces));
-        let (model, bias, bodies) = (&*self.model, &mut self.bias, &mut self.bodies);
-        vectorize(
-            #[inline(always)]
-            || fwd_velocity(model, s, bias),
-        );
-        vectorize(
-            #[inline(always)]
-            || fwd_actuation(model, bodies, s),
-        );
+        vectorized!(fwd_velocity(&self.model, s, &mut self.bias));
+        vectorized!(fwd_actuation(&self.model, &mut self.bodies, s));
         self.mark(Some(Stage::Solver));
-        let (newton, model, topology) = (&mut self.newton, &*self.model, &*self.topology);
-        vectorize(
-            #[inline(always)]
-            || newton.solve(model, topology, s),
-        );
+        vectorized!(self.newton.solve(&self.model, &self.topology, s));
         self.mark(Some(Stage::Wrenches));
-        let (model, double_weld_torque) = (&*self.model, self.options.double_weld_torque);
-        vectorize(
-            #[inline(always)]
-            || {
-                rne_post_constraint(model, s, double_weld_torque);
-                sensors(model, s);
-            },
-        );
+        vectorized!({
+            rne_post_constraint(&self.model, s, self.options.double_weld_torque);
+            sensors(&self.model, s);
+        });
         check_output(&self.model, s)?;
         check_contacts(&self.model, s)
     }
@@ -200,11 +167,7 @@ impl Engine for SoftEngine {
     fn step(&mut self, state: &mut State) -> Result<(), EngineError> {
         self.compute(state)?;
         self.mark(Some(Stage::Integration));
-        let (integrator, model, bodies) = (&mut self.integrator, &*self.model, &mut self.bodies);
-        vectorize(
-            #[inline(always)]
-            || integrator.advance(model, bodies, state),
-        );
+        vectorized!(self.integrator.advance(&self.model, &mut self.bodies, state));
         self.mark(None);
         check_output(&self.model, state)
     }

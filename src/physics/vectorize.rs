@@ -14,3 +14,15 @@ pub(crate) fn vectorize<R>(work: impl FnOnce() -> R) -> R {
     }
     work()
 }
+
+/// Evaluates an expression with [`vectorize`]. It borrows the fields that it names, one by one.
+macro_rules! vectorized {
+    ($work:expr) => {
+        $crate::physics::vectorize::vectorize(
+            #[inline(always)]
+            || $work,
+        )
+    };
+}
+
+pub(crate) use vectorized;
