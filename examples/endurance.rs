@@ -115,9 +115,10 @@ fn check(env: &Env) -> Result<()> {
         .into_iter()
         .flatten();
     let mut felt = seen.touch.unwrap_or_default().iter();
-    match numbers.all(|v| v.is_finite()) && felt.all(|v| v.is_finite()) {
-        true => Ok(()),
-        false => Err(format!("{}: a number is not finite", name(env.config())).into()),
+    if numbers.all(|v| v.is_finite()) && felt.all(|v| v.is_finite()) {
+        Ok(())
+    } else {
+        Err(format!("{}: a number is not finite", name(env.config())).into())
     }
 }
 
@@ -151,9 +152,10 @@ fn time() -> Duration {
 
 /// Lets a twin make the step that the environment made.
 fn compare(env: &Env, made: &std::result::Result<Vec<u64>, String>, twin: &mut Env, action: &[f32]) -> Result<()> {
-    match step(twin, action) == *made {
-        true => Ok(()),
-        false => Err(format!("{}: the twin differs", name(env.config())).into()),
+    if step(twin, action) == *made {
+        Ok(())
+    } else {
+        Err(format!("{}: the twin differs", name(env.config())).into())
     }
 }
 
@@ -205,9 +207,10 @@ fn endure(config: Config, steps: u64, seed: u64) -> Result<u64> {
     }
     let late = memory();
     println!("| {title} | {steps} | {errors} | {twins} | {fastest:.0} | {early} | {late} |");
-    match late.saturating_sub(early) > GROWTH {
-        true => Err(format!("{title}: memory grew from {early} to {late} kB").into()),
-        false => Ok(errors),
+    if late.saturating_sub(early) > GROWTH {
+        Err(format!("{title}: memory grew from {early} to {late} kB").into())
+    } else {
+        Ok(errors)
     }
 }
 

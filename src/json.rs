@@ -10,10 +10,7 @@ struct Spaced;
 
 impl Spaced {
     fn separate<W: ?Sized + io::Write>(writer: &mut W, first: bool) -> io::Result<()> {
-        match first {
-            true => Ok(()),
-            false => writer.write_all(b", "),
-        }
+        if first { Ok(()) } else { writer.write_all(b", ") }
     }
 }
 

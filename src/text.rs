@@ -11,9 +11,10 @@ pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::new();
     let mut characters = text.chars();
     for c in characters.by_ref().take(QUOTED) {
-        match c.is_control() || is_format(c) {
-            true => out.extend(c.escape_default()),
-            false => out.push(c),
+        if c.is_control() || is_format(c) {
+            out.extend(c.escape_default());
+        } else {
+            out.push(c);
         }
     }
     if characters.next().is_some() {

@@ -250,9 +250,10 @@ impl<J: Job> Drop for Pool<J> {
 fn work<J: Job>(shared: &Shared<J>, index: usize) {
     let mut queues = shared.lock();
     while !queues.stop {
-        let job = match index < queues.active {
-            true => queues.jobs.pop_front(),
-            false => None,
+        let job = if index < queues.active {
+            queues.jobs.pop_front()
+        } else {
+            None
         };
         let Some(mut job) = job else {
             queues = shared.idle(queues, index);

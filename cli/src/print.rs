@@ -23,9 +23,10 @@ macro_rules! note {
 pub fn harmless(text: String) -> String {
     let harmful =
         |c: char| c.is_control() && c != '\n' || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    match text.contains(harmful) {
-        true => text.chars().map(|c| if harmful(c) { '\u{fffd}' } else { c }).collect(),
-        false => text,
+    if text.contains(harmful) {
+        text.chars().map(|c| if harmful(c) { '\u{fffd}' } else { c }).collect()
+    } else {
+        text
     }
 }
 

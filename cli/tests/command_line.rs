@@ -39,9 +39,10 @@ fn contents(folder: &Path) -> Vec<(std::path::PathBuf, Vec<u8>)> {
     while let Some(next) = folders.pop() {
         for entry in std::fs::read_dir(next).expect("a folder") {
             let path = entry.expect("an entry").path();
-            match path.is_dir() {
-                true => folders.push(path),
-                false => out.push((path.clone(), std::fs::read(&path).expect("a file"))),
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                out.push((path.clone(), std::fs::read(&path).expect("a file")));
             }
         }
     }

@@ -32,9 +32,10 @@ fuzz_target!(|data: &[u8]| {
     };
     std::fs::write(training_path(folder), &training).expect("a file");
     // most inputs have none: an empty file would be read, and refused, each time
-    match evaluation.is_empty() {
-        true => drop(std::fs::remove_file(evaluation_path(folder, 0))),
-        false => std::fs::write(evaluation_path(folder, 0), &evaluation).expect("a file"),
+    if evaluation.is_empty() {
+        drop(std::fs::remove_file(evaluation_path(folder, 0)));
+    } else {
+        std::fs::write(evaluation_path(folder, 0), &evaluation).expect("a file");
     }
     if let Ok(records) = read_training(folder) {
         if let Ok(score) = Score::new(&records) {

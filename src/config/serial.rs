@@ -97,9 +97,10 @@ impl<'de> DeserializeSeed<'de> for KeySeed {
     type Value = usize;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<usize, D::Error> {
-        match deserializer.is_human_readable() {
-            true => deserializer.deserialize_identifier(self),
-            false => deserializer.deserialize_str(self), // binary formats have no other names
+        if deserializer.is_human_readable() {
+            deserializer.deserialize_identifier(self)
+        } else {
+            deserializer.deserialize_str(self) // binary formats have no other names
         }
     }
 }

@@ -17,12 +17,15 @@ pub(crate) use unfinished::{replace_file_with, sweep, unfinished};
 /// Opens a file that comes from outside. Whatever is not a regular file is refused before it is opened: a pipe would
 /// wait for ever, and a device need not end.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
-    let regular = |meta: std::fs::Metadata| match meta.is_file() {
-        true => Ok(()),
-        false => Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            format!("this is {}, not a regular file", kind(meta.file_type())),
-        )),
+    let regular = |meta: std::fs::Metadata| {
+        if meta.is_file() {
+            Ok(())
+        } else {
+            Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                format!("this is {}, not a regular file", kind(meta.file_type())),
+            ))
+        }
     };
     regular(std::fs::metadata(path)?)?;
     let file = File::open(path)?;
@@ -62,10 +65,7 @@ fn kind(kind: FileType) -> &'static str {
             return "a device";
         }
     }
-    match kind.is_dir() {
-        true => "a folder",
-        false => "something else",
-    }
+    if kind.is_dir() { "a folder" } else { "something else" }
 }
 
 #[cfg(test)]

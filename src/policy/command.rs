@@ -202,9 +202,10 @@ impl CommandPolicy {
 
 /// Splits a command into a program and its arguments; returns `None` if a quote is not closed.
 pub(super) fn words(command: &str) -> Option<Vec<String>> {
-    match cfg!(windows) {
-        true => shlex::split(&command.replace('\\', r"\\")),
-        false => shlex::split(command),
+    if cfg!(windows) {
+        shlex::split(&command.replace('\\', r"\\"))
+    } else {
+        shlex::split(command)
     }
 }
 
@@ -225,10 +226,10 @@ fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Res
         let most = (longest as u64).saturating_add(1);
         let read = (&mut output).take(most).read_until(b'\n', &mut line);
         let last = matches!(read, Ok(0) | Err(_));
-        let fault = match line.len() > longest {
-            true => Some(format!("it has more than {longest} bytes")),
-            false if output.buffer().is_empty() => None,
-            false => Some(UNASKED.to_string()),
+        let fault = if line.len() > longest {
+            Some(format!("it has more than {longest} bytes"))
+        } else {
+            (!output.buffer().is_empty()).then(|| UNASKED.to_string())
         };
         if matches!(read, Ok(0)) || lines.send(read.map(|_| Answer { line, fault })).is_err() || last {
             return;

@@ -332,9 +332,10 @@ impl OnnxPolicy {
         let failed = |e: &dyn std::fmt::Display| OnnxError::Run(e.to_string());
         let mut values: Vec<(NodeId, ValueOrView)> = Vec::with_capacity(self.inputs.len());
         for input in &self.inputs {
-            let value = match input.bytes {
-                true => Value::from_shape(&input.shape, input.pixels(seen)).map_err(|e| failed(&e))?,
-                false => Value::from_shape(&input.shape, input.numbers(seen)).map_err(|e| failed(&e))?,
+            let value = if input.bytes {
+                Value::from_shape(&input.shape, input.pixels(seen)).map_err(|e| failed(&e))?
+            } else {
+                Value::from_shape(&input.shape, input.numbers(seen)).map_err(|e| failed(&e))?
             };
             values.push((input.node, value.into()));
         }
@@ -397,9 +398,10 @@ impl Input {
 
     /// Rearranges an image (H, W, 3) in the order of the input.
     fn ordered(&self, image: &[u8]) -> Vec<u8> {
-        match self.channels_first {
-            true => (0..3).flat_map(|c| image.iter().skip(c).step_by(3).copied()).collect(),
-            false => image.to_vec(),
+        if self.channels_first {
+            (0..3).flat_map(|c| image.iter().skip(c).step_by(3).copied()).collect()
+        } else {
+            image.to_vec()
         }
     }
 }

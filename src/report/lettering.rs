@@ -213,9 +213,12 @@ fn path(stroke: &Stroke) -> Vec<[f32; 2]> {
         Ring(points) => (points, true),
     };
     let n = points.len();
-    let at = |k: isize| match closed {
-        true => points[k.rem_euclid(n as isize) as usize],
-        false => points[k.clamp(0, n as isize - 1) as usize],
+    let at = |k: isize| {
+        if closed {
+            points[k.rem_euclid(n as isize) as usize]
+        } else {
+            points[k.clamp(0, n as isize - 1) as usize]
+        }
     };
     let pieces = if closed { n } else { n - 1 };
     let mut out = vec![at(0)];
@@ -237,9 +240,10 @@ fn path(stroke: &Stroke) -> Vec<[f32; 2]> {
 fn distance([x, y]: [f32; 2], [ax, ay]: [f32; 2], [bx, by]: [f32; 2]) -> f32 {
     let (dx, dy) = (bx - ax, by - ay);
     let length = dx * dx + dy * dy;
-    let along = match length > 0.0 {
-        true => (((x - ax) * dx + (y - ay) * dy) / length).clamp(0.0, 1.0),
-        false => 0.0,
+    let along = if length > 0.0 {
+        (((x - ax) * dx + (y - ay) * dy) / length).clamp(0.0, 1.0)
+    } else {
+        0.0
     };
     let (u, v) = (x - ax - along * dx, y - ay - along * dy);
     (u * u + v * v).sqrt()

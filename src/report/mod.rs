@@ -66,9 +66,10 @@ pub enum ReportError {
 
 /// Says in which way a folder is missing.
 fn missing(path: &Path) -> &'static str {
-    match path.exists() {
-        true => "this is a file, not a folder",
-        false => "no such folder",
+    if path.exists() {
+        "this is a file, not a folder"
+    } else {
+        "no such folder"
     }
 }
 

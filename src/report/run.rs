@@ -89,9 +89,10 @@ impl Run {
         // the parts of a likely scene need not be those of the run
         let skin = touchables.as_ref().filter(|_| own);
         let tasks = training.iter().any(|r| r.behavior.task().is_some());
-        let score = match training.is_empty() || tasks {
-            true => None,
-            false => Score::new(&training).map_err(|e| notices.push(e.to_string())).ok(),
+        let score = if training.is_empty() || tasks {
+            None
+        } else {
+            Score::new(&training).map_err(|e| notices.push(e.to_string())).ok()
         };
         let score = score.map(|score| skin.map_or(score.clone(), |skin| score.within_reach(skin)));
         Ok(Self {

@@ -192,9 +192,10 @@ pub(super) fn open_training_log(
 ) -> Result<TrainingLog, RunError> {
     let config = blueprint.config();
     let names = part_names(blueprint);
-    let log = match resume {
-        true => TrainingLog::resume_with(config, names)?,
-        false => TrainingLog::create(config)?.with_names(names),
+    let log = if resume {
+        TrainingLog::resume_with(config, names)?
+    } else {
+        TrainingLog::create(config)?.with_names(names)
     };
     if resume {
         keep_scene(blueprint, assets)?;

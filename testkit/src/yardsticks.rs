@@ -104,9 +104,10 @@ fn python_with(module: &str, environment: &str, arguments: &[&str]) -> Result<Pa
 fn has_module(python: &Path, module: &str) -> Result<(), String> {
     let import = format!("import {module}");
     let found = Command::new(python).args(["-c", import.as_str()]).output();
-    match found.is_ok_and(|out| out.status.success()) {
-        true => Ok(()),
-        false => Err(format!("{} has no module {module}", python.display())),
+    if found.is_ok_and(|out| out.status.success()) {
+        Ok(())
+    } else {
+        Err(format!("{} has no module {module}", python.display()))
     }
 }
 

@@ -106,9 +106,10 @@ fn lengths(config: &Config) -> [usize; 2] {
 }
 
 fn expect(what: &str, found: usize, expected: usize) -> Result<(), String> {
-    match found == expected {
-        true => Ok(()),
-        false => Err(format!("{what}: {found}, not {expected}")),
+    if found == expected {
+        Ok(())
+    } else {
+        Err(format!("{what}: {found}, not {expected}"))
     }
 }
 
@@ -278,9 +279,10 @@ fn no_key_is_without_effect() {
             _ if name.starts_with("lock_") => &["True"],
             _ => &["False"],
         };
-        let (base, before) = match key.section == "Growth" && name != "age" {
-            true => (&infant, grown),
-            false => (&base, original),
+        let (base, before) = if key.section == "Growth" && name != "age" {
+            (&infant, grown)
+        } else {
+            (&base, original)
         };
         for value in values {
             let config = base

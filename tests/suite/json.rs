@@ -100,9 +100,10 @@ fn json(text: &str) -> Value {
 
 /// Whether a number was written to the bit, and one that is not finite as null.
 fn same(written: &Value, number: f64) -> bool {
-    match number.is_finite() {
-        true => written.as_f64().is_some_and(|w| w.to_bits() == number.to_bits()),
-        false => written.is_null(),
+    if number.is_finite() {
+        written.as_f64().is_some_and(|w| w.to_bits() == number.to_bits())
+    } else {
+        written.is_null()
     }
 }
 

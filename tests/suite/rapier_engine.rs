@@ -375,9 +375,10 @@ fn a_model_that_does_not_fit_is_an_error_that_names_the_element() {
 
 fn endure(behavior: Behavior, scene: Scene, steps: usize) {
     let long = std::env::var_os("BABYBENCH_LONG").is_some_and(|v| v == "1");
-    let steps = match long {
-        true => 100_000,
-        false => steps / if cfg!(debug_assertions) { 10 } else { 1 },
+    let steps = if long {
+        100_000
+    } else {
+        steps / if cfg!(debug_assertions) { 10 } else { 1 }
     };
     let mut env = rapier_env(behavior, scene);
     env.reset(Some(0)).expect("no divergence");

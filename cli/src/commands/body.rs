@@ -121,11 +121,10 @@ fn geom_radius(model: &Model, body: &str) -> Option<f64> {
 /// Returns the published value of an age, or those of the ages around it.
 fn published(row: &Row, age: f64) -> String {
     let above = AGES.partition_point(|a| *a < age).min(AGES.len() - 1);
-    match AGES[above] == age || above == 0 {
-        true => format!("{}", row[above]),
-        false => {
-            let (a, b) = (above - 1, above);
-            format!("{} at {}, {} at {}", row[a], AGES[a], row[b], AGES[b])
-        }
+    if AGES[above] == age || above == 0 {
+        format!("{}", row[above])
+    } else {
+        let (a, b) = (above - 1, above);
+        format!("{} at {}, {} at {}", row[a], AGES[a], row[b], AGES[b])
     }
 }

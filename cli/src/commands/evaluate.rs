@@ -101,9 +101,10 @@ impl Evaluate {
         let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;
         let progress = || {
             bar.inc(1);
-            match interrupt.wanted() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
+            if interrupt.wanted() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
             }
         };
         let result = run_episodes(&blueprint, &plan, &policy, &progress);

@@ -163,9 +163,10 @@ impl Run {
 fn description(env: &Env) -> String {
     let config = env.config();
     let spaces = env.observation_space();
-    let scene = match env.task().reports_outcome() {
-        true => String::new(), // a task has a scene of its own
-        false => format!(" in {}", config.scene),
+    let scene = if env.task().reports_outcome() {
+        String::new() // a task has a scene of its own
+    } else {
+        format!(" in {}", config.scene)
     };
     format!(
         "{}{scene}, {}: {} joints, {} actuators, {} numbers observed",

@@ -59,9 +59,10 @@ impl ScoreArgs {
             },
             ScoreParts::HandRegard { .. } => None,
         };
-        match self.json {
-            true => say!("{}", score.to_json(skin.as_ref()))?,
-            false => say!("{}", score.to_text(skin.as_ref()).trim_end())?,
+        if self.json {
+            say!("{}", score.to_json(skin.as_ref()))?;
+        } else {
+            say!("{}", score.to_text(skin.as_ref()).trim_end())?;
         }
         Ok(())
     }

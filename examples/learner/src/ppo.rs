@@ -60,9 +60,10 @@ impl Experience {
         let mut advantages = vec![0.0; n];
         for k in (0..n).rev() {
             // an episode is over after the last decision
-            let (value, advantage) = match k + envs < n {
-                true => (self.values[k + envs], advantages[k + envs]),
-                false => (0.0, 0.0),
+            let (value, advantage) = if k + envs < n {
+                (self.values[k + envs], advantages[k + envs])
+            } else {
+                (0.0, 0.0)
             };
             let error = self.rewards[k] + DISCOUNT * value - self.values[k];
             advantages[k] = error + DISCOUNT * TRACE * advantage;

@@ -236,9 +236,10 @@ impl Npz {
 fn check_shape(shape: &[usize], width: usize, limit: usize) -> Result<(), String> {
     let mut lengths = shape.iter().map(|length| (*length).max(1));
     let bytes = lengths.try_fold(width, |bytes: usize, length| bytes.checked_mul(length));
-    match bytes.is_some_and(|bytes| bytes <= limit) {
-        true => Ok(()),
-        false => Err(format!("shape {shape:?} needs more than {limit} bytes")),
+    if bytes.is_some_and(|bytes| bytes <= limit) {
+        Ok(())
+    } else {
+        Err(format!("shape {shape:?} needs more than {limit} bytes"))
     }
 }
 

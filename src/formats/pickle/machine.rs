@@ -45,18 +45,18 @@ impl Machine<'_> {
         let [opcode] = self.array()?;
         if opcode == b'.' {
             let root = self.pop()?;
-            return match self.stack.is_empty() && self.marks.is_empty() {
-                true => Ok(Some(root)),
-                false => Err(self.bad("it ends with more than one value")),
+            return if self.stack.is_empty() && self.marks.is_empty() {
+                Ok(Some(root))
+            } else {
+                Err(self.bad("it ends with more than one value"))
             };
         }
         self.step(opcode)?;
-        match self.objects.len().max(self.stack.len()).max(self.memo_length) > self.limits.pickle_objects {
-            true => {
-                let (what, limit) = ("values", self.limits.pickle_objects);
-                Err(PickleError::Limit { what, limit })
-            }
-            false => Ok(None),
+        if self.objects.len().max(self.stack.len()).max(self.memo_length) > self.limits.pickle_objects {
+            let (what, limit) = ("values", self.limits.pickle_objects);
+            Err(PickleError::Limit { what, limit })
+        } else {
+            Ok(None)
         }
     }
 

@@ -162,12 +162,13 @@ fn check_sizes(node: &[u8], constants: &Constants<'_>) -> Result<(), String> {
     let product = sizes
         .iter()
         .fold(1, |n: u128, s| n.saturating_mul(u128::from(s.unsigned_abs().max(1))));
-    match product > MOST {
-        true => Err(format!(
+    if product > MOST {
+        Err(format!(
             "the operator {} would make values of the sizes {sizes:?}, more than {MOST}",
             String::from_utf8_lossy(operator)
-        )),
-        false => Ok(()),
+        ))
+    } else {
+        Ok(())
     }
 }
 

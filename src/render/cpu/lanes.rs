@@ -21,9 +21,10 @@ pub fn four<T>(mut of: impl FnMut(usize) -> T) -> [T; 4] {
 /// [`f32x4::max`] looks for NaN on either side, which compilers see through on x86, but not in WebAssembly.
 #[inline(always)]
 pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
-    match cfg!(target_arch = "wasm32") {
-        true => low.fast_max(v),
-        false => v.max(low),
+    if cfg!(target_arch = "wasm32") {
+        low.fast_max(v)
+    } else {
+        v.max(low)
     }
 }
 
@@ -32,20 +33,22 @@ pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
 /// What WebAssembly has for it saturates, for which x86 needs seven instructions.
 #[inline(always)]
 pub fn integers(v: f32x4) -> i32x4 {
-    match cfg!(target_arch = "wasm32") {
+    if cfg!(target_arch = "wasm32") {
         // the last bits of a sum with 1.5 * 2^23 are the other number
-        true => cast::<_, i32x4>(v + 12_582_912.0) - i32x4::splat(0x4b40_0000),
-        false => v.fast_trunc_int(),
+        cast::<_, i32x4>(v + 12_582_912.0) - i32x4::splat(0x4b40_0000)
+    } else {
+        v.fast_trunc_int()
     }
 }
 
 /// Rounds numbers between 0 and 2^20 down that are whole quarters.
 #[inline(always)]
 pub fn rounded_down(quarters: f32x4) -> i32x4 {
-    match cfg!(target_arch = "wasm32") {
+    if cfg!(target_arch = "wasm32") {
         // the nearest integer is that below
-        true => integers(quarters - 0.375),
-        false => quarters.fast_trunc_int(),
+        integers(quarters - 0.375)
+    } else {
+        quarters.fast_trunc_int()
     }
 }
 

@@ -65,22 +65,27 @@ impl Recording {
         let arrays = Arrays { archive };
         let actions = arrays.table("actions", None, na)?;
         let len = actions.len() / na.max(1);
-        let rows = |name: &'static str, n: usize| match arrays.has(name) {
-            true => arrays.table(name, Some(len), n),
-            false => Ok(Vec::new()),
+        let rows = |name: &'static str, n: usize| {
+            if arrays.has(name) {
+                arrays.table(name, Some(len), n)
+            } else {
+                Ok(Vec::new())
+            }
         };
-        let episodes = match arrays.has("reset_row") {
-            true => EpisodeStart::read_all(&arrays, env, len)?,
-            false => Vec::new(),
+        let episodes = if arrays.has("reset_row") {
+            EpisodeStart::read_all(&arrays, env, len)?
+        } else {
+            Vec::new()
         };
         let (qpos0, qvel0, activity0) = match episodes.first() {
             Some(first) => (first.qpos.clone(), first.qvel.clone(), first.activity.clone()),
             None => (
                 arrays.vector("qpos0", nq)?,
                 arrays.vector("qvel0", nv)?,
-                match arrays.has("activity0") {
-                    true => arrays.vector("activity0", muscles)?,
-                    false => vec![0.0; muscles],
+                if arrays.has("activity0") {
+                    arrays.vector("activity0", muscles)?
+                } else {
+                    vec![0.0; muscles]
                 },
             ),
         };
@@ -121,9 +126,12 @@ impl EpisodeStart {
             });
         }
         let count = rows.data.len();
-        let table = |name: &'static str, n: usize| match arrays.has(name) {
-            true => arrays.table(name, Some(count), n).map(|data| (data, n)),
-            false => Ok((Vec::new(), 0)),
+        let table = |name: &'static str, n: usize| {
+            if arrays.has(name) {
+                arrays.table(name, Some(count), n).map(|data| (data, n))
+            } else {
+                Ok((Vec::new(), 0))
+            }
         };
         let qpos = arrays.table("reset_qpos", Some(count), env.model().nq)?;
         let qvel = arrays.table("reset_qvel", Some(count), env.model().nv)?;
@@ -137,9 +145,10 @@ impl EpisodeStart {
             qpos: of(&(qpos.clone(), env.model().nq), e),
             qvel: of(&(qvel.clone(), env.model().nv), e),
             warm: of(&warm, e),
-            activity: match arrays.has("reset_activity") {
-                true => of(&activity, e),
-                false => vec![0.0; env.state().act.len()],
+            activity: if arrays.has("reset_activity") {
+                of(&activity, e)
+            } else {
+                vec![0.0; env.state().act.len()]
             },
             desired_goal: of(&desired, e),
             ball: of(&ball, e).first_chunk().copied(),
@@ -164,9 +173,10 @@ impl Arrays<'_> {
     /// Reads an array of `n` numbers.
     fn vector(&self, name: &'static str, n: usize) -> Result<Vec<f64>, ReplayError> {
         let a = self.archive.get_f64(name)?;
-        match a.shape == [n] {
-            true => Ok(a.data),
-            false => Err(shape(name, a.shape, format!("({n})"))),
+        if a.shape == [n] {
+            Ok(a.data)
+        } else {
+            Err(shape(name, a.shape, format!("({n})")))
         }
     }
 
@@ -175,9 +185,10 @@ impl Arrays<'_> {
         let a = self.archive.get_f64(name)?;
         let fits = matches!(a.shape[..], [found, columns] if columns == n && rows.is_none_or(|rows| rows == found));
         let count = rows.map_or_else(|| "steps".to_string(), |rows| rows.to_string());
-        match fits {
-            true => Ok(a.data),
-            false => Err(shape(name, a.shape, format!("({count}, {n})"))),
+        if fits {
+            Ok(a.data)
+        } else {
+            Err(shape(name, a.shape, format!("({count}, {n})")))
         }
     }
 }

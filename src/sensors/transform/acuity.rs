@@ -146,9 +146,10 @@ fn transfer(options: AcuityOptions, height: usize, width: usize) -> Vec<f64> {
         out.extend((0..height).map(|v| {
             let down = frequency(v, height);
             let x = (across * across + down * down).sqrt() * per_degree;
-            match x < 0.1 {
-                true => 1.0,
-                false => pxfm::f_pow(10.0 * x, slope).clamp(0.01, 0.99),
+            if x < 0.1 {
+                1.0
+            } else {
+                pxfm::f_pow(10.0 * x, slope).clamp(0.01, 0.99)
             }
         }));
     }

@@ -93,9 +93,10 @@ enum Columns {
 impl Columns {
     /// Makes the transform of columns of a length; rows have `width` values.
     fn new(length: usize, width: usize) -> Self {
-        match length.is_power_of_two() {
-            true => Self::Halved(Halved::new(length, width)),
-            false => Self::Chirped(Box::new(Chirped::new(length, width))),
+        if length.is_power_of_two() {
+            Self::Halved(Halved::new(length, width))
+        } else {
+            Self::Chirped(Box::new(Chirped::new(length, width)))
         }
     }
 
