@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# Prints the counts that tell how well the house is kept, of the files that git tracks as they stand: methods of Env, files that know one
+# sense, crates, the public listing, lines and comments by room, and what is long. The same tree prints the same text.
+#   scripts/house.sh
+# Needs cargo (for `cargo tree`; nothing is compiled), once the network for the index of crates.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export LC_ALL=C
+
+title() { echo; echo "## $1"; }
+rust_files() { git ls-files -- "$@" | grep '\.rs$' | grep -v '/generated/'; }
+number_of() { # PATTERN: of what a public item in the listing matches, each item once
+  grep -oE "$1" docs/public-api.txt | sort -u | wc -l
+}
+crates() { # FEATURES: of a normal build, the library itself among them
+  cargo tree --locked --package babybench --edges normal --prefix none --no-dedupe "$@" | sed 's/ (.*//' | sort -u | wc -l
+}
+
+# Reads Rust files that rustfmt has laid out: a function ends at the first brace that stands as far right as its first line, and unit tests
+# are what follows `#[cfg(test)]` before a module. Prints for each file: room, file, lines, code, docs, comments inside functions, other
+# comments, tests; and for each function of the product: fn, lines, place, name.
+read_rust() {
+  awk '
+    function close_file() {
+      if (file != "") print "file", room, file, lines, code, docs, inside, beside, tests
+    }
+    FNR == 1 {
+      close_file()
+      file = FILENAME
+      n = split(file, part, "/")
+      room = part[1] != "src" ? part[1] : n == 2 ? "(files)" : part[2] ~ /\.rs$/ ? "(files)" : part[2]
+      lines = code = docs = inside = beside = tests = 0
+      within = testing = waiting = 0
+      all_tests = part[1] == "src" && file ~ /tests(\.rs|\/)/
+    }
+    {
+      lines++
+      indent = match($0, /[^ ]/) - 1
+      text = substr($0, indent + 1)
+    }
+    text == "" { next }
+    text == "#[cfg(test)]" { waiting = 1; tests++; next }
+    waiting { waiting = 0; if (text ~ /^(pub(\([a-z]*\))? )?mod .*\{$/) { testing = 1; margin = indent } tests++; next }
+    testing { tests++; if (indent == margin && text ~ /^\}/) testing = 0; next }
+    all_tests { tests++; next }
+    text ~ /^\/\/[\/!]/ { docs++; next }
+    text ~ /^\/\// { if (within) inside++; else beside++; next }
+    { code++ }
+    within && / \/\/ / && text !~ /"[^"]* \/\/ [^"]*"/ { inside++ }
+    !within && text ~ /^(pub(\([a-z: ]*\))? )?(default )?(const )?(async )?(unsafe )?(extern "[A-Za-z]*" )?fn / {
+      name = text
+      sub(/^.*fn /, "", name)
+      sub(/[^A-Za-z0-9_].*/, "", name)
+      first = FNR
+      edge = indent
+      if (text ~ /\}$|;$/) { print "fn", 1, file ":" FNR, name; next }
+      within = 1
+      next
+    }
+    within && indent == edge && text ~ /^(\}|.*;$)/ { within = 0; print "fn", FNR - first + 1, file ":" first, name }
+    END { close_file() }
+  ' "$@"
+}
+
+by_room() { # adds the files of each room up
+  printf '%-14s %6s %7s %7s %6s %8s %7s %6s %10s\n' room files lines code docs comments beside tests 'of 100'
+  awk '
+    $1 == "file" {
+      r = $2
+      files[r]++
+      for (k = 4; k <= 9; k++) { sum[r, k] += $k; all[k] += $k }
+      total++
+    }
+    function row(name, f, l, c, d, i, b, t) {
+      printf "%-14s %6d %7d %7d %6d %8d %7d %6d %10.1f\n", name, f, l, c, d, i, b, t, c ? 100 * i / c : 0
+    }
+    END {
+      for (r in files) row(r, files[r], sum[r, 4], sum[r, 5], sum[r, 6], sum[r, 7], sum[r, 8], sum[r, 9])
+      row("all", total, all[4], all[5], all[6], all[7], all[8], all[9])
+    }
+  ' | sort -k3,3nr -k1,1
+}
+
+mapfile -t of_src < <(rust_files src)
+mapfile -t of_others < <(rust_files cli conformance examples benches fuzz python testkit tests web)
+src=$(read_rust "${of_src[@]}")
+others=$(read_rust "${of_others[@]}")
+
+echo '# The house in numbers'
+title 'What a reader has to hold in the head'
+echo "public methods of Env: $(number_of 'pub (const )?fn babybench::env::Env::[a-z_0-9]+\(')"
+echo "methods of the trait Task: $(number_of 'pub fn babybench::env::Task::[a-z_0-9]+\(')"
+echo "files that name the sense touch_pooled: $(git grep -l touch_pooled -- src python/src python/babybench_core web | wc -l)"
+git grep -l touch_pooled -- src python/src python/babybench_core web | sed 's/^/  /'
+
+title 'Crates of the library'
+echo "without features: $(crates --no-default-features)"
+echo "with the default features: $(crates)"
+echo "with all features: $(crates --all-features)"
+
+title 'Public interface (docs/public-api.txt)'
+echo "lines: $(wc -l <docs/public-api.txt); each once: $(sort -u docs/public-api.txt | wc -l)"
+
+title 'Lines of src by room (comments: inside functions, also behind code; of 100: for every hundred lines of code)'
+by_room <<<"$src"
+title 'Lines of Rust beside it (tests count as code there)'
+by_room <<<"$others"
+
+title 'Functions of src with more than 60 lines'
+awk '$1 == "fn" && $2 > 60 { print $2, $3, $4 }' <<<"$src" | sort -k1,1nr -k2,2
+echo "of $(grep -c '^fn ' <<<"$src") functions; more than 40: $(awk '$1 == "fn" && $2 > 40' <<<"$src" | wc -l)"
+
+title 'Files with more than 400 lines (Rust, Python, JavaScript)'
+git ls-files -- '*.rs' '*.py' '*.js' '*.mjs' '*.ts' | grep -v '/generated/' | xargs wc -l | awk '$2 != "total" && $1 > 400 { print $1, $2 }' |
+  sort -k1,1nr -k2,2
+
+title 'Words'
+echo "module docs that begin with What: $(rust_files . | xargs awk 'FNR == 1 && /^\/\/! What/' | wc -l)"
+echo "summary lines that begin with What: $(rust_files . | xargs awk '/^ *\/\/\/ / && before !~ /^ *\/\/\// && /^ *\/\/\/ What/ { n++ } { before = $0 } END { print n + 0 }')"
