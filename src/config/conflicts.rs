@@ -1,6 +1,6 @@
 //! What values of the configuration exclude each other.
 
-use super::{Behavior, Compat, Config, DelayUnit, Delays, TouchFunction, VisionOutput, defaults, keys};
+use super::{Behavior, Compat, Config, DelayUnit, Delays, TouchFunction, VisionOutput, defaults, table};
 
 /// A value that another one excludes: key, value, and why.
 pub(super) type Conflict = (&'static str, String, String);
@@ -120,7 +120,7 @@ impl Config {
         let set = |key: &&super::Key| key.value(self) != key.default_value();
         let conflict = |key: &super::Key, reason: &str| (key.name, key.value(self).to_yaml(), reason.to_string());
         if self.age.is_none() {
-            let mut of_growth = Self::keys().iter().filter(|key| key.section == keys::GROWTH);
+            let mut of_growth = Self::keys().iter().filter(|key| key.section == table::GROWTH);
             if let Some(key) = of_growth.find(set) {
                 let reason = "it changes MIMo at an age, and `age` is none; set `age`, 0 to 24 months";
                 return Some(conflict(key, reason));

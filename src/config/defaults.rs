@@ -1,7 +1,7 @@
 //! Defaults of tasks, and what they exclude.
 
 use super::conflicts::Conflict;
-use super::keys::KEYS;
+use super::table::KEYS;
 use super::{ActuationModel, Behavior, BodyParts, Config, Scene, TouchFunction, TouchResponse};
 
 impl Config {

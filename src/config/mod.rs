@@ -26,12 +26,12 @@ mod error;
 mod examples;
 mod keys;
 mod kinds;
-mod measurements;
 mod outputs;
 mod parts;
 mod senses;
 #[cfg(feature = "serde")]
 mod serial;
+mod table;
 mod yaml;
 
 #[cfg(test)]
@@ -45,166 +45,14 @@ pub use error::{ConfigError, Location};
 pub use examples::Example;
 pub use keys::Key;
 pub use kinds::{KeyKind, KeyValue};
-pub use measurements::Measurements;
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
-pub use senses::{Delays, EyeOptions, NoiseLevels, PainOptions};
+pub use table::{Config, Delays, EyeOptions, MAX_AGE, Measurements, NoiseLevels, PainOptions};
 
 use std::path::Path;
 
 use crate::files;
 use crate::limits::Limits;
-
-/// Greatest age that MIMo can have, months.
-pub const MAX_AGE: f64 = 24.0;
-
-/// The configuration of an environment.
-///
-/// [`Config::default`] has the defaults of the API page.
-/// After changing fields, [`Config::validate`] tells whether the whole is still allowed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Config {
-    /// Folder of logs, videos and results.
-    pub save_dir: String,
-    /// Behavior that is trained and scored; it also decides MIMo's version.
-    pub behavior: Behavior,
-    /// Surroundings of MIMo.
-    pub scene: Scene,
-    /// Number of steps after which an episode is truncated, >= 1.
-    pub max_episode_steps: u64,
-    /// Number of physics steps per action, >= 1.
-    pub frame_skip: u32,
-    /// Width and height of rendered images, 1 to 4096 pixels.
-    pub render_size: u32,
-    /// Number of episodes between two saves of the training log, >= 1.
-    pub save_logs_every: u64,
-    /// Source to follow where the API page and the Python code disagree.
-    pub compat: Compat,
-    /// Physics engine.
-    pub engine: EngineKind,
-    /// Renderer of images.
-    pub renderer: RendererKind,
-    /// Seed of every random choice, until a reset is given another.
-    pub seed: u64,
-    /// Whether success or failure terminates an episode of a task.
-    pub done_active: bool,
-    /// Whether `catch` subtracts the cost of an action from the reward.
-    pub action_penalty: bool,
-    /// Whether `catch` disturbs actions, by factors that change now and then.
-    pub jitter: bool,
-    /// Whether the eyes of `catch` follow a point beside the ball.
-    pub position_inaccurate: bool,
-    /// How MIMo lies at the start of `roll_over`.
-    pub starting_position: StartingPosition,
-    /// Age of MIMo's body, months, 0 to [`MAX_AGE`]; `None` for the proportions of the original, an 18-month-old.
-    pub age: Option<f64>,
-    /// Age of MIMo's strength, months, where it differs from [`Config::age`].
-    pub strength_age: Option<f64>,
-    /// Whether touch sensors keep their number at every age and grow with the body, instead of keeping their distances.
-    pub touch_grows: bool,
-    /// Measurements that replace those of the age.
-    pub measurements: Measurements,
-    /// Delays of senses and actions (`delay_sensory` ...).
-    pub delays: Delays,
-    /// Noise of senses (`noise_touch` ...).
-    pub noise: NoiseLevels,
-    /// Whether joint velocities are observed.
-    pub proprio_velocity: bool,
-    /// Whether joint torques are observed.
-    pub proprio_torque: bool,
-    /// Whether the proximity of joints to their limits is observed.
-    pub proprio_limits: bool,
-    /// Whether the state of the actuators is observed.
-    pub proprio_actuation: bool,
-    /// Whether the head's motion is observed.
-    pub vestibular_active: bool,
-    /// Whether the images of both eyes are observed.
-    pub vision_active: bool,
-    /// Width and height of an eye's image, 1 to 4096 pixels.
-    pub vision_resolution: u32,
-    /// Images of each eye that are observed.
-    pub vision_outputs: VisionOutputs,
-    /// Number of threads that draw the eyes of an environment on the CPU, 1 or 2, to the same bytes. Vectors of environments
-    /// have threads of their own, and draw each environment with one.
-    pub vision_threads: u32,
-    /// How sharp the eyes see, and where (`vision_acuity` ...).
-    pub eyes: EyeOptions,
-    /// Whether touch is observed; see [`Config::touch_enabled`].
-    pub touch_active: bool,
-    /// Factor on the distance between touch sensors, 0 (touch is off) or >= 0.01.
-    pub touch_scale: f64,
-    /// Quantity that a touch sensor reports.
-    pub touch_function: TouchFunction,
-    /// Way that touch sensors share a force.
-    pub touch_response: TouchResponse,
-    /// Parts that have touch sensors (`touch_hands` ...).
-    pub touch: BodyParts<bool>,
-    /// Whether touch pooled over each body is observed.
-    pub touch_pooled: bool,
-    /// Whether pain is observed.
-    pub pain_active: bool,
-    /// What hurts (`pain_threshold` ...).
-    pub pain: PainOptions,
-    /// Model that turns actions into joint torques.
-    pub actuation_model: ActuationModel,
-    /// Parts that are actuated (`act_hands` ...).
-    pub act: BodyParts<bool>,
-    /// Parts whose joints are locked (`lock_hands` ...).
-    pub lock: BodyParts<bool>,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Self {
-            save_dir: "results/test_installation".to_string(),
-            behavior: Behavior::None,
-            scene: Scene::Base,
-            max_episode_steps: 1000,
-            frame_skip: 1,
-            render_size: 480,
-            save_logs_every: 1000,
-            compat: Compat::Api,
-            engine: EngineKind::Soft,
-            renderer: RendererKind::Cpu,
-            seed: 0,
-            done_active: true,
-            action_penalty: true,
-            jitter: false,
-            position_inaccurate: false,
-            starting_position: StartingPosition::Supine,
-            age: None,
-            strength_age: None,
-            touch_grows: false,
-            measurements: Measurements::default(),
-            delays: Delays::default(),
-            noise: NoiseLevels::default(),
-            proprio_velocity: true,
-            proprio_torque: true,
-            proprio_limits: true,
-            proprio_actuation: true,
-            vestibular_active: true,
-            vision_active: true,
-            vision_resolution: 64,
-            vision_outputs: VisionOutputs::default(),
-            vision_threads: 1,
-            eyes: EyeOptions::default(),
-            touch_active: true,
-            touch_scale: 1.0,
-            touch_function: TouchFunction::Normal,
-            touch_response: TouchResponse::Nearest,
-            touch: BodyParts {
-                eyes: false,
-                ..BodyParts::all(true)
-            },
-            touch_pooled: false,
-            pain_active: false,
-            pain: PainOptions::default(),
-            actuation_model: ActuationModel::SpringDamper,
-            act: BodyParts::all(true),
-            lock: BodyParts::all(false),
-        }
-    }
-}
 
 impl Config {
     /// Reads a configuration; `file_name` only names the file in errors.
@@ -251,7 +99,7 @@ impl Config {
             self.take_defaults(|key| positions[key].is_some());
         }
         let position = |name: &str| {
-            let index = keys::KEYS.iter().position(|key| key.name == name)?;
+            let index = table::KEYS.iter().position(|key| key.name == name)?;
             positions[index]
         };
         self.check(file_name, position)?;
@@ -331,7 +179,7 @@ impl Config {
 
     /// Returns every key with what it accepts and means, in the order of [`Config::to_yaml`].
     pub fn keys() -> &'static [Key] {
-        keys::KEYS
+        table::KEYS
     }
 
     /// Returns the configuration that a file with this behavior alone has: a task has defaults of its own.

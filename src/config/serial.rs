@@ -7,8 +7,9 @@ use serde::ser::SerializeMap as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::error::{self, Location};
-use super::keys::{KEYS, Key};
+use super::keys::Key;
 use super::kinds::{KeyKind, KeyValue, Misfit};
+use super::table::KEYS;
 use super::{Config, ConfigError, yaml};
 
 /// What errors call a configuration that is no file.

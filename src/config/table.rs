@@ -1,0 +1,197 @@
+//! The table of keys: what each is called, its type, its default, what it accepts and what it means. The fields of [`Config`] and of its groups,
+//! reading, writing, ranges and documentation all follow from it.
+
+use super::choices::{
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, Scene, StartingPosition, TouchFunction,
+    TouchResponse, VisionOutput,
+};
+use super::keys::{Field, Key, config};
+use super::kinds::KeyKind;
+use super::outputs::VisionOutputs;
+use super::parts::BodyParts;
+use crate::spaces::MAX_IMAGE_SIZE;
+
+/// Greatest age that MIMo can have, months.
+pub const MAX_AGE: f64 = 24.0;
+
+const fn whole_from_1_to(max: u64) -> KeyKind {
+    KeyKind::Whole { min: 1, max }
+}
+
+const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
+const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
+const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
+const EYES: KeyKind = whole_from_1_to(2);
+const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
+const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
+
+const AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: MAX_AGE };
+const CENTIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
+const DELAY: KeyKind = KeyKind::Number {
+    min: 0.0,
+    max: 10_000.0,
+};
+const OWN_DELAY: KeyKind = KeyKind::NoneOr {
+    min: 0.0,
+    max: 10_000.0,
+};
+const DEVIATION: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
+const ACUITY_AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: 36.0 };
+const STRENGTH: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
+const OWN_STRENGTH: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1000.0 };
+const SHARE: KeyKind = KeyKind::Number { min: 0.0, max: 1.0 };
+const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
+const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
+const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
+
+use KeyKind::{Bool, Choice, List, Text};
+
+/// The section of the keys that change MIMo's body.
+pub(super) const GROWTH: &str = "Growth";
+
+// Every key, in the order of the API page, with this implementation's own after its general ones.
+config! {
+    "General" {
+        save_dir: String = "results/test_installation".to_string(), Text, "The folder of logs, videos and results.";
+        behavior: Behavior = Behavior::None, Choice(Behavior::NAMES), "The behavior that is trained and scored, or a task with a goal and a reward, whose other keys have defaults of their own." + "It also decides MIMo's version.";
+        scene: Scene = Scene::Base, Choice(Scene::NAMES), "MIMo's surroundings.";
+        max_episode_steps: u64 = 1000, COUNT, "Number of steps after which an episode is truncated.";
+        frame_skip: u32 = 1, FRAMES, "Physics steps of 5 ms per action.";
+        render_size: u32 = 480, PIXELS, "Width and height of rendered images, pixels.";
+        save_logs_every: u64 = 1000, COUNT, "Episodes between two saves of the training log.";
+    }
+    "This implementation's own keys" {
+        compat: Compat = Compat::Api, Choice(Compat::NAMES), "Which of them to follow where the API page and the Python code disagree.";
+        engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
+        renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
+        seed: u64 = 0, SEED, "The seed of all random choices until a reset is given another.";
+    }
+    "Tasks" {
+        done_active: bool = true, Bool, "Success and failure of a task terminate the episode.";
+        action_penalty: bool = true, Bool, "The task catch subtracts the cost of an action from the reward.";
+        jitter: bool = false, Bool, "The task catch disturbs actions, by factors that change now and then.";
+        position_inaccurate: bool = false, Bool, "The eyes of the task catch follow a point beside the ball.";
+        starting_position: StartingPosition = StartingPosition::Supine, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
+    }
+    GROWTH {
+        age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the proportions of the original.";
+        strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none for that of his body.";
+        touch_grows: bool = false, Bool, "Touch sensors keep their number and grow with the body, instead of keeping their distances.";
+        @group measurements: Measurements, "Measurements that replace those of the age.", "Measurements of an infant's body, as AnthroKids (1977) took them: cm, the two diameters of fingers mm. `None` leaves a measurement to the age." {
+            ankle_circumference as ankle_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the ankle, cm; none for that of the age.";
+            calf_circumference as calf_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the calf, cm; none for that of the age.";
+            elbow_hand_length as elbow_hand_length: Option<f64> = None, CENTIMETRES, "The length from the elbow to the fingertips, cm; none for that of the age.";
+            fist_breadth as fist_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the fist, cm; none for that of the age.";
+            foot_breadth as foot_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the foot, cm; none for that of the age.";
+            foot_length as foot_length: Option<f64> = None, CENTIMETRES, "The length of the foot, cm; none for that of the age.";
+            forearm_circumference as forearm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the forearm, cm; none for that of the age.";
+            hand_breadth as hand_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hand, cm; none for that of the age.";
+            hand_length as hand_length: Option<f64> = None, CENTIMETRES, "The length of the hand, cm; none for that of the age.";
+            head_circumference as head_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the head, cm; none for that of the age.";
+            hip_breadth as hip_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hip, cm; none for that of the age.";
+            knee_sole_length as knee_sole_length: Option<f64> = None, CENTIMETRES, "The length from the knee to the sole, cm; none for that of the age.";
+            middle_finger_diameter as middle_finger_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the middle finger, mm; none for that of the age.";
+            rump_knee_length as rump_knee_length: Option<f64> = None, CENTIMETRES, "The length from the rump to the knee, cm; none for that of the age.";
+            shoulder_elbow_length as shoulder_elbow_length: Option<f64> = None, CENTIMETRES, "The length from the shoulder to the elbow, cm; none for that of the age.";
+            thigh_circumference as thigh_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the thigh, half way, cm; none for that of the age.";
+            thumb_diameter as thumb_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the thumb, mm; none for that of the age.";
+            upper_arm_circumference as upper_arm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the upper arm, cm; none for that of the age.";
+        }
+    }
+    "Delays" {
+        @group delays: Delays, "Delays of senses and actions (`delay_sensory` ...).", "Delays of senses and actions, in [`Delays::unit`]; 0 is none." {
+            unit as delay_unit: DelayUnit = DelayUnit::default(), Choice(DelayUnit::NAMES), "The unit of delays; milliseconds are rounded to whole steps.";
+            sensory as delay_sensory: f64 = 0.0, DELAY, "The delay of senses that have none of their own.";
+            motor as delay_motor: f64 = 0.0, DELAY, "The delay of actions.";
+            proprioception as delay_proprioception: Option<f64> = None, OWN_DELAY, "The delay of proprioception; none for that of all senses.";
+            touch as delay_touch: Option<f64> = None, OWN_DELAY, "The delay of touch and pain; none for that of all senses.";
+            vestibular as delay_vestibular: Option<f64> = None, OWN_DELAY, "The delay of the head's motion; none for that of all senses.";
+            vision as delay_vision: Option<f64> = None, OWN_DELAY, "The delay of both eyes; none for that of all senses.";
+        }
+    }
+    "Noise" {
+        @group noise: NoiseLevels, "Noise of senses (`noise_touch` ...).", "Standard deviations of the noise of senses; 0 is none." {
+            proprioception as noise_proprioception: f64 = 0.0, DEVIATION, "Standard deviation of the noise of proprioception, in the unit of each number.";
+            touch as noise_touch: f64 = 0.0, DEVIATION, "Standard deviation of the noise of touch sensors that feel something, N.";
+            vestibular as noise_vestibular: f64 = 0.0, DEVIATION, "Standard deviation of the noise of the head's motion, m/s^2 and rad/s.";
+            vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise of images, of 255.";
+        }
+    }
+    "Proprioception" {
+        proprio_velocity: bool = true, Bool, "Joint velocities are observed.";
+        proprio_torque: bool = true, Bool, "Joint torques are observed.";
+        proprio_limits: bool = true, Bool, "How far joints are into their limits is observed.";
+        proprio_actuation: bool = true, Bool, "The state of the actuators is observed.";
+    }
+    "Vestibular" {
+        vestibular_active: bool = true, Bool, "The head's motion is observed.";
+    }
+    "Vision" {
+        vision_active: bool = true, Bool, "The images of both eyes are observed.";
+        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels.";
+        vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The images of each eye that are observed.";
+        vision_threads: u32 = 1, EYES, "Threads that draw the eyes of an environment alone: 2 is faster by the clock, to the same bytes." + "Vectors of environments have threads of their own, and draw each environment with one.";
+        @group eyes: EyeOptions, "How sharp the eyes see, and where (`vision_acuity` ...).", "How sharp the eyes see, and where." {
+            acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
+            acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";
+            acuity_right as vision_acuity_right: Option<f64> = None, ACUITY_AGE, "The age of the right eye's acuity, months; none for that of both eyes.";
+            foveation as vision_foveation: f64 = 0.0, STRENGTH, "How much the middle of images is enlarged: 10 is usual, 0 not at all.";
+            foveation_left as vision_foveation_left: Option<f64> = None, OWN_STRENGTH, "The foveation of the left eye; none for that of both eyes.";
+            foveation_right as vision_foveation_right: Option<f64> = None, OWN_STRENGTH, "The foveation of the right eye; none for that of both eyes.";
+        }
+    }
+    "Touch" {
+        touch_active: bool = true, Bool, "Touch is observed." + "See [`Config::touch_enabled`].";
+        touch_scale: f64 = 1.0, SCALE, "Factor on the distance between sensors; 0 switches touch off.";
+        touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports.";
+        touch_response: TouchResponse = TouchResponse::Nearest, Choice(TouchResponse::NAMES), "How sensors share a force.";
+        @parts touch = BodyParts { eyes: false, ..BodyParts::all(true) }, "Parts that have touch sensors (`touch_hands` ...)." {
+            hands as touch_hands, "The hands have touch sensors.";
+            fingers as touch_fingers, "The fingers have touch sensors.";
+            arms as touch_arms, "The arms have touch sensors.";
+            feet as touch_feet, "The feet have touch sensors.";
+            legs as touch_legs, "The legs have touch sensors.";
+            body as touch_body, "The trunk has touch sensors.";
+            head as touch_head, "The head has touch sensors.";
+            eyes as touch_eyes, "The eyes have touch sensors.";
+        }
+    }
+    "Touch" {
+        touch_pooled: bool = false, Bool, "Touch pooled over each body is observed.";
+    }
+    "Pain" {
+        pain_active: bool = false, Bool, "Pain is observed.";
+        @group pain: PainOptions, "What hurts (`pain_threshold` ...).", "The sense of pain." {
+            threshold as pain_threshold: f64 = 20.0, PAIN, "The force on a sensor from which on it hurts, N.";
+            slope as pain_slope: f64 = 0.1, PAIN, "The pain for each newton beyond.";
+            limit as pain_limit: Option<f64> = None, MOST_PAIN, "The greatest pain of a sensor; none for no limit.";
+            decay_old as pain_decay_old: f64 = 0.0, SHARE, "The share of the last step's pain that stays.";
+            decay_new as pain_decay_new: f64 = 1.0, SHARE, "The factor on new pain.";
+        }
+    }
+    "Actuation" {
+        actuation_model: ActuationModel = ActuationModel::SpringDamper, Choice(ActuationModel::NAMES), "How actions become torques.";
+        @parts act = BodyParts::all(true), "Parts that are actuated (`act_hands` ...)." {
+            hands as act_hands, "The hands are actuated.";
+            fingers as act_fingers, "The fingers are actuated.";
+            arms as act_arms, "The arms are actuated.";
+            feet as act_feet, "The feet are actuated.";
+            legs as act_legs, "The legs are actuated.";
+            body as act_body, "The trunk is actuated.";
+            head as act_head, "The head is actuated.";
+            eyes as act_eyes, "The eyes are actuated.";
+        }
+    }
+    "Locked joints" {
+        @parts lock = BodyParts::all(false), "Parts whose joints are locked (`lock_hands` ...)." {
+            hands as lock_hands, "The joints of the hands are locked.";
+            fingers as lock_fingers, "The joints of the fingers are locked.";
+            arms as lock_arms, "The joints of the arms are locked.";
+            feet as lock_feet, "The joints of the feet are locked.";
+            legs as lock_legs, "The joints of the legs are locked.";
+            body as lock_body, "The joints of the trunk are locked.";
+            head as lock_head, "The joints of the head are locked.";
+            eyes as lock_eyes, "The joints of the eyes are locked.";
+        }
+    }
+}
