@@ -1,4 +1,4 @@
-"""Writes conformance/src/mujoco/offsets.rs: where the fields of MuJoCo's structures are, from the headers of a release.
+"""Writes conformance/src/mujoco/generated/offsets.rs: where the fields of MuJoCo's structures are, from the headers of a release.
 
     python mujoco_offsets.py [HEADERS] [OUT]
 
@@ -99,7 +99,7 @@ def size(text, known):
 
 def main():
     headers = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE.parent / "target/mujoco/3.3.0/mujoco/include"
-    out = Path(sys.argv[2]) if len(sys.argv) > 2 else HERE / "src/mujoco/offsets.rs"
+    out = Path(sys.argv[2]) if len(sys.argv) > 2 else HERE / "src/mujoco/generated/offsets.rs"
     known = constants(headers)
     numbers, tables = {}, {}
     for table, *row in rows(headers):

@@ -6,6 +6,7 @@
 
 mod api;
 pub mod layout;
+#[path = "generated/offsets.rs"]
 pub mod offsets;
 mod release;
 mod simulation;
