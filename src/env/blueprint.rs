@@ -13,9 +13,7 @@ use crate::model::Model;
 use crate::physics::{Engine, Params, SoftModel, SoftOptions};
 #[cfg(feature = "rapier")]
 use crate::physics::{RapierModel, RapierOptions};
-use crate::render::{RenderError, Renderer, Visual};
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-use crate::render::{SharedGpu, gpu::GpuRenderer};
+use crate::render::{RenderError, Renderer, SharedGpu, Visual, open_gpu};
 use crate::sensors::SkinLayout;
 use crate::spaces::NumpyRng;
 
@@ -49,7 +47,6 @@ pub struct Blueprint {
     /// The look of the scene; where the assets stay at hand it is made when it is first needed.
     visual: Arc<OnceLock<Arc<Visual>>>,
     /// The renderer on a GPU, opened when it is first needed.
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     gpu: Arc<OnceLock<SharedGpu>>,
 }
 
@@ -171,7 +168,6 @@ impl Blueprint {
             assets: None,
             skin,
             visual: Arc::new(visual),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             gpu: Arc::default(),
         })
     }
@@ -306,12 +302,7 @@ impl Blueprint {
     pub fn renderer(&self) -> Result<Renderer, EnvError> {
         match self.config.renderer {
             RendererKind::Cpu => Ok(Renderer::cpu(self.visual()?)),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             RendererKind::Wgpu => Ok(Renderer::gpu(self.gpu()?)),
-            #[cfg(not(all(feature = "wgpu", not(target_arch = "wasm32"))))]
-            RendererKind::Wgpu if cfg!(feature = "wgpu") => Err(RenderError::CannotWait.into()),
-            #[cfg(not(all(feature = "wgpu", not(target_arch = "wasm32"))))]
-            RendererKind::Wgpu => Err(RenderError::NoWgpu.into()),
         }
     }
 
@@ -319,14 +310,12 @@ impl Blueprint {
     /// whatever renderer the configuration asks for.
     ///
     /// # Errors
-    /// Textures that cannot be read, no graphics adapter.
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+    /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
     pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
         if let Some(gpu) = self.gpu.get() {
             return Ok(gpu.clone());
         }
-        let opened = GpuRenderer::new(self.visual()?).map_err(RenderError::from)?;
-        let opened = Arc::new(std::sync::Mutex::new(opened));
+        let opened = open_gpu(self.visual()?)?;
         Ok(self.gpu.get_or_init(|| opened).clone())
     }
 }

@@ -29,6 +29,9 @@ mod cpu;
 mod drawable;
 #[cfg(feature = "wgpu")]
 pub mod gpu;
+#[cfg_attr(all(feature = "wgpu", not(target_arch = "wasm32")), path = "native_gpu.rs")]
+#[cfg_attr(not(all(feature = "wgpu", not(target_arch = "wasm32"))), path = "no_gpu.rs")]
+mod gpu_of_build;
 mod mesh;
 mod pair;
 mod patch;
@@ -43,12 +46,10 @@ pub use cpu::CpuRenderer;
 #[cfg(any(feature = "eval", feature = "wgpu"))]
 pub(crate) use cpu::luma;
 pub use drawable::{Drawable, Element, Shape};
+pub use gpu_of_build::SharedGpu;
+pub(crate) use gpu_of_build::{draw_on, open_gpu};
 pub use mesh::{Mesh, MeshPart};
 pub use renderer::Renderer;
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-pub use renderer::SharedGpu;
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-pub(crate) use renderer::draw_on;
 pub use texture::{Face, Level, MAX_TEXTURE, Texture};
 pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
 pub use visual::{Aim, Camera, Light, Visual};

@@ -2,17 +2,9 @@
 
 use std::sync::Arc;
 
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-use std::sync::{Mutex, PoisonError};
-
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-use super::gpu::{Channel, Depth, GpuRenderer, Gray, Rgb, Segmentation};
+use super::gpu_of_build::{SharedGpu, draw_on, visual_of};
 use super::pair::Pair;
 use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Visual};
-
-/// A renderer on a GPU that several environments share.
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-pub type SharedGpu = Arc<Mutex<GpuRenderer>>;
 
 /// A renderer of one scene, on the CPU or on a GPU, that waits for its images.
 #[derive(Debug)]
@@ -28,7 +20,6 @@ enum Backend {
         /// What draws every second image, if a thread of its own does.
         pair: Option<Pair>,
     },
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     Gpu(SharedGpu),
 }
 
@@ -45,11 +36,9 @@ impl Renderer {
     }
 
     /// Creates a renderer on a GPU that others may share.
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     pub fn gpu(gpu: SharedGpu) -> Self {
-        let visual = gpu.lock().unwrap_or_else(PoisonError::into_inner).visual().clone();
         Self {
-            visual,
+            visual: visual_of(&gpu),
             backend: Backend::Gpu(gpu),
         }
     }
@@ -66,7 +55,6 @@ impl Renderer {
         match &mut self.backend {
             Backend::Cpu { pair, .. } if threads > 1 && Pair::is_of_use() => drop(pair.get_or_insert_default()),
             Backend::Cpu { pair, .. } => *pair = None,
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             Backend::Gpu(_) => {}
         }
     }
@@ -91,13 +79,11 @@ impl Renderer {
     pub fn passes(&self) -> u64 {
         match &self.backend {
             Backend::Cpu { renderer, pair } => renderer.passes() + pair.as_ref().map_or(0, Pair::passes),
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             Backend::Gpu(_) => 0,
         }
     }
 
     /// Returns the renderer on the GPU; `None` if images are drawn on the CPU.
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     pub fn shared_gpu(&self) -> Option<&SharedGpu> {
         match &self.backend {
             Backend::Gpu(gpu) => Some(gpu),
@@ -126,7 +112,6 @@ impl Renderer {
                 }
                 Ok(())
             }
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             Backend::Gpu(gpu) => draw_on(gpu, requests, images),
         }
     }
@@ -181,7 +166,7 @@ impl Renderer {
 }
 
 /// Pairs requests with their buffers. For a request without any there is one that is too short.
-fn pairs<'r, 's, 'o>(
+pub(super) fn pairs<'r, 's, 'o>(
     requests: &'r [RenderRequest<'s>],
     images: impl IntoIterator<Item = ImageBuffers<'o>>,
 ) -> impl Iterator<Item = (&'r RenderRequest<'s>, ImageBuffers<'o>)> {
@@ -189,62 +174,4 @@ fn pairs<'r, 's, 'o>(
     requests
         .iter()
         .map(move |request| (request, images.next().unwrap_or_else(|| ImageBuffers::rgb(&mut []))))
-}
-
-/// Draws images on a GPU, in one submission for each kind.
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-pub(crate) fn draw_on<'o>(
-    gpu: &SharedGpu,
-    requests: &[RenderRequest],
-    images: impl IntoIterator<Item = ImageBuffers<'o>>,
-) -> Result<(), RenderError> {
-    let (mut rgb, mut gray) = (Batch::<Rgb>::default(), Batch::<Gray>::default());
-    let (mut depth, mut segmentation) = (Batch::<Depth>::default(), Batch::<Segmentation>::default());
-    for (request, images) in pairs(requests, images) {
-        rgb.add(request, images.rgb);
-        gray.add(request, images.gray);
-        depth.add(request, images.depth);
-        segmentation.add(request, images.segmentation);
-    }
-    rgb.draw(gpu)?;
-    gray.draw(gpu)?;
-    depth.draw(gpu)?;
-    segmentation.draw(gpu)
-}
-
-/// The images of one kind that a GPU draws together.
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-struct Batch<'r, 'o, C: Channel> {
-    requests: Vec<RenderRequest<'r>>,
-    outs: Vec<&'o mut [C::Value]>,
-}
-
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-impl<C: Channel> Default for Batch<'_, '_, C> {
-    fn default() -> Self {
-        Self {
-            requests: Vec::new(),
-            outs: Vec::new(),
-        }
-    }
-}
-
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-impl<'r, 'o, C: Channel> Batch<'r, 'o, C> {
-    fn add(&mut self, request: &RenderRequest<'r>, out: Option<&'o mut [C::Value]>) {
-        if let Some(out) = out {
-            self.requests.push(*request);
-            self.outs.push(out);
-        }
-    }
-
-    fn draw(self, gpu: &SharedGpu) -> Result<(), RenderError> {
-        if self.requests.is_empty() {
-            return Ok(());
-        }
-        let mut renderer = gpu.lock().unwrap_or_else(PoisonError::into_inner);
-        let pending = renderer.begin::<C>(&self.requests)?;
-        drop(renderer);
-        pending.wait_into(self.outs)
-    }
 }

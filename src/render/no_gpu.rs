@@ -1,0 +1,34 @@
+//! Stands for a renderer on a GPU in programs that have none, or that cannot wait for its images, as a page: there never is a value, so
+//! that nothing else has to ask how the library was built.
+
+use std::sync::Arc;
+
+use super::{ImageBuffers, RenderError, RenderRequest, Visual};
+
+/// A renderer that cannot be: the library was built without one.
+#[derive(Debug)]
+pub enum NoGpu {}
+
+/// A renderer on a GPU that several environments share, of which there is none in this build.
+pub type SharedGpu = Arc<NoGpu>;
+
+/// Says why there is no GPU.
+pub(crate) fn open_gpu(_: Arc<Visual>) -> Result<SharedGpu, RenderError> {
+    Err(if cfg!(feature = "wgpu") {
+        RenderError::CannotWait
+    } else {
+        RenderError::NoWgpu
+    })
+}
+
+pub(super) fn visual_of(gpu: &SharedGpu) -> Arc<Visual> {
+    match **gpu {}
+}
+
+pub(crate) fn draw_on<'o>(
+    gpu: &SharedGpu,
+    _: &[RenderRequest],
+    _: impl IntoIterator<Item = ImageBuffers<'o>>,
+) -> Result<(), RenderError> {
+    match **gpu {}
+}
