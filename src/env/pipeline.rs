@@ -1,11 +1,10 @@
 //! The way from the senses to the observation: the transforms of each sense, in order.
 
 use crate::config::{Compat, Config, Delays};
+use crate::model::Model;
+use crate::sensors::EYES;
 use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Noise, Sense, Signal, Transform};
 use crate::spaces::NumpyRng;
-
-/// Height of the field of view that acuity is reckoned with, degrees.
-const FOVY: f64 = 60.0;
 
 /// A transform, and whether the configuration asked for it.
 struct Stage {
@@ -23,14 +22,16 @@ pub(super) struct Pipeline {
 impl Pipeline {
     /// Sets up the transforms that a configuration asks for, of a sense whose signals have the size of `like`: acuity,
     /// foveation, noise, delay.
-    pub fn configure(&mut self, config: &Config, sense: Sense, like: &Signal<'_>) {
+    pub fn configure(&mut self, model: &Model, config: &Config, sense: Sense, like: &Signal<'_>) {
         let mut add = |transform: Box<dyn Transform>| {
             let configured = true;
             self.chains[sense as usize].push(Stage { transform, configured });
         };
         if let &Signal::Eye { height, width, .. } = like {
             let eye = usize::from(sense == Sense::EyeRight);
-            optics(config, eye, height, width).into_iter().for_each(&mut add);
+            optics(model, config, eye, [height, width])
+                .into_iter()
+                .for_each(&mut add);
         }
         let (noise, delay) = (&config.noise, &config.delays);
         let (deviation, delay) = match sense {
@@ -120,11 +121,16 @@ impl Pipeline {
 }
 
 /// Returns what a configuration's eye, 0 for the left and 1 for the right, makes of each image by itself: acuity, foveation.
-pub(super) fn optics(config: &Config, eye: usize, height: usize, width: usize) -> Vec<Box<dyn Transform>> {
+pub(super) fn optics(
+    model: &Model,
+    config: &Config,
+    eye: usize,
+    [height, width]: [usize; 2],
+) -> Vec<Box<dyn Transform>> {
     let mut transforms: Vec<Box<dyn Transform>> = Vec::new();
-    if let Some(age) = config.eyes.ages(config.age)[eye] {
+    if let (Some(age), Some(camera)) = (config.eyes.ages(config.age)[eye], model.camera(EYES[eye])) {
         let reference = config.compat == Compat::Reference;
-        let fovy = FOVY;
+        let fovy = model.cam_fovy[camera];
         let options = AcuityOptions { age, fovy, reference };
         transforms.push(Box::new(Acuity::new(options, height, width)));
     }

@@ -80,7 +80,7 @@ impl Senses {
                 continue;
             }
             let mut pipeline = std::mem::take(&mut senses.pipeline);
-            pipeline.configure(config, sense, &senses.signal(sense));
+            pipeline.configure(model, config, sense, &senses.signal(sense));
             senses.pipeline = pipeline;
         }
         senses.make_room();

@@ -188,7 +188,8 @@ impl Viewer {
     pub fn eyes_rgba(&mut self, env: &Env) -> Result<&[u8], EnvError> {
         let side = env.config().vision_resolution as usize;
         let optics = self.optics.take();
-        let mut optics = optics.unwrap_or_else(|| [0, 1].map(|eye| pipeline::optics(env.config(), eye, side, side)));
+        let mut optics =
+            optics.unwrap_or_else(|| [0, 1].map(|eye| pipeline::optics(env.model(), env.config(), eye, [side, side])));
         let mut rgba = std::mem::take(&mut self.rgba);
         rgba.clear();
         for (eye, transforms) in EYES.into_iter().zip(&mut optics) {

@@ -16,6 +16,7 @@ pub use figures::BodyFigures;
 pub(crate) use figures::upright_extent;
 pub use growth::{Growth, GrowthError};
 pub use locks::{LockError, LockReport, LockTarget, held_by, lock, lock_of, unlock};
+pub(crate) use parts::JOINT_PREFIX;
 pub use parts::{MimoJoints, joint_part};
 pub use placement::held_posture;
 pub use scene::{DOCUMENT, SceneError, Version, build_model, build_scene, scene_xml};

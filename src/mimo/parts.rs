@@ -5,7 +5,7 @@ use crate::mimo::body_kind;
 use crate::model::{JointType, Model};
 
 /// Prefix of the names of MIMo's own joints.
-const JOINT_PREFIX: &str = "robot:";
+pub(crate) const JOINT_PREFIX: &str = "robot:";
 
 /// MIMo's own joints: the hinges named `robot:...`, in id order. The free joint and objects are not among them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,12 +5,10 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::model::Model;
+use crate::physics::MAXVAL;
 use crate::physics::state::{Contact, State};
 use crate::physics::topology::Topology;
 use crate::physics::world::PairTable;
-
-/// Coordinates and velocities beyond this count as divergence (MuJoCo's `mjMAXVAL`).
-const MAXVAL: f64 = 1e10;
 
 /// Advances a [`State`] of a [`Model`]. An engine remembers nothing that changes a later step: the state is all there
 /// is.

@@ -34,3 +34,6 @@ pub use state::{Contact, State};
 pub(crate) use table::Row;
 pub use topology::Topology;
 pub(crate) use vectorize::vectorize;
+
+/// Distance that counts as infinite; coordinates and velocities beyond it count as divergence (MuJoCo's `mjMAXVAL`).
+const MAXVAL: f64 = 1e10;

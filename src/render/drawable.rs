@@ -8,6 +8,10 @@ use crate::render::visual::single;
 
 /// Default colour of a geom; a geom that has it takes the colour of its material.
 const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
+/// Least opacity of a drawable that is not blended.
+pub(super) const OPAQUE: f32 = 0.995;
+/// Factor on the opacity of a plane seen from behind.
+pub(super) const BEHIND: f64 = 0.3;
 
 /// The element of the model that a [`Drawable`] shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

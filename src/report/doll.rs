@@ -5,7 +5,7 @@ use image::ExtendedColorType;
 use crate::assets::AssetSource;
 use crate::formats::png::png;
 use crate::math::*;
-use crate::mimo::upright_extent;
+use crate::mimo::{JOINT_PREFIX, upright_extent};
 use crate::model::Model;
 use crate::physics::{State, Topology, cameras, kinematics};
 use crate::render::{Aim, CpuRenderer, Element, Light, Poses, View, Visual};
@@ -20,16 +20,16 @@ const FOVY: f64 = 9.0;
 const MARGIN: f64 = 0.05;
 /// How far the arms are away from the body, rad: so that every part can be seen, or so that there is room beside him.
 const ARMS: [f64; 2] = [0.45, 0.12];
-/// The joints that move the arms away from the body.
-const SHOULDERS: [&str; 2] = ["robot:right_shoulder_ad_ab", "robot:left_shoulder_ad_ab"];
+/// Those of MIMo's joints that move the arms away from the body.
+const SHOULDERS: [&str; 2] = ["right_shoulder_ad_ab", "left_shoulder_ad_ab"];
 /// Posture, rad; joints that are not here are at 0.
 const POSTURE: [(&str, f64); 6] = [
-    ("robot:right_elbow", -0.3),
-    ("robot:left_elbow", -0.3),
-    ("robot:right_hip2", -0.12),
-    ("robot:left_hip2", -0.12),
-    ("robot:right_knee", -0.1),
-    ("robot:left_knee", -0.1),
+    ("right_elbow", -0.3),
+    ("left_elbow", -0.3),
+    ("right_hip2", -0.12),
+    ("left_hip2", -0.12),
+    ("right_knee", -0.1),
+    ("left_knee", -0.1),
 ];
 
 /// Bodies that keep their textures: clothes would hide the colours.
@@ -113,7 +113,7 @@ impl Doll {
         let mut state = State::new(model, &Topology::new(model));
         let shoulders = SHOULDERS.map(|joint| (joint, arms));
         for (joint, angle) in POSTURE.into_iter().chain(shoulders) {
-            if let Some(j) = model.joint(joint) {
+            if let Some(j) = model.joint(&format!("{JOINT_PREFIX}{joint}")) {
                 state.qpos[model.jnt_qposadr[j]] = angle;
             }
         }

@@ -9,6 +9,7 @@ use crate::env::EnvError;
 use crate::math::{Vec3, add, norm, sub};
 use crate::model::Model;
 use crate::physics::{FreeBody, State};
+use crate::sensors::touch::MIN_FORCE;
 
 const PURPOSE: &str = "behavior catch";
 /// Greatest shift of the ball at the start of an episode, m.
@@ -23,8 +24,6 @@ const ERROR: f64 = 0.005;
 const SETTLING: u32 = 50;
 /// Steps in a row with contact that count as caught.
 const HELD: usize = 100;
-/// Least normal force of a contact, N.
-const CONTACT: f64 = 1e-9;
 /// Depth below the hand, and distance from it, at which the ball is lost, m.
 const LOST: [f64; 2] = [0.1, 0.5];
 /// Reward of success, and of failure with another sign.
@@ -101,7 +100,7 @@ impl Catch {
         state.contact.iter().any(|c| {
             let [a, b] = c.geom;
             let pair = a == self.geom && self.own[b] || b == self.geom && self.own[a];
-            pair && c.force[0].abs() >= CONTACT
+            pair && c.force[0].abs() >= MIN_FORCE
         })
     }
 

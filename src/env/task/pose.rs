@@ -1,6 +1,7 @@
 //! Initial poses, as tables of joint angles.
 
 use crate::env::EnvError;
+use crate::mimo::JOINT_PREFIX;
 use crate::model::{JointType, Model};
 
 /// Angles of joints by name, without `robot:`, rad.
@@ -14,9 +15,14 @@ pub(super) fn set_angles(
     purpose: &'static str,
 ) -> Result<(), EnvError> {
     for &(name, angle) in angles {
-        qpos[address(model, &format!("robot:{name}"), purpose)?] = angle;
+        qpos[address(model, &own_joint(name), purpose)?] = angle;
     }
     Ok(())
+}
+
+/// Returns the whole name of one of MIMo's own joints.
+pub(super) fn own_joint(name: &str) -> String {
+    format!("{JOINT_PREFIX}{name}")
 }
 
 /// Returns the index in `qpos` of a joint that a task needs.

@@ -1,6 +1,6 @@
 //! Touching a part of one's own body.
 
-use super::pose::{Angles, free_address, set_angles};
+use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};
 use super::{Goal, Task, TaskSizes, body};
 use crate::config::{Compat, Config};
@@ -183,7 +183,7 @@ impl Task for SelfBody {
         set_angles(scene.model, SITTING, &mut scene.state.qpos, PURPOSE)?;
         scene.state.qpos[self.base..self.base + 7].copy_from_slice(&BASE);
         for &(joint, angle) in SITTING {
-            scene.lock(&format!("robot:{joint}"), angle, !scene.follows_reference())?;
+            scene.lock(&own_joint(joint), angle, !scene.follows_reference())?;
         }
         scene.relax(SETTLING)?;
         scene.state.qvel.fill(0.0);

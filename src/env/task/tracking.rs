@@ -1,6 +1,6 @@
 //! The head and the eyes follow a point.
 
-use super::pose::address;
+use super::pose::{address, own_joint};
 use super::scene::TaskScene;
 use crate::env::EnvError;
 use crate::math::{Vec3, norm, sub};
@@ -28,7 +28,7 @@ pub(super) struct HeadTracking {
 impl HeadTracking {
     /// Finds the joints. Under `compat: reference` with `forgets_torsion` the left eye rolls freely, as in the Python code.
     pub fn new(model: &Model, forgets_torsion: bool, purpose: &'static str) -> Result<Self, EnvError> {
-        let at = |name: &str| address(model, &format!("robot:{name}"), purpose);
+        let at = |name: &str| address(model, &own_joint(name), purpose);
         let straight = [
             "head_tilt_side",
             "left_eye_vertical",

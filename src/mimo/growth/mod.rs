@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use crate::config::{Compat, Config, MAX_AGE};
 use crate::math::Vec3;
-use crate::mimo::Version;
+use crate::mimo::{JOINT_PREFIX, Version};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
 use lengths::Lengths;
@@ -142,7 +142,7 @@ impl Growth {
         }
         for place in &self.body.joints {
             for (name, mirrored) in sides(place.side, place.name) {
-                let name = format!("robot:{name}");
+                let name = format!("{JOINT_PREFIX}{name}");
                 placed(draft.joint_pos(&name), "joint", &name, mirror(place.pos, mirrored))?;
             }
         }

@@ -53,9 +53,7 @@ mod tests;
 
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use crate::model::GeomType;
-
-/// Distance that counts as infinite (MuJoCo's `mjMAXVAL`).
-const BIG: f64 = 1e10;
+use crate::physics::MAXVAL as BIG;
 
 /// A geom with its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]

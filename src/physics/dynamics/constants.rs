@@ -6,6 +6,7 @@ use crate::math::*;
 use crate::model::{
     Arrays, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
 };
+use crate::physics::MAXVAL;
 use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendon_length};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
@@ -245,7 +246,7 @@ fn statistics(model: &Arrays, s: &State, dof_m0: &[f64]) -> Statistic {
 
 /// Returns the lowest and highest coordinates of all elements with their bounding spheres.
 fn bounds(model: &Arrays, s: &State) -> (Vec3, Vec3) {
-    let (mut low, mut high) = ([1e10_f64; 3], [-1e10_f64; 3]);
+    let (mut low, mut high) = ([MAXVAL; 3], [-MAXVAL; 3]);
     let mut include = |p: Vec3, r: f64| {
         for k in 0..3 {
             low[k] = low[k].min(p[k] - r);

@@ -191,8 +191,8 @@ pub(super) fn read_contacts(
                         read_own(model, manifold, a, &mut s.contact[k], &mut s.efc.force);
                     }
                 }
-                [Some(own), None] => read_foreign(model, manifold, (own, 0), stranger, s),
-                [None, Some(own)] => read_foreign(model, manifold, (own, 1), stranger, s),
+                [Some(own), None] => read_foreign(model, manifold, own, 0, stranger, s),
+                [None, Some(own)] => read_foreign(model, manifold, own, 1, stranger, s),
                 [None, None] => {}
             }
         }
@@ -231,7 +231,8 @@ fn read_own(model: &Model, manifold: &ContactManifold, first: usize, c: &mut Con
 fn read_foreign(
     model: &Model,
     manifold: &ContactManifold,
-    (own, side): (usize, usize),
+    own: usize,
+    side: usize,
     stranger: Option<usize>,
     s: &mut State,
 ) {

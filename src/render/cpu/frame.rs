@@ -8,7 +8,7 @@ use super::plane::{Basis, Vertex};
 use super::target::{Target, Triangle};
 use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
-use crate::render::drawable::{Drawable, Element, Shape};
+use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
 use crate::render::view::{Poses, View};
 use crate::render::visual::Visual;
 
@@ -102,11 +102,6 @@ pub struct Targets {
     pub centre: bool,
 }
 
-/// Least opacity of an opaque drawable.
-const OPAQUE: f32 = 0.995;
-/// Factor on the opacity of a plane seen from behind.
-const BEHIND: f64 = 0.3;
-
 /// Returns the pose of a drawable in the world.
 pub fn pose(drawable: &Drawable, poses: &Poses) -> (Vec3, Mat3) {
     match drawable.element {
@@ -129,7 +124,7 @@ impl Frame {
             let beside = |v: f32, tan: f32| v.abs() - z * tan <= r * (1.0 + tan * tan).sqrt();
             // written so that a NaN pose is out of view
             if z > eye.near - r && beside(x, eye.tan[0]) && beside(y, eye.tan[1]) {
-                self.arrange(drawable, &eye, i, (single(pos), mat.map(|v| v as f32), z));
+                self.arrange(drawable, &eye, i, single(pos), mat.map(|v| v as f32), z);
             }
         }
         let nearer = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
@@ -181,7 +176,7 @@ impl Frame {
     }
 
     /// Adds a drawable, which is `ahead` of the camera, to the list of opaque or transparent ones.
-    fn arrange(&mut self, drawable: &Drawable, eye: &Eye, index: usize, (pos, mat, ahead): (V3, [f32; 9], f32)) {
+    fn arrange(&mut self, drawable: &Drawable, eye: &Eye, index: usize, pos: V3, mat: [f32; 9], ahead: f32) {
         let plane = drawable.shape == Shape::Plane;
         let d = [eye.pos[0] - pos[0], eye.pos[1] - pos[1], eye.pos[2] - pos[2]];
         let draw = &mut self.draws[index];

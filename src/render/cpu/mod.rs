@@ -99,7 +99,7 @@ impl CpuRenderer {
                 }
             };
             self.shader
-                .resolve(frame, visual, poses, &eye, (Pixels::All, &mut *colours));
+                .resolve(frame, visual, poses, &eye, Pixels::All, &mut *colours);
             for (gray, pixel) in gray.into_iter().flatten().zip(colours.as_chunks().0) {
                 *gray = luma(*pixel);
             }
@@ -147,7 +147,7 @@ impl CpuRenderer {
         let eye = frame.begin(visual, poses, view, targets)?;
         frame.draw_opaque(visual, poses, &eye);
         frame.draw_transparent(visual, poses, &eye, false);
-        self.shader.resolve(frame, visual, poses, &eye, (Pixels::Second, out));
+        self.shader.resolve(frame, visual, poses, &eye, Pixels::Second, out);
         Ok(())
     }
 

@@ -234,7 +234,7 @@ fn blocks<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &[Edge; 3], [x
                     }
                 }
             } else {
-                patch::<S>(sink, width, local, (x, y), depth);
+                patch::<S>(sink, width, local, x, y, depth);
             }
         }
     }
@@ -246,7 +246,8 @@ fn patch<S: Sampling>(
     sink: &mut impl Sink,
     width: usize,
     mut local: [Local; 3],
-    (x, y): ([i32; 2], [i32; 2]),
+    x: [i32; 2],
+    y: [i32; 2],
     depth: &Depth,
 ) {
     let mut py = y[0];

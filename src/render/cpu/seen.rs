@@ -45,7 +45,8 @@ impl LitVertex {
         drawable: &Drawable,
         draw: &PlacedDrawable,
         mesh: &Mesh,
-        (eye, vertices): (&Eye, [usize; 4]),
+        eye: &Eye,
+        vertices: [usize; 4],
     ) -> [Self; 4] {
         let lanes = |of: &dyn Fn(usize) -> f32| f32x4::new(four(|k| of(vertices[k])));
         let at = [&mesh.x, &mesh.y, &mesh.z].map(|v| lanes(&|i| v[i]));
@@ -202,14 +203,14 @@ impl Seen {
                     batch[count] = vertex - draw.base;
                     count += 1;
                     if count == batch.len() {
-                        let lit = LitVertex::new(&self.lights, drawable, draw, mesh, (eye, batch));
+                        let lit = LitVertex::new(&self.lights, drawable, draw, mesh, eye, batch);
                         self.lit.extend_from_slice(&lit);
                         count = 0;
                     }
                 }
             }
             if count > 0 {
-                let lit = LitVertex::new(&self.lights, drawable, draw, mesh, (eye, batch));
+                let lit = LitVertex::new(&self.lights, drawable, draw, mesh, eye, batch);
                 self.lit.extend_from_slice(&lit[..count]);
             }
         }

@@ -88,7 +88,8 @@ impl Shader {
         visual: &Visual,
         poses: &Poses,
         eye: &Eye,
-        (pixels, out): (Pixels, &mut [u8]),
+        pixels: Pixels,
+        out: &mut [u8],
     ) {
         self.seen.find(frame, visual, poses, eye, pixels);
         let (w, h) = (frame.size[0], frame.size[1]);

@@ -5,7 +5,7 @@ use super::pipelines::Output;
 use super::scene::{GpuScene, LIGHTS};
 use crate::render::RenderRequest;
 use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, pose, single};
-use crate::render::drawable::{Drawable, Element, Shape};
+use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
 use crate::render::visual::Visual;
 
 /// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
@@ -14,10 +14,6 @@ pub const INSTANCE: usize = 44;
 pub const VIEW_ROWS: usize = 1024;
 /// Number of texels per view, as in the shader.
 pub const VIEW_TEXELS: usize = 7 + 2 * LIGHTS;
-/// Least opacity of a drawable that is not blended.
-const OPAQUE: f32 = 0.995;
-/// Factor on the opacity of a plane seen from behind.
-const BEHIND: f32 = 0.3;
 
 /// Instances of one class, drawn by one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -274,7 +270,7 @@ fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bo
     let cap = 0.5 * (sx + sy);
     let [red, green, blue, mut alpha] = drawable.rgba;
     if behind(eye, drawable, single(pos), &mat) {
-        alpha *= BEHIND;
+        alpha *= BEHIND as f32;
     }
     let id = match drawable.element {
         Element::Geom(g) => (g + 1) as f32,

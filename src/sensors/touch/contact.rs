@@ -7,7 +7,7 @@ use crate::physics::Contact;
 use crate::sensors::touch::SkinLayout;
 
 /// Least normal force (N) of a contact that is felt.
-const MIN_FORCE: f64 = 1e-9;
+pub(crate) const MIN_FORCE: f64 = 1e-9;
 
 /// One side of a contact: a body with skin, and what touches it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -39,6 +39,7 @@ mod values;
 
 use std::sync::Arc;
 
+pub(crate) use contact::MIN_FORCE;
 pub use contact::{TouchContact, touch_contacts};
 pub use hull::Hull;
 pub use layout::{MAX_SENSORS, SkinBody, SkinError, SkinGeom, SkinLayout};
