@@ -325,32 +325,3 @@ fn measurements_of_nobody_name_their_keys() {
         &["`thigh_circumference` is 70.0", "left_upper_leg"],
     );
 }
-
-/// A renderer that is not in this build is an error before anything is built.
-#[cfg(not(feature = "wgpu"))]
-#[test]
-fn without_the_feature_the_error_says_how_to_build() {
-    let config = Config {
-        renderer: babybench::config::RendererKind::Wgpu,
-        ..free(Behavior::None, Scene::Base)
-    };
-    assert_says(config, ["--features wgpu", "renderer: cpu"]);
-}
-
-/// So is an engine.
-#[cfg(not(feature = "rapier"))]
-#[test]
-fn without_the_engine_the_error_says_how_to_build() {
-    let config = Config {
-        engine: babybench::config::EngineKind::Rapier,
-        ..free(Behavior::None, Scene::Base)
-    };
-    assert_says(config, ["--features rapier", "engine: soft"]);
-}
-
-/// Checks that a configuration is refused with an error that has all of `words`.
-#[cfg(not(all(feature = "wgpu", feature = "rapier")))]
-fn assert_says(config: Config, words: [&str; 2]) {
-    let error = Env::new(config).expect_err("not in this build").to_string();
-    assert!(words.iter().all(|w| error.contains(w)), "{error}");
-}

@@ -220,17 +220,6 @@ mod commands {
     }
 }
 
-#[cfg(not(feature = "onnx"))]
-#[test]
-fn without_onnx_a_model_says_how_to_build() {
-    let folder = Folder::new("without");
-    refused(
-        &small(&folder, false),
-        "some/model.onnx",
-        &["some/model.onnx", "--features onnx"],
-    );
-}
-
 #[cfg(feature = "onnx")]
 mod onnx {
     use babybench::Env;
