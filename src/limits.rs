@@ -77,11 +77,11 @@ limits! {
         /// Pictures: bytes of memory for decoding one.
         picture_bytes: u64 = 160 * MIB,
         /// Policies: bytes of an answer of a program.
-        answer_bytes: usize = 1 * MIB,
+        answer_bytes: usize = MIB,
         /// Policies: bytes of an ONNX model.
-        model_bytes: u64 = 1 * GIB,
+        model_bytes: u64 = GIB,
         /// Configurations: bytes of a YAML text.
-        config_bytes: usize = 1 * MIB,
+        config_bytes: usize = MIB,
         /// NumPy archives: bytes of a file.
         npz_bytes: u64 = 4 * GIB,
         /// NumPy archives: arrays in an archive.
@@ -89,7 +89,7 @@ limits! {
         /// NumPy archives: bytes of the header of an array.
         npz_header_bytes: usize = 16 * KIB,
         /// NumPy archives: bytes of an array in memory, as stored and as converted.
-        npz_array_bytes: usize = 1 * GIB,
+        npz_array_bytes: usize = GIB,
         /// Pickles: bytes of a file.
         pickle_bytes: usize = 256 * MIB,
         /// Pickles: numbers in arrays and items in lists, all together.
