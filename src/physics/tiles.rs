@@ -130,6 +130,7 @@ fn add_products(sums: &mut Tile, a: &Tile, x: &Lanes) {
 /// Returns the sum of the lanes.
 #[inline(always)]
 pub fn total(x: &Lanes) -> f64 {
+    // the order in which vector instructions fold a register: halves onto each other, then the two that are left
     (x[0] + x[2]) + (x[1] + x[3])
 }
 
@@ -139,6 +140,7 @@ pub fn total(x: &Lanes) -> f64 {
 #[inline(always)]
 pub(super) fn factor_diagonal(h: &mut Tile) -> Lanes {
     let mut inv = [0.0; 4];
+    // from the last, like the elimination of rows of tiles
     for k in (0..4).rev() {
         inv[k] = 1.0 / h[k][k];
         let row = h[k];

@@ -64,6 +64,8 @@ impl Cone {
             dim: b.dim,
             row: b.row,
             mu: b.mu,
+            // the one curvature that makes cost and force continuous where the surface zone meets the quadratic one, at
+            // mu n + t = 0 (there d_k = d_0 (friction_k / mu)^2)
             dm: efc.d[b.row] / (b.mu * b.mu * (1.0 + b.mu * b.mu)),
             ..Self::default()
         };
@@ -86,6 +88,8 @@ impl Cone {
         }
         let t = tt.sqrt();
         self.force = [0.0; 6];
+        // The zones of the elliptic cone in MuJoCo's "Computation" chapter: the contact opens faster than friction
+        // could follow; or it holds without slipping; or it slides, with the force on the cone.
         if n >= mu * t || (t <= 0.0 && n >= 0.0) {
             self.zone = Zone::Flat;
             0.0
@@ -128,6 +132,8 @@ impl Cone {
         for k in 1..dim {
             gradient[k] = -mu * u[k] * self.friction[k] / t;
         }
+        // Positive, as y is negative on the surface. The length t is convex, so the second part of the product rule
+        // adds to the first, and the Hessian stays positive semidefinite.
         let curl = -mu * y / t;
         let mut h = [[0.0; 6]; 6];
         for a in 0..dim {
@@ -181,7 +187,9 @@ impl Cone {
         let n = c.n0 + alpha * c.n1;
         let half_rate = c.uv + alpha * c.vv;
         let tt = c.uu + alpha * (c.uv + half_rate);
+        // rounding may leave the square of a small length negative
         let t = tt.max(0.0).sqrt();
+        // the zones of `evaluate`; a contact may pass through all three along one line
         if n >= mu * t || (t <= 0.0 && n >= 0.0) {
             return;
         }

@@ -85,12 +85,14 @@ impl Hessian {
     #[inline(always)]
     fn find_changes(&mut self, island: &Island) {
         let first = self.weight.is_empty() && self.zone.is_empty();
+        // `analyse` has marked all rows
         if first {
             self.weight.extend(island.scalar_rows.iter().map(|q| q.weight));
             self.zone.extend(island.cones.iter().map(|c| c.0.zone));
             return;
         }
         for (i, (q, w)) in island.scalar_rows.iter().zip(&self.weight).enumerate() {
+            // dry friction is on the diagonal alone
             if i < island.friction_tiles && q.weight != *w {
                 self.changed[i] = true;
             }
@@ -120,6 +122,8 @@ impl Hessian {
             }
         }
         for ((c, j), zone) in island.cones.iter().zip(&self.zone) {
+            // on the surface the curvature turns with every step; in the quadratic zone it is constant, in the flat one
+            // nothing
             if c.zone != *zone || c.zone == Zone::Surface {
                 for &c in island.cols(j) {
                     self.changed[c as usize] = true;
@@ -145,6 +149,7 @@ impl Hessian {
             let inertia = island.m_pattern.start(i)..island.m_pattern.start(i + 1);
             let row = &mut self.h[self.pattern.start(i)..self.pattern.start(i + 1)];
             let inertia = &island.m[inertia];
+            // no constraint couples this row to more than its ancestors: nothing to spread out
             if row.len() == inertia.len() {
                 row.copy_from_slice(inertia);
             } else {
@@ -163,6 +168,7 @@ impl Hessian {
         for s in &island.singles {
             let (i, k) = (s.slot / 4, s.slot % 4);
             if self.changed[i] {
+                // a row that was kept has it already
                 let weight = island.scalar_rows[s.row / 4].weight[s.row % 4];
                 self.h[self.pattern.start(i + 1) - 1][k][k] += weight * s.value * s.value;
             }
@@ -178,6 +184,8 @@ impl Hessian {
             }
         }
         for (c, j) in &island.cones {
+            // a constraint that has not changed is added again to the changed rows among its own, as those start from
+            // the inertia
             if c.zone == Zone::Flat || !self.touches_changed(island, j) {
                 continue;
             }
@@ -236,9 +244,11 @@ impl Hessian {
     fn add_weighted_tiles(&mut self, n: usize, cols: &[u32], jac: &[Lanes], dim: usize) {
         for (a, (&i, rows)) in cols.iter().zip(jac.chunks_exact(dim)).enumerate() {
             let i = i as usize;
+            // kept rows hold this constraint already
             if !self.changed[i] {
                 continue;
             }
+            // columns ascend: those up to this row are the lower triangle
             for (&c, weighted) in cols[..a + 1].iter().zip(self.weighted.chunks_exact(dim)) {
                 let place = self.place[i * n + c as usize] as usize;
                 add_outer_products(&mut self.h[place], rows, weighted);
@@ -250,6 +260,9 @@ impl Hessian {
     #[inline(always)]
     fn factorise(&mut self) {
         let n = self.pattern.rows();
+        // From the last row, since joints have higher numbers than their ancestors: an inertia then fills in nothing
+        // (Featherstone 2008, chapter 6). What is eliminated into a row comes before it, so one pass carries changes
+        // all the way.
         for i in (0..n).rev() {
             let mut c = self.child[i];
             while c != NONE && !self.changed[i] {
@@ -272,6 +285,7 @@ impl Hessian {
         let cols = self.pattern.cols(i);
         let count = cols.len() - 1;
         let start = self.update_adr[i];
+        // updates lie in the order of their rows, and those eliminated into this row have higher numbers
         let (mine, others) = self.update[start..].split_at_mut(count * (count + 1) / 2);
         let first = start + mine.len();
         let row = &mut self.factor[range.clone()];
@@ -280,13 +294,17 @@ impl Hessian {
         if self.child[i] == NONE {
             mine.fill(ZERO);
         } else {
-            // the last column of a child is this row
+            // the last column of a child is this row, so the last row of its triangle is added here, the rest handed on
+            // The assembly of the multifrontal method (Duff and Reid, "The multifrontal solution of indefinite sparse
+            // symmetric linear equations", ACM Transactions on Mathematical Software 9, 1983): the updates of all
+            // children, added up, are all that eliminated rows do to this one and those below it.
             let mut empty = true;
             while c != NONE as usize {
                 let child_cols = &self.pattern.cols(c)[..self.pattern.cols(c).len() - 1];
                 let update = &others[self.update_adr[c] - first..];
                 let m = child_cols.len() - 1;
                 let (triangle, last) = update[..(m + 1) * (m + 2) / 2].split_at(m * (m + 1) / 2);
+                // the same columns, as everywhere along a limb: no places to look up
                 if m == count {
                     add_tiles(row, last);
                     if empty {
@@ -311,6 +329,7 @@ impl Hessian {
         let mut triangle = mine.iter_mut();
         for a in 0..count {
             solve_columns(diagonal, &mut row[a]);
+            // the row keeps D L, which `solve` wants; L serves the update alone
             let l = scale_rows(&row[a], &inv);
             for (g, u) in row[..a].iter().zip(&mut triangle) {
                 sub_transposed_product(u, &l, g);
@@ -342,6 +361,7 @@ fn extend_add(cols: &[u32], child_cols: &[u32], row: &mut [Tile], update: &mut [
     let mut child = child.iter();
     let mut a = 0;
     for (n, col) in child_cols.iter().enumerate() {
+        // both ascend, and a child's columns are all among its parent's: no search
         while cols[a] != *col {
             a += 1;
         }

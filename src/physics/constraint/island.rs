@@ -35,12 +35,12 @@ pub(super) struct Island {
     pub(super) m_pattern: Pattern,
     force_smooth: Vec<Lanes>,
     acc_smooth: Vec<Lanes>,
-    /// Number of scalar_rows that are the dry friction of a tile; none or all of them.
+    /// Number of leading entries of `scalar_rows` that hold dry friction, one for each tile: none or all of them.
     pub(super) friction_tiles: usize,
     pub(super) scalar_rows: Vec<ScalarRows>,
     /// Rows on one degree of freedom, which stand after dry friction.
     pub(super) singles: Vec<Single>,
-    /// Rows on several: first row in the scalar_rows, Jacobian.
+    /// Rows on several degrees of freedom: first row in `scalar_rows`, Jacobian.
     pub(super) several: Vec<(usize, Jacobian)>,
     /// Contacts with friction.
     pub(super) cones: Vec<(Cone, Jacobian)>,
@@ -58,7 +58,7 @@ pub(super) struct Island {
 }
 
 impl Island {
-    /// Reserves memory for `nv` degrees of freedom, whose inertia has so many tiles, and `contacts` contacts.
+    /// Reserves memory for `nv` degrees of freedom, whose inertia has `inertia` tiles, and `contacts` contacts.
     pub(super) fn with_capacity(inertia: usize, nv: usize, contacts: usize) -> Self {
         let lanes = || Vec::with_capacity(nv);
         Self {
@@ -117,6 +117,7 @@ impl Island {
         self.acc_smooth.clear();
         for &t in trees {
             let (first, rows) = (self.tiles(), topology.tile_adr[t]..topology.tile_adr[t + 1]);
+            // tiles count from 0 in the island, so that its matrices have no gaps for the trees that are elsewhere
             self.trees.push((t, first));
             // wraps where a tree moves down; so does the sum with it
             self.shift[t] = (4 * first).wrapping_sub(4 * rows.start);
@@ -153,6 +154,8 @@ impl Island {
         self.cols.clear();
         let block = |k: &u32| &efc.blocks[*k as usize];
         let friction = |b: &Block| b.kind == ConstraintType::FrictionDof;
+        // Dry friction is a row for each degree of freedom with a Jacobian of 1. In the lanes of the degrees of freedom
+        // such rows need no Jacobian at all; lanes without friction have d = 0, and so neither force nor cost.
         self.friction_tiles = if blocks.iter().any(|k| friction(block(k))) {
             self.tiles()
         } else {
@@ -169,11 +172,13 @@ impl Island {
                 self.cones.push((Cone::new(b, efc), jacobian));
             } else {
                 for k in 0..b.dim {
+                    // rows are packed without regard to their blocks, as a row is evaluated without its neighbours
                     if (row + k).is_multiple_of(4) {
                         self.scalar_rows.push(NO_ROWS);
                     }
                     self.scalar_rows[(row + k) / 4].set((row + k) % 4, efc, b.row + k, b);
                 }
+                // a limit of a joint is one number instead of a tile for each ancestor
                 if let Some(dof) = b.dof {
                     let slot = self.slot(topology, dof);
                     let value = efc.jac[b.jac][slot % 4];
@@ -217,6 +222,7 @@ impl Island {
             #[inline(always)]
             || mul(pattern, m, search, m_search),
         );
+        // `rates` writes to the rows of the island that the direction is part of
         let x = std::mem::take(&mut self.search);
         self.rates(&x, efc);
         self.search = x;
@@ -226,6 +232,7 @@ impl Island {
     #[inline(always)]
     fn rates(&mut self, x: &[Lanes], efc: &Efc) {
         for (q, x) in self.scalar_rows[..self.friction_tiles].iter_mut().zip(x) {
+            // the Jacobian of dry friction is 1
             q.jv = *x;
         }
         for s in &self.singles {
@@ -254,6 +261,7 @@ impl Island {
         for (x, v) in self.acc.iter_mut().zip(&self.search) {
             axpy(x, alpha, v);
         }
+        // all of it is linear along the search direction, so a step costs no product with M or J
         for (x, v) in self.ma.iter_mut().zip(&self.m_search) {
             axpy(x, alpha, v);
         }
@@ -270,6 +278,8 @@ impl Island {
     /// Returns the cost at the acceleration; fills in forces and curvatures.
     #[inline(always)]
     pub(super) fn evaluate(&mut self) -> f64 {
+        // a sum for each lane, so that vector instructions add in the same order as single ones: the bits agree on
+        // every processor
         let mut cost = [0.0; 4];
         for (((ma, f), a), b) in self
             .ma
@@ -279,6 +289,7 @@ impl Island {
             .zip(&self.acc_smooth)
         {
             for k in 0..4 {
+                // M (a - a_smooth) is at hand: `ma`, less the smooth force, since M qacc_smooth is qfrc_smooth
                 cost[k] += 0.5 * (ma[k] - f[k]) * (a[k] - b[k]);
             }
         }
@@ -303,6 +314,7 @@ impl Island {
         let out = &mut self.constraint_force;
         if self.friction_tiles > 0 {
             for (o, q) in out.iter_mut().zip(&self.scalar_rows) {
+                // J' of dry friction is 1, and these rows stand in the lanes of their degrees of freedom
                 *o = q.force;
             }
         } else {
@@ -319,6 +331,7 @@ impl Island {
             add_transposed_product(&self.cols, &efc.jac, j, &force, out);
         }
         for (c, j) in &self.cones {
+            // an open contact has no force
             if c.zone != Zone::Flat {
                 add_transposed_product(&self.cols, &efc.jac, j, &c.force, out);
             }
@@ -372,6 +385,7 @@ impl Island {
         }
         for q in &self.scalar_rows {
             for (&row, &f) in q.row.iter().zip(&q.force) {
+                // the last four may not be full, and lanes without dry friction are none
                 if row != NONE {
                     efc.force[row as usize] = f;
                 }

@@ -6,7 +6,7 @@ use crate::physics::tiles::{Lanes, total};
 /// A row on one degree of freedom.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Single {
-    /// Its place in the scalar_rows.
+    /// Its place in the scalar rows.
     pub(super) row: usize,
     /// Lane of the degree of freedom.
     pub(super) slot: usize,
@@ -37,6 +37,7 @@ impl Jacobian {
 pub(super) fn product<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, x: &[Lanes]) -> [f64; N] {
     let mut out = [0.0; N];
     let mut first = 0;
+    // a contact with friction has three rows or more: three sums at once read `x` once
     while first + 3 <= j.dim {
         let [a, b, c] = some_products::<3>(cols, jac, j, first, x);
         out[first..first + 3].copy_from_slice(&[a, b, c]);

@@ -52,8 +52,10 @@ impl LineSearch<'_> {
             } else {
                 high = alpha;
             }
+            // pieces of the cost are linear, where the slope has no rate
             let mut next = alpha - g / h.max(MINVAL);
             if !(next > low && next < high) {
+                // Newton's step may leave the bracket where the cost changes from one piece to another
                 next = if high.is_finite() {
                     0.5 * (low + high)
                 } else {

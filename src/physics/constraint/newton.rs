@@ -113,6 +113,8 @@ impl Newton {
                 let tree = topology.tile_tree(tile as usize);
                 if tree != last {
                     let (a, c) = (find(&mut self.parent, first), find(&mut self.parent, tree));
+                    // the lower number becomes the root, so that an island is named by its first tree whatever the
+                    // order of the contacts
                     self.parent[a.max(c)] = a.min(c);
                     last = tree;
                 }
@@ -128,6 +130,7 @@ impl Newton {
         // lists of the trees of each island, filled from their ends
         self.next.clear();
         self.next.resize(ntree, ntree);
+        // each tree is put right behind the root, so going down leaves the list ascending
         for t in (0..ntree).rev() {
             let root = self.parent[t];
             if root != t {
@@ -176,6 +179,7 @@ impl Newton {
             island.follow_search(efc);
             let along = island.along_search();
             // H search is minus the gradient: the curvature is minus the slope
+            // a slope that is not negative comes from rounding: there is nothing left to descend
             if along.length < MINVAL || along.slope >= 0.0 || -along.slope < MINVAL {
                 break;
             }
@@ -204,6 +208,8 @@ impl Newton {
             let previous = cost;
             cost = island.evaluate();
             let length = island.differentiate(efc);
+            // MuJoCo's two criteria; it applies them to all islands at once, so where it iterates on for another island
+            // it may be nearer to the minimum here
             if scale * (previous - cost) < model.opt.tolerance || scale * length < model.opt.tolerance {
                 break;
             }

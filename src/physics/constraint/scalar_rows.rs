@@ -65,8 +65,10 @@ impl ScalarRows {
         for k in 0..4 {
             let pull = self.d[k] * self.jar[k];
             let clamped = clamp(pull, self.low[k], self.high[k]);
+            // beyond a bound the cost is linear
             self.weight[k] = if clamped == pull { self.d[k] } else { 0.0 };
             self.force[k] = -clamped;
+            // d jar^2 / 2 between the bounds and its tangent beyond them (Huber's function) in one expression, as 1 = r d
             cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
         }
         cost

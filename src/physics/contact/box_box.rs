@@ -112,6 +112,7 @@ pub(super) fn box_box(
 fn least_axis(size1: Vec3, size2: Vec3, relative: &Relative, margin: f64) -> Option<LeastAxis> {
     let mut least = margin;
     for k in 0..3 {
+        // more than any overlap can be, so that the first axis is always an improvement
         least += size1[k] * 3.0 + size2[k] * 3.0;
     }
     let mut search = AxisSearch {
@@ -179,6 +180,7 @@ impl AxisSearch<'_> {
                     _ => [-w[1], w[0], 0.0],
                 };
                 let (normal, length) = unit(across);
+                // parallel edges have no axis across them; the faces have tested it already
                 if length < MINVAL {
                     continue;
                 }
@@ -187,6 +189,8 @@ impl AxisSearch<'_> {
                 for k in (0..3).filter(|&k| k != first) {
                     overlap += self.size1[k] * normal[k].abs();
                 }
+                // the axis is first x second / length, so second's axis k is along it as much as `first` is along the
+                // third axis, over the length (a triple product)
                 for k in (0..3).filter(|&k| k != second) {
                     overlap += self.size2[k] * self.relative.abs[3 * first + 3 - k - second] / length;
                 }
@@ -194,6 +198,8 @@ impl AxisSearch<'_> {
                 if overlap < -self.margin {
                     return None;
                 }
+                // where an edge axis is a face axis but for rounding, the face wins: its points lie all around the area
+                // of contact, those of edges near one corner of it
                 if overlap < self.least * (1.0 - 1e-12) {
                     self.least = overlap;
                     let reversed = distance < 0.0;
@@ -214,6 +220,7 @@ impl AxisSearch<'_> {
             }
             if k != second {
                 let rises = self.relative.rot[3 * first + 3 - k - second] > 0.0;
+                // the same triple product, with its sign
                 if rises ^ reversed ^ ((k + 3 - second) % 3 == 1) {
                     second_sides |= 1 << k;
                 }
@@ -333,6 +340,7 @@ impl<'a> BoxBounds<'a> {
         BoxBounds {
             pos: geom.pos,
             mat: geom.mat,
+            // one per cent either way keeps rounding at a surface from deciding
             outer: size.map(|s| s * 1.01),
             inner: size.map(|s| s / 1.01),
         }
@@ -358,5 +366,6 @@ impl<'a> BoxBounds<'a> {
 #[inline(always)]
 fn strays(point: Vec3, a: &BoxBounds, b: &BoxBounds) -> bool {
     let (in_a, in_b) = (a.local(point), b.local(point));
+    // the construction extends edges and faces beyond the boxes; a point that belongs to neither is its artefact
     (a.is_outside(in_a) && !b.is_inside(in_b)) || (b.is_outside(in_b) && !a.is_inside(in_a))
 }

@@ -29,6 +29,7 @@ impl Collector<'_> {
     /// Returns whether a distance above the face is beyond the margin.
     #[inline(always)]
     fn too_far(&self, height: f64, distance2: f64) -> bool {
+        // a square has lost the sign: what is under the face touches, however deep
         height > 0.0 && distance2 > self.margin2
     }
 }
@@ -43,6 +44,8 @@ fn signed_root(distance2: f64, height: f64) -> f64 {
 #[inline(always)]
 fn face_axes(relative: &Relative, edges: &EdgePair) -> (usize, usize, usize) {
     let (first, second) = (edges.first, edges.second);
+    // The normal is across both edges. Of two axes across the second edge, the one more along the first edge is
+    // therefore less along the normal, and likewise with the boxes exchanged.
     let (mut flat, mut steep) = OTHERS[second];
     if relative.abs[3 * first + flat] < relative.abs[3 * first + steep] {
         (flat, steep) = (steep, flat);
@@ -101,12 +104,15 @@ pub(super) fn edge_points(
     let size = frame.sizes(a.size);
     let orientation = frame.orientation(a.mat);
     let world_normal = scale(mat_vec(&orientation, normal), if edges.reversed { -1.0 } else { 1.0 });
+    // a normal in the face projects nothing onto it
     if normal[2].abs() < MINVAL {
         return world_normal;
     }
 
-    // corners of the second box's face: as they are, and projected along the normal
+    // projected along the normal, not straight down: the boxes are pushed apart along the normal, so what lies on one
+    // line along it will touch
     let mut centre = frame.vector(relative.second_from_first);
+    // heights count from the face, so that the sign of z tells over from under
     centre[2] -= size[2];
     let raw = face_corners(b, relative, edges, &frame, centre, [flat, steep]);
     let per_height = 1.0 / normal[2];
@@ -116,6 +122,8 @@ pub(super) fn edge_points(
         raw,
         projected,
         size,
+        // a step along the normal rises by normal.z; the sign makes what is under the face negative, whichever box the
+        // normal starts from
         depth_per_height: per_height * if edges.reversed { -1.0 } else { 1.0 },
     };
     let mut collector = Collector {
@@ -123,12 +131,16 @@ pub(super) fn edge_points(
         points,
     };
     patch.edges_across_sides(margin, &mut collector);
+    // Crossings mean that the outlines overlap: then only corners inside the other outline touch. Without any, one
+    // outline may hold the other or miss it by a little; corners that are beside the other outline along one coordinate
+    // only are then taken at its nearest point, so that boxes that do touch are not left without a contact.
     let crossed = !collector.points.is_empty();
     patch.rectangle_corners(crossed, quirks, &mut collector);
     patch.patch_corners(crossed, &mut collector);
 
     for point in points.iter_mut() {
         let [x, y, z] = point.pos;
+        // back from the face to the centre of the first box
         point.pos = add(mat_vec(&orientation, [x, y, z + size[2]]), a.pos);
     }
     world_normal
@@ -161,6 +173,8 @@ impl Patch {
                 if (raw_start[2] + raw_dir[2] * crossing.t) * self.depth_per_height > margin {
                     return;
                 }
+                // half of the edge's point and half of the side's, the latter at height 0: z is half the height, the
+                // distance twice that
                 let mut point = add_scaled(scale(raw_start, 0.5), raw_dir, 0.5 * crossing.t);
                 point[crossing.axis] += 0.5 * crossing.side;
                 point[1 - crossing.axis] += 0.5 * crossing.other;
@@ -188,12 +202,14 @@ impl Patch {
             if skip {
                 continue;
             }
+            // only a corner taken without crossings is moved
             let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
             let target = add_scaled(add_scaled(scale(r[0], 1.0 - u - v), r[1], u), r[2], v);
             let corner = [x, y, 0.0];
             let away = sub(corner, target);
             let distance2 = dot(away, away);
             if quirks.box_edge_determinant_reuse {
+                // MuJoCo 3.3.0 has one variable for both
                 determinant = distance2;
             }
             if collector.too_far(target[2], distance2) {
@@ -217,6 +233,7 @@ impl Patch {
             if skip {
                 continue;
             }
+            // half of the rectangle's point nearest to the corner; the other half is added below
             let mut target = [x * 0.5, y * 0.5, 0.0];
             let mut distance2 = 0.0;
             for k in 0..2 {
@@ -240,7 +257,8 @@ impl Patch {
 
 /// Returns whether a number is outside 0..1. NaN, which a reused determinant can give, is not.
 #[inline(always)]
-#[allow(clippy::manual_range_contains)] // `contains` is false for such a quotient
+#[allow(clippy::manual_range_contains)]
 fn off_unit(x: f64) -> bool {
+    // written out, as `contains` would call NaN outside
     x < 0.0 || x > 1.0
 }

@@ -1,4 +1,5 @@
-//! EPA: the depth of two overlapping convex shapes, from the simplex that GJK ended with.
+//! EPA: the depth of two overlapping convex shapes, from the simplex that GJK ended with (van den Bergen, "Proximity
+//! queries and penetration depth computation on 3D game objects", Game Developers Conference 2001).
 
 use super::gjk::Simplex;
 use super::nearest::{Projection, agree, combine3};
@@ -54,6 +55,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
     /// Appends the support along a direction that is divided by `length`.
     #[inline(always)]
     fn add_support(&mut self, dir: Vec3, length: f64) -> u16 {
+        // a direction without length has none; from any other the support is on the surface as well
         let unit = if length > MINVAL {
             [dir[0] / length, dir[1] / length, dir[2] / length]
         } else {
@@ -66,6 +68,8 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
     /// Adds the start faces and lists them, or stops at the first one that holds the origin and gives its vertices.
     fn add_start_faces(&mut self, faces: &[StartFace]) -> Result<(), [u16; 3]> {
         for &(vertices, neighbours) in faces {
+            // a face through the origin has no foot to expand along, and its distance of 0 would end the search as a
+            // depth of 0; the pyramids over that face enclose the origin instead
             if self.polytope.add_face(vertices, neighbours) < MINVAL {
                 return Err(vertices);
             }
@@ -97,7 +101,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         let [p, q, ..] = &simplex.vertices;
         let edge = sub(q.point, p.point);
 
-        // across the segment, from the coordinate axis most across it
+        // crossed with the axis most across the segment, since with one along it nothing would be left of the product
         let mut smallest = BIG;
         let mut axis = 0;
         for (k, component) in edge.iter().enumerate() {
@@ -110,7 +114,8 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         across[axis] = 1.0;
         let dir1 = cross(across, edge);
 
-        // turned about the segment, by Rodrigues' formula
+        // GJK ended on the segment because the origin is on it: three directions about it, 120 degrees apart, enclose
+        // the origin whichever way the first one points; the turn is Rodrigues' formula
         let length = norm(edge);
         let [x, y, z] = [edge[0] / length, edge[1] / length, edge[2] / length];
         let turn = 1.0 - COS;
@@ -154,16 +159,19 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         let (a, b, c) = (p.point, q.point, r.point);
         let normal = cross(sub(b, a), sub(c, a));
         let length = norm(normal);
+        // three vertices on a line have no side to put a pyramid on
         if length < MINVAL {
             return None;
         }
         for vertex in [p, q, r] {
             self.polytope.add_simplex_vertex(vertex);
         }
+        // the origin is in the triangle: one pyramid would leave it in the base, two hold it between them
         let below = self.add_support(scale(normal, -1.0), length);
         let above = self.add_support(normal, length);
 
-        // neither may lie in the triangle
+        // a support in the triangle itself means that the shape is flat: the pyramid has no volume for the origin to be
+        // in
         for vertex in [above, below] {
             let point = self.polytope.point(vertex);
             let weights = Projection::of(a, b, c).weights(a, b, c, point);
@@ -180,6 +188,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
             ([below, 0, 2], [3, 1, 5]),
             ([below, 2, 1], [4, 2, 3]),
         ];
+        // no restart from here, as it would lead here again
         self.add_start_faces(&faces).ok()?;
         self.list_start_faces();
         Some(())
@@ -199,7 +208,8 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         if let Err(triangle) = self.add_start_faces(&faces) {
             return self.restart(triangle);
         }
-        // the origin has to be strictly inside
+        // GJK may have kept four vertices by rounding alone; from an origin outside, the feet of some faces point
+        // inwards, and their distances bound nothing
         for k in 0..4 {
             let [a, b, c, opposite] = [0, 1, 2, 3].map(|n| self.polytope.point((k + n) & 3));
             let normal = cross(sub(b, a), sub(c, a));
@@ -216,7 +226,8 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         let mut upper = UNBOUNDED;
         let mut nearest: Option<u16> = None;
         for _ in 0..iterations {
-            // nearest open face: a lower bound of the depth
+            // the polytope is inside the shape, so the surface is at least as far as its nearest face: a lower bound of
+            // the depth
             let previous = nearest;
             let mut lower = UNBOUNDED;
             for open in &self.polytope.open {
@@ -226,15 +237,18 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
                 }
             }
             let face = nearest?;
+            // only rounding brings the bounds past each other; the face before was consistent with both
             if lower > upper {
                 nearest = previous;
                 break;
             }
+            // the origin is on the surface: there is no direction to go on in, and no depth
             if lower <= 0.0 {
                 break;
             }
 
-            // the support beyond it: an upper bound
+            // pushing the shapes apart along this normal takes as much as the support is high: an upper bound of the
+            // depth
             let foot = self.polytope.faces[face as usize].foot;
             let apex = self.add_support(foot, lower);
             let w = self.polytope.point(apex);
@@ -242,6 +256,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
             if bound < upper {
                 upper = bound;
             }
+            // bounds that meet: the nearest face is on the surface of the shape
             if upper - lower < tolerance {
                 break;
             }
@@ -249,9 +264,11 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
             // replace what the new vertex sees by a fan around it
             self.polytope.carve(face, w);
             let edges = self.polytope.horizon.len();
+            // a hole in a closed surface has three edges at least; rounding has torn this one
             if edges < 3 {
                 return None;
             }
+            // the face is carved out by now, but its foot and vertices are still a lower bound of the depth
             if edges + self.polytope.faces.len() > MAX_FACES {
                 break;
             }
@@ -275,6 +292,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
             let outer = &mut self.polytope.faces[face as usize];
             let (start, end) = (outer.vertices[edge as usize], outer.vertices[after(edge) as usize]);
             outer.neighbours[edge as usize] = number(k);
+            // `carve` lists the horizon in the order around the hole, so that the fan's neighbours are those next in it
             let before = number(if k == 0 { count - 1 } else { k - 1 });
             let after = number(if k + 1 == count { 0 } else { k + 1 });
             self.polytope.add_face([apex, end, start], [before, face, after]);
@@ -282,9 +300,12 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
         // in a second pass, so that no branch waits for a distance
         for k in 0..count {
             let distance = self.polytope.faces[first + k].distance;
+            // a face through the origin, or without area: its foot says nothing about the depth
             if distance == 0.0 {
                 return None;
             }
+            // a face beyond the upper bound never becomes the nearest; one below the lower bound owes that to rounding,
+            // since a convex polytope that grows does not come nearer
             self.polytope.list(number(k), distance >= lower && distance <= upper);
         }
         Some(())
@@ -294,6 +315,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
     fn witness(&self, face: u16) -> Overlap {
         let face = &self.polytope.faces[face as usize];
         let [p, q, r] = face.vertices.map(|v| &self.polytope.vertices[v as usize]);
+        // points of the difference are differences of points, so one set of weights gives the points of both shapes
         let projection = Projection::of(p.point, q.point, r.point);
         let weights = projection.weights(p.point, q.point, r.point, face.foot);
         Overlap {

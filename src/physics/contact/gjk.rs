@@ -1,4 +1,6 @@
-//! GJK: the distance of two convex shapes, or the answer that they overlap.
+//! GJK: the distance of two convex shapes, or the answer that they overlap (Gilbert, Johnson and Keerthi, "A fast
+//! procedure for computing the distance between complex objects in three-dimensional space", IEEE Journal of Robotics
+//! and Automation 4, 1988; Ericson, "Real-Time Collision Detection", 2005, section 9.5).
 
 use super::nearest::{segment_weights, tetrahedron_weights, triangle_weights};
 use super::support::{Difference, Support, Vertex};
@@ -45,6 +47,8 @@ pub(super) fn gjk<A: Support, B: Support>(
     simplex: &mut Simplex,
 ) -> Closest {
     let mut search = Search {
+        // any point of the difference would do; this one is there without a support, and near the origin where the
+        // shapes are near each other
         nearest: sub(centre_a, centre_b),
         weights: [1.0, 0.0, 0.0, 0.0],
         count: 0,
@@ -107,9 +111,12 @@ impl Search {
             simplex.vertices[self.count] = shape.support(dir);
             let newest = simplex.vertices[self.count].point;
 
-            // no vertex is much nearer
+            // twice the product bounds by how much the square of the distance is above the least (the duality gap of
+            // Frank and Wolfe for |x|^2, whose gradient is 2 x). At the origin it is 0 whatever the shapes are, hence
+            // `may_stop`
             let may_stop = iteration > 0 || !at_origin || limits.stop_at_same_centre;
             if may_stop && 2.0 * dot(self.nearest, sub(self.nearest, newest)) < tolerance2 {
+                // the start point is no vertex; callers read at least one
                 if iteration == 0 {
                     self.count = 1;
                 }
@@ -119,9 +126,11 @@ impl Search {
                 return Enclosure::Outside;
             }
 
-            // a first tetrahedron is moved towards the origin as a whole
+            // whether the origin is inside can be told from a tetrahedron alone, without nearest points; but not how
+            // far away the shapes are, so a search for the distance does not ask
             if self.count == 3 && may_test_tetrahedron {
                 match enclose_origin(shape, simplex, &mut iteration, limits.iterations) {
+                    // undecided: the weights go on from the tetrahedron as it was
                     Enclosure::Unknown => may_test_tetrahedron = false,
                     known => return known,
                 }
@@ -130,10 +139,12 @@ impl Search {
             self.weights = simplex_weights(&simplex.vertices, self.count + 1);
             self.count = drop_weightless(&mut simplex.vertices, &mut self.weights);
             let next = combine(&self.weights, &simplex.vertices, self.count, |v| v.point).unwrap_or([0.0; 3]);
+            // a point that does not move asks for the same support again, for ever
             if (0..3).all(|k| (next[k] - self.nearest[k]).abs() < MINVAL) {
                 break;
             }
             self.nearest = next;
+            // a tetrahedron of which no vertex can be spared holds the origin
             if self.count == 4 {
                 break;
             }
@@ -147,6 +158,7 @@ impl Search {
 #[inline(always)]
 fn towards_origin(point: Vec3) -> (bool, Vec3) {
     let length2 = dot(point, point);
+    // NaN ends here as well, so that no support is asked for along it
     let at_origin = length2 <= MINVAL * MINVAL || length2.is_nan();
     let dir = if at_origin {
         [-1.0, 0.0, 0.0]
@@ -167,6 +179,9 @@ impl Limits {
     /// apart, as far as the search needs to know.
     #[inline(always)]
     fn separates(&self, nearest: Vec3, newest: Vec3) -> bool {
+        // the newest vertex is the farthest towards the origin: if it is still on this side of the origin, all are. Its
+        // height over the origin, the product over |nearest|, is then a lower bound of the distance; squares spare the
+        // root
         let overlap = dot(nearest, newest);
         let known = !self.wants_distance()
             || self.cutoff < BIG && overlap * overlap / dot(nearest, nearest) >= self.cutoff * self.cutoff;
@@ -180,6 +195,7 @@ fn drop_weightless(vertices: &mut [Vertex; 4], weights: &mut [f64; 4]) -> usize 
     let mut count = 0;
     for k in 0..4 {
         if weights[k] != 0.0 {
+            // the vertices left keep their order, as the weights prefer the newer of two that are equally near
             if count != k {
                 vertices[count] = vertices[k];
                 weights[count] = weights[k];
@@ -244,13 +260,14 @@ fn enclose_origin<A: Support, B: Support>(
     const FACES: [[usize; 3]; 4] = [[2, 1, 3], [0, 2, 3], [1, 0, 3], [0, 1, 2]];
     let mut vertices = simplex.vertices;
     while *iteration < iterations {
-        // signed distances of the faces from the origin
+        // signed distances of the faces: positive where the origin is on the inner side
         let mut normals = [[0.0; 3]; 4];
         let mut distances = [0.0; 4];
         for (slot, [a, b, c]) in FACES.into_iter().enumerate() {
             let (a, b, c) = (vertices[a].point, vertices[b].point, vertices[c].point);
             let normal = cross(sub(c, a), sub(b, a));
             let length2 = dot(normal, normal);
+            // a face without area, or too large to be squared, has no normal; at the distance BIG it is never the worst
             if length2 > MINVAL * MINVAL && length2 < BIG * BIG {
                 normals[slot] = scale(normal, 1.0 / length2.sqrt());
                 distances[slot] = dot(normals[slot], a);
@@ -259,6 +276,7 @@ fn enclose_origin<A: Support, B: Support>(
                 distances[slot] = BIG;
             }
         }
+        // the origin is in the plane of a face, and neither side of it
         if distances.contains(&0.0) {
             return Enclosure::Unknown;
         }
@@ -271,11 +289,15 @@ fn enclose_origin<A: Support, B: Support>(
             simplex.vertices = vertices;
             return Enclosure::Inside;
         }
+        // the shape has to reach beyond this face to hold the origin: the support says whether it does, and takes the
+        // place of the vertex behind the face
         vertices[worst] = shape.support(normals[worst]);
         if dot(normals[worst], vertices[worst].point) < 0.0 {
             return Enclosure::Outside;
         }
-        vertices.swap((worst + 1) & 3, (worst + 2) & 3); // keeps the normals outwards
+        // the new vertex is on the other side of the face, which turns the tetrahedron inside out; an exchange turns it
+        // back
+        vertices.swap((worst + 1) & 3, (worst + 2) & 3);
         *iteration += 1;
     }
     Enclosure::Unknown

@@ -38,6 +38,7 @@ pub(super) fn foot_on_plane(a: Vec3, b: Vec3, c: Vec3) -> Option<Vec3> {
         if length2 == 0.0 {
             return None;
         }
+        // a short normal, or one across the base point, has lost its digits to cancellation; other edges may do better
         if height != 0.0 && length2 > MINVAL {
             return Some(scale(normal, height / length2));
         }
@@ -56,6 +57,7 @@ pub(super) fn segment_weights(a: Vec3, b: Vec3) -> [f64; 2] {
     let mut length = 0.0f64;
     for k in 0..3 {
         let extent = a[k] - b[k];
+        // the quotient by a short extent would magnify rounding
         if extent.abs() >= length.abs() {
             length = extent;
             axis = k;
@@ -124,6 +126,7 @@ pub(super) fn triangle_weights(a: Vec3, b: Vec3, c: Vec3) -> [f64; 3] {
         agree(projection.area, k[1]),
         agree(projection.area, k[2]),
     ];
+    // the foot is in the triangle exactly if all three parts turn the same way as the whole
     if inside == [true; 3] {
         return scale_down(k, projection.area);
     }
@@ -157,6 +160,7 @@ pub(super) fn tetrahedron_weights(v: [Vec3; 4]) -> [f64; 4] {
     ];
     let volume = k[0] + k[1] + k[2] + k[3];
     let inside = k.map(|part| agree(volume, part));
+    // the origin is inside exactly if all four parts have the sign of the whole
     if inside == [true; 4] {
         return k.map(|part| part / volume);
     }

@@ -135,6 +135,7 @@ impl Polytope {
     pub(super) fn list(&mut self, face: u16, wanted: bool) {
         // without a branch, since for most faces of EPA it is hard to predict
         let entry = &mut self.faces[face as usize];
+        // a wanted face stays, another one is truncated at once
         let place = self.open.len();
         entry.state = if wanted {
             Listing::Listed(place as u16)
@@ -150,11 +151,13 @@ impl Polytope {
     #[inline]
     fn delete(&mut self, face: u16) {
         if let Listing::Listed(place) = self.faces[face as usize].state {
+            // constant time; the order that it leaves is MuJoCo's, and decides between faces of equal distance
             self.open.swap_remove(place as usize);
             if let Some(moved) = self.open.get(place as usize) {
                 self.faces[moved.face as usize].state = Listing::Listed(place);
             }
         }
+        // the face keeps its place and its values: neighbours refer to it by number, and EPA may still end with it
         self.faces[face as usize].state = Listing::Deleted;
     }
 
@@ -162,6 +165,7 @@ impl Polytope {
     #[inline(always)]
     fn edge_from(&self, face: u16, vertex: u16) -> u8 {
         let [first, second, _] = self.faces[face as usize].vertices;
+        // a face found across an edge has the vertex, so two comparisons tell which of three it is, and no branch
         (first != vertex) as u8 * (1 + (second != vertex) as u8)
     }
 
@@ -170,9 +174,12 @@ impl Polytope {
         self.horizon.clear();
         self.pending.clear();
         self.delete(seed);
+        // a stack gives the last first: edges 0, 1, 2 in turn, each followed to its end, walk the horizon once around,
+        // and the fan of new faces relies on that order
         self.pending.push(Edge { face: seed, edge: 2 });
         self.pending.push(Edge { face: seed, edge: 1 });
-        // the neighbour across the first edge is looked at even if it is deleted
+        // as MuJoCo does, without asking whether this neighbour is deleted: in a closed polytope only the seed is so
+        // far
         self.cross_edge(Edge { face: seed, edge: 0 }, w);
         while let Some(next) = self.pending.pop() {
             let neighbour = self.faces[next.face as usize].neighbours[next.edge as usize];
@@ -189,6 +196,8 @@ impl Polytope {
         let face = here.neighbours[from.edge as usize];
         let edge = self.edge_from(face, here.vertices[after(from.edge) as usize]);
         let there = &self.faces[face as usize];
+        // `foot` is the normal, as long as the distance: the face sees the points beyond its plane, where the product
+        // exceeds the square. A face whose plane holds the point is replaced as well
         if dot(there.foot, w) < there.distance * there.distance {
             self.horizon.push(Edge { face, edge });
             return;
@@ -196,6 +205,7 @@ impl Polytope {
         self.delete(face);
         self.pending.push(Edge {
             face,
+            // below the other edge on the stack, for the order around the horizon
             edge: before(edge),
         });
         self.pending.push(Edge {

@@ -6,7 +6,7 @@ use crate::model::Arrays;
 use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::physics::state::State;
 
-/// One value for the inertia, one for the inertia with implicit damping.
+/// One value for the inertia, one for the inertia with implicit damping: side by side, one vector instruction does both.
 type Pair = [f64; 2];
 
 /// The matrix to solve with.
@@ -51,6 +51,7 @@ const fn at(i: usize, j: usize) -> usize {
 fn matrix(i: &Inertia) -> [f64; 21] {
     let [xx, yy, zz, xy, xz, yz, x, y, z, m] = *i;
     [
+        // below the rotational part stands the matrix that crosses with the mass times the offset of its centre
         xx, xy, yy, xz, yz, zz, // rotation
         0.0, z, -y, m, // x
         -z, 0.0, x, 0.0, m, // y
@@ -66,17 +67,22 @@ impl Articulated {
         self.inertia.extend(s.cinert.iter().map(|i| matrix(i).map(|v| [v; 2])));
         self.released.resize(model.nv, Released::default());
         let h = model.opt.timestep;
+        // children have higher ids than their parents, so each body is complete when its turn comes
         for b in (1..model.nbody()).rev() {
             let (head, tail) = self.inertia.split_at_mut(b);
             let inertia = &mut tail[0];
             for d in (model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b]).rev() {
+                // armature is inertia of the motor's rotor, felt along the joint alone; h D is what implicit damping
+                // adds to the diagonal
                 let extra = [
                     model.dof_armature[d],
                     model.dof_armature[d] + h * s.params.dof_damping[d],
                 ];
+                // from the joint next to the body to the one next to its parent: each moves all behind it
                 self.released[d] = release(inertia, &s.cdof[d], extra);
             }
             let p = model.body_parentid[b];
+            // the world cannot be accelerated: what it would feel is of no consequence
             if p > 0 {
                 for (a, c) in head[p].iter_mut().zip(inertia) {
                     for k in 0..2 {
@@ -116,6 +122,9 @@ impl Articulated {
         self.force[bodies.clone()].fill([0.0; 6]);
         self.acc.resize(nb, [0.0; 6]);
         self.rest.resize(model.nv, 0.0);
+        // The second and third pass of the articulated-body algorithm (Featherstone 2008, table 7.1), without its
+        // velocity terms: those are in `b`. Inwards, each joint keeps what its own inertia takes of the force and
+        // passes on the rest.
         for body in bodies.clone().rev() {
             let mut f = self.force[body];
             let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
@@ -130,6 +139,7 @@ impl Articulated {
                 axpy6(&mut self.force[p], 1.0, &f);
             }
         }
+        // outwards, each joint answers to the acceleration of its parent, which is known by then
         for body in bodies {
             let p = model.body_parentid[body];
             let mut a = if p > 0 { self.acc[p] } else { [0.0; 6] };
@@ -153,6 +163,7 @@ fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
     let (mut felt, mut inverse) = (extra, [0.0; 2]);
     for i in 0..6 {
         for j in 0..6 {
+            // only the lower triangle is kept, as the inertia stays symmetric
             let place = if j <= i { at(i, j) } else { at(j, i) };
             for k in 0..2 {
                 force[i][k] += inertia[place][k] * axis[j];
@@ -166,6 +177,7 @@ fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
         inverse[k] = 1.0 / felt[k];
     }
     for i in 0..6 {
+        // I - U D^-1 U': what moves freely with the joint is not felt beyond it
         let scaled = [force[i][0] * inverse[0], force[i][1] * inverse[1]];
         for j in 0..=i {
             for k in 0..2 {

@@ -20,7 +20,8 @@ impl Hessian {
         }
         let several = island.several.iter().map(|s| &s.1);
         for j in several.chain(island.cones.iter().map(|c| &c.1)) {
-            // elimination hands the coupling down to the lower rows
+            // all columns of a constraint couple to each other; elimination hands the coupling down from the last one
+            // to the lower rows, so that it need not be entered there
             if let [cols @ .., last] = island.cols(j) {
                 let row = *last as usize * words;
                 cols.iter().for_each(|&c| set(&mut self.bits[row..], c));
@@ -32,6 +33,7 @@ impl Hessian {
         self.factor.resize(tiles, ZERO);
         self.inv.resize(n, [0.0; 4]);
         self.changed.clear();
+        // a factor of another island, or of other contacts, is no use
         self.changed.resize(n, true);
         self.weight.clear();
         self.zone.clear();
@@ -47,8 +49,11 @@ impl Hessian {
         self.sibling.resize(n, NONE);
         for i in (0..n).rev() {
             let (head, row) = self.bits.split_at_mut(i * words);
+            // the diagonal is always there, and would be found as the last column
             row[i / 64] &= !(1 << (i % 64));
-            // a row hands its pattern to its last nonzero column
+            // a row hands its pattern to its last nonzero column, its parent in the elimination tree (Liu, "The role of
+            // elimination trees in sparse factorization", SIAM Journal on Matrix Analysis and Applications 11, 1990):
+            // the parent couples the columns in the same way, so handing it to them as well would add nothing
             if let Some(w) = (0..words).rev().find(|&w| row[w] != 0) {
                 let j = w * 64 + 63 - row[w].leading_zeros() as usize;
                 let target = &mut head[j * words..(j + 1) * words];
@@ -60,6 +65,7 @@ impl Hessian {
             }
         }
         self.pattern.clear();
+        // never smaller: places outside the pattern may be stale, as no one asks for them
         self.place.resize((n * n).max(self.place.len()), 0);
         self.update_adr.clear();
         let mut updates = 0;
@@ -73,6 +79,7 @@ impl Hessian {
                 let mut bits = self.bits[i * words + w];
                 while bits != 0 {
                     push(w * 64 + bits.trailing_zeros() as usize);
+                    // clears the lowest bit
                     bits &= bits - 1;
                 }
             }
