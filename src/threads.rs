@@ -1,4 +1,7 @@
-//! Threads that do jobs, first come, first served. Without threads the caller does them.
+//! A pool of threads that runs jobs, first come, first served. Without threads the caller runs them.
+//!
+//! Not a general pool (rayon's, say): the caller has to get back whichever job is done first, jobs own their inputs and
+//! results so that nothing is borrowed across threads, and a step allocates nothing.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,17 +11,17 @@ use std::thread::JoinHandle;
 /// Whether this build has threads.
 pub const PARALLEL: bool = cfg!(all(feature = "parallel", not(target_arch = "wasm32")));
 
-/// Something to do, with all that it needs and all that comes of it.
+/// A unit of work with its inputs and results.
 pub trait Job: Send + 'static {
-    /// Does it. A panic must be caught and kept for the caller.
+    /// Runs the job. A panic must be caught and kept for the caller.
     fn run(&mut self);
 }
 
-/// A queue of jobs to do, one of those that are done, and the threads between them.
+/// A queue of jobs to run, a queue of finished jobs, and the threads between them.
 ///
 /// Jobs move through the queues by value, in boxes, so that nothing is allocated and nothing is shared. When the caller helps,
-/// the last thread rests. Whoever has to wait looks out for a moment before it goes to sleep, as waking up takes longer than
-/// many a job.
+/// the last thread rests. A waiting thread spins for a moment before it goes to sleep, as waking up takes longer than many
+/// jobs do.
 pub struct Pool<J: Job> {
     shared: Arc<Shared<J>>,
     workers: Vec<JoinHandle<()>>,
@@ -26,22 +29,22 @@ pub struct Pool<J: Job> {
 
 struct Shared<J> {
     queues: Mutex<Queues<J>>,
-    /// Tells the threads that there is something to do.
+    /// Signals the threads that there are jobs.
     work: Condvar,
-    /// Tells the last thread, which is left asleep while the caller helps.
+    /// Signals the last thread, which is left asleep while the caller helps.
     spare: Condvar,
-    /// Tells the caller that what it waits for has been done.
+    /// Signals the caller that the jobs it waits for are finished.
     ready: Condvar,
-    /// Counts what was handed over, and what has run; both change under the lock.
+    /// Numbers of batches submitted and of jobs finished; both change under the lock.
     handed: AtomicUsize,
     finished: AtomicUsize,
-    /// How often a thread, or the caller, looks out before it sleeps.
+    /// Number of spins before a thread, or the caller, goes to sleep.
     patience: u32,
 }
 
-/// Looks before going to sleep: some 30 us.
+/// Spins before going to sleep, about 30 us.
 const PATIENCE: u32 = 1000;
-/// Looks where jobs are short and come one by one, some 0.3 ms: to sleep and wake up would cost more than it spares.
+/// Spins where jobs are short and come one by one, about 0.3 ms: sleeping and waking up would cost more than it saves.
 const LONG_PATIENCE: u32 = 10 * PATIENCE;
 
 struct Queues<J> {
@@ -62,7 +65,7 @@ impl<J> Shared<J> {
         self.queues.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Looks out, without the lock, for a count to move on by `by` from where it stands; for a moment.
+    /// Spins, without the lock, until a count has grown by `by`, or patience runs out.
     fn look_out(&self, queues: MutexGuard<'_, Queues<J>>, count: &AtomicUsize, by: usize) {
         let start = count.load(Ordering::Relaxed);
         drop(queues);
@@ -74,9 +77,11 @@ impl<J> Shared<J> {
         }
     }
 
-    /// Waits for something to do, for a thread that has found nothing.
+    /// Waits for jobs, for a thread that has found none.
     fn idle<'a>(&'a self, mut queues: MutexGuard<'a, Queues<J>>, index: usize) -> MutexGuard<'a, Queues<J>> {
         if index < queues.active {
+            // read under the lock that `submit` counts under: a batch that comes before `wait` is seen below, or the
+            // condition variable is signalled after it
             let before = self.handed.load(Ordering::Relaxed);
             self.look_out(queues, &self.handed, 1);
             queues = self.lock();
@@ -84,6 +89,7 @@ impl<J> Shared<J> {
                 return queues;
             }
         }
+        // a condition variable of its own, so that waking the others does not wake the thread that rests
         let bell = if index + 1 == queues.threads {
             &self.spare
         } else {
@@ -100,12 +106,12 @@ impl<J: Job> Pool<J> {
     /// The system gives no more threads.
     pub fn new(threads: usize, jobs: usize) -> std::io::Result<Self> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        // without a core for each, whoever looks out keeps another from working
+        // with more threads than cores, a spinning thread would starve a worker
         Self::start(threads, jobs, if threads > cores { 0 } else { PATIENCE })
     }
 
-    /// Starts a thread for one job at a time, beside a caller who does another. Both stay awake from one job to the next where
-    /// these follow each other closely.
+    /// Starts a thread for one job at a time, next to a caller who does another. Both stay awake from one job to the next where
+    /// jobs follow each other closely.
     ///
     /// # Errors
     /// As [`Pool::new`].
@@ -116,6 +122,7 @@ impl<J: Job> Pool<J> {
     fn start(threads: usize, jobs: usize, patience: u32) -> std::io::Result<Self> {
         let threads = if PARALLEL { threads } else { 0 };
         let queues = Queues {
+            // room for all jobs at once, so that no step allocates
             jobs: VecDeque::with_capacity(jobs),
             done: VecDeque::with_capacity(jobs),
             threads,
@@ -144,16 +151,17 @@ impl<J: Job> Pool<J> {
         Ok(pool)
     }
 
-    /// Wakes a thread that [`Pool::of_one`] started, as there will be something to do in a moment.
+    /// Wakes a thread that [`Pool::of_one`] started, as a job is about to come.
     pub fn wake(&self) {
         self.shared.spare.notify_one();
     }
 
-    /// Hands jobs over. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others rests.
+    /// Submits jobs. With `help`, the caller is one of the threads ([`Pool::next`]), and the last of the others rests.
     pub fn submit(&self, jobs: impl Iterator<Item = Box<J>>, help: bool) {
         let mut queues = self.shared.lock();
         queues.jobs.extend(jobs);
         queues.active = queues.threads.saturating_sub(usize::from(help));
+        // relaxed, as the lock orders it; whoever spins on it only wants to know when to take the lock
         self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
         if !self.workers.is_empty() {
@@ -164,7 +172,7 @@ impl<J: Job> Pool<J> {
         }
     }
 
-    /// Returns the next job that is done; the caller helps to do them. Nothing comes back if nothing is under way.
+    /// Returns the next finished job; the caller helps to run them. `None` if no job is under way.
     pub fn next(&self, under_way: usize) -> Option<Box<J>> {
         let mut queues = self.shared.lock();
         loop {
@@ -183,7 +191,17 @@ impl<J: Job> Pool<J> {
         }
     }
 
-    /// Waits until `wanted` jobs are done, which must be under way. Without threads the caller does them, in order.
+    /// Returns the next finished job, of which at least one must be under way; the caller helps.
+    pub fn wait_next(&self) -> Box<J> {
+        loop {
+            // empty-handed only if nothing were under way
+            if let Some(job) = self.next(1) {
+                return job;
+            }
+        }
+    }
+
+    /// Waits until `wanted` jobs, which must be under way, are finished. Without threads the caller runs them, in order.
     pub fn wait_for(&self, wanted: usize) {
         let mut queues = self.shared.lock();
         while queues.done.len() < wanted {
@@ -208,12 +226,12 @@ impl<J: Job> Pool<J> {
         queues.done.remove(at)
     }
 
-    /// Returns a finished job, the first first.
+    /// Returns the oldest finished job, if there is one.
     pub fn take(&self) -> Option<Box<J>> {
         self.shared.lock().done.pop_front()
     }
 
-    /// Waits for the threads until `wanted` jobs are done, or for less.
+    /// Waits for the threads until `wanted` jobs are finished; may return early.
     fn wait<'a>(&'a self, queues: MutexGuard<'a, Queues<J>>, wanted: usize) -> MutexGuard<'a, Queues<J>> {
         let missing = wanted.saturating_sub(queues.done.len());
         self.shared.look_out(queues, &self.shared.finished, missing);
@@ -234,6 +252,7 @@ impl<J: Job> Drop for Pool<J> {
     fn drop(&mut self) {
         let mut queues = self.shared.lock();
         queues.stop = true;
+        // jobs that nobody has begun are dropped unrun: nobody will ask for them
         queues.jobs.clear();
         self.shared.handed.fetch_add(1, Ordering::Relaxed);
         drop(queues);
@@ -264,6 +283,7 @@ fn work<J: Job>(shared: &Shared<J>, index: usize) {
         queues = shared.lock();
         queues.done.push_back(job);
         shared.finished.fetch_add(1, Ordering::Relaxed);
+        // one signal for a whole batch: waking the caller for each job would cost more than most jobs
         if queues.wanted.is_some_and(|wanted| queues.done.len() >= wanted) {
             shared.ready.notify_one();
         }

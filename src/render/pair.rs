@@ -9,10 +9,10 @@ use crate::render::view::ImageBuffers;
 use crate::render::{CpuRenderer, Poses, RenderError, RenderRequest, View, Visual};
 use crate::threads::{Job, PARALLEL, Pool};
 
-/// A thread that draws images, and what it draws them with. The thread starts with the first pair of images.
+/// A thread that draws images, and the drawing it works on. The thread starts with the first pair of images.
 #[derive(Default)]
 pub struct Pair {
-    /// The drawing, when it is not with the thread.
+    /// The drawing, while the thread does not have it.
     drawing: Option<Box<Drawing>>,
     thread: Option<Thread>,
 }
@@ -24,7 +24,7 @@ struct Thread {
 }
 
 impl Pair {
-    /// Returns whether a second thread would be of use: this build has threads, and the machine another core.
+    /// Returns whether a second thread would help: the build has threads, and the machine another core.
     pub fn is_of_use() -> bool {
         PARALLEL && std::thread::available_parallelism().is_ok_and(|cores| cores.get() > 1)
     }
@@ -48,9 +48,9 @@ impl Pair {
         let drawn = match self.thread() {
             Some(Thread { pool, .. }) => {
                 pool.submit(std::iter::once(drawing), false);
-                // a panic has to wait until the thread is done
+                // unwinding past the thread would lose the drawing that it holds
                 let drawn = catch_unwind(AssertUnwindSafe(draw_first));
-                drawing = pool.next(1).expect("a drawing is under way");
+                drawing = pool.wait_next();
                 drawn.unwrap_or_else(|payload| resume_unwind(payload))
             }
             // the system gives no thread: the caller draws both
@@ -74,12 +74,12 @@ impl Pair {
         }
     }
 
-    /// Returns how often the thread went through the geometry of a scene.
+    /// Returns the number of passes of the thread over a scene's geometry.
     pub fn passes(&self) -> u64 {
         self.drawing.as_ref().map_or(0, |drawing| drawing.renderer.passes())
     }
 
-    /// Returns the thread, which is started where there is none yet. A process that was forked from another starts its own.
+    /// Returns the thread, starting it if need be. A forked process starts its own.
     fn thread(&mut self) -> Option<&Thread> {
         let process = std::process::id();
         if self.thread.as_ref().is_some_and(|thread| thread.process != process) {
@@ -92,7 +92,7 @@ impl Pair {
         self.thread.as_ref()
     }
 
-    /// Leaves a thread alone that stayed behind in the process that this one was forked from: nobody could wait for it.
+    /// Forgets a thread of the parent process. A fork copies memory but not threads, so joining it would wait for ever.
     fn leave_behind(&mut self) {
         std::mem::forget(self.thread.take());
     }
@@ -123,7 +123,7 @@ struct Drawing {
     depth: Image<f32>,
     segmentation: Image<i32>,
     outcome: Result<(), RenderError>,
-    /// What a panic said. Only the mutex lets a renderer with a pair be shared between threads.
+    /// The payload of a panic. The mutex is there to make the type `Sync`, which a payload alone is not.
     panicked: Mutex<Option<Box<dyn Any + Send>>>,
 }
 
@@ -147,7 +147,7 @@ impl Drawing {
         }
     }
 
-    /// Takes over what is to be drawn, and makes room for as many values as `images` has.
+    /// Takes over a request, and makes room for as many values as `images` has.
     fn take_up(&mut self, request: &RenderRequest, images: &ImageBuffers<'_>) {
         self.view = request.view;
         self.poses.copy_from(&request.poses);
@@ -161,7 +161,7 @@ impl Drawing {
         self.panicked.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Copies what was drawn.
+    /// Copies the images to the caller's buffers.
     fn hand_over(&mut self, images: ImageBuffers<'_>) -> Result<(), RenderError> {
         std::mem::replace(&mut self.outcome, Ok(()))?;
         self.rgb.hand_over(images.rgb);

@@ -1,8 +1,8 @@
-//! Texels around which an image has one colour: a lookup there needs no interpolation.
+//! Marks texels around which a texture has one colour, where a lookup needs no interpolation.
 
 use super::texture::Level;
 
-/// Fourth byte of a texel beside which there may be another colour.
+/// Fourth byte of a texel that may have a neighbour of another colour.
 pub const MIXED: u8 = 255;
 /// Fourth byte of a texel if those to the right, below and diagonally between have the same colour.
 pub const PLAIN: u8 = 254;
@@ -13,7 +13,7 @@ pub const SETTLED: u8 = 252;
 /// Bound on the rounding of texture coordinates, texels.
 const ROUNDING: f32 = 0.01;
 
-/// Sets the fourth byte of each texel of an image, where it is [`MIXED`] before.
+/// Sets the fourth byte of each texel of a texture, which must be [`MIXED`] before.
 pub fn mark(levels: &mut [Level]) {
     for level in &mut *levels {
         let one = level.pixels.iter().all(|p| *p == level.pixels[0]);
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn marks_say_where_lookups_are_constant() {
-        // a dark column on the left; the next level is grey beside it, and lighter on the right
+        // a dark column on the left; the next level is gray beside it, and lighter on the right
         let fine = level(8, 8, |x, _| if x == 0 { 0 } else { 9 });
         let coarse = level(4, 4, |x, _| [5, 9, 9, 8][x]);
         let mut levels = [fine, coarse];

@@ -17,7 +17,7 @@ pub struct Renderer {
 enum Backend {
     Cpu {
         renderer: Box<CpuRenderer>,
-        /// What draws every second image, if a thread of its own does.
+        /// The second thread, if there is one, which draws every second image.
         pair: Option<Pair>,
     },
     Gpu(SharedGpu),
@@ -59,15 +59,15 @@ impl Renderer {
         }
     }
 
-    /// Tells that two images will be wanted in less than some 0.1 ms, so that the second thread can wake up in the meantime. With
-    /// one thread nothing happens.
+    /// Signals that two images will be requested within about 0.1 ms, so that the second thread can wake up in the meantime. Does
+    /// nothing with one thread.
     pub fn prepare(&self) {
         if let Backend::Cpu { pair: Some(pair), .. } = &self.backend {
             pair.wake();
         }
     }
 
-    /// Returns how many threads draw on the CPU: 1 or 2. 1 if images are drawn on a GPU.
+    /// Returns the number of threads that draw on the CPU, 1 or 2; 1 if images are drawn on a GPU.
     pub fn threads(&self) -> usize {
         match &self.backend {
             Backend::Cpu { pair: Some(_), .. } => 2,
@@ -75,7 +75,7 @@ impl Renderer {
         }
     }
 
-    /// Returns how often the renderer on the CPU went through the geometry; 0 if images are drawn on a GPU.
+    /// Returns the number of passes over the scene's geometry on the CPU; 0 if images are drawn on a GPU.
     pub fn passes(&self) -> u64 {
         match &self.backend {
             Backend::Cpu { renderer, pair } => renderer.passes() + pair.as_ref().map_or(0, Pair::passes),
@@ -128,7 +128,7 @@ impl Renderer {
         self.draw(requests, outs.into_iter().map(ImageBuffers::rgb))
     }
 
-    /// Draws images in grey, one byte of brightness for each pixel: see [`CpuRenderer::gray`].
+    /// Draws gray images, one byte of brightness for each pixel: see [`CpuRenderer::gray`].
     ///
     /// # Errors
     /// Fails like [`Renderer::draw`].
@@ -140,7 +140,7 @@ impl Renderer {
         self.draw(requests, outs.into_iter().map(ImageBuffers::gray))
     }
 
-    /// Draws depth, the distance (m) of what each pixel shows: see [`CpuRenderer::depth`].
+    /// Draws depth, the distance (m) of the surface at each pixel: see [`CpuRenderer::depth`].
     ///
     /// # Errors
     /// Fails like [`Renderer::draw`].
@@ -152,7 +152,7 @@ impl Renderer {
         self.draw(requests, outs.into_iter().map(ImageBuffers::depth))
     }
 
-    /// Draws geom ids, the geom that each pixel shows: see [`CpuRenderer::segmentation`].
+    /// Draws geom ids, the geom at each pixel: see [`CpuRenderer::segmentation`].
     ///
     /// # Errors
     /// Fails like [`Renderer::draw`].

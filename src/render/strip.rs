@@ -8,7 +8,7 @@ pub const STRIP_LANES: usize = 4;
 pub struct Strip {
     /// Corners a, b, c, d of the first.
     pub first: [u16; 4],
-    /// What is added to each corner from one to the next, 0 or 1.
+    /// Increment of each corner from one quadrilateral to the next, 0 or 1.
     pub step: [u16; 4],
     /// Number of quadrilaterals, a multiple of [`STRIP_LANES`].
     pub count: usize,

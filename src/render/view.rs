@@ -61,7 +61,7 @@ impl View {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeCamera {
-    /// Point in the middle of the image, world, m.
+    /// Point at the centre of the image, world, m.
     pub lookat: Vec3,
     /// Distance from it, m.
     pub distance: f64,
@@ -131,10 +131,10 @@ pub struct ImageBuffers<'a> {
     pub rgb: Option<&'a mut [u8]>,
     /// Brightness by the weights 0.2989, 0.5870, 0.1140, (H, W).
     pub gray: Option<&'a mut [u8]>,
-    /// Distance (m) from the camera's plane to what the middle of each pixel shows, (H, W); infinite where it shows
+    /// Distance (m) from the camera's plane to the surface at the centre of each pixel, (H, W); infinite where there is
     /// nothing. Transparent things are not drawn.
     pub depth: Option<&'a mut [f32]>,
-    /// The geom that the middle of each pixel shows, by id, (H, W); -1 where it shows none. Sites hide what is behind
+    /// The id of the geom at the centre of each pixel, (H, W); -1 where there is none. Sites occlude geoms behind
     /// them, and so do transparent geoms.
     pub segmentation: Option<&'a mut [i32]>,
 }
@@ -146,7 +146,7 @@ impl<'a> ImageBuffers<'a> {
         Self { rgb, ..Self::default() }
     }
 
-    /// Asks for an image in grey alone.
+    /// Asks for a gray image alone.
     pub fn gray(out: &'a mut [u8]) -> Self {
         let gray = Some(out);
         Self {

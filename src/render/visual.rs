@@ -23,7 +23,7 @@ pub struct Light {
     pub pos: Option<Vec3>,
     /// Unit direction in the body.
     pub dir: Vec3,
-    /// What it follows.
+    /// The element that it follows.
     pub aim: Aim,
     /// Ambient colour.
     pub ambient: [f32; 3],

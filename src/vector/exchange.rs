@@ -1,4 +1,7 @@
-//! Resets and steps: environments go to the pool with their tasks, and come back with their rows.
+//! Resets and steps: environments go to the pool with their orders, and come back with their rows.
+//!
+//! An environment moves to a thread and back by value: a slot that is empty is in flight, so nothing can be called on it
+//! meanwhile, and no lock is held while it steps.
 
 use super::slot::{Slot, Task};
 use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
@@ -35,6 +38,7 @@ impl VectorEnv {
         seeds: impl Into<Seeds<'s>>,
         mut buffers: Buffers<'_>,
     ) -> Result<(), VectorError> {
+        // before anything is submitted: memory of a wrong shape leaves all environments as they are
         buffers.check(self.len(), &self.layout)?;
         self.submit_resets(mask, seeds.into())?;
         self.collect(&mut buffers)?;
@@ -63,6 +67,7 @@ impl VectorEnv {
             slot.task = Task::Reset(seeds.of(env));
             Some(slot)
         });
+        // the caller has nothing to do until all are back, so it takes jobs as well
         self.pool.submit(slots, true);
         self.in_flight = (0..n).filter(|env| marked(*env)).count();
         Ok(())
@@ -135,6 +140,7 @@ impl VectorEnv {
         }
         self.set_actions(actions, Some(ids))?;
         let slots = ids.iter().filter_map(|&env| self.slots[env].take());
+        // the caller returns at once, so all threads are awake
         self.pool.submit(slots, false);
         self.in_flight += ids.len();
         Ok(())
@@ -145,6 +151,7 @@ impl VectorEnv {
     /// # Errors
     /// More environments than are in flight, or none; an environment that panicked, which is not in flight any more.
     pub fn recv(&mut self, n: usize) -> Result<Batch<'_>, VectorError> {
+        // the rows are written from the slots, both of which `self` owns
         let mut rows = std::mem::take(&mut self.rows);
         let received = self.receive(n, &mut rows.buffers());
         self.rows = rows;
@@ -167,6 +174,7 @@ impl VectorEnv {
     fn receive(&mut self, n: usize, out: &mut Buffers<'_>) -> Result<(), VectorError> {
         self.check_sent(n)?;
         self.pool.wait_for(n);
+        // the panic first, and alone: rows already finished stay in the queue for the next call
         if let Some(slot) = self.pool.take_where(|slot| slot.panicked.is_some()) {
             self.in_flight -= 1;
             let env = slot.index;
@@ -187,6 +195,7 @@ impl VectorEnv {
         for row in 0..self.ids.len() {
             self.write(row, self.ids[row], out);
         }
+        // in the order of environments, whichever came back first: the same whatever the number of threads
         self.failures.sort_by_key(|f| f.env);
         Ok(())
     }
@@ -228,19 +237,22 @@ impl VectorEnv {
         self.sends += 1;
         for (row, action) in rows() {
             let env = env_of(row);
-            // an environment that is named twice would be in flight the second time
+            // an environment named twice would be in flight the second time; a mark with the number of the call finds
+            // it without clearing marks
             let home = self.slots[env].as_mut().filter(|slot| slot.named != self.sends);
             let slot = home.ok_or(VectorError::InFlight { env })?;
             slot.named = self.sends;
             if !slot.can_step() {
                 return Err(VectorError::NotReset { env });
             }
+            // the quick test for the common case; `check_action` words the error
             if !action.iter().all(|v| v.is_finite()) {
                 slot.env.check_action(action).map_err(of(env))?;
             }
         }
         for (row, action) in rows() {
             if let Some(slot) = &mut self.slots[env_of(row)] {
+                // in a second pass, when all actions have been checked: an error leaves everything untouched
                 slot.task = Task::Step;
                 slot.action.clear();
                 slot.action.extend_from_slice(action);
@@ -285,11 +297,12 @@ impl VectorEnv {
             self.in_flight -= 1;
             self.slots[env] = Some(slot);
             if all && !self.deferred {
-                // while its numbers are still near
+                // at once, while its numbers are in this core's cache and other threads are still stepping
                 self.write(env, env, out);
             }
         }
         self.draw_eyes()?;
+        // a reset of some environments returns the rows of all; images drawn together exist only now
         if !all || self.deferred {
             for env in 0..n {
                 self.write(env, env, out);

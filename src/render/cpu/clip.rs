@@ -80,6 +80,7 @@ pub fn place(rows: &[Row; 4], low: V3, high: V3) -> Place {
     ];
     let mut within = true;
     for (row, sign, by) in planes {
+        // the extremes of a linear function over a box, one coordinate at a time
         let mut least = sign * row[3] - by * w[3];
         let mut greatest = least;
         let mut size = row[3].abs() + w[3].abs();
@@ -153,6 +154,7 @@ impl Polygon {
         for k in 0..kept {
             let (p, q) = (source[k], source[if k + 1 < kept { k + 1 } else { 0 }]);
             let (a, b) = (distance(plane, p.clip), distance(plane, q.clip));
+            // an infinite vertex has no crossing to interpolate
             if !(a.is_finite() && b.is_finite()) {
                 self.count = 0;
                 return;
@@ -183,6 +185,8 @@ impl Polygon {
 /// Returns whether a triangle certainly faces away from the camera, so that nothing of it can be seen.
 pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
     const CLEAR: f32 = 1e-3;
+    // the triple product of (x, y, w) tells which side is in front without a division, also where a corner is behind
+    // the camera (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics Hardware 1997)
     let flat = |v: Clip| [v[0], v[1], v[3]];
     let (a, b, c) = (flat(a), flat(b), flat(c));
     let minus = |p: [f32; 3], q: [f32; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];

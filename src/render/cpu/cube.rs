@@ -27,7 +27,7 @@ impl CubePoints {
         }
     }
 
-    /// Locates pixels that lie on several sides: each as if the whole block were on its side.
+    /// Locates pixels of a block across several faces: each as if the whole block were on its face.
     #[cold]
     fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
         let own = side.map(|side| Self::on(faces, side, at));
@@ -64,6 +64,8 @@ impl CubePoints {
         let half = 0.5 * inverse;
         let scale = half * f32x4::splat(faces[0][0].width as f32);
         let length = |change: fn(f32x4) -> f32x4| {
+            // the differences of sc / ma by the quotient rule, as llvmpipe takes them; those of the quotients would
+            // choose other levels
             let shift = change(ma) * inverse;
             let s = (change(sc) - shift * sc) * scale;
             let t = (change(tc) - shift * tc) * scale;
@@ -90,6 +92,7 @@ impl CubePoints {
         let spots = Spots::new(self.u, self.v, f32x4::splat(image.width as f32));
         if spots.inside == 15 {
             let first = texels(image, spots.first);
+            // around a settled texel there is no other colour, in this level or the next: nothing to lerp
             if are_settled(first) {
                 return channels(first);
             }
@@ -127,7 +130,7 @@ impl CubePoints {
         colours
     }
 
-    /// Blends in the colours of the next level.
+    /// Lerps to the colours of the next mip level.
     #[inline(always)]
     fn blend(&self, colours: &mut Vectors, next: &Vectors) {
         let share = f32x4::new(self.detail.blend);
@@ -201,7 +204,7 @@ impl Spots {
         self.between([at(0), at(1), at(n), at(n + 1)])
     }
 
-    /// Blends four texels for each pixel.
+    /// Lerps between four texels for each pixel.
     #[inline(always)]
     fn between(&self, [a, b, c, d]: [Vectors; 4]) -> Vectors {
         three(|k| {
@@ -313,6 +316,7 @@ fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u
         _ => {
             let place = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;
             let at = direction(side, place(x), place(y));
+            // the direction of the texel's centre, beyond the edge, points through the adjoining face
             let side = Axes::new(&at.map(f32x4::splat)).sides()[0];
             let (right, down, out) = components(side, at);
             let index = |v: f32| (((v / out + 1.0) * 0.5 * n as f32) as usize).min(n - 1);

@@ -1,4 +1,7 @@
-//! Which faces of a drawable certainly show their back: their vertices need not be projected.
+//! Conservative back-face culling, before projection: vertices that only back faces use need not be projected.
+//!
+//! What is culled here must be what the rasteriser would reject: it decides by the rounded corners of triangles in the image,
+//! so a face counts as a back face only if rounding cannot turn it.
 
 use wide::f32x4;
 
@@ -50,12 +53,16 @@ impl Facing {
         }
         let half = [image[0] as f32 * 0.5, image[1] as f32 * 0.5];
         let focal = [half[0] * eye.focal[0], half[1] * eye.focal[1]];
+        // the greatest slope of the projection focal x / z: x / z itself is at most half / focal in the image
         let steepest = |k: usize| (focal[k] * focal[k] + half[k] * half[k]).sqrt();
         Some(Self {
             eye: [0, 1, 2].map(|k| d[0] * m[k] + d[1] * m[3 + k] + d[2] * m[6 + k]),
             size: drawable.size,
             nearest: steepest(0).max(steepest(1)) / near,
+            // the area of a projected triangle is focal^2 times the triple product of its corners over the product of
+            // their three depths
             area: focal[0] * focal[1] / (far * far * far),
+            // each end moves by half a step at most; single precision adds a little that grows with the image
             moved: 1.05 / 256.0 + 1e-5 * half[0].max(half[1]),
         })
     }
@@ -70,6 +77,8 @@ impl Facing {
             MeshPart::Bottom => (cap, cap - length),
         };
         let [x, y, z] = self.eye;
+        // In the unit shape all drawables share their normals and offsets. Which side of a plane a point is on survives
+        // any scaling.
         let eye = [x / width, y / depth, (z - shift) / stretch];
         let edge = [band.edge[0] * width, band.edge[1] * depth, band.edge[2] * stretch];
         let longest = dot(edge, edge).sqrt() * self.nearest;
@@ -84,7 +93,7 @@ impl Facing {
 }
 
 impl PartFacing {
-    /// Returns one bit for each quadrilateral of a patch that may show its front.
+    /// Returns one bit for each quadrilateral of a patch that may be a front face.
     #[inline(always)]
     pub fn fronts(&self, patch: &Patch) -> u8 {
         let [x, y, z] = patch.normal.map(f32x4::new);

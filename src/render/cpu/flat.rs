@@ -1,4 +1,4 @@
-//! Lookups in two-dimensional textures, in 8-bit arithmetic.
+//! Bilinear lookups in two-dimensional textures, in llvmpipe's 8-bit arithmetic.
 
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4, u16x8, u32x4};
@@ -35,6 +35,8 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
         let first = texels(spots.level, spots.places(spots.y.before, spots.x.before));
         out = blend(out, spots.colours(first), u16x8::splat((share * f32::from(ONE)) as u16));
     }
+    // 16-bit lanes: two channels of each texel fit into a 32-bit lane, and products of bytes and weights do not
+    // overflow
     let [red_blue, green] = out.map(cast::<_, i32x4>);
     let low = i32x4::splat(0xffff);
     [red_blue & low, green & low, red_blue >> 16].map(f32x4::from_i32x4)
@@ -47,7 +49,7 @@ fn spread(texels: u32x4) -> Channels {
     [cast(texels & bytes), cast(texels >> 8 & bytes)]
 }
 
-/// Blends bytes with weights of 0..256.
+/// Lerps between bytes with weights of 0..256.
 #[inline(always)]
 fn blend(a: Channels, b: Channels, weight: u16x8) -> Channels {
     let rest = u16x8::splat(ONE) - weight;
@@ -55,7 +57,7 @@ fn blend(a: Channels, b: Channels, weight: u16x8) -> Channels {
     [one(0), one(1)]
 }
 
-/// Coordinates along one axis of an image that repeats.
+/// Coordinates along one axis of an image that wraps around (OpenGL's `GL_REPEAT`).
 struct RepeatedAxis {
     /// Index of the texel before.
     before: f32x4,
@@ -69,6 +71,7 @@ impl RepeatedAxis {
     #[inline(always)]
     fn new(at: f32x4, size: f32) -> Self {
         let n = f32x4::splat(size);
+        // texels are sampled at their centres, half a texel in
         let at = (at - whole(at)) * n - 0.5;
         let low = whole(at);
         // NaN coordinates give an arbitrary texel

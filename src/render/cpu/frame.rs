@@ -1,4 +1,4 @@
-//! The geometry of an image: what is in view.
+//! The geometry of an image: frustum culling, the order of drawing, occlusion by what is nearer.
 
 use std::ops::Range;
 
@@ -15,17 +15,17 @@ use crate::render::visual::Visual;
 /// The geometry of an image.
 #[derive(Debug, Default)]
 pub struct Frame {
-    /// What is seen at four samples of each pixel.
+    /// The visibility buffer at four samples of each pixel, for colours.
     pub colour: Target,
-    /// What is seen at the middle of each pixel.
+    /// The visibility buffer at the centre of each pixel, for depth and segmentation.
     pub centre: Target,
-    /// Those of both that are drawn to.
+    /// Which of the two are drawn to.
     pub targets: Targets,
     /// Width and height, pixels.
     pub size: [usize; 2],
     /// Projected vertices of everything that is drawn.
     pub vertices: Vec<Vertex>,
-    /// Their places, 1/256 pixels from the lower left, rounded to whole numbers.
+    /// Their positions, 1/256 pixels from the lower left, rounded to whole numbers.
     pub x: Vec<f32>,
     pub y: Vec<f32>,
     /// For each vertex, one bit for every clipping plane that it lies beyond.
@@ -36,7 +36,7 @@ pub struct Frame {
     pub needed: Vec<bool>,
     /// Triangles of the drawable being drawn that are still to be rasterised.
     pub waiting: Waiting,
-    /// Points made by clipping.
+    /// Vertices made by clipping.
     pub points: Vec<ClipPoint>,
     /// Everything that is drawn, indexed like the drawables of the visual.
     pub draws: Vec<PlacedDrawable>,
@@ -98,7 +98,7 @@ impl PlacedDrawable {
 pub struct Targets {
     /// Four samples for each pixel, for colours.
     pub colour: bool,
-    /// The middle of each pixel, for depth and segmentation.
+    /// The centre of each pixel, for depth and segmentation.
     pub centre: bool,
 }
 
@@ -121,12 +121,15 @@ impl Frame {
             let (pos, mat) = pose(drawable, poses);
             let [x, y, z] = eye.locate(single(pos));
             let r = drawable.radius;
+            // the side planes of the frustum lean by `tan`; the root makes their normals unit vectors
             let beside = |v: f32, tan: f32| v.abs() - z * tan <= r * (1.0 + tan * tan).sqrt();
             // written so that a NaN pose is out of view
             if z > eye.near - r && beside(x, eye.tan[0]) && beside(y, eye.tan[1]) {
                 self.arrange(drawable, &eye, i, single(pos), mat.map(|v| v as f32), z);
             }
         }
+        // front to back: what is near occludes whole drawables behind it. Equal distances keep the model's order, so
+        // that sorting gives the same image everywhere
         let nearer = |a: &(f32, u32), b: &(f32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         self.opaque.sort_unstable_by(nearer);
         self.transparent.sort_unstable_by(nearer);
@@ -140,7 +143,7 @@ impl Frame {
         }
     }
 
-    /// Adds transparent drawables: their fragments for colours and, if `hiding`, to the middles of pixels as if they were
+    /// Adds transparent drawables: their fragments for colours and, if `hiding`, to the centres of pixels as if they were
     /// opaque.
     pub fn draw_transparent(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, hiding: bool) {
         self.targets.centre &= hiding;
@@ -182,11 +185,14 @@ impl Frame {
         let draw = &mut self.draws[index];
         draw.flip = plane && dot(d, [mat[2], mat[5], mat[8]]) < 0.0;
         draw.alpha = drawable.rgba[3];
+        // a plane is seldom in front, and its centre says nothing of how near it comes
         let far = if plane { f32::MAX } else { ahead - drawable.radius };
         if draw.alpha < OPAQUE || draw.flip {
             if draw.flip {
                 draw.alpha = (f64::from(draw.alpha) * BEHIND) as f32;
             }
+            // opaque drawables compare depths in the depth buffer, hence distances from the camera's plane; transparent
+            // ones are blended in the order of their distances from the camera
             let distance = dot(d, d).sqrt() - drawable.radius;
             self.transparent
                 .push((if plane { far } else { distance }, index as u32));
@@ -216,17 +222,18 @@ impl Frame {
         self.add(visual, drawable, eye, index);
     }
 
-    /// Writes the distance (m) from the camera's plane to what the middle of each pixel shows, rows from the top; infinity
-    /// where it shows nothing.
+    /// Writes the distance (m) from the camera's plane to the surface at the centre of each pixel, rows from the top;
+    /// infinity where there is none.
     pub fn distances(&self, out: &mut [f32]) {
         self.middles(out, f32::INFINITY, |record, x, y| {
             let vertices = record.vertices.map(|v| &self.vertices[v as usize]);
             let plane = Basis::new(vertices).plane(vertices.map(|v| v.iw));
+            // 1/w is linear in the image, and w is the distance from the camera's plane
             1.0 / plane.at([x as f32 + 0.5; 4], [y as f32 + 0.5; 4])[0]
         });
     }
 
-    /// Writes what `of` says of the drawable that the middle of each pixel shows, rows from the top; -1 where it shows none.
+    /// Writes the value of `of` for the drawable at the centre of each pixel, rows from the top; -1 where there is none.
     pub fn elements(&self, out: &mut [i32], of: impl Fn(usize) -> i32) {
         self.middles(out, -1, |record, _, _| of(record.draw as usize));
     }
@@ -241,16 +248,20 @@ impl Frame {
         }
     }
 
-    /// Returns whether nearer things cover the bounding sphere of a drawable.
+    /// Returns whether what has been drawn occludes the bounding sphere of a drawable.
     fn hidden(&self, drawable: &Drawable, eye: &Eye, pos: V3) -> bool {
         let [x, y, z] = eye.locate(pos);
         let r = drawable.radius;
+        // part of it is before the near plane, where the tangents below have no meaning
         if z - r <= eye.near {
             return false;
         }
         let range = |v: f32, tan: f32, pixels: usize| {
+            // the tangents of the two planes through the camera that touch the sphere, upright or level: the outline of
+            // a sphere is not symmetric about its centre in perspective
             let (d, root) = (z * z - r * r, r * (v * v + z * z - r * r).sqrt());
             let place = |t: f32| (t / tan * 0.5 + 0.5) * pixels as f32;
+            // one pixel more on either side for what rounding does to vertices
             let low = place((v * z - root) / d).floor() - 1.0;
             let high = place((v * z + root) / d).ceil() + 1.0;
             low.clamp(0.0, pixels as f32) as usize..high.clamp(0.0, pixels as f32) as usize

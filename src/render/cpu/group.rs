@@ -1,4 +1,4 @@
-//! Triangles that are set up four at a time: their edges, their depth, and which samples the small ones cover.
+//! Triangle setup, four at a time: edge functions, depth functions, and the samples that small triangles cover.
 
 use wide::{f32x4, i32x4};
 
@@ -69,9 +69,12 @@ impl Waiting {
             (extent[0].reach.simd_lt(limit) & extent[1].reach.simd_lt(limit)).to_bitmask()
         };
         let (small, medium) = (within(PIXEL), within(MEDIUM));
+        // From the corner of the extent, coordinates of small and medium triangles are below 2^11, their products below
+        // 2^22 and sums of two below 2^23: exact in single precision, hence the same as in integers.
         let edges = LaneEdges::new(three(|k| x[k] - extent[0].low), three(|k| y[k] - extent[1].low));
         let low = [integers(extent[0].low), integers(extent[1].low)];
         let covered = if small == 0 { [0; 4] } else { edges.covered::<S>(low) };
+        // here the products are exact, so back faces are known, and triangles without area too
         let turned = edges.counterclockwise();
         let pixels = [extent[0].pixels(), extent[1].pixels()];
         let lanes = edges.at_pixels(&extent);
@@ -156,7 +159,8 @@ impl LaneEdges {
         for k in 0..3 {
             let (p, q) = ((k + 1) % 3, (k + 2) % 3);
             let (dx, dy) = (x[q] - x[p], y[q] - y[p]);
-            // zero belongs to one of the two triangles that share an edge
+            // the fill rule: zero belongs to one of the two triangles that share an edge, or their seam would be drawn
+            // twice or not at all
             let ours = dy.simd_lt(f32x4::ZERO) | (dy.simd_eq(f32x4::ZERO) & dx.simd_lt(f32x4::ZERO));
             edges.at[k] = dy * x[p] - dx * y[p] + ours.select(f32x4::ZERO, -f32x4::ONE);
             (edges.dx[k], edges.dy[k]) = (dx, dy);
@@ -175,6 +179,8 @@ impl LaneEdges {
     #[inline(always)]
     fn covered<S: Sampling>(&self, low: [i32x4; 2]) -> [u32; 4] {
         let along = |k: usize, place: i32| -> f32x4 {
+            // samples of one kind repeat every pixel: the first one at or after the corner is the only one that a small
+            // triangle can reach
             f32x4::from_i32x4((i32x4::splat(place) - low[k]) & i32x4::splat(PIXEL - 1))
         };
         four(|k| {

@@ -1,5 +1,6 @@
-//! Arrays of a few elements, made without a loop (`array::map` of closures that may panic is a call for each array, which
-//! costs more than what is done here), and what costs less in lanes when one knows more of the numbers than `wide` does.
+//! Arrays of three and four elements built without a loop (`array::map` with a closure that may panic is a call for each
+//! array, which costs more than the work itself), and lane operations that are cheaper where more is known of the numbers
+//! than `wide` can assume.
 
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
@@ -16,7 +17,7 @@ pub fn four<T>(mut of: impl FnMut(usize) -> T) -> [T; 4] {
     [of(0), of(1), of(2), of(3)]
 }
 
-/// Returns `v` where it is above `low`, which is a number, and `low` elsewhere, also where `v` is none.
+/// Returns `v` where it is above `low`, which must be a number, and `low` elsewhere, including where `v` is NaN.
 ///
 /// [`f32x4::max`] looks for NaN on either side, which compilers see through on x86, but not in WebAssembly.
 #[inline(always)]
@@ -28,9 +29,9 @@ pub fn at_least(v: f32x4, low: f32x4) -> f32x4 {
     }
 }
 
-/// Converts whole numbers between -2^22 and 2^22. What comes of others is no use, and not the same everywhere.
+/// Converts whole numbers between -2^22 and 2^22. Other inputs give platform-dependent garbage.
 ///
-/// What WebAssembly has for it saturates, for which x86 needs seven instructions.
+/// WebAssembly's own conversion saturates, which x86 has to emulate with seven instructions.
 #[inline(always)]
 pub fn integers(v: f32x4) -> i32x4 {
     if cfg!(target_arch = "wasm32") {

@@ -157,6 +157,7 @@ fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vectors, n: &Vectors, 
         if front.to_bitmask() != 0 && drawable.specular > 0.0 && light.shines {
             let middle = three(|k| to_light[k] + to_eye[k]);
             let exponent = drawable.exponent;
+            // a power costs more than the rest of a light, and most highlights are too weak for a byte to show
             let shown = front & !faint(dots(n, &middle), dots(&middle, &middle), exponent);
             let bits = shown.to_bitmask();
             if bits != 0 {
@@ -175,7 +176,7 @@ fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vectors, n: &Vectors, 
             }
         }
     }
-    // NaN stays
+    // comparisons, not `min` and `max`: NaN stays, and becomes 0 when it is written as a byte
     let within = |v: f32x4| {
         let (low, high) = (v.simd_lt(f32x4::ZERO), v.simd_gt(f32x4::ONE));
         low.select(f32x4::ZERO, high.select(f32x4::ONE, v))
@@ -205,7 +206,8 @@ fn power(x: f32, y: f32) -> f32 {
     } else if x > 0.7 && x <= 1.001 && (0.0..=256.0).contains(&y) {
         near_one(f64::from(x), y) as f32
     } else {
-        // in double precision: the single-precision routine picks its instructions at run time
+        // in double precision: the single-precision routine picks its instructions at run time, and its last bit with
+        // them
         pxfm::f_pow(f64::from(x), f64::from(y)) as f32
     }
 }
@@ -221,6 +223,7 @@ fn near_one(x: f64, y: f32) -> f64 {
     let z = part * log;
     let series = 1.0 / 6.0 + z * (1.0 / 24.0 + z * (1.0 / 120.0 + z * (1.0 / 720.0 + z * (1.0 / 5040.0))));
     let (mut product, mut square) = (1.0 + z * (1.0 + z * (0.5 + z * series)), x);
+    // exponentiation by squaring
     while rest > 0 {
         if rest & 1 == 1 {
             product *= square;

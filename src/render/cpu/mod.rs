@@ -1,4 +1,10 @@
-//! The renderer in pure Rust: it finds the triangle that each sample shows, then the colours of what is seen.
+//! The renderer in pure Rust, with a visibility buffer: rasterisation finds the triangle that each sample shows, and only
+//! then are the visible triangles lit and shaded, each once per pixel (Burns and Hunt, "The Visibility Buffer: A
+//! Cache-Friendly Approach to Deferred Shading", Journal of Computer Graphics Techniques 2, 2013).
+//!
+//! The way of an image through the files: `frame` culls and sorts drawables, `facing` culls back faces, `project` and
+//! `triangles` with `clip` transform them, `group` and `small` set triangles up, `raster` fills the `target`, `seen` numbers
+//! and `light` lights what is visible, `shade` with `plane`, `sample`, `flat` and `cube` colours it.
 
 mod camera;
 mod clip;
@@ -42,7 +48,7 @@ use crate::render::visual::Visual;
 pub struct CpuRenderer {
     frame: Frame,
     shader: Shader,
-    /// Working memory for images in grey.
+    /// Working memory for gray images.
     colours: Vec<u8>,
     passes: u64,
 }
@@ -81,6 +87,7 @@ impl CpuRenderer {
         let eye = frame.begin(visual, poses, view, targets)?;
         frame.draw_opaque(visual, poses, &eye);
         if let Some(out) = depth {
+            // before transparent drawables are added: depth does not show them, segmentation does
             frame.distances(out);
         }
         frame.draw_transparent(visual, poses, &eye, segmentation.is_some());
@@ -107,7 +114,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Returns how often the geometry of a scene was gone through.
+    /// Returns the number of passes over a scene's geometry so far.
     pub fn passes(&self) -> u64 {
         self.passes
     }
@@ -151,7 +158,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Draws a grey image: one byte for each pixel, rows from the top, by the weights 0.2989, 0.5870, 0.1140. `rgb` is
+    /// Draws a gray image: one byte for each pixel, rows from the top, by the weights 0.2989, 0.5870, 0.1140. `rgb` is
     /// working space of [`View::rgb_len`] bytes and holds the colours afterwards.
     ///
     /// # Errors
@@ -171,8 +178,8 @@ impl CpuRenderer {
         self.draw(visual, poses, view, images)
     }
 
-    /// Draws depth: the distance (m) from the camera's plane to what the middle of each pixel shows, rows from the top;
-    /// infinity where a pixel shows nothing. Transparent things are not drawn.
+    /// Draws depth: the distance (m) from the camera's plane to the surface at the centre of each pixel, rows from the top;
+    /// infinity where there is none. Transparent drawables are left out.
     ///
     /// # Errors
     /// Fails like [`CpuRenderer::rgb`].
@@ -180,8 +187,8 @@ impl CpuRenderer {
         self.draw(visual, poses, view, ImageBuffers::depth(out))
     }
 
-    /// Draws geom ids: the geom that the middle of each pixel shows, rows from the top; -1 where it shows none. Sites
-    /// hide what is behind them, and so do transparent geoms.
+    /// Draws geom ids: the geom at the centre of each pixel, rows from the top; -1 where there is none. Sites occlude
+    /// geoms behind them, and so do transparent geoms.
     ///
     /// # Errors
     /// Fails like [`CpuRenderer::rgb`].

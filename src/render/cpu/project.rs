@@ -1,4 +1,4 @@
-//! Vertices of what is in view: those of faces that may show their front are projected.
+//! Vertex transform: the vertices of faces that may be front faces are projected.
 
 use std::ops::Range;
 
@@ -27,6 +27,8 @@ impl Frame {
         let facing = Facing::new(drawable, &draw, eye, self.size);
         for band in &mesh.bands {
             let rows = eye.project(part_rows(band.part, draw.rows, drawable.size));
+            // a band that is wholly in view needs no clip codes, and a band outside needs no vertices: most of a scene
+            // is one or the other
             match (clip::place(&rows, band.low, band.high), &facing) {
                 (Place::Outside, _) => {}
                 (Place::Inside, Some(facing)) => {
@@ -39,6 +41,7 @@ impl Frame {
                     self.inside(mesh, index, band);
                 }
                 _ => match self.project_all(mesh, draw.base, band.vertices.clone(), &rows) {
+                    // the box was cut, the vertices are not
                     (0, _) if !draw.flip => self.inside(mesh, index, band),
                     (_, 0) => self.across(mesh, &rows, index, band.triangles.clone()),
                     _ => {}
@@ -93,12 +96,15 @@ impl Frame {
             out
         };
         let (x, y, z) = (coordinates(&mesh.x), coordinates(&mesh.y), coordinates(&mesh.z));
+        // loops over arrays of fixed length, a component at a time, which compilers turn into vector instructions
         let mut clips = [[0.0; 4]; LANES];
         let (mut px, mut py, mut pz, mut iw) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             clips[k] = clip::apply(rows, [x[k], y[k], z[k]]);
             let [cx, cy, cz, cw] = clips[k];
             iw[k] = 1.0 / cw;
+            // llvmpipe's viewport transform is a fused product and sum; a different rounding here moves vertices by
+            // 1/256 pixel
             px[k] = fused(cx * iw[k], half[0], half[0]);
             py[k] = fused(cy * iw[k], half[1], half[1]);
             pz[k] = cz * iw[k];

@@ -1,4 +1,5 @@
-//! Rasterisation: which triangle each sample shows. Edges are in 1/256 pixels; depth is interpolated as in llvmpipe.
+//! Rasterisation with edge functions (Pineda, "A Parallel Algorithm for Polygon Rasterization", SIGGRAPH 1988): which
+//! triangle each sample shows. Edges are in 1/256 pixels; depth is interpolated as in llvmpipe.
 
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
@@ -130,6 +131,7 @@ impl Depth {
 /// Returns whether a triangle is counterclockwise.
 #[inline(always)]
 pub fn is_counterclockwise([a, b, c]: &[Fixed; 3]) -> bool {
+    // coordinates are up to 2^22 apart, so products need 64 bits
     let wide = i64::from;
     wide(b[0] - a[0]) * wide(c[1] - a[1]) > wide(b[1] - a[1]) * wide(c[0] - a[0])
 }
@@ -178,6 +180,7 @@ pub fn large<S: Sampling>(sink: &mut impl Sink, size: [usize; 2], fixed: &[Fixed
 /// Passes the samples that a triangle of medium size covers to `sink`; its edges are given at the first pixel.
 #[inline(always)]
 pub fn medium<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &Edges, [x, y]: [[i32; 2]; 2], depth: &Depth) {
+    // sums stay exact in single precision, as the whole triangle is within a few pixels
     let mut samples = edges.samples;
     let (right, up) = (&edges.right, &edges.up);
     let mut py = y[0];
@@ -216,6 +219,8 @@ fn blocks<S: Sampling>(sink: &mut impl Sink, width: usize, edges: &[Edge; 3], [x
             for (l, e) in local.iter_mut().zip(edges) {
                 let corner = e.at(bx, by);
                 let (up, right) = (wide(e.dx) * reach, -wide(e.dy) * reach);
+                // an edge function is linear: over a block it is greatest at the corner where both changes help, and
+                // least where none does
                 outside |= corner + up.max(0) + right.max(0) < 0;
                 // an edge that the whole block lies within needs no test
                 if corner + up.min(0) + right.min(0) < 0 {
@@ -256,6 +261,7 @@ fn patch<S: Sampling>(
         let [mut a, mut b, mut c] = [local[0].samples, local[1].samples, local[2].samples];
         let mut px = x[0];
         while px <= x[1] {
+            // one sign bit for three: it is set if any of them is negative
             let inside = (a | b | c).simd_gt(-i32x4::ONE);
             if inside.to_bitmask() != 0 {
                 sink.pixel(row + px as usize, cast(inside), depth.at::<S>(px, py));

@@ -74,7 +74,7 @@ pub fn upward(v: f32x4) -> f32x4 {
     f32x4::new([v[2], v[3], v[2], v[3]]) - f32x4::new([v[0], v[1], v[0], v[1]])
 }
 
-/// Looks up one texel for each pixel of a block.
+/// Gathers one texel for each pixel of a block.
 #[inline(always)]
 pub fn texels(level: &Level, places: [i32; 4]) -> u32x4 {
     u32x4::new(four(|k| u32::from_le_bytes(level.pixels[places[k] as usize])))
@@ -95,7 +95,7 @@ pub fn channels(texels: u32x4) -> Vectors {
     [byte(texels), byte(texels >> 8), byte(texels >> 16)]
 }
 
-/// Rounds down to integers, for numbers within +-2^22.
+/// Rounds down to integers (floor), for numbers within +-2^22.
 #[inline(always)]
 pub fn whole(x: f32x4) -> f32x4 {
     // adding 1.5 * 2^23 rounds to the nearest integer

@@ -1,4 +1,4 @@
-//! What an image shows: its triangles, and their vertices with the light on them.
+//! Reads the visibility buffer: the triangles that an image shows, and their vertices, lit.
 
 use wide::{f32x4, u32x4};
 
@@ -69,6 +69,7 @@ impl LitVertex {
 /// Returns for how many vertices to make room: five eighths of those for which the frame has room, as long as they do.
 fn room(frame: &Frame) -> usize {
     let all = frame.vertices.capacity();
+    // most of a frame's vertices belong to back faces or to what is occluded; room for all would seldom be used
     let most = all / 8 * 5;
     if frame.vertices.len() <= most { most } else { all }
 }
@@ -126,6 +127,7 @@ impl Seen {
         let mut last = NONE;
         for (y, row) in ids.chunks_exact(*width).enumerate() {
             for (x, ids) in row.iter().enumerate() {
+                // neighbouring samples mostly show the same triangle
                 if !wanted(x, y) || u32x4::new(*ids).simd_eq(u32x4::splat(last)).to_bitmask() == 15 {
                     continue;
                 }
@@ -146,6 +148,7 @@ impl Seen {
     fn mark(&mut self, frame: &Frame) {
         let count = frame.vertices.len();
         self.marks.resize(count, 0);
+        // never cleared: entries of vertices without a mark are not read
         if self.lit_of.len() < count {
             let room = room(frame);
             self.lit_of.reserve_exact(room - self.lit_of.len());
@@ -168,6 +171,7 @@ impl Seen {
             self.want(point.to, draw, placed.end);
             next += 1;
         }
+        // a vertex made by clipping comes after those it lies between, which have to be lit first
         self.points.sort_unstable();
     }
 
@@ -195,6 +199,7 @@ impl Seen {
             for first in (draw.base..draw.end).step_by(STRIDE) {
                 // bands are filled up with vertices, so that their number is a multiple
                 let marks = self.marks[first..].first_chunk::<STRIDE>();
+                // a byte for each mark, so that eight are tested at once
                 let mut rest = marks.map_or(0, |m| u64::from_le_bytes(*m));
                 while rest != 0 {
                     let vertex = first + rest.trailing_zeros() as usize / 8;
@@ -223,6 +228,7 @@ impl Seen {
             let own = &frame.draws[draw as usize];
             let point = frame.points[own.points + v as usize - own.end];
             let (from, to) = (*self.lit(point.from), *self.lit(point.to));
+            // Mesa lights vertices before it clips: light on a new vertex is interpolated, not computed
             let share = f32x4::splat(point.share);
             self.lit_of[v as usize] = self.lit.len() as u32;
             self.lit.push(LitVertex {

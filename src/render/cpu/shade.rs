@@ -1,4 +1,4 @@
-//! Shading: the colour of each visible triangle once per pixel, at the pixel's centre, averaged over the four samples.
+//! Shading as with multisampling: each visible triangle once per pixel, at the pixel's centre, averaged over four samples.
 
 use wide::{f32x4, i32x4, u32x4};
 
@@ -108,11 +108,13 @@ impl Shader {
             return;
         }
         let part = pixels.of_block(h);
+        // blocks of 2 x 2 pixels, since the differences within a block choose the mip level
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
                 let colours = if let Some(id) = frame.colour.only(x, y) {
                     bytes(&self.colours(frame, &inputs, [x, y], id, [true; 4]))
                 } else {
+                    // half of four samples, so that rounding their mean down rounds it to the nearest
                     let mut sums = [f32x4::splat(2.0); 3];
                     self.block(frame, &inputs, [x, y], part, |samples, colour| {
                         let count = f32x4::new(four(|k| COUNT[(samples >> (4 * k) & 15) as usize]));
@@ -143,6 +145,7 @@ impl Shader {
         let (w, h) = (frame.size[0], frame.size[1]);
         let [x, y] = at;
         let first = y * w + x;
+        // beyond the image a block repeats its own pixels, which are shaded with the others and not written
         let (right, up) = (usize::from(x + 1 < w), if y + 1 < h { w } else { 0 });
         let ids = &frame.colour.ids;
         let seen = [ids[first], ids[first + right], ids[first + up], ids[first + up + right]];
@@ -257,6 +260,8 @@ impl Setup {
         let lit = three(|k| seen.lit(record.vertices[k]));
         let vertices = three(|k| &frame.vertices[record.vertices[k] as usize]);
         let basis = Basis::new(vertices);
+        // Over the image, not the values but the values over w are linear. The fourth lane is 1, so it becomes 1 / w,
+        // by which the others are divided at each pixel.
         let iw = three(|k| f32x4::splat(vertices[k].iw));
         let over = |of: [f32x4; 3]| Planes::new(&basis, three(|k| of[k] * iw[k]), vertices[0].iw, frame.size);
         let mut setup = Self {
@@ -269,6 +274,7 @@ impl Setup {
             return setup;
         };
         if let Texture::Flat(face) = &visual.textures[image]
+            // a texture of one colour is a factor, with no coordinates to interpolate
             && face[0].has_one_colour()
         {
             let texel = u32::from_le_bytes(face[0].pixels[0]);

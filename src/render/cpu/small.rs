@@ -57,6 +57,8 @@ impl Quads {
         };
         let (x, y) = (range(0), range(1));
         let beyond = |(low, reach): (i32x4, i32x4), place: i32| -> i32x4 {
+            // the first sample at or after the lower left, modulo a pixel: beyond the upper right there is none in
+            // between
             ((i32x4::splat(place) - low) & i32x4::splat(PIXEL - 1)).simd_gt(reach)
         };
         let mut missed = !i32x4::ZERO;

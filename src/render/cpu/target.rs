@@ -14,7 +14,7 @@ use super::small::Spots;
 /// Index of nothing.
 pub const NONE: u32 = u32::MAX;
 
-/// A triangle that is visible somewhere.
+/// A triangle that some sample has shown: what the visibility buffer refers to.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
     /// Index of the drawable.
@@ -61,7 +61,7 @@ impl Target {
         self.fragments.clear();
     }
 
-    /// Returns whether every sample in a range of pixels shows something nearer than the depth `z`.
+    /// Returns whether every sample in a range of pixels is nearer than the depth `z`.
     pub fn hides(&self, x: std::ops::Range<usize>, y: std::ops::Range<usize>, z: f32) -> bool {
         y.into_iter().all(|row| {
             let row = &self.depth[row * self.width..][x.clone()];
@@ -81,6 +81,7 @@ impl Target {
         let (low, high) = (&self.ids[first..first + 2], &self.ids[first + self.width..][..2]);
         let id = low[0][0];
         let same = |ids: [u32; 4]| u32x4::new(ids).simd_eq(u32x4::splat(id));
+        // one triangle over a whole block is the common case, and is shaded without sorting samples out
         let all = (same(low[0]) & same(low[1])) & (same(high[0]) & same(high[1]));
         (all.to_bitmask() == 15).then_some(id)
     }
@@ -133,6 +134,7 @@ impl Target {
         let mut rest = spots.samples;
         while rest != 0 {
             let at = spots.pixel::<S>(rest.trailing_zeros() as usize);
+            // a triangle smaller than a pixel may still reach into four: the samples of each go together
             let mut own = 0;
             for k in 0..4 {
                 own |= u32::from(spots.pixel::<S>(k) == at) << k;
@@ -183,6 +185,8 @@ impl Sink for Writer<'_, Opaque> {
         let ids = &mut self.target.ids[at];
         let records = &mut self.target.records;
         // at equal depth the one that comes later in the model is seen
+        // MuJoCo draws in the order of the model and lets the later one win; here the nearer drawable is drawn first,
+        // so the order has to be looked up
         let tie = (seen & z.simd_eq(before)).to_bitmask();
         if tie != 0 {
             let later = |id: u32| records.get(id as usize).is_some_and(|r| r.draw > self.record.draw);

@@ -1,4 +1,4 @@
-//! The triangles of a frame: those that show their front and do not lie between the samples are rasterised.
+//! Triangle assembly: back faces and triangles that fall between the samples are culled, the others set up and rasterised.
 
 use std::ops::Range;
 
@@ -26,6 +26,7 @@ impl Frame {
             let t = if draw.flip { [a, c, b] } else { [a, b, c] };
             let own = three(|k| draw.base + usize::from(t[k]));
             let [p, q, r] = three(|k| self.sides[own[k]]);
+            // all corners are beyond the same plane
             if p & q & r != 0 {
                 continue;
             }
@@ -63,6 +64,7 @@ impl Frame {
         let first = four(|k| base + usize::from(strip.first[k]));
         for k in 0..strip.count / STRIP_LANES {
             let fronts = u32::from(self.fronts[strip.patch + k]);
+            // four quadrilaterals are skipped at once, and their vertices may not even be projected
             if fronts == 0 {
                 continue;
             }
@@ -71,6 +73,8 @@ impl Frame {
                 [lanes(&self.x, at[k], step[k]), lanes(&self.y, at[k], step[k])]
             }));
             let front = quads.front();
+            // most triangles of a distant shape are smaller than the gaps between samples: this test costs less than
+            // setting them up
             let hit = match self.targets {
                 _ if front == [0; 2] => 0,
                 Targets { centre: false, .. } => quads.hit::<FourSamples>(),
@@ -78,6 +82,7 @@ impl Frame {
                 _ => quads.hit::<FourSamples>() | quads.hit::<PixelCentre>(),
             };
             let first = front[0] & hit & fronts;
+            // in a fan around a pole the second triangle has no area
             let second = if strip.fan { 0 } else { front[1] & hit & fronts };
             let mut rest = first | second;
             while rest != 0 {
@@ -131,6 +136,7 @@ impl Frame {
             clip::apply(rows, [mesh.x[i], mesh.y[i], mesh.z[i]])
         };
         let triangle: [Clip; 3] = [corner(t[0]), corner(t[1]), corner(t[2])];
+        // back faces are dropped before the work of clipping; what is not clearly one, the rasteriser decides
         if clip::faces_away(&triangle) {
             return;
         }
@@ -157,6 +163,7 @@ impl Frame {
                 share,
             });
         }
+        // the fan that Mesa's draw module makes of a polygon: another one would interpolate differently
         for k in 2..corners.len() {
             let [a, b, c] = [
                 place(corners[k - 1].from),

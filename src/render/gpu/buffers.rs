@@ -70,7 +70,7 @@ impl Buffers {
         }
     }
 
-    /// Uploads a frame of so many views, after making room for it.
+    /// Uploads a frame of `views` views, after making room for it.
     pub fn write(
         &mut self,
         gpu: &Gpu,

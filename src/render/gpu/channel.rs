@@ -9,7 +9,7 @@ pub trait Channel: sealed::Channel {}
 pub(super) mod sealed {
     use super::Output;
 
-    /// The conversion from what the device writes to values.
+    /// The conversion from the device's output to values.
     pub trait Channel: std::fmt::Debug + Send + Sync + 'static {
         /// Type of one value.
         type Value: Copy + Default + std::fmt::Debug + PartialEq + Send + Sync + 'static;
@@ -26,16 +26,16 @@ pub(super) mod sealed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rgb;
 
-/// Images in grey: brightness with the weights 0.2989, 0.5870, 0.1140.
+/// Gray images: brightness with the weights 0.2989, 0.5870, 0.1140.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gray;
 
-/// Depth: the distance (m) from the camera's plane to what the middle of each pixel shows; infinity where it shows
+/// Depth: the distance (m) from the camera's plane to the surface at the centre of each pixel; infinity where there is
 /// nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Depth;
 
-/// Geom ids: the geom that the middle of each pixel shows; -1 where it shows none. Sites hide what is behind them.
+/// Geom ids: the geom at the centre of each pixel; -1 where there is none. Sites occlude geoms behind them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segmentation;
 

@@ -19,7 +19,7 @@ pub enum GpuError {
         "{what} would need {needed}, but the limit of this device is {limit}; draw fewer or smaller pictures at once"
     )]
     TooLarge {
-        /// Name of what is too large.
+        /// The dimension that is too large.
         what: &'static str,
         /// Its size.
         needed: u64,

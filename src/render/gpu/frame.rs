@@ -53,11 +53,11 @@ pub struct Frame {
     pub chunks: Vec<Chunk>,
     eyes: Vec<Eye>,
     lights: Vec<PlacedLight>,
-    /// View and drawable of what lies inside its image, for each class.
+    /// View and drawable of the opaque drawables inside the view, for each class.
     inside: Vec<Vec<(usize, usize)>>,
-    /// View, class and drawable of what reaches out of its image.
+    /// View, class and drawable of the opaque drawables that may have to be clipped.
     outside: Vec<(usize, usize, usize)>,
-    /// View, distance and drawable of what is transparent.
+    /// View, distance and drawable of the transparent drawables.
     clear: Vec<(usize, f32, usize)>,
 }
 
@@ -151,7 +151,7 @@ impl Frame {
         }
     }
 
-    /// Finds what a view shows.
+    /// Culls and sorts the drawables of a view.
     fn sort(&mut self, r: &Submission, view: usize, eye: &Eye) {
         for (i, drawable) in r.visual.drawables.iter().enumerate() {
             let drawable = &drawable.sized(&r.requests[view].poses);

@@ -1,4 +1,8 @@
 //! Convex hulls of sensor points, for finding the sensors of a body that lie inside another of its geoms.
+//!
+//! A Quickhull (Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls", ACM Transactions on Mathematical
+//! Software 22, 1996) of its own, since sensors lie on rings, walls and grids, where most points are coplanar with others, and
+//! since it decides which sensors exist: it uses nothing but `+ - * /` and square roots, which are the same on every target.
 
 use std::ops::Range;
 
@@ -20,6 +24,7 @@ impl Face {
     fn new(points: &[Vec3], corner: [usize; 3]) -> Option<Self> {
         let [a, b, c] = corner.map(|i| points[i]);
         let (normal, area) = unit(cross(sub(b, a), sub(c, a)));
+        // three corners on a line have no plane; the caller tries another tolerance
         (area > MINVAL).then(|| Self {
             corner,
             plane: HalfSpace {
@@ -92,7 +97,8 @@ impl Hull {
     /// sensors and far above rounding, so that rings, walls and grids need no special treatment.
     pub fn new(points: &[Vec3]) -> Option<Self> {
         let extent = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        // a second and third try for points in an unlucky position
+        // rounding may contradict itself for points near a plane at just this tolerance; at another one other points
+        // are near
         let faces = [1e-12, 1e-11, 1e-10]
             .iter()
             .find_map(|tolerance| quickhull(points, tolerance * extent))?;
@@ -125,6 +131,8 @@ impl Hull {
         if run.len() > BUNDLE {
             let width = sub(high, low);
             let axis = (1..3).fold(0, |best, k| if width[k] > width[best] { k } else { best });
+            // halves by count along the widest axis, as in a k-d tree: normals of a bundle point much the same way, so
+            // that its bound is tight
             let middle = run.len() / 2;
             planes.select_nth_unstable_by(middle, |a, b| a.normal[axis].total_cmp(&b.normal[axis]));
             self.bundle(run.start..run.start + middle);
@@ -140,6 +148,7 @@ impl Hull {
 
     fn inside(&self, bundle: usize, p: Vec3, margin: f64) -> bool {
         let b = &self.bundles[bundle];
+        // inside all of its planes; near the surface of a body this dismisses all bundles but those that face the point
         if b.bound(p) < margin {
             return true;
         }
@@ -164,6 +173,7 @@ fn first_corners(points: &[Vec3], tolerance: f64) -> Option<[usize; 4]> {
         }
         (best.1 > tolerance).then_some(best.0)
     };
+    // Extremes make a large tetrahedron: few points are left outside it, and its faces have reliable normals.
     let origin = *points.first()?;
     let a = farthest(&|p| norm(sub(p, origin)))?;
     let b = farthest(&|p| norm(sub(p, points[a])))?;
@@ -172,6 +182,7 @@ fn first_corners(points: &[Vec3], tolerance: f64) -> Option<[usize; 4]> {
     let normal = unit(cross(sub(points[b], points[a]), sub(points[c], points[a]))).0;
     let d = farthest(&|p| dot(normal, sub(p, points[a])).abs())?;
     let above = dot(normal, sub(points[d], points[a])) > 0.0;
+    // faces wind counterclockwise from outside, so the fourth corner has to be below the first three
     Some(if above { [a, c, b, d] } else { [a, b, c, d] })
 }
 
@@ -199,6 +210,7 @@ fn remove_seen(faces: &mut [Face], first: usize, sees: impl Fn(&Face) -> bool) -
     let (mut stack, mut border, mut orphans) = (vec![first], Vec::new(), Vec::new());
     faces[first].alive = false;
     while let Some(k) = stack.pop() {
+        // points above a removed face are above a new one or inside; others keep the face they are above
         orphans.append(&mut faces[k].above);
         for e in 0..3 {
             let other = faces[k].neighbor[e];
@@ -229,6 +241,7 @@ fn join(
     for (n, &(from, to, other)) in border.iter().enumerate() {
         let mut face = Face::new(points, [from, to, eye])?;
         face.neighbor[0] = other;
+        // a second border edge from the same corner: rounding has made a border that touches itself
         if starting_at[from] != usize::MAX {
             return None;
         }
@@ -239,19 +252,21 @@ fn join(
     }
     for (n, &(_, to, _)) in border.iter().enumerate() {
         let next = starting_at[to];
+        // no edge begins where this one ends: the border is open
         faces.get(next)?;
         faces[first + n].neighbor[1] = next;
         faces[next].neighbor[2] = first + n;
     }
+    // only what was set, as clearing all points for every corner would make the whole quadratic
     border.iter().for_each(|b| starting_at[b.0] = usize::MAX);
     Some(())
 }
 
-/// Computes the faces of the hull by Quickhull; `None` if it gets stuck. Source: Barber, Dobkin, Huhdanpaa, The
-/// Quickhull Algorithm for Convex Hulls (1996).
+/// Computes the faces of the hull; `None` if rounding leaves a hole in it.
 fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
     let mut faces = tetrahedron(points, first_corners(points, tolerance)?)?;
     let assign = |i: usize, faces: &mut [Face]| {
+        // one face is enough: the point is looked at again when that face goes
         if let Some(face) = faces.iter_mut().find(|f| f.distance(points[i]) > tolerance) {
             face.above.push(i);
         }
@@ -264,6 +279,7 @@ fn quickhull(points: &[Vec3], tolerance: f64) -> Option<Vec<Face>> {
             continue;
         }
         let height = |i: &usize| faces[f].distance(points[*i]);
+        // the farthest point is certainly a corner of the hull; any other might have to be removed again
         let eye = *faces[f].above.iter().max_by(|i, j| height(i).total_cmp(&height(j)))?;
 
         let (border, orphans) = remove_seen(&mut faces, f, |other| other.distance(points[eye]) > tolerance);
