@@ -31,7 +31,7 @@ impl Formatter for Spaced {
 /// Appends a value as a line of JSON. Numbers that are not finite become `null`.
 ///
 /// # Errors
-/// What the value's own `Serialize` refuses: writing to memory cannot fail.
+/// Errors of the value's own `Serialize`; writing to memory cannot fail.
 pub(crate) fn line(out: &mut Vec<u8>, value: &impl Serialize) -> io::Result<()> {
     value.serialize(&mut Serializer::with_formatter(&mut *out, Spaced))?;
     out.push(b'\n');

@@ -13,7 +13,7 @@ pub enum ActuationError {
         actuator: String,
         /// The actuation model.
         model: &'static str,
-        /// What it should be.
+        /// The expected value.
         needs: &'static str,
     },
     /// A number of the actuator or of its joint is not allowed.
@@ -25,7 +25,7 @@ pub enum ActuationError {
         what: &'static str,
         /// Its value; NaN when it is missing.
         value: f64,
-        /// What is allowed.
+        /// The allowed range.
         allowed: &'static str,
     },
 }

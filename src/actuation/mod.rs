@@ -31,10 +31,10 @@ pub trait Actuation: Send + Sync {
     /// Returns the bounds of an action.
     fn action_space(&self) -> &BoxSpace;
 
-    /// Returns the names of the components of an action: the actuator, and what of it.
+    /// Returns the names of the components of an action: actuator and quantity.
     fn action_names(&self, model: &Model) -> Vec<String>;
 
-    /// Changes the parameters of a state to what the actuation needs, and makes room for what it keeps there. Called
+    /// Sets the parameters of a state as the actuation needs them, and makes room for its own values there. Called
     /// once, on a new state; the actuators are then at rest.
     fn prepare(&self, model: &Model, state: &mut State);
 
@@ -78,7 +78,7 @@ fn named(model: &Model, ending: &str) -> Vec<String> {
     names.map(|n| format!("{n}{ending}")).collect()
 }
 
-/// Removes from a state what muscles keep there.
+/// Removes the values that muscles keep in a state.
 fn clear_muscles(state: &mut State) {
     for values in [&mut state.act, &mut state.muscle_force, &mut state.muscle_torque] {
         values.clear();

@@ -47,7 +47,7 @@ pub enum AssetError {
     Io {
         /// The path.
         path: String,
-        /// What the system said.
+        /// The error of the system.
         message: String,
     },
 }

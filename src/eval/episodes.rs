@@ -12,7 +12,7 @@ use crate::env::{Blueprint, EnvError, Info};
 use crate::policy::{Policy, PolicyError};
 use crate::runs::for_evaluation;
 
-/// A plan of an evaluation: how many episodes, how long, and what is recorded.
+/// The plan of an evaluation: number and length of episodes, and what is recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Number of episodes; episode k is seeded with the configuration's seed + k.
@@ -23,7 +23,7 @@ pub struct Plan {
     pub render: bool,
     /// Frames per second of the videos.
     pub fps: u32,
-    /// Number of episodes run in parallel, of which more than the cores are no use; results do not depend on it.
+    /// Number of episodes run in parallel; values above the core count have no effect, and results do not depend on it.
     pub jobs: usize,
 }
 

@@ -130,14 +130,14 @@ impl<'f> Evaluation<'f> {
         }
     }
 
-    /// Adds a film of the caller's own, written to `videos/evaluation_N.avi`.
+    /// Adds a user-defined film, written to `videos/evaluation_N.avi`.
     #[must_use]
     pub fn with_film(mut self, film: impl Film + 'f) -> Self {
         self.film = Some(Box::new(film));
         self
     }
 
-    /// Adds videos of the room and of what the behavior is about ([`RoomFilm`]), `videos/evaluation_N.avi`.
+    /// Adds videos of the room and of the behavior's subject ([`RoomFilm`]), `videos/evaluation_N.avi`.
     ///
     /// # Errors
     /// As [`RoomFilm::new`].
@@ -204,7 +204,7 @@ impl<'f> Evaluation<'f> {
     /// Returns the path of the log.
     ///
     /// # Errors
-    /// What the file system says; no steps since the last end.
+    /// Errors of the file system; no steps since the last end.
     pub fn end(&mut self, episode: u64) -> Result<PathBuf, EvaluationError> {
         let log = std::mem::take(&mut self.log);
         if log.is_empty() {

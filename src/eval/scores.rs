@@ -1,4 +1,4 @@
-//! The preliminary achievement scores of a training log, with what they are made of.
+//! The preliminary achievement scores of a training log, and their parts.
 //!
 //! As the kit computes them, from the same records: the oldest of the last 10,001 records is left out, so that of a
 //! log of at most 10,001 records the first one never counts (the kit starts its logs with an empty one).
@@ -49,11 +49,11 @@ pub struct Score {
     pub episodes: usize,
     /// Number of steps in these records.
     pub steps: u64,
-    /// What the score is made of.
+    /// The parts of the score.
     pub parts: ScoreParts,
 }
 
-/// What a score is made of.
+/// The parts of a score.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScoreParts {
     /// The parts that were touched.

@@ -52,7 +52,7 @@ pub(crate) fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     ))
 }
 
-/// Names what is not a regular file.
+/// Describes something that is not a regular file.
 fn kind(kind: FileType) -> &'static str {
     #[cfg(unix)]
     {

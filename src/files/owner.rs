@@ -22,7 +22,7 @@ impl Owner {
     /// Takes possession of a folder.
     ///
     /// # Errors
-    /// A folder that belongs to another process has the kind [`io::ErrorKind::ResourceBusy`]; what the file system says.
+    /// [`io::ErrorKind::ResourceBusy`] for a folder that belongs to another process; errors of the file system.
     pub fn of(folder: &Path) -> io::Result<Self> {
         let path = folder.join(NAME);
         loop {

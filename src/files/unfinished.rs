@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// How many files of one name can be written at the same time.
 const AT_ONCE: usize = 1000;
 
-/// Creates the unfinished file `.NAME.N.tmp` in a folder, for the smallest `N` that nobody writes.
+/// Creates the unfinished file `.NAME.N.tmp` in a folder, for the smallest `N` that no process is writing.
 pub(crate) fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
     for number in 0..AT_ONCE {
         let mut hidden = OsString::from(".");
@@ -38,7 +38,7 @@ pub(crate) fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
 }
 
 #[cfg(feature = "eval")]
-/// Removes the unfinished files of processes that were killed from a folder. What cannot be removed stays.
+/// Removes the unfinished files of killed processes from a folder. Files that cannot be removed stay.
 pub(crate) fn sweep(folder: &Path) {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return;
@@ -73,13 +73,13 @@ fn remove_if_abandoned(path: &Path) {
     }
 }
 
-/// Writes a new file beside `path` and renames it over it: `path` holds what it held before or all of `bytes`, whenever
+/// Writes a new file next to `path` and renames it over it: `path` holds its old content or all of `bytes`, whenever
 /// the process ends.
 pub(crate) fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     replace_file_with(path, |file| file.write_all(bytes))
 }
 
-/// Replaces a file as [`replace_file`] does, by what `write` writes.
+/// Replaces a file as [`replace_file`] does, by the output of `write`.
 pub(crate) fn replace_file_with(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let name = path
         .file_name()

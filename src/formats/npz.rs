@@ -40,7 +40,7 @@ pub enum NpzError {
     Io {
         /// The file.
         file: String,
-        /// What the file system answered.
+        /// The error of the file system.
         source: io::Error,
     },
     /// The file is not an archive, or a damaged one.
@@ -48,7 +48,7 @@ pub enum NpzError {
     Archive {
         /// The file.
         file: String,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
     /// There is no such array.
@@ -66,7 +66,7 @@ pub enum NpzError {
         file: String,
         /// The array.
         array: String,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
     /// The array's numbers do not fit the type asked for.
@@ -86,7 +86,7 @@ pub enum NpzError {
     Write {
         /// The array.
         array: String,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
 }

@@ -67,7 +67,7 @@ pub enum PickleError {
     Malformed {
         /// Where.
         at: usize,
-        /// What is wrong.
+        /// Description of the fault.
         reason: &'static str,
     },
     /// Something that is larger than allowed.

@@ -28,7 +28,7 @@ pub enum PictureError {
     Encode {
         /// The file.
         path: PathBuf,
-        /// What is wrong with them.
+        /// Description of the fault.
         source: ImageError,
     },
 }
@@ -36,7 +36,7 @@ pub enum PictureError {
 /// Writes a PNG picture, as a whole: red, green and blue of each pixel, rows from the top.
 ///
 /// # Errors
-/// What the file system says; bytes that are not `3 * width * height`.
+/// Errors of the file system; bytes that are not `3 * width * height`.
 pub fn write_png(path: impl AsRef<Path>, rgb: &[u8], width: usize, height: usize) -> Result<(), PictureError> {
     let file = path.as_ref();
     let path = || file.to_path_buf();

@@ -6,7 +6,7 @@ use crate::mimo::placement::reach;
 use crate::model::Model;
 use crate::physics::{State, Topology, kinematics};
 
-/// What tables of infants tell about a body, with all joints at 0.
+/// The figures of a body that tables of infants list, with all joints at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyFigures {
     /// From the soles to the crown, m.

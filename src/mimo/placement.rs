@@ -1,4 +1,4 @@
-//! Where MIMo touches what is below him.
+//! Finds MIMo's lowest point and his self-penetrations.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use crate::math::Vec3;
 use crate::model::{EqualityKind, GeomType, Model};
 use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions, State};
 
-/// Two geoms of MIMo in each other.
+/// Two interpenetrating geoms of MIMo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Overlap {
     pub geoms: [usize; 2],

@@ -74,7 +74,7 @@ pub fn scene_xml(config: &Config) -> String {
     format!("<mujoco model=\"{name}\">\n{content}</mujoco>\n")
 }
 
-/// Writes what a BabyBench environment consists of: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
+/// Writes the document of a BabyBench scene: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
 /// active groups, the scene. Element order fixes all ids, and is the reference's.
 fn babybench_scene(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
@@ -160,7 +160,7 @@ pub fn build_scene(
     if config.measurements == Measurements::default() {
         return made;
     }
-    // measurements of the caller's may be of nobody
+    // user-supplied measurements may describe an impossible body
     let age = growth.age();
     let ordinary = Config {
         measurements: Measurements::default(),

@@ -17,7 +17,7 @@ pub const DEFAULT_LIMIT: Duration = Duration::from_secs(60);
 /// The time a command has to exit after the end of its input.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// What is wrong with an answer that comes without a question, or not alone.
+/// The fault of an answer that comes unasked, or with another one.
 const UNASKED: &str = "more lines came than observations went, so that its answers no longer belong to them";
 
 /// A policy in another program, in any language: a line of JSON with the observation goes to its standard input, a line
@@ -26,7 +26,7 @@ const UNASKED: &str = "more lines came than observations went, so that its answe
 /// The line is an object with the number of the `episode` and of the `step` in it (both from 0), and the keys of the
 /// active senses: `observation`, `touch`, `touch_pooled`, `pain`, `vestibular`, `achieved_goal` and `desired_goal` are lists of numbers, `eye_left` and `eye_right` are objects
 /// `{"shape": [height, width, 3], "data": "..."}` with the bytes of the image in base64 (red, green, blue of each
-/// pixel, rows from the top), and what else `vision_outputs` asks for, such as `eye_left_depth`, are objects `{"shape":
+/// pixel, rows from the top), and the other outputs in `vision_outputs`, such as `eye_left_depth`, are objects `{"shape":
 /// [height, width], "dtype": "float32", "data": "..."}`, the lowest byte of a number first. At step 0 of an episode there is also `action_space`, an object with the lists `low` and
 /// `high`. Numbers that are not finite, which JSON cannot say, are `null`. The input ends when there are no more
 /// episodes. In Python:
@@ -60,7 +60,7 @@ pub struct CommandPolicy {
 #[derive(Debug)]
 struct Answer {
     line: Vec<u8>,
-    /// What is wrong with it, whatever it says.
+    /// Description of the fault, independent of its content.
     fault: Option<String>,
 }
 
@@ -209,7 +209,7 @@ pub(super) fn words(command: &str) -> Option<Vec<String>> {
     }
 }
 
-/// Passes lines on until there are no more or nobody takes them; the input then ends.
+/// Passes lines on until they end or the receiver is gone.
 fn write_lines(mut input: ChildStdin, lines: &Receiver<Vec<u8>>) {
     for line in lines {
         if input.write_all(&line).and_then(|()| input.flush()).is_err() {
@@ -237,7 +237,7 @@ fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Res
     }
 }
 
-/// Reads what a program wrote as answers of `expected` numbers and at most `longest` bytes, for fuzzing.
+/// Reads the output of a program as answers of `expected` numbers and at most `longest` bytes, for fuzzing.
 #[cfg(fuzzing)]
 pub fn answers(output: &[u8], expected: usize, longest: usize) -> Vec<Result<Vec<f32>, String>> {
     let (sender, lines) = sync_channel(output.len() + 1);
@@ -251,7 +251,7 @@ pub fn answers(output: &[u8], expected: usize, longest: usize) -> Vec<Result<Vec
     lines.into_iter().filter_map(Result::ok).map(read).collect()
 }
 
-/// Reads an action from a line, or says what is wrong with it.
+/// Reads an action from a line; the error describes the fault.
 fn read_answer(answer: &Answer, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
     let text = String::from_utf8_lossy(&answer.line);
     let fault = answer.fault.clone();

@@ -1,4 +1,4 @@
-//! Policies: what chooses the actions of an evaluation.
+//! Policies, which choose the actions of an evaluation.
 
 mod command;
 #[cfg(feature = "onnx")]
@@ -37,7 +37,7 @@ pub enum PolicyError {
     Words {
         /// The command.
         command: String,
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: &'static str,
     },
     /// The command ended.
@@ -72,7 +72,7 @@ pub enum PolicyError {
         command: String,
         /// The start of its answer.
         answer: String,
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: String,
         /// Length of an action.
         expected: usize,
@@ -85,7 +85,7 @@ pub enum PolicyError {
     Onnx {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Description of the fault.
         source: OnnxError,
     },
     /// The policy is a model, but the feature `onnx` is off.
@@ -97,7 +97,7 @@ pub enum PolicyError {
         /// The file.
         path: PathBuf,
     },
-    /// A policy of the caller's own fails.
+    /// A user-defined policy failed.
     #[error(transparent)]
     Other(Box<dyn std::error::Error + Send + Sync>),
 }

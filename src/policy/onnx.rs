@@ -72,7 +72,7 @@ pub enum OnnxError {
     Output {
         /// Name of the output.
         name: String,
-        /// What it has.
+        /// The shape it has.
         found: String,
         /// Length of an action.
         expected: usize,

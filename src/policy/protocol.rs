@@ -11,7 +11,7 @@ use serde::de::{DeserializeSeed, SeqAccess, Visitor};
 use super::Moment;
 use crate::env::{Env, Observation};
 
-/// What a policy is told before each action. Senses that are not active are left out.
+/// The message to a policy before each action. Senses that are not active are left out.
 #[derive(serde::Serialize)]
 pub(super) struct Line<'a> {
     episode: u64,
@@ -54,7 +54,7 @@ struct Image<'a> {
     data: &'a [u8],
 }
 
-/// What the eyes see besides colours.
+/// The eyes' outputs other than colours.
 #[derive(Default, serde::Serialize)]
 struct Eyes<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -136,7 +136,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Reads an answer, a JSON list of `expected` numbers, into `action`, or says what is wrong with it.
+/// Reads an answer, a JSON list of `expected` numbers, into `action`; the error describes the fault.
 pub(super) fn parse(answer: &str, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
     action.clear();
     if !answer.starts_with('[') {
@@ -159,7 +159,7 @@ pub(super) fn parse(answer: &str, expected: usize, action: &mut Vec<f32>) -> Res
     }
 }
 
-/// Reads numbers into a list that grows to `expected`, and counts what is beyond.
+/// Reads numbers into a list that grows to `expected`, and counts the rest.
 struct Numbers<'a> {
     action: &'a mut Vec<f32>,
     expected: usize,

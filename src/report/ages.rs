@@ -65,7 +65,7 @@ pub fn draw_ages(infants: &[(f64, &Model)], assets: &dyn AssetSource) -> Option<
     })
 }
 
-/// What is drawn on.
+/// The canvas.
 struct Sheet {
     rgb: Vec<u8>,
     width: usize,

@@ -21,18 +21,18 @@ struct Line {
     values: Vec<f64>,
 }
 
-/// What is drawn over the episodes.
+/// The quantity drawn over the episodes.
 struct Chart {
     unit: &'static str,
     lines: Vec<Line>,
     /// One for each episode.
     dots: Vec<f64>,
-    /// A height to be reached, with what it is.
+    /// A height to be reached, with its name.
     goal: Option<(f64, String)>,
     /// Ends of the axis of values.
     bottom: f64,
     top: f64,
-    /// What a dot is.
+    /// The meaning of a dot.
     dot: &'static str,
 }
 
@@ -46,7 +46,7 @@ impl Chart {
     }
 }
 
-/// What a dot of a behavior is.
+/// The meaning of a dot for behaviors of both hands.
 const BOTH_HANDS: &str = "each episode alone, mean of both hands";
 
 /// Draws the learning curve of the records that count, if there are any and they have a score.

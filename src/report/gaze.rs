@@ -25,7 +25,7 @@ const SIZE: f64 = 300.0;
 pub(super) struct Gaze {
     counts: [[Vec<u32>; 2]; 2],
     cells: usize,
-    /// Half angle of what the eye's camera sees, rad.
+    /// Half the field of view of the eye's camera, rad.
     half_view: f64,
     compat: Compat,
     pub steps: usize,
@@ -119,7 +119,7 @@ impl Gaze {
         }
     }
 
-    /// Returns the border of what the camera sees, as points of a polygon.
+    /// Returns the border of the camera's field of view, as points of a polygon.
     fn view(&self) -> String {
         let tan = pxfm::f_tan(self.half_view);
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];

@@ -43,15 +43,15 @@ pub enum ReportError {
     Unreadable {
         /// The folder.
         path: PathBuf,
-        /// What is wrong with each.
+        /// Description of the fault of each.
         reasons: String,
     },
-    /// The run to compare with is of no use.
+    /// The baseline run cannot be used.
     #[error("{}: {reason}; a baseline is the save_dir of a training of the same behavior", path.display())]
     Baseline {
         /// The folder.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: String,
     },
     /// The file system refuses.
@@ -78,7 +78,7 @@ fn missing(path: &Path) -> &'static str {
 pub struct Report {
     /// The page.
     pub html: String,
-    /// What is missing in it, and why.
+    /// The parts that are missing, and why.
     pub notices: Vec<String>,
 }
 
@@ -113,7 +113,7 @@ impl Report {
     /// Writes the page to a file, which is replaced as a whole.
     ///
     /// # Errors
-    /// What the file system says.
+    /// Errors of the file system.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), ReportError> {
         let path = path.as_ref();
         replace_file(path, self.html.as_bytes()).map_err(|source| ReportError::Io {

@@ -87,7 +87,7 @@ fn step_time(run: &Run) -> f64 {
     run.model.as_ref().map_or(0.005, |m| m.opt.timestep) * f64::from(skip)
 }
 
-/// Returns the whole page, and adds notices about what could not be drawn.
+/// Returns the whole page, and adds notices about parts that could not be drawn.
 pub(super) fn page(run: &mut Run) -> String {
     let body = match run.behavior {
         Behavior::SelfTouch => touch_section(run),

@@ -1,4 +1,4 @@
-//! What the folder of a run holds.
+//! The contents of a run's folder.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(super) struct Evaluated {
 
 /// A training to compare with.
 pub(super) struct Baseline {
-    /// What its folder is called.
+    /// Name of its folder.
     pub name: String,
     /// The records that count.
     pub records: Vec<Info>,
@@ -47,7 +47,7 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Reads the folder of a run as far as that goes; what is missing or damaged is noticed.
+    /// Reads as much of a run's folder as possible; missing or damaged parts become notices.
     pub fn read(dir: &Path) -> Result<Self, ReportError> {
         let path = || dir.to_path_buf();
         if !dir.is_dir() {
@@ -175,7 +175,7 @@ fn training(dir: &Path, failures: &mut Vec<String>, notices: &mut Vec<String>) -
     }
 }
 
-/// Reads the scene of the run, or builds a likely one if that does not load here; tells whether it is the run's own.
+/// Reads the scene of the run, or builds a likely one if that does not load here; returns whether it is the run's own.
 fn scene(dir: &Path, behavior: Behavior, nq: Option<usize>, notices: &mut Vec<String>) -> (Option<Model>, bool) {
     match read_scene(dir) {
         Ok(model) => (Some(model), true),

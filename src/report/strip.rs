@@ -19,7 +19,7 @@ const MAX_CHUNKS: usize = 1 << 20;
 pub(super) struct Moment {
     /// Step, from 0.
     pub step: usize,
-    /// What happened.
+    /// The event.
     pub text: String,
 }
 

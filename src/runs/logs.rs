@@ -1,5 +1,5 @@
 //! Logs of training and evaluation: `logs/training.pkl` and `logs/evaluation_N.pkl` in a run's folder, as the Python
-//! kit writes and reads them, each with the same data beside it for everyone else (`.jsonl`, `.npz`).
+//! kit writes and reads them, each with the same data next to it in a common format (`.jsonl`, `.npz`).
 //!
 //! Every file is replaced as a whole: a run that is killed leaves the last complete log.
 
@@ -49,7 +49,7 @@ pub enum LogError {
     Pickle {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Description of the fault.
         source: PickleError,
     },
     /// The file is a pickle, but not of such a log.
@@ -59,7 +59,7 @@ pub enum LogError {
         path: PathBuf,
         /// Which log was expected.
         kind: &'static str,
-        /// What is wrong with it.
+        /// Description of the fault.
         reason: String,
     },
     /// The log cannot be expressed.
@@ -82,7 +82,7 @@ pub fn evaluation_path(save_dir: impl AsRef<Path>, episode: u64) -> PathBuf {
     folder(save_dir.as_ref()).join(format!("evaluation_{episode}.pkl"))
 }
 
-/// Makes the folder of the logs, or removes what killed processes left in it.
+/// Creates the folder of the logs, or removes the unfinished files of killed processes from it.
 fn make_folder(save_dir: &Path) -> Result<(), LogError> {
     let path = folder(save_dir);
     std::fs::create_dir_all(&path).map_err(|source| LogError::Io {
@@ -156,7 +156,7 @@ fn to_value(info: &Info) -> Value {
     }
 }
 
-/// Returns a record of what the kit knows of an episode.
+/// Returns the kit's record of an episode.
 fn record(steps: u64, behavior: BehaviorInfo) -> Info {
     Info {
         steps,

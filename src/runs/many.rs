@@ -91,7 +91,7 @@ impl RunVector {
         &self.log
     }
 
-    /// Returns the environments, for whatever else changes them. Episodes that are reset through them are not logged.
+    /// Returns the inner vector mutably; episodes reset through it are not logged.
     pub fn vector_mut(&mut self) -> &mut VectorEnv {
         &mut self.vector
     }
@@ -148,7 +148,7 @@ impl RunVector {
     /// those that are over.
     ///
     /// # Errors
-    /// What the file system says; environments in flight.
+    /// Errors of the file system; environments in flight.
     pub fn finish_training(&mut self) -> Result<(), RunError> {
         for env in 0..self.vector.len() {
             if self.compat == Compat::Api || self.vector.env(env)?.over() {

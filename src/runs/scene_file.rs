@@ -1,7 +1,7 @@
 //! `scene.xml`: the complete scene of an environment in one MJCF document, which this library and MuJoCo load.
 //!
-//! Includes are replaced by what they include; a comment at the top holds the configuration. Images of textures are
-//! written beside it into `tex/`, so that the folder can be moved as a whole.
+//! Includes are replaced by their contents; a comment at the top holds the configuration. Images of textures are
+//! written next to it into `tex/`, so that the folder can be moved as a whole.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use crate::physics::compile;
 
 /// The document in the folder of a run.
 const SCENE: &str = "scene.xml";
-/// Folder of the images, beside the document.
+/// Folder of the images, next to the document.
 const IMAGES: &str = "tex";
 /// Attributes that name images.
 const IMAGE_ATTRIBUTES: [&str; 7] = [
@@ -42,7 +42,7 @@ pub enum SceneFileError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// An asset cannot be put into one document.
@@ -50,7 +50,7 @@ pub enum SceneFileError {
     Asset {
         /// The asset.
         file: String,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
     /// A scene that does not load.
@@ -64,9 +64,9 @@ pub enum SceneFileError {
     Different {
         /// The document.
         path: PathBuf,
-        /// What it is of.
+        /// Its kind.
         found: String,
-        /// What is wanted.
+        /// The expected kind.
         wanted: String,
     },
     /// A scene without a configuration in its comment, or with one that is not allowed.
@@ -130,7 +130,7 @@ fn complete_document(document: &str, config: &Config, assets: &dyn AssetSource) 
 /// Writes `scene.xml` and its images, from the embedded assets, into the folder of a run, which is made if it is not there.
 ///
 /// # Errors
-/// What the file system says.
+/// Errors of the file system.
 pub fn write_scene(config: &Config, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
     write_scene_from(config, &embedded(), save_dir)
 }
@@ -138,7 +138,7 @@ pub fn write_scene(config: &Config, save_dir: &Path) -> Result<PathBuf, SceneFil
 /// Writes `scene.xml` as [`write_scene`] does, from other assets that are laid out like the embedded ones.
 ///
 /// # Errors
-/// Assets that are missing or no XML; what the file system says.
+/// Assets that are missing or not XML; errors of the file system.
 pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
     write_scene_file(&complete_scene_from(config, assets)?, save_dir)
 }
@@ -185,7 +185,7 @@ pub enum KeptScene {
 /// changed. `assets` are those of the blueprint.
 ///
 /// # Errors
-/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; what the file system says.
+/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; errors of the file system.
 pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<KeptScene, SceneFileError> {
     let (config, model) = (blueprint.config(), blueprint.model());
     let save_dir = Path::new(&config.save_dir);
@@ -212,7 +212,7 @@ fn same_ids(a: &Model, b: &Model) -> bool {
     a.nq == b.nq && a.body_name == b.body_name && a.jnt_name == b.jnt_name && a.geom_bodyid == b.geom_bodyid
 }
 
-/// Names what decides the ids of a scene: the scene and the version of MIMo.
+/// Describes what decides the ids of a scene: the scene and the version of MIMo.
 fn about(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     match config.behavior {

@@ -32,7 +32,7 @@ pub enum RunError {
 
 /// An [`Env`] whose episodes are added to a training log as they end, if it has one.
 ///
-/// It reads like the [`Env`] in it. What changes it goes through [`RunEnv::reset`] and [`RunEnv::step`], so that no
+/// It reads like the [`Env`] in it. Changes go through [`RunEnv::reset`] and [`RunEnv::step`], so that no
 /// episode is lost.
 #[derive(Debug)]
 pub struct RunEnv {
@@ -83,7 +83,7 @@ impl RunEnv {
         self.env.seed_action_space(seed);
     }
 
-    /// Returns the environment, for whatever else changes it. Episodes that are reset through it are not logged.
+    /// Returns the inner environment mutably; episodes reset through it are not logged.
     pub fn env_mut(&mut self) -> &mut Env {
         &mut self.env
     }
@@ -97,7 +97,7 @@ impl RunEnv {
     /// happens.
     ///
     /// # Errors
-    /// What the file system says.
+    /// Errors of the file system.
     pub fn finish_training(&mut self) -> Result<(), LogError> {
         if self.log.is_some() && self.env.config().compat == Compat::Api {
             self.log_episode()?;
@@ -117,7 +117,7 @@ impl RunEnv {
 /// Creates the environment of a configuration, for training or for evaluation.
 ///
 /// For training, the folder `save_dir` gets the complete scene (`scene.xml`) and, as episodes end, the training log,
-/// which replaces an older one; [`RunEnv::finish_training`] saves what is not yet in it. An environment for evaluation
+/// which replaces an older one; [`RunEnv::finish_training`] saves the rest. An environment for evaluation
 /// writes nothing; under `compat: reference` its counters and lists go on from episode to episode, as the kit's do.
 ///
 /// ```
@@ -178,7 +178,7 @@ pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resu
     Ok(RunEnv::new(env, Some(log)))
 }
 
-/// Returns the names of the parts that can be touched, if that is what is logged.
+/// Returns the names of the parts that can be touched, if touches are logged.
 fn part_names(blueprint: &Blueprint) -> Option<PartNames> {
     (blueprint.config().behavior == Behavior::SelfTouch).then(|| PartNames::new(blueprint.model()))
 }

@@ -1,4 +1,4 @@
-//! Pain: what presses too hard, and how it fades.
+//! Pain: pressure beyond a threshold, and its decay.
 
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ impl Pain {
         &self.felt
     }
 
-    /// Appends how soft and how sensitive bodies are, and what it remembers from step to step.
+    /// Appends softness and sensitivity of bodies, and the memory from step to step.
     pub(crate) fn save(&self, out: &mut Vec<u8>) {
         for factor in self.softness.iter().chain(&self.sensitivity) {
             out.extend_from_slice(&factor.to_le_bytes());
@@ -64,7 +64,7 @@ impl Pain {
         self.felt.save(out);
     }
 
-    /// Takes over what was saved; `false` if it is something else.
+    /// Restores what was saved; `false` if the bytes are something else.
     pub(crate) fn load(&mut self, bytes: &[u8]) -> bool {
         let factors = self.softness.iter_mut().chain(&mut self.sensitivity);
         let Some((saved, mut bytes)) = bytes.split_at_checked(8 * factors.size_hint().0) else {

@@ -6,7 +6,7 @@ use crate::model::{Model, SensorType};
 use crate::physics::State;
 
 /// The vestibular sense: linear acceleration of the head including gravity (m/s^2) and its angular velocity (rad/s), in
-/// the frame of the site in the middle of the head; the model's accelerometers and gyros, in their order.
+/// the frame of the site at the centre of the head; the model's accelerometers and gyros, in their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vestibular {
     sensors: Vec<usize>,

@@ -9,7 +9,7 @@ use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, V
 
 /// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
 pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
-/// Keys of the images in grey, left and right.
+/// Keys of the gray images, left and right.
 pub const EYES_GRAY: [&str; 2] = ["eye_left_gray", "eye_right_gray"];
 /// Keys of depth, left and right.
 pub const EYES_DEPTH: [&str; 2] = ["eye_left_depth", "eye_right_depth"];
@@ -50,7 +50,7 @@ pub struct EyeImages {
 }
 
 impl EyeImages {
-    /// Makes room for images of so many pixels.
+    /// Creates images with a number of pixels, one of each output.
     pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
         let len = |output| if outputs.contains(output) { pixels } else { 0 };
         Self {
@@ -161,7 +161,7 @@ impl Vision {
         self.renderer.draw(&requests, eyes)
     }
 
-    /// Draws both images in grey: a byte for each pixel, (resolution, resolution).
+    /// Draws both gray images: a byte for each pixel, (resolution, resolution).
     ///
     /// # Errors
     /// Fails if a buffer has the wrong length.
@@ -170,7 +170,7 @@ impl Vision {
         self.renderer.gray(&requests, eyes)
     }
 
-    /// Draws for both eyes the distance of what each pixel shows from the camera's plane, m, (resolution, resolution);
+    /// Draws for both eyes the distance of the surface at each pixel from the camera's plane, m, (resolution, resolution);
     /// infinite where nothing is.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use crate::model::{BiasType, Model};
 
 /// Lengths of a muscle, in optimal lengths, at the two ends of its joint's range.
 const LENGTH_RANGE: [f64; 2] = [0.75, 1.05];
-/// What the reference adds to numerators and denominators.
+/// Added to numerators and denominators, as in the reference.
 const EPSILON: f64 = 1e-10;
 /// The geometry and strength of the two muscles of one actuator, after Wochner et al. 2022.
 ///

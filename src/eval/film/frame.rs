@@ -33,7 +33,7 @@ pub const FRAME_HEIGHT: usize = 480;
 /// Side of the panels on the right.
 const PANEL: usize = FRAME_HEIGHT / 2;
 
-/// What the panel at the upper right shows.
+/// The content of the panel at the upper right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel<'a> {
     /// The camera `side2`.

@@ -1,4 +1,4 @@
-//! Videos of evaluation episodes: what makes them, and the frame that the Python kit composes.
+//! Videos of evaluation episodes, and the frame that the Python kit composes.
 
 mod frame;
 mod room;
@@ -20,10 +20,10 @@ pub trait Film {
     /// Adds a frame of the environment's current step; the first one begins a video.
     ///
     /// # Errors
-    /// What the drawing, the coding or the file system says.
+    /// Errors of drawing, encoding or the file system.
     fn frame(&mut self, env: &Env) -> Result<(), FilmError>;
 
-    /// Finishes the video and moves it to `path`, replacing what was there. The folder must exist.
+    /// Finishes the video and moves it to `path`, replacing an older file. The folder must exist.
     ///
     /// # Errors
     /// As [`Film::frame`].

@@ -7,7 +7,7 @@ use crate::env::EYE_HAND_PAIRS;
 use crate::env::SCORED_PARTS as PARTS;
 
 impl Serialize for Score {
-    /// Serializes what [`Score::to_json`] prints without names.
+    /// Serializes the score as [`Score::to_json`] prints it without names.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let skin = None;
         Described { score: self, skin }.serialize(serializer)
@@ -62,7 +62,7 @@ impl Serialize for Described<'_> {
     }
 }
 
-/// What one hand has touched.
+/// The parts that one hand has touched.
 struct HandTouches<'a> {
     hand: usize,
     touched: &'a [usize],

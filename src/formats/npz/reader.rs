@@ -231,7 +231,7 @@ impl Npz {
     }
 }
 
-/// Checks that an array of this shape, of so many bytes per number, is within a limit; each dimension counts, also where
+/// Checks that an array of this shape and number of bytes per value is within a limit; each dimension counts, also where
 /// another is 0.
 fn check_shape(shape: &[usize], width: usize, limit: usize) -> Result<(), String> {
     let mut lengths = shape.iter().map(|length| (*length).max(1));

@@ -123,7 +123,7 @@ impl NpzWriter {
         })
     }
 
-    /// Writes the archive to `path`, which holds either what it held before or all of the archive, never a part.
+    /// Writes the archive to `path`, which holds either its old content or the whole archive, never a part.
     ///
     /// # Errors
     /// When the file cannot be written.

@@ -1,4 +1,4 @@
-//! What the constructors that logs name would make.
+//! The values that the constructors named in logs would build.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ impl Machine<'_> {
         Ok(())
     }
 
-    /// Makes what the constructors would make.
+    /// Builds the value of a constructor.
     pub(super) fn reduce(&mut self) -> Done {
         let [callable, arguments] = self.pops()?;
         let callable = match callable {

@@ -35,7 +35,7 @@ impl Machine<'_> {
         }
     }
 
-    /// Does what the next opcode says; the last one returns the value that is left.
+    /// Executes the next opcode; the last one returns the value that is left.
     #[inline]
     pub(super) fn advance(&mut self) -> Result<Option<Item>, PickleError> {
         self.op = self.at;

@@ -1,4 +1,4 @@
-//! What the stack of a pickle holds.
+//! The entries of a pickle's stack.
 
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -5,9 +5,9 @@ use super::objects::{Item, Object};
 use super::stack::Machine;
 use crate::limits::Limits;
 
-/// What a pickle is, besides the records that were handed out.
+/// The kind of a pickle, apart from the records that were handed out.
 pub(crate) enum Root {
-    /// A list of so many records.
+    /// A list of records.
     List,
     /// A dictionary with these text keys.
     Dict(Vec<String>),
@@ -89,7 +89,7 @@ impl<'m, 'a> Node<'m, 'a> {
 /// Reads the records of a list, which `visit` gets one at a time; it may refuse the rest.
 ///
 /// # Errors
-/// As [`super::from_bytes`]; what `visit` refuses.
+/// As [`super::from_bytes`]; errors of `visit`.
 pub(crate) fn visit_records<E: From<PickleError>>(
     bytes: &[u8],
     limits: &Limits,
@@ -138,7 +138,7 @@ const PLAIN: [u8; 256] = {
     lengths
 };
 
-/// Finds the places in the memo that are recalled later. What cannot be read ends the search: reading it fails there, too.
+/// Finds the places in the memo that are recalled later. The search ends at the first fault, at which reading fails as well.
 pub(super) fn recalled(bytes: &[u8], limits: &Limits) -> Vec<bool> {
     let mut recalled = Vec::new();
     let mut rest = bytes;

@@ -12,7 +12,7 @@ use crate::limits::Limits;
 /// The outcome of an opcode.
 pub(super) type Done = Result<(), PickleError>;
 
-/// How much room is kept of what is no longer used: entries, and lists or dictionaries.
+/// Capacity kept in the free lists: entries, and lists or dictionaries.
 const KEPT: [usize; 2] = [64, 4096];
 
 /// Room for the items of short lists and the entries of short dictionaries. Records are many and short.
@@ -52,7 +52,7 @@ pub(super) struct Machine<'a> {
     spare: Spare,
     /// Objects that are yet to be released.
     releasing: Vec<usize>,
-    /// What of [`Limits::pickle_numbers`] is left.
+    /// The remainder of [`Limits::pickle_numbers`].
     budget: usize,
 }
 
@@ -136,7 +136,7 @@ impl<'a> Machine<'a> {
         self.stack.push(Item::Object(place));
     }
 
-    /// Takes what the list at the bottom of the stack, if the pickle is one, has so far.
+    /// Takes the items so far of the list at the bottom of the stack, if the pickle is a list.
     #[inline]
     pub fn take_records(&mut self) -> Option<Vec<Item>> {
         match (&self.stack[..], self.objects.first_mut()) {
@@ -145,7 +145,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Frees the places of an item that nothing refers to any more, and of what is in it.
+    /// Frees the places of an item that nothing refers to any more, and of its content.
     pub fn release(&mut self, item: Item) {
         self.release_later(item);
         while let Some(place) = self.releasing.pop() {

@@ -17,7 +17,7 @@ pub fn to_bytes(value: &Value) -> Result<Vec<u8>, PickleError> {
     Ok(writer.out)
 }
 
-/// A list of dictionaries as a pickle that grows, so that what they were made from need not be in memory. The bytes are those
+/// A list of dictionaries as a pickle that grows, so that their sources need not stay in memory. The bytes are those
 /// of [`to_bytes`] for the whole list, whenever one looks.
 #[derive(Clone)]
 pub(crate) struct ListWriter {
@@ -25,11 +25,11 @@ pub(crate) struct ListWriter {
     items: usize,
 }
 
-/// What ends a pickled list, and the pickle.
+/// The opcodes that end a pickled list, and the pickle.
 const END: &[u8] = b"e.";
 
 impl ListWriter {
-    /// Begins a list, with room for so many bytes.
+    /// Begins a list, with room for `bytes` bytes.
     pub fn with_capacity(bytes: usize) -> Self {
         let mut writer = Writer::new();
         writer.out.reserve(bytes);

@@ -1,4 +1,4 @@
-//! Which measurements are to blame for a body that cannot be.
+//! Finds the measurements that make a body impossible.
 
 use super::GrowthError;
 use crate::config::{Config, Key, KeyValue};

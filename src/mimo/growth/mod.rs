@@ -50,7 +50,7 @@ pub enum GrowthError {
         keys: String,
         /// Age, months.
         age: f64,
-        /// What is wrong with the body.
+        /// Description of the fault.
         reason: String,
     },
     /// The scene lacks a part that grows.

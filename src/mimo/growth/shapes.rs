@@ -1,4 +1,4 @@
-//! What growth changes: sizes and positions of MIMo's parts.
+//! The sizes and positions of MIMo's parts that growth changes.
 
 use crate::math::Vec3;
 

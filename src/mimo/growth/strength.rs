@@ -25,7 +25,7 @@ pub(super) fn carrier(actuator: &str, version: Version) -> Option<(String, usize
 }
 
 /// Returns the factor on the gear of an actuator at any age. The authors' growth gives v2's toes the strength of its big toe,
-/// half of what the original body has.
+/// half of the original body's.
 pub(super) fn share(actuator: &str, version: Version) -> f64 {
     match (version, actuator) {
         (Version::V2, "act:left_toes" | "act:right_toes") => 0.5,

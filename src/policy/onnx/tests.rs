@@ -1,4 +1,4 @@
-//! What a model is called in errors.
+//! Names of models in errors.
 
 use super::*;
 

@@ -12,7 +12,7 @@ pub(super) enum Field<'a> {
     Bytes(&'a [u8]),
 }
 
-/// What the runtime reads messages as.
+/// The types of messages that the runtime reads.
 #[derive(Clone, Copy)]
 enum Message {
     Model,
@@ -29,17 +29,17 @@ enum Message {
     Plain,
 }
 
-/// What the bytes of a field are.
+/// The content of a field's bytes.
 enum Content {
     Message(Message),
     /// Numbers of variable length, one after the other.
     Numbers,
-    /// Text, or what the runtime does not look into.
+    /// Text, or bytes that the runtime does not parse.
     Other,
 }
 
 impl Message {
-    /// Says what the bytes of a field are.
+    /// Returns the content of a field's bytes.
     fn content(self, field: u64) -> Content {
         Content::Message(match (self, field) {
             (Self::Model, 7) | (Self::Attribute, 6) => Self::Graph,
@@ -94,7 +94,7 @@ pub(super) fn fields(mut bytes: &[u8]) -> Option<Vec<(u64, Field<'_>)>> {
     Some(out)
 }
 
-/// Looks a model through; the error says what is wrong with its bytes.
+/// Checks the bytes of a model; the error describes the fault.
 pub(super) fn check(model: &[u8]) -> Result<(), String> {
     walk(model, Message::Model, DEPTH)
 }

@@ -126,7 +126,7 @@ fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {
     std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t)
 }
 
-/// Draws the table of how often each hand touched each part.
+/// Draws the table of touches, by hand and part.
 fn parts_table(touchables: &Touchables, parts: &[Share]) -> Markup {
     html! {
         table.bars {

@@ -1,4 +1,4 @@
-//! A picture of the skin and of what it feels.
+//! A picture of the skin and of the forces on it.
 
 mod trace;
 
@@ -72,7 +72,7 @@ impl Picture {
     }
 }
 
-/// Sensors this much (m) below what is seen are hidden.
+/// Sensors this much (m) below the visible surface are hidden.
 const HIDDEN: f64 = 0.003;
 
 /// A direction to look from, in the frame of the first body that feels. Up is z.
@@ -131,7 +131,7 @@ struct Canvas<'a> {
     scale: f64,
     /// Horizontal coordinate of the left border and height of the upper one, m.
     corner: [f64; 2],
-    /// For each pixel how near what is seen is to the eye, m.
+    /// Coordinate of the visible surface towards the eye at each pixel, m.
     nearness: Vec<f64>,
 }
 
@@ -199,7 +199,7 @@ impl Canvas<'_> {
     }
 }
 
-/// What is drawn, in the frame of the first body that feels.
+/// The geometry to draw, in the frame of the first body with skin.
 struct Figure {
     dots: Vec<Dot>,
     solids: Vec<Solid>,
@@ -208,7 +208,7 @@ struct Figure {
 }
 
 impl Figure {
-    /// Collects what is drawn, in the frame of the body `first`.
+    /// Collects the geometry, in the frame of the body `first`.
     fn new(
         model: &Model,
         layout: &SkinLayout,

@@ -45,7 +45,7 @@ impl EvaluationLog {
     /// each hand, the touched geoms (`*_touches`, those of step t at `*_ptr[t]..*_ptr[t+1]`).
     ///
     /// # Errors
-    /// What the file system says.
+    /// Errors of the file system.
     pub fn write(&self, save_dir: impl AsRef<Path>, episode: u64) -> Result<PathBuf, LogError> {
         make_folder(save_dir.as_ref())?;
         let path = evaluation_path(save_dir, episode);

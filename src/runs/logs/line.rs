@@ -69,7 +69,7 @@ impl<'n> LineMaker<'n> {
     }
 }
 
-/// The names of so many geoms are kept.
+/// Number of geoms whose names are kept.
 const KEPT: usize = 1000;
 
 /// Appends a list.

@@ -47,7 +47,7 @@ struct Resumed {
     first: Info,
 }
 
-/// What is known of the file of lines beside a training log.
+/// What is known about the `.jsonl` file next to a training log.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     /// For the names of touched parts.
@@ -67,7 +67,7 @@ impl Clone for Lines {
 }
 
 impl Lines {
-    /// Starts with the lines that may lie beside a log of so many records, of which `first` is the first one.
+    /// Resumes from the `.jsonl` file, if there is one, next to a log of `records` records, whose first record is `first`.
     pub fn of(first: Option<Info>, records: usize) -> Self {
         Self {
             resumed: first.map(|first| Resumed { records, first }),
@@ -84,7 +84,7 @@ impl Lines {
         }
     }
 
-    /// Takes a file for that of so many records, which was just written.
+    /// Marks the file, just written, as up to date with `records` records.
     pub fn know(&self, path: &Path, records: usize) {
         let meta = std::fs::metadata(path).ok();
         let known = meta.map(|meta| Known::of(records, &meta));
@@ -98,7 +98,7 @@ impl Lines {
     /// Brings the file up to date with `total` records, of which `recent` are the last and `visit` hands out all.
     ///
     /// # Errors
-    /// What the file system says; what `visit` says.
+    /// Errors of the file system; what `visit` says.
     pub fn save(
         &self,
         path: &Path,

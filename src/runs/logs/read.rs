@@ -10,7 +10,7 @@ use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PerHand, TaskInfo}
 use crate::formats::pickle::{self, Node, PickleError, Root, Value};
 use crate::limits::Limits;
 
-/// A value of a pickle, in whatever form.
+/// A value of a pickle, in any form.
 trait Field: Copy {
     fn is_dict(self) -> bool;
     fn get(self, key: &str) -> Option<Self>;
@@ -20,7 +20,7 @@ trait Field: Copy {
     fn number(self) -> Option<f64>;
     /// Returns the value among some names that a text has.
     fn task(self) -> Option<Behavior>;
-    /// Returns a list of at most so many such numbers.
+    /// Returns a list of such numbers, within a limit.
     fn counts(self, most: usize) -> Option<Vec<usize>>;
 }
 
@@ -177,7 +177,7 @@ pub(super) fn records(value: &Value, limits: &Limits) -> Result<Vec<Info>, Strin
     items.iter().map(|item| records.next(item)).collect()
 }
 
-/// What keeps a training log from being read further.
+/// A fault that keeps a training log from being read further.
 enum Stop {
     Pickle(PickleError),
     Foreign(String),

@@ -13,7 +13,7 @@ use crate::files::Owner;
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
 
-/// What the records of a training log add up to.
+/// The totals over the records of a training log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct TrainingTotals {
@@ -73,7 +73,7 @@ impl TrainingLog {
     /// log and its copies are dropped, other processes cannot train into that folder.
     ///
     /// # Errors
-    /// A folder into which another process trains; what the file system says.
+    /// A folder into which another process trains; errors of the file system.
     pub fn create(config: &Config) -> Result<Self, LogError> {
         let owner = own_folder(config.save_dir.as_ref())?;
         let log = Self::empty(config, owner, 0);
@@ -216,7 +216,7 @@ impl TrainingLog {
         }
     }
 
-    /// Returns what the records so far add up to.
+    /// Returns the totals over the records so far.
     pub fn totals(&self) -> &TrainingTotals {
         &self.totals
     }
@@ -230,7 +230,7 @@ impl TrainingLog {
     /// ([`crate::make_env`]) does so by itself; this is for programs that run many environments into one log.
     ///
     /// # Errors
-    /// What the file system says.
+    /// Errors of the file system.
     pub fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
         let first = std::mem::take(&mut self.resumed);
         if steps == 0 && (first || self.compat == Compat::Api) {
@@ -252,7 +252,7 @@ impl TrainingLog {
     /// `left_hand_parts`).
     ///
     /// # Errors
-    /// What the file system says.
+    /// Errors of the file system.
     pub fn save(&self) -> Result<(), LogError> {
         let path = training_path(&self.save_dir);
         let all = |each: &mut dyn FnMut(&Info)| self.visit(|info| each(&info));

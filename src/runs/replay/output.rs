@@ -1,4 +1,4 @@
-//! What an environment produced in a replay.
+//! The output of an environment in a replay.
 
 use std::path::Path;
 
@@ -73,11 +73,11 @@ pub struct Replay {
     pub contact_force: Vec<f64>,
     /// Steps whose pictures were taken (K).
     pub eye_steps: Vec<i64>,
-    /// What the left eye saw in them (K, H, W, 3).
+    /// Images of the left eye in them, (K, H, W, 3).
     pub eye_left: Vec<u8>,
-    /// What the right eye saw in them.
+    /// Images of the right eye in them.
     pub eye_right: Vec<u8>,
-    /// What else the environment's eyes observed in them, left and right, (K, H, W) each.
+    /// The eyes' other outputs in them, left and right, (K, H, W) each.
     pub eyes: [EyeImages; 2],
     /// Width and height of those pictures, pixels.
     pub eye_size: usize,
@@ -87,7 +87,7 @@ pub struct Replay {
     pub task: Option<TaskRows>,
 }
 
-/// What a task produced in a replay, row-major, one row per step.
+/// The output of a task in a replay, row-major, one row per step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TaskRows {
     /// Rewards (T).
@@ -216,7 +216,7 @@ impl Replay {
         }
     }
 
-    /// Adds what the eyes observe besides colours.
+    /// Adds the eyes' outputs other than colours.
     pub(super) fn push_eyes(&mut self, observation: &Observation) {
         let [left, right] = &mut self.eyes;
         if let Some(gray) = observation.eye_gray {
@@ -233,7 +233,7 @@ impl Replay {
         }
     }
 
-    /// Writes what the eyes observed besides colours.
+    /// Writes the eyes' outputs other than colours.
     fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), ReplayError> {
         let shape = [self.eye_steps.len(), self.eye_size, self.eye_size];
         for (k, eye) in self.eyes.iter().enumerate() {
@@ -254,7 +254,7 @@ impl Replay {
     /// made if it is not there.
     ///
     /// # Errors
-    /// What the file system says.
+    /// Errors of the file system.
     pub fn write(&self, dir: &Path, recording: &Recording) -> Result<(), ReplayError> {
         let write_error = |path: &Path| {
             let path = path.display().to_string();

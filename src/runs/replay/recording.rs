@@ -1,4 +1,4 @@
-//! What a replay needs of a recording.
+//! The arrays of a recording that a replay needs.
 
 use super::ReplayError;
 use crate::env::Env;
@@ -25,7 +25,7 @@ pub struct Recording {
     pub qacc: Vec<f64>,
     /// Activities of the muscles (T, na) for one-step replay; empty when not recorded.
     pub activity: Vec<f64>,
-    /// Further starts of episodes, and what is known of the first one, of recordings of tasks. `qpos0`, `qvel0` and `activity0` are
+    /// Starts of further episodes, and details of the first one, in recordings of tasks. `qpos0`, `qvel0` and `activity0` are
     /// those of the first.
     pub episodes: Vec<EpisodeStart>,
 }
@@ -53,7 +53,7 @@ impl Recording {
     /// Reads `qpos0, qvel0, actions` and, if they are there, `activity0, qpos, qvel, qacc`, for `env`. Without
     /// `activity0` muscles start inactive.
     ///
-    /// A recording of a task has several episodes: `reset_row` (E) tells before which steps they start, and `reset_qpos`,
+    /// A recording of a task has several episodes: `reset_row` (E) lists the steps before which they start, and `reset_qpos`,
     /// `reset_qvel` (E, ...) from where; `reset_warm`, `reset_activity`, `reset_desired_goal` and `reset_ball` are read if they are
     /// there.
     ///

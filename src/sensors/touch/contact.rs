@@ -9,7 +9,7 @@ use crate::sensors::touch::SkinLayout;
 /// Least normal force (N) of a contact that is felt.
 pub(crate) const MIN_FORCE: f64 = 1e-9;
 
-/// One side of a contact: a body with skin, and what touches it.
+/// One side of a contact: a body with skin, and the other geom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchContact {
     /// Index in the list of contacts.

@@ -119,7 +119,7 @@ impl Touch {
         &self.layout
     }
 
-    /// Returns what a sensor reports.
+    /// Returns the quantity that sensors report.
     pub fn function(&self) -> TouchFunction {
         self.function
     }
@@ -139,7 +139,7 @@ impl Touch {
         self.values().is_empty()
     }
 
-    /// Returns what all sensors feel, N.
+    /// Returns the forces on all sensors, N.
     pub fn felt(&self) -> &SkinValues {
         &self.felt
     }
@@ -205,9 +205,9 @@ impl Touch {
         self.sense(model, &s.contact, &s.xpos, &s.xmat);
     }
 
-    /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, and forgets what was felt before.
+    /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, in place of earlier values.
     ///
-    /// Costs what is touched, whatever the number of sensors, and allocates nothing after a few calls.
+    /// The cost grows with the number of contacts, not of sensors; nothing is allocated after a few calls.
     pub fn sense(&mut self, model: &Model, contacts: &[Contact], xpos: &[Vec3], xmat: &[Mat3]) {
         self.clear();
         let layout = self.layout.clone();

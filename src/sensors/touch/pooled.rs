@@ -47,7 +47,7 @@ impl TouchPool {
         self.bodies.is_empty()
     }
 
-    /// Writes what the skin of `touch`, which is the one that this sense was made for, feels.
+    /// Writes the sums of `touch`, the sense of touch that this one was built for.
     pub fn observe(&self, touch: &Touch, out: &mut [f64]) {
         out.fill(0.0);
         for contact in touch.contacts().iter().filter(|c| c.felt) {

@@ -1,4 +1,4 @@
-//! What the sensors of a skin report: thousands of numbers, of which few are not zero.
+//! The values of a skin's sensors: thousands of numbers, nearly all of them zero.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ pub struct SkinValues {
 }
 
 impl SkinValues {
-    /// Creates the zeros of so many sensors with `width` numbers each.
+    /// Creates zeros for a number of sensors with `width` numbers each.
     pub fn new(sensors: usize, width: usize) -> Self {
         Self {
             width,

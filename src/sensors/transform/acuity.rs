@@ -56,7 +56,7 @@ pub struct AcuityOptions {
     pub reference: bool,
 }
 
-/// Blurs colours and grey as an eye of some age sees them. The spectrum of the image is multiplied by a transfer function
+/// Blurs colours and gray as an eye of some age sees them. The spectrum of the image is multiplied by a transfer function
 /// that is 1 up to 0.1 cycles per degree and falls to 0.01 at the cut-off of the age, in a straight line over the
 /// logarithms of both; distances and ids stay.
 #[derive(Clone, Debug)]
@@ -123,7 +123,7 @@ impl Acuity {
     }
 }
 
-/// What makes up for the rounding of a whole number that comes out a little less, before its fraction is cut off.
+/// Added before the fraction is cut off, for whole numbers that rounding has made a little smaller.
 const EXACT: f64 = 1e-9;
 
 /// Returns the transfer function of all frequencies, column by column, in the order of a Fourier transform.

@@ -11,7 +11,7 @@ pub(in crate::sensors) trait Waiting {
     /// Takes over the values of another of the same size.
     fn assign(&mut self, other: &Self);
     fn save(&self, out: &mut Vec<u8>);
-    /// Takes over what was saved from the front of `bytes`; `false` if it is something else.
+    /// Restores the memory saved at the front of `bytes`; `false` if they are something else.
     fn load(&mut self, bytes: &mut &[u8]) -> bool;
     fn memory(&self) -> usize;
 }
@@ -256,12 +256,12 @@ impl DelayLine {
 #[derive(Clone, Debug)]
 pub struct Delay {
     steps: usize,
-    /// Length of a step, ms, for people.
+    /// Duration of a step in ms, for display.
     step_ms: f64,
     memory: Memory,
 }
 
-/// What waits. It is made from the first values, whose size it has.
+/// The queue of delayed values, made from the first ones, whose size it has.
 #[derive(Clone, Debug)]
 enum Memory {
     Numbers(Ring<Vec<f64>>, Vec<f64>),

@@ -68,7 +68,7 @@ impl Fourier {
     }
 }
 
-/// Exchanges rows and columns of a picture of so many rows and columns.
+/// Transposes an image of `rows` rows and `columns` columns.
 #[inline(always)]
 fn turn(from: &Plane, to: &mut Plane, rows: usize, columns: usize) {
     for (from, to) in [(&from.re, &mut to.re), (&from.im, &mut to.im)] {

@@ -1,12 +1,12 @@
-//! Foveation: the middle of the retina sees more of less.
+//! Foveation: the centre of the retina has the highest resolution.
 
 use super::{Signal, Transform};
 use crate::spaces::NumpyRng;
 
-/// Warps images so that the middle is enlarged and the edge compressed; the size stays, and so do the corners.
+/// Warps images so that the centre is enlarged and the edge compressed; size and corners stay.
 ///
-/// A pixel at the distance r from the middle shows what was at R expm1((r / R) ln(1 + s)) / s, where R is the distance of
-/// the corner and s the strength: at 10 the middle is enlarged 4.2 times. Colours and grey are interpolated between the
+/// A pixel at the distance r from the centre shows the image at R expm1((r / R) ln(1 + s)) / s, where R is the distance of
+/// the corner and s the strength: at 10 the centre is enlarged 4.2 times. Colours and gray are interpolated between the
 /// four nearest pixels, across the edge with the mirror image; distances and ids are those of the nearest pixel.
 #[derive(Clone, Debug)]
 pub struct Foveation {

@@ -1,4 +1,4 @@
-//! Transforms of what a sense reports, on its way to the observation: a sense, its transforms one after the other, the observation.
+//! Transforms between a sense and the observation, applied one after the other to the sense's values.
 //!
 //! A transform is a small type that changes the values of one sense in place. The configuration sets up those of this
 //! module; [`Env::add_transform`](crate::Env::add_transform) adds others, such as eyes that see nothing half of the time:
@@ -103,7 +103,7 @@ impl Sense {
     }
 }
 
-/// What a sense reports in one step, to be changed in place.
+/// The values of a sense in one step, to be changed in place.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Signal<'a> {
@@ -142,19 +142,19 @@ pub trait Transform: Send + Sync {
     /// Describes it in a few words, with units, for `inspect`.
     fn describe(&self) -> String;
 
-    /// Changes what the sense reports. Random numbers come from the generator of the environment, so that the same seed
+    /// Changes the values of the sense. Random numbers come from the generator of the environment, so that the same seed
     /// gives the same bits.
     fn apply(&mut self, signal: Signal<'_>, rng: &mut NumpyRng);
 
-    /// Forgets what it remembers, at the start of an episode.
+    /// Clears its memory, at the start of an episode.
     fn reset(&mut self) {}
 
-    /// Appends what it remembers from step to step, for a snapshot.
+    /// Appends its memory, for a snapshot.
     fn save(&self, out: &mut Vec<u8>) {
         let _ = out;
     }
 
-    /// Takes over what [`Transform::save`] wrote. Returns `false` if it is something else.
+    /// Restores the memory that [`Transform::save`] wrote. Returns `false` if the bytes are something else.
     fn load(&mut self, bytes: &[u8]) -> bool {
         bytes.is_empty()
     }

@@ -6,7 +6,7 @@ use crate::spaces::NumpyRng;
 /// Gaussian noise, independent for each value. It is added
 /// - to every number of a vector, in its unit, in the vector's order,
 /// - to the values of the touch sensors that feel something, in the order in which contacts reached them,
-/// - to the bytes of images in colour and grey, row by row, rounded and clipped to 0 and 255; not to distances and ids.
+/// - to the bytes of colour and gray images, row by row, rounded and clipped to 0 and 255; not to distances and ids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     deviation: f64,
