@@ -61,8 +61,11 @@ impl Lowest {
         let mut count = 0;
         for k in 0..3 {
             let arm = axis(k);
+            // against each axis that rises, along each that falls: the deepest corner, from which all edges rise
             let down = arm[2] < 0.0;
             corner = add_scaled(corner, arm, size[k] * if down { 1.0 } else { -1.0 });
+            // an edge more than 30 degrees off level leads away from the face, and has no second point near it; all
+            // three are level only if the box were flat
             if arm[2].abs() < 0.5 && count < 2 {
                 edges[count] = scale(arm, size[k] * if down { -2.0 } else { 2.0 });
                 count += 1;
@@ -97,6 +100,7 @@ impl Lowest {
                 let (dx, dy) = (x - corner[0], y - corner[1]);
                 let u = (dx * g[1] - dy * g[0]) * inverse;
                 let v = (dy * e[0] - dx * e[1]) * inverse;
+                // on its rim the crossings of edges have found it
                 if u <= 0.0 || v <= 0.0 || u >= 1.0 || v >= 1.0 {
                     continue;
                 }

@@ -118,6 +118,7 @@ impl NormalEquations {
         }
         if t.abs() > 1.0 {
             t = if t > 1.0 { 1.0 } else { -1.0 };
+            // the end of the segment in place of the point beyond it: the nearest point of the edge moves with it
             position = (u - t * m12) * inverse11;
             if position > 1.0 {
                 (position, at) = (1.0, At::Upper);
@@ -150,6 +151,7 @@ impl Segment {
                 count += 1;
                 axis = Some(k);
             }
+            // nearest to an edge or a corner, which the edges find
             if count > 1 {
                 continue;
             }
@@ -190,6 +192,7 @@ impl Segment {
             -s[AXIS] * h[AXIS],
             self.half_length * self.half_length,
         );
+        // no determinant for a segment along the edge: its ends, over faces or across other edges, are as near
         let det = m11 * m22 - m12 * m12;
         if det.abs() < MINVAL {
             return;
@@ -219,6 +222,7 @@ impl Segment {
             let mut away = add_scaled(between, h, -t);
             away[AXIS] += s[AXIS] * position;
             let distance2 = dot(away, away);
+            // a corner belongs to three edges: the first to find it keeps it, and rounding does not hand it on
             if distance2 < nearest.distance2 - MINVAL {
                 nearest.distance2 = distance2;
                 nearest.t = t;
@@ -254,6 +258,8 @@ impl Segment {
     fn second_from_corner(&self, t: f64, corner: usize) -> Option<f64> {
         // axes along which the segment leads from the corner over the box in one direction, against the others
         let (single, sign) = match self.rising ^ corner {
+            // the segment leads away from the box along all axes, or through it along all: nothing but the corner is
+            // near
             0 | 7 => return None,
             axes if axes.count_ones() == 1 => (axes, 1.0),
             axes => (7 - axes, -1.0),
@@ -268,11 +274,13 @@ impl Segment {
     }
 
     fn second_from_edge(&self, t: f64, axis: usize, corner: usize, position: f64) -> Option<f64> {
+        // over the box along one of the two axes across the edge and off it along the other: the segment leans on both
+        // faces or on neither
         let across = (self.rising ^ corner) & !(1 << axis);
         if across.count_ones() != 1 {
             return None;
         }
-        // the other axis that the segment follows most
+        // of the two axes across the edge the one that the segment follows most: over that face the second contact lies
         let (k1, k2) = ((axis + 1) % 3, (axis + 2) % 3);
         let main = if self.axis[k1].abs() > self.axis[k2].abs() {
             k1

@@ -70,6 +70,7 @@ pub(super) fn plane_cylinder(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &
     // from the axis to the lowest point of a rim
     let down = sub(scale(axis, drop), normal);
     let length2 = dot(down, down);
+    // an upright cylinder has no lowest point on its rim: any serves, and its own x axis turns with it
     let rim = if length2 >= MINVAL * MINVAL {
         scale(down, radius / length2.sqrt())
     } else {
@@ -127,6 +128,8 @@ pub(super) fn plane_box(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut V
         );
         let rise = dot(normal, arm);
         let dist = height + rise;
+        // corners above the centre cannot be the lowest; without this a box deep in the plane would use its four
+        // contacts on any
         if dist > margin || rise > 0.0 {
             continue;
         }

@@ -24,6 +24,7 @@ fn ball_ball(a: Ball, b: Ball, margin: f64) -> Option<BareContact> {
     let dist = distance2.sqrt() - a.radius - b.radius;
     let (mut normal, length) = unit(sub(b.centre, a.centre));
     if length < MINVAL {
+        // coinciding centres give no direction; MuJoCo takes the one across both axes
         normal = unit(cross(a.axis, b.axis)).0;
     }
     let pos = add_scaled(a.centre, normal, a.radius + dist / 2.0);
@@ -211,6 +212,8 @@ impl<'a> Segments<'a> {
         } = *self;
         let mut x1 = (m22 * u - m12 * v) / det;
         let mut x2 = (m11 * v - m12 * u) / det;
+        // clamped one after the other, as the nearest point of either segment depends on the other's (Ericson 2005,
+        // section 5.1.9)
         if x1 > 1.0 {
             x1 = 1.0;
             x2 = (v - m12) / m22;
@@ -244,6 +247,7 @@ fn parallel_capsules(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: &mut Vec<
         (clamp_to_segment((u + m12) / m11), -1.0),
     ];
     for (x1, x2) in places {
+        // a line of contact is held by its two ends
         if out.len() - before < 2 {
             push(segments.touch(x1, x2, margin), out);
         }

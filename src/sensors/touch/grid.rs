@@ -53,6 +53,7 @@ impl Grid {
                 ((z * ny + y) * nx + x, i)
             })
             .collect();
+        // by cell, then by sensor: the order within a cell is fixed, and so is that in which forces are added up
         order.sort_unstable();
         grid.start = vec![0; nx * ny * nz + 1];
         for &(c, i) in &order {
@@ -63,6 +64,7 @@ impl Grid {
             grid.z.push(p[2]);
             grid.sensor.push(i);
         }
+        // counts to starts
         for c in 1..grid.start.len() {
             grid.start[c] += grid.start[c - 1];
         }
@@ -97,6 +99,7 @@ impl Grid {
         for z in range[2].0..=range[2].1 {
             for y in range[1].0..=range[1].1 {
                 let row = (z * ny + y) * nx;
+                // cells of a row are one run of memory: a single loop for all of them
                 let run = self.start[row + range[0].0] as usize..self.start[row + range[0].1 + 1] as usize;
                 let columns = self.x[run.clone()]
                     .iter()
@@ -120,6 +123,8 @@ impl Grid {
             }
         };
         self.around(p, radius, &mut consider);
+        // nothing within the radius, and the cells visited are not a ball: only a look at all sensors is exact. It is
+        // rare, as contacts lie on the skin
         if best.0 > radius * radius {
             best = (f64::INFINITY, u32::MAX);
             for (i, &sensor) in self.sensor.iter().enumerate() {

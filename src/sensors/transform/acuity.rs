@@ -44,15 +44,15 @@ pub fn acuity_cutoff(age: f64) -> f64 {
     }
 }
 
-/// How an eye with the acuity of an age is reckoned.
+/// The parameters of an eye's acuity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AcuityOptions {
     /// Age, months.
     pub age: f64,
     /// Height of the field of view, degrees; pixels are square.
     pub fovy: f64,
-    /// Whether to follow the authors' Python code, which cuts off what comes after the point instead of rounding, is half a
-    /// frequency off in pictures of odd size, and takes the field of view to be that of the longer side.
+    /// Whether to follow the authors' Python code, which truncates instead of rounding, is half a
+    /// frequency off in images of odd size, and takes the field of view to be that of the longer side.
     pub reference: bool,
 }
 
@@ -96,7 +96,8 @@ impl Acuity {
 
     /// Blurs an image in place; `channels` values for each pixel.
     fn blur(&mut self, image: &mut [u8], channels: usize) {
-        // a picture without imaginary part stays so: two channels go as one of complex numbers
+        // a symmetric transfer function keeps real images real: two channels go through as real and imaginary part of
+        // one
         let together = if self.symmetric { 2 } else { 1 };
         let rounding = if self.options.reference { EXACT } else { 0.5 };
         for first in (0..channels).step_by(together) {
@@ -129,9 +130,11 @@ const EXACT: f64 = 1e-9;
 /// Returns the transfer function of all frequencies, column by column, in the order of a Fourier transform.
 fn transfer(options: AcuityOptions, height: usize, width: usize) -> Vec<f64> {
     let (h, w) = (height as f64, width as f64);
+    // from 1 at 0.1 cycles per degree to 0.01 at the cut-off: two decades down over log10(cutoff) + 1 decades across
     let slope = -2.0 / (1.0 + pxfm::f_log10(acuity_cutoff(options.age)));
     let per_degree = if options.reference { h.max(w) } else { h } / options.fovy;
     let frequency = |index: usize, size: usize| {
+        // the order of a Fourier transform, which starts at frequency 0, to that of frequencies
         let centred = (index + size / 2) % size;
         let middle = if options.reference {
             size as f64 / 2.0

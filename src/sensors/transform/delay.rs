@@ -1,4 +1,4 @@
-//! Delays: nerves take their time.
+//! Delays of senses, as of nerves.
 
 use super::{Signal, Transform};
 use crate::sensors::{EyeImages, SkinValues};
@@ -155,6 +155,7 @@ impl<T: Waiting + Clone> Ring<T> {
         }
         let steps = self.slots.len();
         if let Some(slot) = self.slots.get_mut(self.next) {
+            // the slot is read and written in one exchange: its values are the oldest, and the next to be overwritten
             slot.exchange(values);
             self.next = (self.next + 1) % steps;
         }
@@ -169,6 +170,7 @@ impl<T: Waiting + Clone> Ring<T> {
     fn save(&self, out: &mut Vec<u8>) {
         out.push(u8::from(self.filled));
         if self.filled {
+            // independent of where the ring happens to stand, so equal delays have equal snapshots
             let (late, early) = self.slots.split_at(self.next);
             early.iter().chain(late).for_each(|slot| slot.save(out));
         }

@@ -51,6 +51,8 @@ impl Fourier {
             #[inline(always)]
             || {
                 self.down.forward(picture);
+                // a transform works on all columns side by side, as vector instructions like it; transposed, the rows
+                // are columns
                 turn(picture, turned, height, width);
                 self.across.forward(turned);
                 for ((re, im), t) in turned.re.iter_mut().zip(&mut turned.im).zip(transfer) {
@@ -147,6 +149,7 @@ impl Halved {
         let (n, w) = (self.length, self.width);
         let bits = n.trailing_zeros();
         for row in 1..n {
+            // the decimation in time takes its input in bit-reversed order
             let other = row.reverse_bits() >> (usize::BITS - bits);
             if row < other {
                 for v in [&mut *re, &mut *im] {
@@ -201,10 +204,11 @@ struct Chirped {
 impl Chirped {
     fn new(length: usize, width: usize) -> Self {
         let long = (2 * length - 1).next_power_of_two();
-        // k^2 modulo 2 n keeps the angle small
+        // k^2 modulo 2 n: the same angle, but small enough to be exact
         let chirp: Vec<_> = (0..length).map(|k| root(k * k % (2 * length), 2 * length)).collect();
         let mut kernel = Plane::new(long);
         for (k, [cos, sin]) in chirp.iter().enumerate() {
+            // the convolution needs the chirp at k and -k: it wraps around the end of the long transform
             for at in [k, (long - k) % long] {
                 (kernel.re[at], kernel.im[at]) = (cos / long as f64, -sin / long as f64);
             }
@@ -233,6 +237,7 @@ impl Chirped {
         multiply(&self.chirp, w, long_re, long_im);
         self.halved.transform(long_re, long_im);
         multiply(&self.spectrum, w, long_re, long_im);
+        // real and imaginary parts exchanged: the inverse, whose 1 / n is in the kernel
         self.halved.transform(long_im, long_re);
         multiply(&self.chirp, w, long_re, long_im);
         re.copy_from_slice(&long_re[..re.len()]);

@@ -19,12 +19,12 @@ pub struct Foveation {
     segmentation: Vec<i32>,
 }
 
-/// Where a pixel comes from.
+/// The source of a pixel.
 #[derive(Clone, Copy, Debug)]
 struct Source {
     /// Upper left, upper right, lower left, lower right.
     pixels: [u32; 4],
-    /// How far right and down between them, 0 to 1.
+    /// Position between them, right and down, 0 to 1.
     between: [f32; 2],
     nearest: u32,
 }
@@ -38,6 +38,7 @@ impl Foveation {
         let source = |x: usize, y: usize| {
             let off = [x as f64 - centre[0], y as f64 - centre[1]];
             let r = (off[0] * off[0] + off[1] * off[1]).sqrt();
+            // limits of the formula, where it is 0 / 0
             let shrunk = match (strength > 0.0, r > 0.0) {
                 (false, _) => 1.0,
                 (true, false) => log / strength,
@@ -92,14 +93,15 @@ impl Source {
     }
 }
 
-/// Returns the pixel of a row or column that a place shows, with mirror images beyond the edges.
+/// Returns the pixel at a position in a row or column, with mirror images beyond the edges.
 fn reflected(place: f64, size: usize) -> usize {
     let size = size as i64;
+    // mirror images repeat every two sizes
     let place = (place as i64).rem_euclid(2 * size);
     (if place < size { place } else { 2 * size - 1 - place }) as usize
 }
 
-/// Takes each pixel from where the warp has it from.
+/// Warps an image by the nearest source of each pixel.
 fn pick<T: Copy>(image: &mut [T], before: &mut [T], sources: &[Source]) {
     if image.is_empty() {
         return;
