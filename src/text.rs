@@ -24,7 +24,7 @@ pub(crate) fn quoted(text: &str) -> String {
     out
 }
 
-/// Tells whether a character changes the direction or the order of others, or is not seen.
+/// Returns whether a character changes the direction or the order of others, or is not seen.
 fn is_format(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }

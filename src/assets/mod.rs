@@ -62,7 +62,7 @@ pub trait AssetSource {
     /// A path that leads out of the source, a file that does not exist, is too large or cannot be read.
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError>;
 
-    /// Tells whether the file exists.
+    /// Returns whether the file exists.
     fn contains(&self, path: &str) -> bool {
         self.read(path).is_ok()
     }

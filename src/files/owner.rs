@@ -39,6 +39,7 @@ impl Owner {
             }
             let mut text = String::new();
             file.rewind()?;
+            // no number has more digits; if it is this process's, its other owner holds the lock
             file.take(20).read_to_string(&mut text)?;
             return match text.parse::<u32>() {
                 Ok(number) if number == std::process::id() => Ok(Self { path, file: None }),

@@ -51,7 +51,7 @@ pub(crate) fn sweep(folder: &Path) {
 }
 
 #[cfg(feature = "eval")]
-/// Tells whether a name is one that [`unfinished`] gives.
+/// Returns whether a name is one that [`unfinished`] gives.
 fn is_unfinished(name: &OsStr) -> bool {
     let number = name
         .to_str()
@@ -62,6 +62,7 @@ fn is_unfinished(name: &OsStr) -> bool {
 }
 
 fn remove_if_abandoned(path: &Path) {
+    // a link or a folder of that name is not ours to remove
     if !std::fs::symlink_metadata(path).is_ok_and(|meta| meta.is_file()) {
         return;
     }
@@ -85,6 +86,7 @@ pub(crate) fn replace_file_with(path: &Path, write: impl FnOnce(&mut File) -> io
         .file_name()
         .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "not a file name"))?;
     let (temporary, mut file) = unfinished(path.parent().unwrap_or(Path::new("")), name)?;
+    // synchronised before it is renamed: after a crash of the system the name must not lead to an empty file
     let written = write(&mut file).and_then(|()| file.sync_all());
     #[cfg(windows)]
     drop(file); // open files cannot be renamed there

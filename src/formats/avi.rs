@@ -134,10 +134,12 @@ impl<W: Write + Seek> AviWriter<W> {
             .encode(rgb, self.width as u16, self.height as u16, ColorType::Rgb)
             .map_err(|e| AviError::Encode(e.to_string()))?;
         let size = self.jpeg.len() as u32;
+        // RIFF chunks begin at even places
         if self.jpeg.len() % 2 == 1 {
             self.jpeg.push(0);
         }
         let next = self.end + 8 + self.jpeg.len() as u64;
+        // with the index that will follow, one entry longer
         if next + 8 + self.index.len() as u64 + 16 > MAX_BYTES {
             return Err(AviError::Full { frames: self.frames });
         }

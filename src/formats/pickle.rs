@@ -73,7 +73,7 @@ pub enum PickleError {
     /// Something that is larger than allowed.
     #[error("more than {limit} {what}")]
     Limit {
-        /// What there is too much of.
+        /// The kind of item that exceeds the limit.
         what: &'static str,
         /// How many are allowed.
         limit: usize,

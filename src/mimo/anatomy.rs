@@ -1,4 +1,4 @@
-//! The bodies of MIMo: which part each belongs to, and how densely it feels.
+//! The bodies of MIMo, with their parts and the spacing of their touch sensors.
 
 use crate::config::Part;
 

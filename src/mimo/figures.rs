@@ -1,4 +1,4 @@
-//! How tall and how heavy MIMo is.
+//! MIMo's stature and mass.
 
 use crate::math::{column, dot, mat_t_vec};
 use crate::mimo::MimoJoints;

@@ -154,6 +154,8 @@ impl CommandPolicy {
 
     /// Sends a line to the command and returns its answer.
     fn ask(&mut self, line: Vec<u8>) -> Result<Answer, PolicyError> {
+        // an answer that is there before the question belongs to no observation: taken for the answer, it would shift
+        // all later ones
         match self.answers.try_recv() {
             Err(TryRecvError::Empty | TryRecvError::Disconnected) => {}
             Ok(Err(e)) => return Err(self.ended(e.to_string())),
@@ -223,6 +225,7 @@ fn read_lines(output: impl Read, longest: usize, lines: &SyncSender<std::io::Res
     let mut output = BufReader::new(output);
     loop {
         let mut line = Vec::new();
+        // one byte more than allowed tells a line that is too long from one that just fits
         let most = (longest as u64).saturating_add(1);
         let read = (&mut output).take(most).read_until(b'\n', &mut line);
         let last = matches!(read, Ok(0) | Err(_));
@@ -265,6 +268,7 @@ fn wait(child: &mut Child, most: Duration) -> Option<std::process::ExitStatus> {
     loop {
         match child.try_wait() {
             Ok(Some(status)) => return Some(status),
+            // the standard library has no wait with a time limit
             Ok(None) if started.elapsed() < most => std::thread::sleep(Duration::from_millis(10)),
             _ => return None,
         }

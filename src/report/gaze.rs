@@ -1,4 +1,4 @@
-//! Where the hands were as each eye saw them, from the positions in evaluation logs.
+//! The positions of the hands in each eye's field of view, from evaluation logs.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

@@ -23,7 +23,7 @@ pub(super) struct Evaluated {
     pub video: Option<PathBuf>,
 }
 
-/// A training to compare with.
+/// A baseline to compare with.
 pub(super) struct Baseline {
     /// Name of its folder.
     pub name: String,

@@ -207,7 +207,7 @@ pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<Kep
     })
 }
 
-/// Tells whether `qpos` and the ids of bodies, joints and geoms mean the same in both models.
+/// Returns whether `qpos` and the ids of bodies, joints and geoms mean the same in both models.
 fn same_ids(a: &Model, b: &Model) -> bool {
     a.nq == b.nq && a.body_name == b.body_name && a.jnt_name == b.jnt_name && a.geom_bodyid == b.geom_bodyid
 }

@@ -1,4 +1,4 @@
-//! The composed frame of an evaluation: the room on the left, what the behavior is about at the upper right, the view
+//! The composed frame of an evaluation: the room on the left, the behavior's subject at the upper right, the view
 //! from above at the lower right.
 
 use crate::env::room_camera;

@@ -13,7 +13,7 @@ use crate::files::{sweep, unfinished};
 use crate::formats::avi::{AviWriter, DEFAULT_FPS};
 use crate::render::{Poses, Visual};
 
-/// A film of the room, the view from above and what the behavior is about, in `.avi` files.
+/// A film of the room, the view from above and the behavior's subject, in `.avi` files.
 ///
 /// That is the skin (unless touch is off) for `self_touch`, what both eyes see for `hand_regard`, and the room from the
 /// side for `none`.

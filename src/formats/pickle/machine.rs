@@ -115,6 +115,7 @@ impl Machine<'_> {
             _ => {
                 let digits = self.sized::<1>()?;
                 let negative = digits.last().is_some_and(|b| b & 0x80 != 0);
+                // two's complement of any length: the sign fills the bytes that are not written
                 let mut all = [if negative { 0xff } else { 0 }; 8];
                 match all.get_mut(..digits.len()) {
                     Some(low) => low.copy_from_slice(digits),

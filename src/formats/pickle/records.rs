@@ -34,7 +34,7 @@ impl<'m, 'a> Node<'m, 'a> {
         }
     }
 
-    /// Tells whether this is a dictionary.
+    /// Returns whether this is a dictionary.
     pub fn is_dict(self) -> bool {
         matches!(self.object(), Some(Object::Dict(_)))
     }

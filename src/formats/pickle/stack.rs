@@ -128,6 +128,7 @@ impl<'a> Machine<'a> {
     /// Pushes a new object.
     #[inline]
     pub fn push(&mut self, object: Object<'a>) {
+        // places are used again, so that memory follows the records at hand, not the length of the log
         let place = self.free.pop().unwrap_or(self.objects.len());
         match self.objects.get_mut(place) {
             Some(old) => *old = object,
@@ -148,6 +149,7 @@ impl<'a> Machine<'a> {
     /// Frees the places of an item that nothing refers to any more, and of its content.
     pub fn release(&mut self, item: Item) {
         self.release_later(item);
+        // a list of its own instead of recursion, whose depth the input would choose
         while let Some(place) = self.releasing.pop() {
             match std::mem::replace(&mut self.objects[place], Object::List(Vec::new())) {
                 Object::List(items) | Object::Tuple(items) => {
@@ -170,6 +172,7 @@ impl<'a> Machine<'a> {
     #[inline]
     fn release_later(&mut self, item: Item) {
         if let Item::Object(place) = item
+            // the memo may still refer to it
             && !self.shared.get(place).copied().unwrap_or(false)
         {
             self.releasing.push(place);
@@ -275,10 +278,12 @@ impl<'a> Machine<'a> {
     #[inline]
     pub fn put(&mut self, index: usize) -> Done {
         let item = self.top()?;
+        // Python numbers them in turn; a far index would ask for memory that the file does not pay for
         if index > self.memo_length {
             return Err(self.bad("the memo has a hole"));
         }
         self.memo_length = self.memo_length.max(index + 1);
+        // Python writes nearly every value to the memo and recalls few of them: the others need not be kept
         if self.recalled.get(index).copied().unwrap_or(false) {
             self.memo.insert(index, item);
             if let Item::Object(place) = item {

@@ -3,7 +3,7 @@
 use super::GrowthError;
 use crate::config::{Config, Key, KeyValue};
 
-/// Returns the error of a body that cannot be, with the measurements that alone are to blame: without any one of them the
+/// Returns the error of an impossible body, with the measurements that alone are to blame: without any one of them the
 /// body `works`. If there is none, it names all that are given.
 pub(in crate::mimo) fn blame(
     config: &Config,

@@ -66,6 +66,7 @@ pub(super) fn hands(now: &Lengths, base: &Lengths, forearm: (f64, f64), out: &mu
     out.geoms(Side::Both, "hand", hand);
     let x = 0.007 * ratio;
     let (radius, half) = forearm;
+    // the original hand begins 110.32 mm down a forearm of 120 mm
     out.bodies(Side::Both, [("hand", [x, 0.0, 0.11032 / 0.12 * 2.0 * (radius + half)])]);
     let wrist = |along: f64| [-x, 0.0, -along * p];
     out.joints(
@@ -107,6 +108,7 @@ fn add_finger(finger: &Finger, radius: f64, length: f64, out: &mut Shapes) {
 /// Adds the metacarpal of the little finger and the place of its knuckle.
 fn metacarpal(palm: &Palm, out: &mut Shapes) {
     let (a, b) = palm.sides;
+    // half breadths in the original hand: 5.08 mm of the metacarpal, 5.88 mm of the palm's side
     let half = b * 508.0 / 588.0;
     let (body_x, body_z) = (-0.01498 * palm.ratio, 0.0031 * palm.ratio);
     let x = -(a + 2.0 * b - half + body_x + SLACK);
@@ -135,6 +137,7 @@ fn thumb(now: &Lengths, base: &Lengths, palm: &Palm, finger: f64, out: &mut Shap
     }
     let root = [
         0.0123 * palm.ratio,
+        // the original thumb is rooted 4.23 mm off the middle of a palm of 5.84 mm half thickness
         palm.thickness * 423.0 / 584.0,
         -0.01602 * now.hand_length / base.hand_length,
     ];

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::config::Measurements;
 
-/// How a measurement becomes a length of a model that is made of radii and half lengths.
+/// The conversion of a measurement to a length of a model made of radii and half lengths.
 #[derive(Clone, Copy)]
 enum Form {
     /// A circumference in cm gives a radius.

@@ -43,7 +43,7 @@ pub enum GrowthError {
         /// Age asked for, months.
         age: f64,
     },
-    /// Measurements make a body that cannot be.
+    /// Measurements make an impossible body.
     #[error("{keys}: at {age} months {reason}; change it, or leave it to the age")]
     Measurements {
         /// Keys of the configuration at fault, with their values.

@@ -258,8 +258,7 @@ impl Segment {
     fn second_from_corner(&self, t: f64, corner: usize) -> Option<f64> {
         // axes along which the segment leads from the corner over the box in one direction, against the others
         let (single, sign) = match self.rising ^ corner {
-            // the segment leads away from the box along all axes, or through it along all: nothing but the corner is
-            // near
+            // no axis differs from the other two, so there is no face or edge that the segment runs along
             0 | 7 => return None,
             axes if axes.count_ones() == 1 => (axes, 1.0),
             axes => (7 - axes, -1.0),

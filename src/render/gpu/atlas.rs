@@ -46,6 +46,7 @@ impl Atlas {
             if x > 0 && x + width > side {
                 (x, y, row) = (0, y + row, 0);
             }
+            // a new texture only where this one has an image: a single image may be larger than the usual side
             if y > 0 && y + height > side {
                 atlas.chunks.push(used);
                 (x, y, row, used) = (0, 0, 0, [0, 0]);

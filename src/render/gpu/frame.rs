@@ -1,4 +1,4 @@
-//! The moving part of a submission: which drawables each view shows, where, and in which order they are drawn.
+//! The part of a submission that changes from frame to frame: culled drawables, their instances, the order of drawing.
 
 use super::atlas::{Atlas, Tile};
 use super::pipelines::Output;
@@ -157,11 +157,14 @@ impl Frame {
             let drawable = &drawable.sized(&r.requests[view].poses);
             let (pos, mat) = pose(drawable, &r.requests[view].poses);
             let at = eye.locate(single(pos));
+            // drawables inside their image need no clipping at its border, so those of all views share one call
             let Some(whole) = seen(eye, at, drawable.radius, r.visual.far as f32) else {
                 continue;
             };
+            // depth and segmentation have no blending: transparent drawables are drawn like the others
             let blended = drawable.rgba[3] < OPAQUE || behind(eye, drawable, single(pos), &mat);
             if blended && r.output == Output::Colour {
+                // a plane's centre says nothing of its distance; it goes behind the rest
                 let key = if drawable.shape == Shape::Plane {
                     1e10
                 } else {
@@ -190,6 +193,7 @@ impl Frame {
 
     fn emit_outside(&mut self, r: &Submission) -> Vec<ViewCalls> {
         let mut outside = std::mem::take(&mut self.outside);
+        // by view, as each needs its own viewport; by class within, as instances of a class are one call
         outside.sort_unstable();
         let mut own = Vec::new();
         for of_view in outside.chunk_by(|a, b| a.0 == b.0) {

@@ -1,5 +1,5 @@
-//! A record as a line of JSON, byte for byte as `Detailed` serializes it. A long log has millions of them, so what they are made of
-//! most, names and small numbers, is made once.
+//! A record as a line of JSON, byte for byte as `Detailed` serializes it. A long log has millions of them, so names and
+//! small numbers, of which they mostly consist, are formatted once.
 
 use std::io;
 

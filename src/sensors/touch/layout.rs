@@ -146,6 +146,7 @@ impl SkinLayout {
                 .filter(|&g| model.geom_bodyid[g] == body && (model.geom_contype[g] | model.geom_conaffinity[g]) != 0)
                 .collect();
             for &g in &geoms {
+                // before any is placed: a spacing of a micrometre would exhaust the memory first
                 expected += estimate(model.geom_type[g], model.geom_size[g], spacing);
             }
             if expected > MAX_SENSORS as f64 {
@@ -225,6 +226,7 @@ fn assemble(model: &Model, geoms: &[usize], spacing: f64) -> (Vec<Vec3>, Vec<Ski
         })
         .collect();
     let hulls: Vec<Option<Hull>> = match geoms.len() {
+        // a single geom has no other to lie in
         1 => vec![None],
         _ => points.iter().map(|p| Hull::new(p)).collect(),
     };

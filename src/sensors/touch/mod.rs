@@ -263,6 +263,7 @@ impl Touch {
                 near.clear();
                 let mut total = 0.0;
                 skin.grid.around(point, radius, |sensor, d2| {
+                    // the grid gives whole cells, also sensors beyond the radius
                     if d2 < radius * radius {
                         let weight = 1.0 - d2.sqrt() / radius;
                         if weight > 0.0 {
@@ -286,6 +287,7 @@ impl Touch {
     fn share(&mut self, skin: &SkinBody, value: Vec3, total: f64) {
         // forces in the frame of each geom of the body
         let mut framed = [value; MAX_GEOMS];
+        // the page has the force in the frame of the sensor's geom, the Python code in that of its body
         let by_geom = self.compat == Compat::Api && self.function == TouchFunction::ForceVector;
         if by_geom {
             for (v, g) in framed.iter_mut().zip(&skin.geoms) {

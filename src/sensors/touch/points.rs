@@ -39,6 +39,7 @@ const CENTRE: Vec3 = [0.0; 3];
 
 /// Keeps the first of points that agree to 1e-8 m, in their order.
 fn dedupe(points: Vec<Vec3>) -> Vec<Vec3> {
+    // caps repeat the last ring of the wall, faces of a box share their edges
     let mut seen = BTreeSet::new();
     let key = |p: &Vec3| p.map(|x| (x * 1e8).round_ties_even() as i64);
     points.into_iter().filter(|p| seen.insert(key(p))).collect()

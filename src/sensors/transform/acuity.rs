@@ -1,4 +1,4 @@
-//! Acuity: infants see blurred.
+//! Acuity: the blurred vision of infants.
 
 use super::fourier::{Fourier, Plane};
 use super::{Signal, Transform};

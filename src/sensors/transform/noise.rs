@@ -1,4 +1,4 @@
-//! Noise: senses are never exact.
+//! Noise added to senses.
 
 use super::{Signal, Transform};
 use crate::spaces::NumpyRng;
