@@ -1,4 +1,4 @@
-//! What to do about errors of the file system.
+//! Remedies for errors of the file system.
 
 use std::error::Error;
 use std::io::{self, ErrorKind};

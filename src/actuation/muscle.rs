@@ -112,6 +112,7 @@ impl Muscle {
         }
         self.update_forces(state);
         self.update_torques(state);
+        // controls scale the muscles' torques: the muscles pull in full
         state.ctrl.fill(1.0);
     }
 }
@@ -132,6 +133,7 @@ impl Actuation for Muscle {
             params.jnt_stiffness[j] = 0.0;
             params.dof_damping[d] /= DAMPING_DIVISOR;
         }
+        // motors' limits are not muscles'; theirs are in the isometric maxima
         params.actuator_forcelimited.fill(false);
         self.make_room(state);
         state.act.fill(0.0);
@@ -157,6 +159,7 @@ impl Actuation for Muscle {
         state.act.fill(0.0);
         state.actuator_target.fill(0.0);
         self.update_forces(state);
+        // in the Python code a reset clears the controls, and torques stay those of the last step
         let pulls = self.compat == Compat::Api;
         if pulls {
             self.update_torques(state);

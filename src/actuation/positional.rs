@@ -116,6 +116,7 @@ impl Actuation for Positional {
     }
 
     fn substep(&self, _model: &Model, state: &mut State) {
+        // the Python code gives its target to the first physics step alone
         if self.compat == Compat::Reference {
             self.target_zero(state);
         }

@@ -105,12 +105,15 @@ pub fn lock(model: &Model, params: &mut Params, target: LockTarget, angle: f64) 
         return Err(LockError::Angle { angle });
     }
     let mut report = LockReport::default();
+    // all joints are looked up before the first one changes
     for (joint, lock) in locks(model, target)? {
+        // two constraints that want different angles would pull against each other for ever
         if let Some(other) = held_by(model, params, joint) {
             report.held.push((joint, other));
             continue;
         }
         params.eq_active[lock] = true;
+        // joint equalities count from `qpos0`, as in MuJoCo
         params.eq_offset[lock] = angle - model.qpos0[model.jnt_qposadr[joint]];
         report.changed.push(joint);
         let [low, high] = model.jnt_range[joint];

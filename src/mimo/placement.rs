@@ -30,6 +30,7 @@ pub fn held_posture(model: &Model) -> Vec<f64> {
             polycoef,
         } = kind
         {
+            // an equality on one joint counts from `qpos0`, as in MuJoCo
             qpos[model.jnt_qposadr[joint1]] += polycoef[0];
         }
     }
@@ -82,6 +83,7 @@ pub(super) fn reach(kind: GeomType, size: [f64; 3], direction: Vec3) -> f64 {
         GeomType::Plane => 0.0,
         GeomType::Sphere => a,
         GeomType::Capsule => a + b * z,
+        // the rim of the disc at the end, which leans away from the direction
         GeomType::Cylinder => b * z + a * (1.0 - z * z).max(0.0).sqrt(),
         GeomType::Box => a * x + b * y + c * z,
         GeomType::Ellipsoid => ((a * x).powi(2) + (b * y).powi(2) + (c * z).powi(2)).sqrt(),

@@ -88,6 +88,7 @@ impl Mesh {
     fn vertex(&mut self, (p, n): Point) -> u16 {
         let first = self.bands.last().map_or(0, |band| band.vertices.start);
         let known = (first..self.x.len()).rev().find(|&i| {
+            // vertices are shared only if light and place are the same to the bit, so that sharing never shows
             let same = |a: f32, b: f32| a.to_bits() == b.to_bits();
             same(self.x[i], p[0])
                 && same(self.y[i], p[1])
@@ -149,6 +150,8 @@ impl Mesh {
                 }
             }
             band.triangles.end = self.triangles.len();
+            // the faces of a box have rows of four, disks and spheres of 28; a plane's single quadrilateral goes by
+            // itself
             if strip.count.is_multiple_of(STRIP_LANES) {
                 strip.patch = self.patches.len();
                 let at = |i: u16| [self.x[usize::from(i)], self.y[usize::from(i)], self.z[usize::from(i)]];
@@ -210,7 +213,7 @@ impl Mesh {
         });
     }
 
-    /// Fills up the current band.
+    /// Fills up the current band with copies of its last vertex, so that vertices are projected in whole groups.
     fn fill(&mut self) {
         while let Some(last) = self.x.len().checked_sub(1)
             && !self.x.len().is_multiple_of(LANES)
@@ -223,6 +226,7 @@ impl Mesh {
     fn half_sphere(&mut self, sign: f64, shift: f64) {
         let stacks = STACKS / 2;
         let up = sign > 0.0;
+        // MuJoCo keeps angles in single precision, and takes sines of them in double
         let elevation = |i: usize| f64::from((0.5 * PI * sign * i as f64 / stacks as f64) as f32);
         let at = |j: usize, i: usize| {
             let (sin, cos) = pxfm::f_sincos(elevation(i));

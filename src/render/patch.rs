@@ -1,4 +1,4 @@
-//! Parts of strips of which the renderer decides at once whether they show their front.
+//! Parts of strips whose quadrilaterals are tested together by back-face culling.
 
 use super::mesh::LANES;
 use super::strip::{STRIP_LANES, Strip};
@@ -35,6 +35,8 @@ impl Patch {
                     known += 1;
                 }
             }
+            // rounding of the corners in the image turns the smaller triangle first: a quadrilateral is culled only if
+            // neither can turn
             let (normal, offset) = smaller(plane([a, b, d].map(&at)), plane([b, c, d].map(&at)), strip.fan);
             patch.offset[k] = offset as f32;
             for (components, v) in patch.normal.iter_mut().zip(normal) {

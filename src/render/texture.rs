@@ -54,6 +54,7 @@ impl Level {
     fn halved(&self) -> Self {
         let (w, h) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mut pixels = Vec::with_capacity(w * h);
+        // Mesa averages four texels in integers where they pair up, and interpolates elsewhere; both as it rounds
         if self.width == 2 * w && self.height == 2 * h {
             for y in 0..h {
                 let upper = &self.pixels[2 * y * self.width..][..self.width];
@@ -150,6 +151,7 @@ impl<'a> Loader<'a> {
                 return Ok(Texture::Flat(self.image(path)?));
             }
             let face = self.image(path)?;
+            // MuJoCo repeats a square image on all six sides
             if face[0].width == face[0].height {
                 return Ok(Texture::Cube([0; 6].map(|_| face.clone())));
             }
@@ -237,6 +239,7 @@ impl Mt19937 {
     }
 
     fn next(&mut self) -> u64 {
+        // the constants of MT19937-64
         const UPPER: u64 = !0 << 31;
         if self.next == 312 {
             for i in 0..312 {

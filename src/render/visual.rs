@@ -163,6 +163,7 @@ impl Visual {
         let headlight = vis
             .headlight_active
             .then(|| [vis.headlight_ambient, vis.headlight_diffuse, vis.headlight_specular].map(single));
+        // the headlight takes one of OpenGL's lights
         let room = MAX_LIGHTS - usize::from(headlight.is_some());
         Ok(Self {
             drawables,
@@ -200,6 +201,7 @@ impl Visual {
                 Texture::Cube(f) => f.as_slice(),
             })
             .collect();
+        // images are shared between textures, and count once
         faces.sort_by_key(|f| std::sync::Arc::as_ptr(f));
         faces.dedup_by_key(|f| std::sync::Arc::as_ptr(f));
         faces.iter().flat_map(|f| f.iter()).map(|l| 4 * l.pixels.len()).sum()

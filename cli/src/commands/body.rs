@@ -1,4 +1,4 @@
-//! What `babybench inspect` says about a body that has grown.
+//! The output of `babybench inspect` about a body of some age.
 
 use std::io::{self, Write};
 

@@ -24,7 +24,7 @@ use crate::arguments::{age, number, png};
 pub struct Inspect {
     #[command(flatten)]
     source: Option<Source>,
-    /// Print what MIMo is at this age, months, whatever the configuration says: his body, too
+    /// Describe MIMo at this age (months) instead of the configuration's, his body included
     #[arg(long, value_name = "MONTHS", allow_negative_numbers = true, value_parser = age, conflicts_with = "mjcf")]
     age: Option<f64>,
     /// Draw the touch sensors on the body in the settled state to a PNG image, instead of printing
@@ -36,7 +36,7 @@ pub struct Inspect {
     /// Print every key of the configuration with its values, default and meaning, as Markdown
     #[arg(long, exclusive = true)]
     keys: bool,
-    /// Draw them at a step of this recording (as for replay), with the forces they feel
+    /// Draw them at a step of this recording (as for replay), with the forces on them
     #[arg(long, value_name = "FILE", requires = "touch")]
     state: Option<PathBuf>,
     /// Step of the recording; the last one by default

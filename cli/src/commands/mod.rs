@@ -39,7 +39,7 @@ enum Command {
     Run(run::Run),
     /// Print what a configuration contains: sizes, joints, actuators, action and observation space
     Inspect(inspect::Inspect),
-    /// Draw the scene, or what an eye sees
+    /// Draw the scene, or the view of an eye
     Render(render::Render),
     /// Replay a recording (.npz) from its start with its actions
     Replay(replay::ReplayArgs),
@@ -47,9 +47,9 @@ enum Command {
     TestInstallation(test_installation::TestInstallation),
     /// Train with the random policy: log episodes with random actions in the configuration's save_dir
     Train(train::Train),
-    /// Print the score of a training log and what it consists of
+    /// Print the score of a training log and its parts
     Score(score::ScoreArgs),
-    /// Write a page about a run: score, learning curve, what was touched or seen, key frames of the video
+    /// Write a page about a run: score, learning curve, touched parts or hands in view, key frames of the video
     Report(report::ReportArgs),
     /// Run evaluation episodes of a policy, with logs and videos in the configuration's save_dir
     Evaluate(evaluate::Evaluate),

@@ -30,7 +30,7 @@ pub struct Render {
     /// Renderer: cpu, or wgpu (cargo feature wgpu); overrides the configuration
     #[arg(long, value_name = "WHICH", value_parser = parse_renderer)]
     renderer: Option<RendererKind>,
-    /// Draw MIMo alone at these ages instead, months with commas between, one beside the other on the same scale
+    /// Draw MIMo alone at these ages instead (months, separated by commas), side by side on the same scale
     #[arg(long, value_name = "MONTHS", value_delimiter = ',', allow_negative_numbers = true, value_parser = age,
         conflicts_with_all = ["camera", "size", "renderer", "state"])]
     age: Vec<f64>,

@@ -26,7 +26,7 @@ pub struct ReplayArgs {
     /// Start each step from the recording's previous row
     #[arg(long)]
     one_step: bool,
-    /// Write what both eyes see in every K-th step, as eye_steps, eye_left and eye_right
+    /// Write the images of both eyes in every K-th step, as eye_steps, eye_left and eye_right
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count::<usize>)]
     images_every: Option<usize>,
 }

@@ -14,7 +14,7 @@ pub struct ReportArgs {
     /// Folder of a run: its save_dir, with logs of training or evaluation
     #[arg(value_name = "SAVE_DIR")]
     save_dir: PathBuf,
-    /// Folder of another training, such as one with random actions, whose learning curve is drawn beside that of the run
+    /// Folder of another training, such as one with random actions, whose learning curve is drawn next to the run's
     #[arg(long, value_name = "SAVE_DIR")]
     baseline: Option<PathBuf>,
     /// Page to write; report.html in the folder of the run by default

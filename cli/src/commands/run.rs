@@ -62,7 +62,7 @@ impl Clock {
     }
 }
 
-/// What a run has counted.
+/// The counters of a run.
 #[derive(Default)]
 struct Tally {
     steps: u64,

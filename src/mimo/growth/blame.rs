@@ -20,6 +20,7 @@ pub(in crate::mimo) fn blame(
     };
     let mut guilty: Vec<&Key> = given.iter().filter(alone).copied().collect();
     if guilty.is_empty() {
+        // no single one makes the difference: together they do
         guilty = given;
     }
     let named = |key: &&Key| format!("`{}` is {}", key.name, key.value(config).to_yaml());

@@ -125,6 +125,7 @@ impl Growth {
                 let grown = found.ok_or_else(|| missing_geom(&body, geom.index))?;
                 let volume = grown.volume();
                 (*grown.size, *grown.pos) = (geom.size, geom.pos);
+                // the density stays
                 *grown.mass = grown.mass.map(|mass| grown.volume() * (mass / volume));
             }
         }
@@ -165,6 +166,7 @@ impl Growth {
                 let (volume, old) = (grown.volume(), *grown.size);
                 *grown.size = geom.size;
                 ratios.push((body, geom.index, grown.volume() / volume));
+                // only measured: the strength may be of another age than the body
                 *grown.size = old;
             }
         }

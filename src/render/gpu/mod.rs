@@ -224,6 +224,7 @@ impl GpuRenderer {
         } else {
             needed
         };
+        // the old attachments go before the new ones are made: both at once might not fit
         *slot = None;
         *slot = Some(Target::new(&self.gpu, output, size));
         size
@@ -232,10 +233,12 @@ impl GpuRenderer {
     /// Returns a buffer to read images back through, from the pool if one fits.
     fn readback(&self, bytes: u64) -> wgpu::Buffer {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        // not much larger than needed, or one large submission would keep its memory for ever
         let fitting = pool.iter().position(|b| (bytes..=4 * bytes).contains(&b.size()));
         match fitting {
             Some(k) => pool.swap_remove(k),
             None => {
+                // sizes have changed: buffers that do not fit now would only pile up
                 pool.clear();
                 self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("readback"),
@@ -331,6 +334,7 @@ impl Pass<'_, '_> {
         };
         self.calls(&chunk.shared, opaque);
         self.own(&chunk.own, tiles, opaque);
+        // after the opaque drawables, so that it is shaded only where nothing else is
         if let (Output::Colour, Some(sky)) = (output, r.visual.sky) {
             self.everywhere(size);
             self.pass.set_vertex_buffer(0, r.buffers.counting.slice(..));

@@ -222,12 +222,14 @@ impl<C: Channel> Pending<C> {
                 return Err(RenderError::Buffer { found, expected });
             }
             let rows = picture.chunks_exact_mut(slot.width * C::PER_PIXEL);
+            // drawn upside down, for OpenGL's sample positions
             for (row, from) in rows.rev().zip(view[slot.offset..].chunks(slot.pitch)) {
                 C::unpack(&from[..slot.width * C::OUTPUT.bytes() as usize], row);
             }
         }
         drop(view);
         buffer.unmap();
+        // only now: a buffer that is still mapped cannot be written to
         pool.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
         Ok(())
     }
