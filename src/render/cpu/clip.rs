@@ -205,7 +205,7 @@ fn crossing((p, a): (Corner, f32), (q, b): (Corner, f32)) -> EdgePoint {
         ((p, q), -a / difference)
     };
     EdgePoint {
-        clip: mix(from.clip, to.clip, share),
+        clip: lerp(from.clip, to.clip, share),
         from: from.from,
         to: to.from,
         share,
@@ -213,7 +213,7 @@ fn crossing((p, a): (Corner, f32), (q, b): (Corner, f32)) -> EdgePoint {
 }
 
 /// Computes `from + share (to - from)`.
-pub fn mix<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N] {
+pub fn lerp<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N] {
     let mut out = from;
     for (o, t) in out.iter_mut().zip(to) {
         *o += share * (t - *o);

@@ -6,7 +6,7 @@ use wide::{f32x4, u32x4};
 
 use super::lanes::{at_least, four, integers, three};
 use super::light::Vectors;
-use super::sample::{Coordinates, MipLevels, across, are_settled, channels, texels, upward, whole};
+use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather, upward};
 use crate::render::texture::{Face, Level};
 
 /// The points of a cube map at which the pixels of a block look.
@@ -91,7 +91,7 @@ impl CubePoints {
         let image = &faces[side][level];
         let spots = Spots::new(self.u, self.v, f32x4::splat(image.width as f32));
         if spots.inside == 15 {
-            let first = texels(image, spots.first);
+            let first = gather(image, spots.first);
             // around a settled texel there is no other colour, in this level or the next: nothing to lerp
             if are_settled(first) {
                 return channels(first);
@@ -179,7 +179,7 @@ impl Spots {
     #[inline(always)]
     fn new(u: f32x4, v: f32x4, size: f32x4) -> Self {
         let (x, y) = (u * size - 0.5, v * size - 0.5);
-        let (left, top) = (whole(x), whole(y));
+        let (left, top) = (floor(x), floor(y));
         let (across, down) = (x - left, y - top);
         let last = size - 1.0;
         let within = |v: f32x4| at_least(v, f32x4::splat(-1.0)).fast_min(last);
@@ -200,7 +200,7 @@ impl Spots {
     #[inline(always)]
     fn within(&self, image: &Level) -> Vectors {
         let n = image.width as i32;
-        let at = |place: i32| channels(texels(image, four(|k| self.first[k] + place)));
+        let at = |place: i32| channels(gather(image, four(|k| self.first[k] + place)));
         self.between([at(0), at(1), at(n), at(n + 1)])
     }
 

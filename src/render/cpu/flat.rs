@@ -5,7 +5,7 @@ use wide::{f32x4, i32x4, u16x8, u32x4};
 
 use super::lanes::{at_least, integers};
 use super::light::Vectors;
-use super::sample::{Coordinates, MipLevels, across, are_settled, channels, texels, upward, whole};
+use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather, upward};
 use crate::render::texture::{Face, Level};
 
 /// Weights are parts of this.
@@ -25,15 +25,15 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
     let detail = MipLevels::new(f32x4::splat(squared), face.len());
     let (level, share) = (detail.level[0], detail.blend[0]);
     let spots = Spots::new(&face[level], *s, *t);
-    let first = texels(spots.level, spots.places(spots.y.before, spots.x.before));
+    let first = gather(spots.level, spots.places(spots.y.before, spots.x.before));
     if face[level].has_one_colour() || are_settled(first) {
         return channels(first);
     }
     let mut out = spots.colours(first);
     if share > 0.0 {
         let spots = Spots::new(&face[level + 1], *s, *t);
-        let first = texels(spots.level, spots.places(spots.y.before, spots.x.before));
-        out = blend(out, spots.colours(first), u16x8::splat((share * f32::from(ONE)) as u16));
+        let first = gather(spots.level, spots.places(spots.y.before, spots.x.before));
+        out = lerp(out, spots.colours(first), u16x8::splat((share * f32::from(ONE)) as u16));
     }
     // 16-bit lanes: two channels of each texel fit into a 32-bit lane, and products of bytes and weights do not
     // overflow
@@ -51,7 +51,7 @@ fn spread(texels: u32x4) -> Channels {
 
 /// Lerps between bytes with weights of 0..256.
 #[inline(always)]
-fn blend(a: Channels, b: Channels, weight: u16x8) -> Channels {
+fn lerp(a: Channels, b: Channels, weight: u16x8) -> Channels {
     let rest = u16x8::splat(ONE) - weight;
     let one = |k: usize| (a[k] * rest + b[k] * weight + u16x8::splat(ONE / 2)) >> 8;
     [one(0), one(1)]
@@ -72,8 +72,8 @@ impl RepeatedAxis {
     fn new(at: f32x4, size: f32) -> Self {
         let n = f32x4::splat(size);
         // texels are sampled at their centres, half a texel in
-        let at = (at - whole(at)) * n - 0.5;
-        let low = whole(at);
+        let at = (at - floor(at)) * n - 0.5;
+        let low = floor(at);
         // NaN coordinates give an arbitrary texel
         let index = |v: f32x4| at_least(v, f32x4::ZERO).fast_min(n - 1.0);
         let (before, after) = (low, low + 1.0);
@@ -88,7 +88,7 @@ impl RepeatedAxis {
     #[inline(always)]
     fn weight(&self) -> u16x8 {
         let one = f32::from(ONE);
-        let weight = at_least(whole(self.between * one + 0.5), f32x4::ZERO);
+        let weight = at_least(floor(self.between * one + 0.5), f32x4::ZERO);
         let weight = integers(weight.fast_min(f32x4::splat(one)));
         cast(weight | weight << 16)
     }
@@ -122,10 +122,10 @@ impl<'a> Spots<'a> {
     #[inline(always)]
     fn colours(&self, first: u32x4) -> Channels {
         let (x, y) = (&self.x, &self.y);
-        let at = |row: f32x4, column: f32x4| spread(texels(self.level, self.places(row, column)));
-        let upper = blend(spread(first), at(y.before, x.after), x.weight());
-        let lower = blend(at(y.after, x.before), at(y.after, x.after), x.weight());
-        blend(upper, lower, y.weight())
+        let at = |row: f32x4, column: f32x4| spread(gather(self.level, self.places(row, column)));
+        let upper = lerp(spread(first), at(y.before, x.after), x.weight());
+        let lower = lerp(at(y.after, x.before), at(y.after, x.after), x.weight());
+        lerp(upper, lower, y.weight())
     }
 }
 
@@ -138,7 +138,7 @@ mod tests {
         let (a, b) = ([255, 0, 7, 128], [255, 255, 200, 3]);
         let of = |v: [u8; 4]| spread(u32x4::splat(u32::from_le_bytes(v)));
         for weight in 0..=256u16 {
-            let [even, odd] = blend(of(a), of(b), u16x8::splat(weight)).map(|v| v.to_array());
+            let [even, odd] = lerp(of(a), of(b), u16x8::splat(weight)).map(|v| v.to_array());
             for k in 0..4 {
                 let found = [even[k / 2], odd[k / 2]][k % 2];
                 let exact =

@@ -76,7 +76,7 @@ pub fn upward(v: f32x4) -> f32x4 {
 
 /// Gathers one texel for each pixel of a block.
 #[inline(always)]
-pub fn texels(level: &Level, places: [i32; 4]) -> u32x4 {
+pub fn gather(level: &Level, places: [i32; 4]) -> u32x4 {
     u32x4::new(four(|k| u32::from_le_bytes(level.pixels[places[k] as usize])))
 }
 
@@ -97,7 +97,7 @@ pub fn channels(texels: u32x4) -> Vectors {
 
 /// Rounds down to integers (floor), for numbers within +-2^22.
 #[inline(always)]
-pub fn whole(x: f32x4) -> f32x4 {
+pub fn floor(x: f32x4) -> f32x4 {
     // adding 1.5 * 2^23 rounds to the nearest integer
     let nearest = (x + 12_582_912.0) - 12_582_912.0;
     nearest - (nearest.simd_gt(x) & f32x4::ONE)
