@@ -1,105 +1,105 @@
-//! BabyBench in pure Rust: the infant model MIMo, its scenes, its senses and its actuation, behind Gymnasium's reset and
-//! step, on Rapier.
+//! An infant to simulate and to train: BabyBench (IEEE ICDL 2025) in pure Rust.
+//!
+//! MIMo, a multimodal infant model, has a body at any age from birth to two years, a skin of thousands of touch sensors, two
+//! eyes, a sense of balance, and muscles or motors. He learns to touch himself, to look at his hands, to reach, to stand up,
+//! behind Gymnasium's `reset` and `step`. The physics is MuJoCo's soft-constraint formulation, reproduced to the solver's
+//! tolerance, with the same bits on every processor, in any number of threads and in WebAssembly. There is no C compiler, no
+//! system library and no MuJoCo in it.
+//!
+//! # Quick start
 //!
 //! ```
 //! use babybench::{Config, Env};
 //!
 //! let config = Config::from_yaml("behavior: self_touch\nscene: crib\ntouch_active: False\nvision_active: False", "my.yml")?;
 //! let mut env = Env::new(config)?;
-//! env.reset(Some(0))?;
-//! let action = vec![0.1; env.action_space().len()];
-//! let step = env.step(&action)?;
-//! println!("{} values, {:?}", step.observation.proprioception.len(), step.info);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! # What the API page shows in Python
-//!
-//! ```
-//! use babybench::{Config, make_env};
-//! # let save_dir = std::env::temp_dir().join("babybench_page_example").display().to_string();
-//! # let text = "behavior: self_touch\nscene: crib\nvision_active: False\ntouch_fingers: False\nmax_episode_steps: 5";
-//!
-//! // env = bb_utils.make_env(config, training=True)
-//! let config = Config { save_dir, ..Config::from_yaml(text, "my.yml")? }; // or Config::from_file("my.yml")
-//! let mut env = make_env(config, true)?;
-//!
-//! // obs, info = env.reset(); obs, reward, terminated, truncated, info = env.step(action)
-//! env.reset(None)?;
 //! let mut action = Vec::new();
-//! env.sample_action(&mut action); // action = env.action_space.sample()
-//! let step = env.step(&action)?;
-//! let (obs, info) = (step.observation, step.info);
-//! assert_eq!((step.reward, step.terminated, step.truncated, info.steps), (0.0, false, false, 1));
-//! assert!(obs.touch.is_some() && obs.vestibular.is_some() && obs.eye_left.is_none());
-//!
-//! // env.proprioception.joint_names, env.proprioception.sensors
-//! let model = env.model();
-//! let joints: Vec<&str> = env.proprioception().joint_names(model).collect();
-//! let sensors: Vec<&str> = env.proprioception().sensor_names(model).collect();
-//! assert_eq!((joints.len(), sensors.len()), (47, 21));
-//! assert!(joints.contains(&"robot:right_elbow"));
-//!
-//! // [env.model.actuator(i).name for i in range(env.model.nu) if ...startswith("act:")]
-//! let actuators: Vec<&String> = model.actuator_name.iter().filter(|name| name.starts_with("act:")).collect();
-//! assert_eq!(actuators.len(), env.action_space().len());
-//!
-//! // env.touch.sensor_positions[body_id], in the frame of the body
-//! let touch = env.touch().expect("touch is active");
-//! for body in touch.layout().bodies() {
-//!     let (name, positions) = (&model.body_name[body.body], body.positions());
-//!     assert!(!positions.is_empty(), "{name}");
+//! env.reset(Some(0))?;
+//! for _ in 0..10 {
+//!     env.sample_action(&mut action);
+//!     let step = env.step(&action)?;
+//!     println!("{} values, {:?}", step.observation.proprioception.len(), step.info);
 //! }
-//! let hand = model.body("right_hand").expect("MIMo");
-//! assert_eq!(touch.layout().sensor_positions(hand).map(<[_]>::len), Some(172));
-//! # std::fs::remove_dir_all(&env.config().save_dir)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! And its evaluation:
+//! The [guide] says what MIMo is made of: body, scenes, tasks, senses, actuation, growth, and [every key of the
+//! configuration][keys], with units and sources. Configurations of the BabyBench starter kit load unchanged; scripts in its
+//! manner start with [`make_env`](runs::make_env), which logs as the kit logs, and end with an
+//! [`Evaluation`](eval::Evaluation).
+//!
+//! # Many at once
+//!
+//! A [`Blueprint`] compiles a scene once and settles it; environments made from one share them. A [`VectorEnv`] steps many of
+//! them on all cores (feature `parallel`), and returns arrays over environments, with the same bits as if each were alone:
 //!
 //! ```
-//! use babybench::eval::{Evaluation, Touchables};
-//! use babybench::{Config, make_env};
-//! # let save_dir = std::env::temp_dir().join("babybench_page_evaluation").display().to_string();
-//! # let text = "behavior: self_touch\nscene: crib\nvision_active: False\ntouch_active: False\nmax_episode_steps: 5";
-//! # let config = Config { save_dir, ..Config::from_yaml(text, "my.yml")? };
-//! # let mut training = make_env(config.clone(), true)?;
-//! # for _ in 0..2 {
-//! #     training.reset(None)?;
-//! #     training.step(&[0.0; 44])?;
-//! # }
-//! # training.finish_training()?;
+//! use babybench::{Blueprint, Config, VectorEnv, VectorOptions};
 //!
-//! // evaluation = bb_eval.EVALS[config['behavior']](env=env, render=True, save_dir=config['save_dir'])
-//! let mut env = make_env(config, false)?;
-//! let mut evaluation = Evaluation::new(&env).with_video(&env)?;
-//!
-//! // evaluation.eval_logs()
-//! let score = evaluation.eval_logs()?;
-//! println!("{score}"); // Preliminary training score: 0.0
-//! print!("{}", score.to_text(Touchables::new(env.model()).as_ref()));
-//!
-//! // obs, _, _, _, info = env.step(action); evaluation.eval_step(info)
-//! env.reset(None)?;
-//! evaluation.reset();
-//! for _ in 0..2 {
-//!     env.step(&[0.0; 44])?;
-//!     evaluation.eval_step(&env)?;
-//! }
-//!
-//! // evaluation.end(episode=0)
-//! evaluation.end(0)?;
-//! # std::fs::remove_dir_all(&env.config().save_dir)?;
+//! let config = Config { vision_active: false, touch_active: false, ..Config::default() };
+//! let mut envs = VectorEnv::new(&Blueprint::new(config)?, 4, VectorOptions::default())?;
+//! envs.reset(0)?; // environment i is seeded with i
+//! let batch = envs.step(&[0.1; 4 * 44])?;
+//! assert_eq!(batch.observation.vestibular.map(<[f64]>::len), Some(4 * 6));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # How it is put together
+//! # Your own tasks and senses
 //!
-//! The way of the data: [`config`] -> [`mimo`] chooses assets -> [`mjcf_loader`] reads them -> [`physics::compile`] makes a
-//! [`Model`]. An action
-//! goes through [`actuation`] to the [`physics`] engine, which advances a [`physics::State`]; [`sensors`] read it; [`mod@env`]
-//! holds it all together. Each part works alone, without the environment.
+//! - A task is a value that implements [`Task`](env::Task): a scene, a start, a goal, a reward. Vectors, snapshots and logs take
+//!   it like the built-in ones.
+//! - A [`Transform`](sensors::transform::Transform) changes the values of one sense before they are observed: noise, delays,
+//!   occlusion.
+//! - A sense of your own is a function of [`Model`] and [`State`](physics::State), called after each step: `env.model()`,
+//!   `env.state()`.
+//! - An [`AssetSource`](assets::AssetSource) puts MJCF files of your own over the embedded ones.
+//!
+//! # Without the environment
+//!
+//! Data flow one way: [`config`] -> [`mimo`] writes a document -> [`mjcf_loader`] reads MJCF into a
+//! [`Spec`](mjcf_loader::Spec) -> [`physics::compile`] turns it into a [`Model`] -> an [`Engine`](physics::Engine) steps a
+//! [`State`](physics::State), whose fields are those of MuJoCo's `mjData` -> [`sensors`] read it, [`render`] draws it. Each part
+//! works alone, with any MJCF of hinges, slides, free joints, primitive geoms, tendons and welds; whatever is not supported is
+//! an error with file, line and column. In a game loop, step the engine at its own time step and draw in between.
+//!
+//! Names are the field's, and the search of this page knows MuJoCo's: try `mj_step`, `mjData` or `mj_applyFT`.
+//!
+//! # Features
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `eval` (default) | [`runs`], [`policy`], [`eval`]: logs, policies, scores, evaluation |
+//! | `rapier` (default) | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
+//! | `serde` (in `eval`) | configurations, information and scores are serialised |
+//! | `parallel` | threads in vectors of environments, and for the second eye |
+//! | `npz` | NumPy archives: recordings in, replays out |
+//! | `report` | [`report`]: a page about a run |
+//! | `onnx` | policies that are ONNX models, run in pure Rust |
+//! | `wgpu` | [`render::gpu`]: images on a GPU |
+//!
+//! `default-features = false` leaves the environments alone. In the dev profile a step takes thirty times as long; games want
+//! `[profile.dev.package.babybench] opt-level = 3`.
+//!
+//! # Platforms
+//!
+//! The minimum supported Rust version is 1.95. It compiles for Linux, macOS, Windows, Android, iOS, and for
+//! `wasm32-unknown-unknown` with the default features: the core uses no file system, threads or clock. There is a
+//! Python package and an npm package of the same name.
+//!
+//! # How far from MuJoCo
+//!
+//! Contacts are MuJoCo 3.3.0's in number, order and bits of their geometry; accelerations agree to the solver's tolerance; the
+//! eyes' images differ from MuJoCo's by 2 of 255 at most. The README has the tables and how they are measured. `compat: reference`
+//! follows the starter kit's Python code, bug for bug, where it disagrees with its documentation.
+//!
+//! # Errors and limits
+//!
+//! Nothing panics on input: actions, files and configurations from outside give typed errors that say what was wrong, where, and
+//! what to do, within [`Limits`]. A step allocates nothing after the first few. The library forbids `unsafe`.
+//!
+//! [guide]: https://docs.rs/crate/babybench/latest/source/docs/guide/README.md
+//! [keys]: https://docs.rs/crate/babybench/latest/source/docs/guide/configuration.md
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

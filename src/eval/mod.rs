@@ -1,4 +1,42 @@
 //! The evaluation of a run: scores of its training log, and episodes with a policy, logged and filmed.
+//!
+//! The API page's Python, line by line:
+//!
+//! ```
+//! use babybench::eval::{Evaluation, Touchables};
+//! use babybench::{Config, make_env};
+//! # let save_dir = std::env::temp_dir().join("babybench_page_evaluation").display().to_string();
+//! # let text = "behavior: self_touch\nscene: crib\nvision_active: False\ntouch_active: False\nmax_episode_steps: 5";
+//! # let config = Config { save_dir, ..Config::from_yaml(text, "my.yml")? };
+//! # let mut training = make_env(config.clone(), true)?;
+//! # for _ in 0..2 {
+//! #     training.reset(None)?;
+//! #     training.step(&[0.0; 44])?;
+//! # }
+//! # training.finish_training()?;
+//!
+//! // evaluation = bb_eval.EVALS[config['behavior']](env=env, render=True, save_dir=config['save_dir'])
+//! let mut env = make_env(config, false)?;
+//! let mut evaluation = Evaluation::new(&env).with_video(&env)?;
+//!
+//! // evaluation.eval_logs()
+//! let score = evaluation.eval_logs()?;
+//! println!("{score}"); // Preliminary training score: 0.0
+//! print!("{}", score.to_text(Touchables::new(env.model()).as_ref()));
+//!
+//! // obs, _, _, _, info = env.step(action); evaluation.eval_step(info)
+//! env.reset(None)?;
+//! evaluation.reset();
+//! for _ in 0..2 {
+//!     env.step(&[0.0; 44])?;
+//!     evaluation.eval_step(&env)?;
+//! }
+//!
+//! // evaluation.end(episode=0)
+//! evaluation.end(0)?;
+//! # std::fs::remove_dir_all(&env.config().save_dir)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod episodes;
 mod evaluation;

@@ -87,8 +87,8 @@ pub enum Dtype {
 /// The shape and bounds of one entry of the observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservationSpace {
-    /// Key in the observation: `observation`, `touch`, `touch_pooled`, `pain`, `eye_left`, `eye_right` (with `_gray`,
-    /// `_depth` or `_segmentation`) or `vestibular`.
+    /// Key in the observation: `observation`, `vestibular`, `touch`, `touch_pooled`, `pain`, `eye_left`, `eye_right` (each
+    /// with `_gray`, `_depth` or `_segmentation` for other outputs), `achieved_goal` or `desired_goal`.
     pub key: &'static str,
     /// Shape.
     pub shape: Vec<usize>,

@@ -1,34 +1,34 @@
-//! Invariant 13: rooms look down, never up. `ROOMS` is the order in which the library is built.
+//! Invariant 13: rooms look down, never up, as the picture in `ARCHITECTURE.md` shows them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The rooms of `src/`, from the ground up. A room may use those on lines before its own; rooms on one line know nothing
-/// of each other.
-const ROOMS: &[&[&str]] = &[
-    &["math", "limits", "files", "json", "text", "threads"],
-    &["model", "assets", "spaces"],
-    &["mjcf_loader", "formats"],
-    &["physics"],
-    &["render"],
-    &["config"],
-    &["mimo"],
-    &["actuation"],
-    &["sensors"],
-    &["env"],
-    &["vector"],
-    &["runs"],
-    &["policy"],
-    &["eval"],
-    &["report"],
-];
+/// A line of the picture: rooms, and the rooms that their arrows lead to.
+struct Line {
+    rooms: Vec<String>,
+    arrows: BTreeSet<String>,
+}
 
-/// Returns the line of a room in [`ROOMS`].
-fn floor(room: &str) -> usize {
-    ROOMS
-        .iter()
-        .position(|rooms| rooms.contains(&room))
-        .unwrap_or_else(|| panic!("src/{room} has no place in the order of rooms"))
+/// Reads the picture of rooms, from the top down.
+fn picture() -> Vec<Line> {
+    let text = include_str!("../../../ARCHITECTURE.md");
+    let section = text.split("## The rooms").nth(1).expect("a section on rooms");
+    let block = section.split("```").nth(1).expect("a picture");
+    let words = |list: &str| list.split(',').map(|word| word.trim().to_string()).collect::<Vec<_>>();
+    block
+        .lines()
+        .filter(|line| !line.is_empty())
+        .map(|line| match line.split_once(" ─> ") {
+            Some((room, others)) => Line {
+                rooms: words(room),
+                arrows: words(others).into_iter().collect(),
+            },
+            None => Line {
+                rooms: words(line),
+                arrows: BTreeSet::new(),
+            },
+        })
+        .collect()
 }
 
 /// Lists the Rust files at and below a path.
@@ -75,9 +75,15 @@ fn named_behind<'t>(code: &'t str, prefix: &str) -> BTreeSet<&'t str> {
     names
 }
 
-/// Returns the code of a file: no comments, no strings that span lines.
+/// Returns the code of a file, without its unit tests: no comments, no strings that span lines.
 fn code(path: &Path) -> String {
     let text = std::fs::read_to_string(path).expect("UTF-8");
+    let is_test = path.components().any(|part| part.as_os_str() == "tests") || path.ends_with("tests.rs");
+    let text = if is_test {
+        ""
+    } else {
+        text.split("#[cfg(test)]").next().unwrap_or_default()
+    };
     text.lines()
         .filter(|line| !line.trim_start().starts_with("//"))
         .map(|line| line.split(" // ").next().unwrap_or_default())
@@ -85,7 +91,7 @@ fn code(path: &Path) -> String {
         .join("\n")
 }
 
-/// Returns the other rooms that each room's files name, tests included.
+/// Returns the other rooms that the code of each room names, each with a file that does.
 fn doors() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut doors: BTreeMap<String, BTreeMap<String, PathBuf>> = BTreeMap::new();
@@ -100,6 +106,7 @@ fn doors() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
         let known = doors.entry(room.clone()).or_default();
         for file in sources {
             for other in named_behind(&code(&file), "crate::") {
+                let other = room_of(other);
                 if other != room {
                     known.insert(other.to_string(), file.clone());
                 }
@@ -109,7 +116,7 @@ fn doors() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
     doors
 }
 
-/// Tells what a name at the crate's root stands for, if it is not a room.
+/// Returns the room of a name at the crate's root.
 fn room_of(name: &str) -> &str {
     match name {
         "Config" => "config",
@@ -122,19 +129,33 @@ fn room_of(name: &str) -> &str {
     }
 }
 
+/// Returns a room and all rooms that it uses, directly or through others.
+fn reached(room: &str, doors: &BTreeMap<String, BTreeMap<String, PathBuf>>) -> BTreeSet<String> {
+    let mut found = BTreeSet::from([room.to_string()]);
+    let mut rest = vec![room.to_string()];
+    while let Some(room) = rest.pop() {
+        for other in doors.get(&room).into_iter().flat_map(BTreeMap::keys) {
+            if found.insert(other.clone()) {
+                rest.push(other.clone());
+            }
+        }
+    }
+    found
+}
+
 #[test]
 fn invariant_13_rooms_use_only_what_is_below_them() {
+    let (doors, picture) = (doors(), picture());
+    let line = |room: &str| {
+        let line = picture.iter().position(|line| line.rooms.iter().any(|r| r == room));
+        line.unwrap_or_else(|| panic!("src/{room} has no place in ARCHITECTURE.md"))
+    };
     let mut wrong = Vec::new();
     let mut opened = 0;
-    for (room, others) in doors() {
-        let own = floor(&room);
-        for (name, file) in others {
-            let other = room_of(&name);
-            if other == room {
-                continue;
-            }
+    for (room, others) in &doors {
+        for (other, file) in others {
             opened += 1;
-            if floor(other) >= own {
+            if line(other) <= line(room) {
                 wrong.push(format!("{room} uses {other} ({})", file.display()));
             }
         }
@@ -144,6 +165,27 @@ fn invariant_13_rooms_use_only_what_is_below_them() {
         "only {opened} doors were found: does the test still read the code?"
     );
     assert!(wrong.is_empty(), "doors that lead up:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_picture_of_rooms_is_drawn_from_the_code() {
+    let doors = doors();
+    let drawn = picture();
+    let count: usize = drawn.iter().map(|line| line.rooms.len()).sum();
+    assert_eq!(count, doors.len(), "a room is missing, drawn twice, or gone");
+    for Line { rooms, arrows } in drawn {
+        for room in rooms {
+            let direct: BTreeSet<String> = doors[&room].keys().cloned().collect();
+            let spared = |other: &String| {
+                direct
+                    .iter()
+                    .any(|via| via != other && reached(via, &doors).contains(other))
+            };
+            let needed: BTreeSet<String> = direct.iter().filter(|other| !spared(other)).cloned().collect();
+            let list = needed.iter().cloned().collect::<Vec<_>>().join(", ");
+            assert_eq!(arrows, needed, "ARCHITECTURE.md should say: {room} ─> {list}");
+        }
+    }
 }
 
 #[test]

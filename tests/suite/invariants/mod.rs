@@ -1,4 +1,4 @@
-//! What always holds, whatever the action: the invariants of `ARCHITECTURE.md`, by number. The fourth, that a step
+//! The invariants of `ARCHITECTURE.md`, by number. The fourth, that a step
 //! allocates nothing, is in `allocation.rs`; contacts and the live scene are in `scene.rs`.
 
 mod bits;
@@ -9,4 +9,5 @@ mod mechanics;
 mod model;
 mod sensors;
 mod source;
+mod statements;
 mod types;
