@@ -1,4 +1,4 @@
-//! What a sense felt last, as a dictionary of arrays.
+//! The last values of a sense, as a dictionary of arrays.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! What environments and vectors tell of themselves.
+//! Spaces and step information as Python objects.
 
 use babybench::config::Part;
 use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, Info};

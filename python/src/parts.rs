@@ -228,7 +228,7 @@ impl Parts {
             }
             for (k, (own, array)) in own.into_iter().zip(&arrays).enumerate() {
                 let other = array.as_slice().map_err(|e| PyValueError::new_err(e.to_string()))?;
-                // the kit's muscles are no MuJoCo's: there is no act then
+                // the kit's muscles are not MuJoCo's, so `act` is empty
                 if other.len() == own.len() && other != &own[..] {
                     bits |= 1 << k;
                 }

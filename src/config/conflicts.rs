@@ -1,4 +1,4 @@
-//! What values of the configuration exclude each other.
+//! Values of the configuration that exclude each other.
 
 use super::{Behavior, Compat, Config, DelayUnit, Delays, TouchFunction, VisionOutput, defaults, table};
 
@@ -18,7 +18,7 @@ struct Shaping {
     reason: &'static str,
 }
 
-/// What shapes senses that can be off.
+/// The keys that shape senses that can be off.
 const SHAPING: [Shaping; 5] = [
     Shaping {
         off: |c| !c.vision_active,
@@ -115,7 +115,7 @@ impl Config {
         Some((key, value, reason.to_string()))
     }
 
-    /// Returns the first value that would do nothing, because what it shapes is off.
+    /// Returns the first value without effect, because the sense that it shapes is off.
     fn unused(&self) -> Option<Conflict> {
         let set = |key: &&super::Key| key.value(self) != key.default_value();
         let conflict = |key: &super::Key, reason: &str| (key.name, key.value(self).to_yaml(), reason.to_string());

@@ -1,4 +1,4 @@
-//! What values of keys are, how they are written and what is allowed.
+//! The values of keys: their types, their notation, their bounds.
 
 use super::error;
 

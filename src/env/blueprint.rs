@@ -1,4 +1,4 @@
-//! What all environments of one configuration share.
+//! The part that all environments of one configuration share.
 
 use std::sync::{Arc, OnceLock};
 

@@ -1,4 +1,4 @@
-//! What the information of a step tells beyond the keys of the reference.
+//! Details of a step's info beyond the keys of the reference.
 
 use std::sync::Arc;
 

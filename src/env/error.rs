@@ -1,4 +1,4 @@
-//! What can go wrong with an environment.
+//! Errors of environments.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! What an environment reports with each step.
+//! The info that an environment returns with each step.
 
 use crate::config::Behavior;
 use crate::env::{InfoDetails, Outcome};

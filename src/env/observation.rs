@@ -1,4 +1,4 @@
-//! What a step returns: the observation, and the rest in Gymnasium's order.
+//! The results of a step: the observation, and the rest in Gymnasium's order.
 
 use crate::env::Info;
 use crate::sensors::EyeImages;

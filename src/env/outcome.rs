@@ -1,4 +1,4 @@
-//! What came of a step: reward, success, failure.
+//! The outcome of a step: reward, success, failure.
 
 use super::task::{Goals, Task, TaskView};
 use super::{BehaviorInfo, Env, Info, Outcome, TaskInfo};

@@ -69,7 +69,7 @@ impl Pipeline {
         }
     }
 
-    /// Adds a transform behind those that there are.
+    /// Appends a transform.
     pub fn add(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         let configured = false;
         self.chains[sense as usize].push(Stage { transform, configured });

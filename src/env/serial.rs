@@ -1,4 +1,4 @@
-//! What an environment reports, in the formats of serde.
+//! The info of an environment, in the formats of serde.
 
 use std::sync::Arc;
 
@@ -74,7 +74,7 @@ impl Serialize for InfoDetails {
 pub struct Detailed<'a> {
     /// The keys of the reference.
     pub info: &'a Info,
-    /// What stands beside them.
+    /// The details, if included.
     pub details: Option<&'a InfoDetails>,
 }
 

@@ -25,7 +25,7 @@ impl EnvStage {
             .chain(std::iter::once(Self::Senses))
     }
 
-    /// Returns the name for people.
+    /// Returns a display name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Actuation => "actuation",

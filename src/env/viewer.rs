@@ -1,4 +1,4 @@
-//! Pictures of environments for people.
+//! Pictures of environments for display.
 
 use crate::env::{Blueprint, Env, EnvError, missing_camera, pipeline};
 use crate::math::Vec3;

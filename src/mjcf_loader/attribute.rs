@@ -12,7 +12,7 @@ pub(super) enum Sign {
     Unit,
 }
 
-/// What an attribute holds.
+/// The value of an attribute.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Text,
@@ -130,7 +130,7 @@ impl Rivals {
 pub(super) struct Attr {
     pub name: &'static str,
     pub kind: Kind,
-    /// What it means, for people.
+    /// Meaning, for display.
     pub meaning: &'static str,
     /// Writes the default as a document would; empty when there is none.
     pub default: fn() -> String,
@@ -415,7 +415,7 @@ macro_rules! store_whole {
 }
 store_whole!(usize, u32, i32);
 
-/// What need not be given. A negative count, which the tables allow as -1, counts as not given.
+/// A value that need not be given. A negative count, which the tables allow as -1, counts as not given.
 macro_rules! store_optional {
     ($([$($parameter:tt)*] $ty:ty = $empty:expr),* $(,)?) => {$(
         impl<$($parameter)*> Store for Option<$ty> {

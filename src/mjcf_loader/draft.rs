@@ -1,4 +1,4 @@
-//! What an MJCF document says, while a program may still change it.
+//! An MJCF document that a program may still change.
 
 use crate::assets::{AssetSource, directory, resolve};
 use crate::limits::Limits;

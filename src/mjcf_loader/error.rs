@@ -39,7 +39,7 @@ impl fmt::Display for Place {
 pub struct LoadError {
     /// The place in the document.
     pub place: Box<Place>,
-    /// What is wrong there.
+    /// Description of the fault.
     pub kind: ErrorKind,
 }
 
@@ -56,7 +56,7 @@ impl LoadError {
     }
 }
 
-/// What is wrong with a document.
+/// A fault of a document.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -75,7 +75,7 @@ pub enum ErrorKind {
     /// A limit on untrusted input.
     #[error("more than {limit} {what}")]
     TooMuch {
-        /// What there is too much of.
+        /// The kind of item that exceeds the limit.
         what: &'static str,
         /// The limit.
         limit: usize,
@@ -109,9 +109,9 @@ pub enum ErrorKind {
     BadWord {
         /// The attribute.
         attribute: &'static str,
-        /// What it says.
+        /// The value found.
         text: String,
-        /// What it may say.
+        /// The values allowed.
         allowed: &'static [&'static str],
     },
     /// A value that is not a finite number.
@@ -137,7 +137,7 @@ pub enum ErrorKind {
         attribute: &'static str,
         /// The number.
         value: f64,
-        /// What is allowed.
+        /// The values allowed.
         want: &'static str,
     },
     /// A whole number that is out of bounds.

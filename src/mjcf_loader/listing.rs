@@ -18,15 +18,15 @@ pub struct ElementInfo {
 pub struct AttributeInfo {
     /// Its name.
     pub name: &'static str,
-    /// What it may hold, for instance `3 numbers`.
+    /// Values allowed, for instance `3 numbers`.
     pub values: String,
-    /// What holds when it is not given, as a document would write it; empty for nothing.
+    /// Default, as a document would write it; empty for none.
     pub default: String,
     /// Whether the element must have it.
     pub required: bool,
     /// Whether a default class may give it.
     pub in_default: bool,
-    /// What it means, and whether it is ignored.
+    /// Meaning, and whether it is ignored.
     pub meaning: &'static str,
 }
 

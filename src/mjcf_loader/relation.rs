@@ -35,7 +35,7 @@ table! {
 }
 
 table! {
-    /// What `<equality><joint>` holds.
+    /// Attributes of `<equality><joint>`.
     group JointEquality {
         "joint1" joint1: String = String::new(), TEXT, required, "Joint that is held.";
         "joint2" joint2: Option<String> = None, TEXT, own, "Joint that it follows; none for a constant.";
@@ -44,7 +44,7 @@ table! {
 }
 
 table! {
-    /// What `<equality><weld>` holds.
+    /// Attributes of `<equality><weld>`.
     group WeldEquality {
         "body1" body1: String = String::new(), TEXT, required, "First body.";
         "body2" body2: Option<String> = None, TEXT, own, "Second body; else the world.";
@@ -54,7 +54,7 @@ table! {
     }
 }
 
-/// What an equality holds, by name.
+/// The elements of an equality, by name.
 #[derive(Clone)]
 pub(super) enum Held {
     Joint(JointEquality),
@@ -62,7 +62,7 @@ pub(super) enum Held {
 }
 
 table! {
-    /// What all equalities have in common.
+    /// Attributes of all equalities.
     element Equality {
         also held: Held = Held::Joint(JointEquality::initial());
         "name" name: String = String::new(), TEXT, own, "Name.";
@@ -133,7 +133,7 @@ table! {
 }
 
 table! {
-    /// What all actuators have in common. Motors and position servos share one default per class, as in MuJoCo: a `motor`
+    /// Attributes of all actuators. Motors and position servos share one default per class, as in MuJoCo: a `motor`
     /// default reaches servos too.
     element Actuator {
         also gain: f64 = 1.0;
@@ -151,7 +151,7 @@ table! {
 }
 
 table! {
-    /// What `<position>` has beyond other actuators.
+    /// Attributes of `<position>` beyond those of other actuators.
     group Servo {
         "kp" kp: Option<f64> = None, real(NonNegative), "Gain of the position error; 1 if no default gives another.";
         "kv" kv: Option<f64> = None, real(NonNegative), "Damping; 0 if no default gives another.";

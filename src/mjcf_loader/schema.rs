@@ -4,7 +4,7 @@ use super::attribute::{Attr, Rivals, Value};
 use super::error::{ErrorKind, LoadError};
 use super::xml::Tree;
 
-/// What an element may have: the attributes of its tables, and elements in it.
+/// The content allowed in an element: the attributes of its tables, and child elements.
 pub(super) struct Rule {
     pub name: &'static str,
     pub tables: &'static [&'static [&'static [Attr]]],

@@ -1,4 +1,4 @@
-//! What the tables share: words with their values, bounds, defaults, and poses as they are written.
+//! Shared by the tables: words with their values, bounds, defaults, and poses as they are written.
 
 use crate::math::Vec3;
 use crate::model::{Builtin, GeomType, JointType, LightMode, Mark, TextureType};

@@ -27,7 +27,7 @@ pub(crate) struct Node {
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub nodes: Vec<Node>,
-    /// What this document may contain.
+    /// Elements that this document may contain.
     pub limits: Limits,
     files: Vec<String>,
 }

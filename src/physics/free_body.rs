@@ -6,7 +6,7 @@ use crate::model::{JointType, Model};
 use crate::physics::engine::EngineError;
 use crate::physics::state::State;
 
-/// What [`State::set_free_body`] changes of a body; `None` leaves it as it is.
+/// The values of a body that [`State::set_free_body`] sets; `None` leaves one as it is.
 ///
 /// ```
 /// use babybench::physics::FreeBody;
@@ -39,7 +39,7 @@ impl State {
     /// Gives a body another mass, inertia or size, from the next step on: a body that hangs on nothing, carries nothing and moves
     /// by a free joint. A reset of the environment brings the model's own back. Pictures and touch sensors keep the size of the model.
     ///
-    /// What the solver derives from them (inverse weights, masses of subtrees) follows in closed form: with mass `m`, moments
+    /// Derived quantities (inverse weights, masses of subtrees) follow in closed form: with mass `m`, moments
     /// `I` and centre of mass `c` in the body, `1/m` and the mean of `1/I`, and for the translations of the joint
     /// `1/m + sum |c x axis|^2 / (3 I)`. MuJoCo's `mj_setConst` computes the same at `qpos0`, but for the mean inertia that scales
     /// the solver's tolerance, which stays that of the model.

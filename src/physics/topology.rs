@@ -1,10 +1,10 @@
-//! What the dynamics derives from a model's tree once: ancestor chains, trees, the layout of the inertia.
+//! The structure of a model's tree, derived once for the dynamics: ancestor chains, trees, the layout of the inertia.
 
 use crate::model::Arrays;
 use crate::physics::params::Params;
 use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 
-/// What the dynamics derives from the tree of a [`crate::Model`]: ancestor chains, trees, the layout of matrices.
+/// The structure of the tree of a [`crate::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
 ///
 /// A *tree* is a set of degrees of freedom that depend on each other, a consecutive range. Row `i` of the joint-space
 /// inertia is nonzero for `i` and its ancestors only; the chain of an ancestor is a prefix of the chain of its

@@ -1,10 +1,10 @@
-//! What a step of a vector returns.
+//! The results of a step of a vector.
 
 use crate::env::{EnvError, Observation};
 use crate::vector::Infos;
 use crate::vector::rows::row_of;
 
-/// What a step, a reset or [`VectorEnv::recv`](super::VectorEnv::recv) returns: arrays with a row for each environment.
+/// The results of a step, a reset or [`VectorEnv::recv`](super::VectorEnv::recv): arrays with a row for each environment.
 /// They belong to the vector and change with the next call.
 #[derive(Clone, Copy, Debug)]
 pub struct Batch<'a> {

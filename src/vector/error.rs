@@ -1,4 +1,4 @@
-//! What can go wrong with a vector of environments.
+//! Errors of vectors of environments.
 
 use thiserror::Error;
 
@@ -23,7 +23,7 @@ pub enum VectorError {
         each: u64,
         /// Estimated size of all, bytes.
         bytes: u64,
-        /// What may be used, bytes.
+        /// The limit, bytes.
         limit: u64,
         /// Number of environments that fit.
         fit: usize,
@@ -113,7 +113,7 @@ pub enum VectorError {
     Panicked {
         /// The environment.
         env: usize,
-        /// What the panic said.
+        /// The message of the panic.
         message: String,
     },
     /// The system gives no more threads.
@@ -138,7 +138,7 @@ fn shape(found: usize, [n, len]: [usize; 2]) -> String {
     }
 }
 
-/// Writes a number of bytes for people.
+/// Formats a number of bytes for display.
 fn human(bytes: u64) -> String {
     const UNITS: [&str; 5] = ["KiB", "MiB", "GiB", "TiB", "PiB"];
     let mut value = bytes as f64 / 1024.0;

@@ -27,8 +27,8 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
-    /// Starts an episode in the environments that the mask marks, or in all, and writes the rows of all into memory of the
-    /// caller's, as [`VectorEnv::step_into`] does.
+    /// Starts an episode in the environments that the mask marks, or in all, and writes the rows of all into the
+    /// caller's memory, as [`VectorEnv::step_into`] does.
     ///
     /// # Errors
     /// As [`VectorEnv::reset_where`]; memory of another shape.
@@ -96,8 +96,8 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
-    /// Applies an action in each environment and writes what it returns into memory of the caller's; what
-    /// [`VectorEnv::infos`], [`VectorEnv::finals`] and [`VectorEnv::failures`] return belongs to the same step.
+    /// Applies an action in each environment and writes the results into the caller's memory; the
+    /// results of [`VectorEnv::infos`], [`VectorEnv::finals`] and [`VectorEnv::failures`] belong to the same step.
     ///
     /// ```
     /// use babybench::vector::Buffers;
@@ -159,8 +159,8 @@ impl VectorEnv {
         Ok(self.batch())
     }
 
-    /// Waits for `n` environments as [`VectorEnv::recv`] does and writes their rows into memory of the caller's, which has
-    /// room for `n`. Returns which environments they are, (n).
+    /// Waits for `n` environments as [`VectorEnv::recv`] does and writes their rows into the caller's memory, which has
+    /// room for `n`. Returns the ids of the environments, (n).
     ///
     /// # Errors
     /// As [`VectorEnv::recv`]; memory of another shape.
@@ -330,7 +330,7 @@ impl VectorEnv {
         Env::draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
     }
 
-    /// Writes what came of an environment.
+    /// Writes the results of an environment.
     fn write(&mut self, row: usize, env: usize, out: &mut Buffers<'_>) {
         let Some(slot) = &mut self.slots[env] else { return };
         out.write(row, &slot.env);

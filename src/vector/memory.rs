@@ -1,4 +1,4 @@
-//! How much memory environments take, before they are made.
+//! Estimates the memory that environments take, before they are made.
 
 use crate::config::VisionOutput;
 use crate::env::Env;

@@ -40,7 +40,7 @@ pub struct ClippedThreads {
     pub wanted: usize,
     /// Number of threads there are.
     pub given: usize,
-    /// What more would be no use for.
+    /// Why more would not help.
     pub because: ThreadLimit,
 }
 
@@ -49,7 +49,7 @@ pub struct ClippedThreads {
 pub enum ThreadLimit {
     /// A thread steps one environment at a time, and there are no more.
     Environments,
-    /// There are only so many cores.
+    /// There are no more cores.
     Cores,
     /// The library was built without the feature `parallel`, or for wasm32.
     Build,

@@ -237,7 +237,7 @@ fn write_pair<T: Copy>(out: &mut Option<[&mut [T]; 2]>, row: usize, values: Opti
     }
 }
 
-/// Arrays of the vector's own.
+/// The vector's own arrays.
 #[derive(Debug, Default)]
 pub(super) struct Rows {
     layout: Layout,

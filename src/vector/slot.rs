@@ -1,4 +1,4 @@
-//! A place of the vector: an environment, what it is to do next, and what came of it.
+//! A slot of the vector: an environment, its next order, and the outcome.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,7 +8,7 @@ use crate::sensors::EyeImages;
 use crate::threads::Job;
 use crate::vector::AutoresetMode;
 
-/// What an environment is to do.
+/// The next order of an environment.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Task {
     /// Apply [`Slot::action`], or start the next episode where the mode says so.
@@ -36,7 +36,7 @@ pub(super) struct Slot {
     pub last: Option<Last>,
     /// Why the last step or reset failed.
     pub failure: Option<EnvError>,
-    /// What the panic said that broke the environment.
+    /// The message of the panic that broke the environment.
     pub panicked: Option<String>,
 }
 
@@ -118,7 +118,7 @@ impl Slot {
         }
     }
 
-    /// Makes an environment anew that panicked: nobody knows what it left half done.
+    /// Rebuilds an environment after a panic, since its state may be inconsistent.
     fn revive(&mut self) -> Result<(), EnvError> {
         if self.panicked.is_some() {
             let deferred = self.env.vision_is_deferred();
@@ -240,7 +240,7 @@ fn copy_lists<T: Clone>(from: &PerHand<Vec<T>>, to: &mut PerHand<Vec<T>>) {
     }
 }
 
-/// Returns what a panic said.
+/// Returns the message of a panic.
 fn message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));

@@ -1,4 +1,4 @@
-//! What the tests of all packages share.
+//! Shared by the tests of all packages.
 //!
 //! - [`harness`] runs tests that need something beyond the repository, and reports those that cannot run as ignored, with
 //!   the reason.

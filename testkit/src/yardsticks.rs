@@ -1,4 +1,4 @@
-//! What tests compare with and the repository does not hold: found, or set up by the scripts of `conformance/scripts`.
+//! Yardsticks of tests that are not in the repository: found, or set up by the scripts of `conformance/scripts`.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What the integration tests share.
+//! Shared by the integration tests.
 #![allow(dead_code)] // each test binary uses its part
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What is no file, where a file is needed.
+//! Other things than files where a file is needed.
 
 use crate::case::{Case, Content};
 use crate::runs::{QUICK, quick, run};

@@ -1,4 +1,4 @@
-//! What an infant has in mind.
+//! The networks of an infant.
 
 use babybench::Env;
 use babybench::spaces::BoxSpace;

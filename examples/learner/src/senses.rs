@@ -1,4 +1,4 @@
-//! What the policy knows: one row of numbers for each environment.
+//! The inputs of the policy: one row of numbers for each environment.
 
 use babybench::Env;
 

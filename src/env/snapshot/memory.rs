@@ -1,4 +1,4 @@
-//! What delays and pain remember, in a snapshot.
+//! The memory of delays and pain in a snapshot.
 
 use super::SnapshotError;
 use super::format::damaged;

@@ -1,4 +1,4 @@
-//! Goals, and what came of them.
+//! Goals and outcomes.
 
 use thiserror::Error;
 

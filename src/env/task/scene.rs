@@ -1,4 +1,4 @@
-//! What a task may look at and change.
+//! The simulation as a task may inspect and modify it.
 
 use crate::actuation::Actuation;
 use crate::config::{Compat, Config};

@@ -1,4 +1,4 @@
-//! What the stages of compilation share: names, their ids, errors with places.
+//! Shared by the stages of compilation: names, their ids, errors with places.
 
 use std::collections::BTreeMap;
 
@@ -51,7 +51,7 @@ impl Names {
     }
 }
 
-/// What the stages of compilation share.
+/// The names and ids that the stages of compilation share.
 pub(super) struct Context<'a> {
     pub tree: &'a Tree,
     pub compiler: &'a Compiler,

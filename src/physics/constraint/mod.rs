@@ -58,7 +58,7 @@ pub(crate) const MAX_ROWS: usize = 10;
 /// Rows that belong together and share their columns.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Block {
-    /// What it is.
+    /// Type of the constraint.
     pub kind: ConstraintType,
     /// Id of the equality, degree of freedom, joint, tendon or contact that it comes from.
     pub id: usize,

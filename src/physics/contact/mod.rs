@@ -9,7 +9,7 @@
 //! - In a pair the geom of the lower [`GeomType`] comes first. The normal points from the first geom to the second.
 //! - `dist` is negative in penetration; `pos` lies midway between the two surfaces.
 //! - A contact is reported when `dist <= margin`.
-//! - Lengths are metres; everything is in the frame the [`PlacedGeom`] geoms are given in, normally the world.
+//! - Lengths are metres; everything is in the frame of the given [`PlacedGeom`]s, normally the world.
 //!
 //! | pair | method | contacts |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! What Rapier's multibodies can represent.
+//! Checks that Rapier's multibodies can represent a model.
 
 use crate::model::{EqualityKind, GeomType, JointType, Model};
 use crate::physics::rapier::RapierError;

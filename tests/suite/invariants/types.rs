@@ -1,4 +1,4 @@
-//! What programs rely on when they are compiled.
+//! Properties of types that programs rely on when they are compiled.
 
 use babybench::actuation::Actuation;
 use babybench::env::{EnvError, Snapshot, SnapshotError};

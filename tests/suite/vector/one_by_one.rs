@@ -1,4 +1,4 @@
-//! What is done to each environment of a vector by itself: seeds, masks, locks, snapshots, and who is ready first.
+//! Operations on single environments of a vector: seeds, masks, locks, snapshots, and who is ready first.
 
 #[cfg(feature = "parallel")]
 use std::sync::{Arc, Condvar, Mutex};

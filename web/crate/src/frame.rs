@@ -1,4 +1,4 @@
-//! What a page draws of the present moment, in single precision.
+//! The data that a page draws in each frame, in single precision.
 
 use babybench::math::mat_t_vec;
 use babybench::model::Model;

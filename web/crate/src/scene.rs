@@ -1,4 +1,4 @@
-//! What a page needs to know once: names, joints, actions, and the look of the scene.
+//! The data that a page needs once: names, joints, actions, and the look of the scene.
 
 use babybench::Env;
 use babybench::mimo::joint_part;

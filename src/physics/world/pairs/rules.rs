@@ -3,7 +3,7 @@
 use super::Order;
 use crate::model::{GeomType, Model};
 
-/// What of a geom decides which others it may touch.
+/// The properties of a geom that decide which others it may touch.
 #[derive(Clone, Copy, Debug)]
 struct Geom {
     kind: GeomType,
