@@ -1,4 +1,4 @@
-//! What changes while a scene runs: MuJoCo's `mjData`.
+//! The state of a scene: MuJoCo's `mjData`.
 
 use babybench::physics::State;
 use numpy::PyArray1;

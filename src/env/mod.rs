@@ -70,6 +70,7 @@ use task::{Goals, TaskScene};
 /// assert_eq!(env.info().steps, 5);
 /// # Ok::<(), babybench::EnvError>(())
 /// ```
+#[doc(alias("Gymnasium", "gym"))]
 pub struct Env {
     blueprint: Blueprint,
     physics: Physics,

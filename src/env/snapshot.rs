@@ -87,6 +87,7 @@ impl Env {
     /// assert_eq!(once, again);
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
+    #[doc(alias = "mj_getState")]
     pub fn snapshot(&self) -> Snapshot {
         let (counts, lists): ([u64; 4], [&[usize]; 2]) = match &self.info.behavior {
             BehaviorInfo::None => ([0; 4], [&[], &[]]),
@@ -134,6 +135,7 @@ impl Env {
     ///
     /// # Errors
     /// A snapshot of another environment, or a damaged one; nothing is changed then.
+    #[doc(alias = "mj_setState")]
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
         if snapshot.fingerprint() != Some(self.blueprint.fingerprint()) {
             return Err(SnapshotError::OtherEnvironment);

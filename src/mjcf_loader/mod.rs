@@ -63,6 +63,7 @@ use crate::limits::Limits;
 ///
 /// # Errors
 /// A file that is missing, text that is not understood; see [`ErrorKind`].
+#[doc(alias("mj_loadXML", "mj_parseXML"))]
 pub fn load(source: &dyn AssetSource, path: &str) -> Result<Spec, LoadError> {
     load_with(source, path, &Limits::default())
 }
@@ -80,10 +81,11 @@ pub fn load_with(source: &dyn AssetSource, path: &str, limits: &Limits) -> Resul
 
 /// Loads a document given as text, as if it were the file `virtual_path` of `source`.
 ///
-/// What it includes and the textures it names are looked up relative to the directory of that path.
+/// Its includes and textures are looked up relative to the directory of that path.
 ///
 /// # Errors
 /// As [`load`].
+#[doc(alias = "mj_parseXMLString")]
 pub fn load_str(xml: &str, virtual_path: &str, source: &dyn AssetSource) -> Result<Spec, LoadError> {
     load_str_with(xml, virtual_path, source, &Limits::default())
 }

@@ -1,12 +1,13 @@
-//! What a document says, before the constants that need dynamics.
+//! The content of a document, before the constants that need dynamics.
 
 use super::error::{ErrorKind, LoadError};
 use super::xml::Tree;
 use crate::model::Arrays;
 
-/// What an MJCF document says, checked and with MuJoCo's ids and units, as MuJoCo's `mjSpec` does.
+/// The content of an MJCF document, checked and with MuJoCo's ids and units, like MuJoCo's `mjSpec`.
 ///
 /// [`crate::physics::compile`] makes a [`crate::Model`] of it.
+#[doc(alias = "mjSpec")]
 #[derive(Clone, Debug)]
 pub struct Spec {
     pub(super) arrays: Arrays,

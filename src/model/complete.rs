@@ -27,6 +27,7 @@ use crate::math::{Quat, Vec3};
 ///     model.body_mass[1] = 0.0; // cannot borrow data in dereference of `Model` as mutable
 /// }
 /// ```
+#[doc(alias = "mjModel")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     arrays: Arrays,
@@ -57,7 +58,7 @@ pub(crate) struct Constants {
     pub stat: Statistic,
     /// The relative pose of each weld that is to hold that at `qpos0`.
     pub weld_poses: Vec<WeldPose>,
-    /// What lights keep of their pose at `qpos0`, for every light.
+    /// The part of its pose at `qpos0` that each light keeps.
     pub light_poses: Vec<LightPose>,
 }
 
@@ -72,7 +73,7 @@ pub(crate) struct WeldPose {
     pub relquat: Quat,
 }
 
-/// What a light keeps of its pose at `qpos0`; see [`super::Light`].
+/// The part of its pose at `qpos0` that a light keeps; see [`super::Light`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightPose {
     pub pos0: Vec3,

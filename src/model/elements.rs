@@ -321,6 +321,7 @@ impl JacobianFormat {
 }
 
 /// The options of solver and integrator (`<option>`).
+#[doc(alias = "mjOption")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Time step, s.
@@ -348,6 +349,7 @@ pub struct Options {
 }
 
 /// The visual settings (`<visual>`) as MuJoCo stores them, in single precision where it does.
+#[doc(alias = "mjVisual")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visual {
     /// Vertical field of view of the free camera, degrees.
@@ -385,6 +387,7 @@ pub struct Visual {
 }
 
 /// The statistics of a model (`<statistic>`), given or computed.
+#[doc(alias = "mjStatistic")]
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Statistic {
     /// Mean diagonal of the joint-space inertia, kg m^2.

@@ -26,6 +26,7 @@ const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of
 ///
 /// # Errors
 /// A joint-space inertia at `qpos0` that is singular, numbers that are not finite; with the place of the element.
+#[doc(alias = "mj_compile")]
 pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     let (arrays, places) = spec.into_parts();
     let constants = constants(&arrays);

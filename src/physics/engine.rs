@@ -1,4 +1,4 @@
-//! What every physics engine does.
+//! The interface of physics engines.
 
 use std::sync::Arc;
 
@@ -23,12 +23,14 @@ pub trait Engine: Send + Sync {
     fn pairs(&self) -> &PairTable;
 
     /// Returns a state at `qpos0`, at rest, of which nothing has been computed.
+    #[doc(alias("mj_makeData", "mj_resetData"))]
     fn new_state(&self) -> State {
         State::new(self.model(), self.topology())
     }
 
     /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`. It is empty
     /// if the state is of another model.
+    #[doc(alias("mj_fullM", "qM"))]
     fn full_m(&self, state: &State) -> Vec<f64> {
         match state.qm.len() == self.topology().tiles.tiles() {
             true => self.topology().full(&state.qm),
@@ -38,6 +40,7 @@ pub trait Engine: Send + Sync {
 
     /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows, or the state
     /// is of another model.
+    #[doc(alias("efc_J", "mj_mulJacVec"))]
     fn efc_j(&self, state: &State, row: usize) -> Option<Vec<f64>> {
         state.efc.jacobian_row(self.topology(), row)
     }
@@ -54,12 +57,14 @@ pub trait Engine: Send + Sync {
     ///
     /// # Errors
     /// Vectors that do not fit the model, numbers that are not finite, divergence.
+    #[doc(alias = "mj_forward")]
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError>;
 
     /// Advances by one time step. The computed quantities stay those of the start of the step.
     ///
     /// # Errors
     /// As [`Engine::forward`].
+    #[doc(alias = "mj_step")]
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
 
     /// Installs or removes a probe that is told when each stage of a step begins, and when the step is done.
@@ -97,7 +102,7 @@ impl Stage {
         Self::Integration,
     ];
 
-    /// Returns the name for people.
+    /// Returns a display name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Kinematics => "kinematics",
@@ -193,7 +198,7 @@ pub enum EngineError {
     TooMany {
         /// Steps done before.
         step: u64,
-        /// What there is too much of.
+        /// The kind of item that exceeds the limit.
         what: &'static str,
         /// The limit, of [`crate::Limits`].
         limit: usize,

@@ -30,6 +30,7 @@ pub struct SoftOptions {
 /// A step computes kinematics, inertia, contacts, constraint rows, velocities, forces, solves for the acceleration with
 /// Newton's method, and integrates with semi-implicit Euler and implicit joint damping. After warm-up it allocates
 /// nothing.
+#[doc(alias("mj_step", "mjSOL_NEWTON"))]
 pub struct SoftEngine {
     model: Arc<Model>,
     options: SoftOptions,
@@ -52,7 +53,7 @@ impl std::fmt::Debug for SoftEngine {
     }
 }
 
-/// What soft engines of one model share: the tree, and the pairs that may touch.
+/// The part that soft engines of one model share: the tree, and the pairs that may touch.
 #[derive(Clone, Debug)]
 pub struct SoftModel {
     model: Arc<Model>,

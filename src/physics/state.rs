@@ -14,6 +14,7 @@ use crate::physics::topology::Topology;
 pub(crate) const RESERVED_CONTACTS: usize = 192;
 
 /// A detected contact between two geoms.
+#[doc(alias = "mjContact")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// The geoms: the one of lower [`crate::model::GeomType`] first, which the normal points away from.
@@ -179,6 +180,7 @@ impl State {
     /// Copies what a continuation depends on: time, positions, velocities, controls, muscles, applied forces, warm
     /// start and parameters. Everything else is computed anew by the next step. Between states of one model and one
     /// actuation model nothing is allocated.
+    #[doc(alias("mj_copyData", "mj_setState"))]
     pub fn copy_dynamic_from(&mut self, other: &State) {
         self.copy_dynamic(other);
     }
@@ -207,6 +209,7 @@ impl State {
     ///
     /// # Errors
     /// A body that does not exist, numbers that are not finite; nothing is changed then.
+    #[doc(alias("mj_applyFT", "xfrc_applied"))]
     pub fn apply_force(&mut self, body: usize, force: Vec3, torque: Vec3, point: Vec3) -> Result<(), EngineError> {
         let count = self.xfrc_applied.len().min(self.xipos.len());
         if body >= count {

@@ -59,6 +59,7 @@ impl View {
 /// assert_eq!(viewer.draw(&env, camera, 32, 24)?.len(), 3 * 32 * 24);
 /// # Ok::<(), babybench::EnvError>(())
 /// ```
+#[doc(alias("mjvCamera", "mjCAMERA_FREE"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeCamera {
     /// Point at the centre of the image, world, m.

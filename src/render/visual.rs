@@ -82,6 +82,7 @@ pub struct Camera {
 }
 
 /// The look of a model: immutable, and shared by the environments of one blueprint in an [`std::sync::Arc`].
+#[doc(alias = "mjvScene")]
 #[derive(Clone, Debug)]
 pub struct Visual {
     /// Visible geoms and sites, in the order of the model.

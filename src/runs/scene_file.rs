@@ -131,6 +131,7 @@ fn complete_document(document: &str, config: &Config, assets: &dyn AssetSource) 
 ///
 /// # Errors
 /// Errors of the file system.
+#[doc(alias("mj_saveLastXML", "mj_saveXML"))]
 pub fn write_scene(config: &Config, save_dir: &Path) -> Result<PathBuf, SceneFileError> {
     write_scene_from(config, &embedded(), save_dir)
 }

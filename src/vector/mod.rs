@@ -63,6 +63,7 @@ use slot::Slot;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("AsyncVectorEnv", "EnvPool"))]
 pub struct VectorEnv {
     /// The environments; those in flight are with the pool.
     slots: Vec<Option<Box<Slot>>>,
@@ -106,7 +107,7 @@ impl VectorEnv {
     /// Makes `n` environments of one blueprint.
     ///
     /// # Errors
-    /// None or more than memory holds; what [`Blueprint::env`] says; the system gives no threads.
+    /// None or more than memory holds; errors of [`Blueprint::env`]; the system gives no threads.
     pub fn new(blueprint: &Blueprint, n: usize, options: VectorOptions) -> Result<Self, VectorError> {
         Self::build(n, |_| blueprint, options)
     }
@@ -187,7 +188,7 @@ impl VectorEnv {
         self.slots.len()
     }
 
-    /// Returns whether there are no environments, which is never.
+    /// Always false: a vector holds at least one environment.
     pub fn is_empty(&self) -> bool {
         self.slots.is_empty()
     }

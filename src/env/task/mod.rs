@@ -1,4 +1,4 @@
-//! Tasks: what an environment is for.
+//! Tasks of environments.
 //!
 //! A [`Task`] is a value: which scene, where episodes start, what is counted or rewarded, when an episode succeeds or fails. BabyBench's
 //! behaviors are tasks, and so are MIMo's tasks with goals; [`Blueprint::with_task`](crate::Blueprint::with_task) takes any other.
@@ -42,14 +42,19 @@ pub struct TaskSizes {
     pub observation: usize,
 }
 
-/// What an environment is for: its scene, the start of its episodes, goals, reward, success and failure.
+/// The task of an environment: its scene, the start of its episodes, goals, reward, success and failure.
 ///
 /// An environment holds one, made by cloning that of its blueprint, and calls it in this order: [`Task::bind`] and [`Task::settle`] once,
 /// while the blueprint is made; [`Task::reset`] and [`Task::begin`] at the start of an episode; in each step [`Task::before_step`],
 /// the physics, [`Task::after_step`], the senses, [`Task::achieve`], and then [`Task::success`], [`Task::failure`] and
 /// [`Task::reward`], which are functions of goals and terms alone.
 ///
-/// `examples/own_task.rs` is a task of a program's own.
+/// A user-defined task, `examples/own_task.rs`:
+///
+#[cfg_attr(
+    feature = "eval",
+    doc = concat!("```\n", include_str!("../../../examples/own_task.rs"), "```")
+)]
 pub trait Task: CloneTask + Debug + Send + Sync {
     /// Returns the name, for errors and reports.
     fn name(&self) -> &str;
@@ -65,7 +70,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
     }
 
     /// Returns the bodies with touch sensors and the distances between those, m, at `touch_scale: 1`; nothing for MIMo's own table
-    /// with the keys `touch_...`. Observed they are by body id, whatever the order here.
+    /// with the keys `touch_...`. Observations are ordered by body id regardless of this order.
     fn touch_spacing(&self) -> &[(&'static str, f64)] {
         &[]
     }
@@ -159,7 +164,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         let _ = (state, info);
     }
 
-    /// Sets what is counted as it is at the start of an episode, with room for all that may come.
+    /// Resets the counters for a new episode and reserves their capacity.
     fn clear(&self, info: &mut Info) {
         let _ = info;
     }

@@ -1,12 +1,13 @@
-//! What a program sees of the constraint rows.
+//! Constraint rows as programs read them.
 
 use crate::physics::constraint::{ConstraintType, Efc};
 use crate::physics::topology::Topology;
 
 /// A constraint row of the last step; the fields are MuJoCo's `efc_*`.
+#[doc(alias("efc_pos", "efc_force"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EfcRow {
-    /// What it constrains (`efc_type`).
+    /// Type of the constraint (`efc_type`).
     pub kind: ConstraintType,
     /// Id of the equality, degree of freedom, joint, tendon or contact that it comes from.
     pub id: usize,

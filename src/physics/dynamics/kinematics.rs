@@ -9,6 +9,7 @@ use crate::physics::spatial::spatial;
 use crate::physics::state::State;
 
 /// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`.
+#[doc(alias = "mj_kinematics")]
 #[inline(always)]
 pub fn kinematics(model: &Arrays, s: &mut State) {
     for b in 1..model.nbody() {
@@ -82,6 +83,7 @@ fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFram
 
 /// Computes `cam_xpos, cam_xmat` from body poses. A targeting camera has its -z towards the target and its x axis
 /// horizontal.
+#[doc(alias = "mj_camlight")]
 #[inline(always)]
 pub fn cameras(model: &Model, s: &mut State) {
     for c in 0..model.ncam() {

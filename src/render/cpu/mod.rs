@@ -44,6 +44,7 @@ use crate::render::visual::Visual;
 /// drawn.
 ///
 /// Everything is single-precision and integer arithmetic in a fixed order: the same poses give the same bytes everywhere.
+#[doc(alias("mjr_render", "mjrContext"))]
 #[derive(Debug, Default)]
 pub struct CpuRenderer {
     frame: Frame,

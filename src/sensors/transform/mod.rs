@@ -138,6 +138,29 @@ impl Signal<'_> {
 }
 
 /// A transform of one sense of one environment. It must not allocate after its first steps.
+///
+/// ```
+/// use babybench::sensors::transform::{Signal, Transform};
+/// use babybench::spaces::NumpyRng;
+///
+/// /// Balance with accelerations in multiples of gravity.
+/// struct InGravities;
+///
+/// impl Transform for InGravities {
+///     fn describe(&self) -> String {
+///         "acceleration in g".to_string()
+///     }
+///     fn apply(&mut self, signal: Signal<'_>, _: &mut NumpyRng) {
+///         if let Signal::Numbers(values) = signal {
+///             values[..3].iter_mut().for_each(|v| *v /= 9.81);
+///         }
+///     }
+/// }
+///
+/// let mut values = [0.0, 0.0, 9.81, 0.5, 0.0, 0.0];
+/// InGravities.apply(Signal::Numbers(&mut values), &mut NumpyRng::seed(0));
+/// assert_eq!(values, [0.0, 0.0, 1.0, 0.5, 0.0, 0.0]);
+/// ```
 pub trait Transform: Send + Sync {
     /// Describes it in a few words, with units, for `inspect`.
     fn describe(&self) -> String;
