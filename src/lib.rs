@@ -25,7 +25,7 @@
 //!
 //! The [guide] says what MIMo is made of: body, scenes, tasks, senses, actuation, growth, and [every key of the
 //! configuration][keys], with units and sources. Configurations of the BabyBench starter kit load unchanged; scripts in its
-//! manner start with [`make_env`](runs::make_env), which logs as the kit logs, and end with an
+//! manner start with [`make_env`], which logs as the kit logs, and end with an
 //! [`Evaluation`](eval::Evaluation).
 //!
 //! # Many at once
