@@ -1,7 +1,7 @@
 //! Conservative back-face culling, before projection: vertices that only back faces use need not be projected.
 //!
-//! A face culled here must be one that the rasteriser would reject, which decides by the rounded corners of triangles in the image,
-//! so a face counts as a back face only if rounding cannot turn it.
+//! A face culled here must be one that the rasteriser would reject, which decides by the rounded corners of triangles in
+//! the image; so a face counts as a back face only if rounding cannot turn it.
 
 use wide::f32x4;
 
