@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _native
+from .course import Course, Turn
 from .live import Live, ViewLive
 from .models import Watched, make_model, mujoco_module
 from .mujoco_live import MujocoLive
@@ -45,9 +46,8 @@ class Core:
         assets: The folder of MJCF files and textures; nothing for the embedded ones.
         engine: The environment in Rust; ``parts`` are the parts of its reset and step.
         names: Names of all elements, by kind.
-        settled: Whether no script can have written to the state since it was last read back.
+        course: What is known of the present instant, and who may write to it.
         observed: Number of observations so far.
-        felt: How often touch has been felt at this instant.
         frames: What returns the frames of all contacts, (n, 9), as touch has left them, with or without reading back what a
             script has written; ``None`` without touch.
         width, height: Size of pictures for people, pixels.
@@ -60,8 +60,9 @@ class Core:
         self.engine = _native.Env(self.blueprint)
         self.parts = _native.Parts(self.engine)
         self.names: dict[str, list[str]] = {kind: list(names) for kind, names in self.blueprint.model_names.items()}
-        self.place = None if scene.place is None else scene.place["pos"]
-        self.observed = self.felt = 0
+        self.place: list[float] | None = None if scene.place is None else scene.place["pos"]
+        self.course = Course()
+        self.observed = 0
         self.frames: Callable[[bool], Array] | None = None
         self.plain_actuation = True
         self.timestep = float(self.blueprint.model_options["timestep"])
@@ -71,10 +72,9 @@ class Core:
             body_parentid=array("body_parentid"), body_geomadr=array("body_geomadr"), body_geomnum=array("body_geomnum")
         )
         joints = self.names["joint"]
-        self.mimo_joints = np.asarray([i for i, name in enumerate(joints) if name.startswith("robot:")])
-        self.computed = False
-        self.settled = False
-        self._fresh = False
+        self.mimo_joints: NDArray[np.int_] = np.asarray(
+            [i for i, name in enumerate(joints) if name.startswith("robot:")]
+        )
         self._contacts: dict[str, NDArray[Any]] | None = None
         self._poses: Poses | None = None
         self._watched: Watched | None = None
@@ -101,22 +101,24 @@ class Core:
 
     # --- moving on ---
 
-    def forget(self) -> None:
+    def _change(self, change: str) -> None:
         """Forgets what was read of the state, which is another one now."""
-        self._fresh = False
+        self.course.change(change)
         self._contacts = self._poses = None
-        self.felt = 0
 
-    def changed(self, computed: bool = True) -> None:
-        """Takes note that the state is another one."""
-        self.computed = computed
-        self.forget()
-        if self._live is not None and computed:
-            self._live.changed()
+    def changed(self) -> None:
+        """Takes note that the state is another one, and computed."""
+        self._change("compute")
+        if self._live is not None:
+            self._live.advance()
+
+    def written(self) -> None:
+        """Takes note that a script has written to the state."""
+        self._change("write")
 
     def pull(self) -> None:
         """Reads back what a script has written to the state."""
-        if self._live is not None and not self.settled:
+        if self._live is not None and self.course.turn is Turn.SCRIPT:
             self._live.pull()
 
     def reset_data(self) -> None:
@@ -124,9 +126,8 @@ class Core:
         if self._watched is not None:
             self._watched.check()
         self.parts.reset_data()
-        if self._live is not None:
-            self._live.stale = True
-        self.changed(computed=False)
+        self.course.change("advance")
+        self._change("clear")
 
     def forward(self, qpos: Any, qvel: Any) -> None:
         """Computes everything at positions and velocities."""
@@ -145,7 +146,7 @@ class Core:
 
     def _show_controls(self) -> None:
         """Shows new controls to whoever holds the state, lest the old ones be read back."""
-        if self._live is not None and not self._live.stale:
+        if self._live is not None and self.course.copy.present:
             self._live.data.ctrl[:] = self.engine.state_array("ctrl")
 
     def physics_step(self) -> None:
@@ -159,10 +160,10 @@ class Core:
     def observe(self) -> None:
         """Senses the present state, if that has not been done."""
         self.pull()
-        if not self._fresh:
+        if not self.course.moment.sensed:
             self.parts.observe()
             self.observed += 1
-            self._fresh = True
+            self.course.change("sense")
 
     def observation(self) -> dict[str, NDArray[Any]]:
         """Returns what was sensed last, in fresh arrays."""
@@ -187,7 +188,7 @@ class Core:
 
     def show_normals(self, frames: Array) -> None:
         """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""
-        if self.frames is None or not self.felt:
+        if self.frames is None or not self.course.moment.felt:
             return
         known = self.frames(False)
         if len(known) == len(frames):
@@ -214,7 +215,7 @@ class Core:
         """Returns the state that scripts see, up to date."""
         if self._live is None:
             self._live = self._make_live()
-        elif self._live.stale:
+        elif not self.course.copy.present:
             self._live.refresh()
         return self._live.data
 

@@ -265,7 +265,7 @@ class BabyBenchSelfTouchEnv(BabyBenchEnv):
     def _info(self) -> dict[str, Any]:
         """Returns the geoms that the palms have touched; the lists are the same all through an episode."""
         right, left = self._self_touch_right_hand, self._self_touch_left_hand
-        if self._core.computed:
+        if self._core.course.moment.computed:
             parts = self._core.parts
             parts.track()
             new = parts.touches(*self._counted)
@@ -296,7 +296,7 @@ class BabyBenchHandRegardEnv(BabyBenchEnv):
     def _info(self) -> dict[str, Any]:
         """Returns for how many steps each eye has had each hand before it."""
         parts = self._core.parts
-        if self._core.computed:
+        if self._core.course.moment.computed:
             parts.track()
         return dict(zip(self._PAIRS, parts.regards or (0, 0, 0, 0)))
 

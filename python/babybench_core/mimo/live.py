@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .beneath import Beneath
 from .views import DataView
-
-if TYPE_CHECKING:
-    from .core import Core
 
 STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied")
 """What can be written to: the bits of ``Parts.differences``."""
@@ -20,11 +18,10 @@ class Live:
     """A state that a script may hold."""
 
     data: Any
-    stale = True
 
-    def __init__(self, core: Core) -> None:
+    def __init__(self, core: Beneath) -> None:
         """Belongs to an environment."""
-        self.core = core
+        self.core, self.course = core, core.course
         self.idle = 0
 
     def held(self) -> bool:
@@ -35,15 +32,15 @@ class Live:
         """Brings the state up to date."""
         raise NotImplementedError
 
-    def changed(self) -> None:
+    def advance(self) -> None:
         """Takes note that the engine's state is another one."""
-        self.stale = True
+        self.course.change("advance")
         if self.held():
             self.refresh()
 
     def pull(self) -> None:
         """Reads back what a script has written."""
-        if self.stale:
+        if not self.course.copy.present:
             return
         data, parts, engine = self.data, self.core.parts, self.core.engine
         bits = parts.differences(self.watched)
@@ -60,7 +57,7 @@ class Live:
         for bit, name in ((4, "ctrl"), (8, "act"), (16, "qfrc_applied")):
             if bits & bit:
                 engine.write_state(name, getattr(data, name))
-        self.core.forget()
+        self.core.written()
 
     @property
     def state(self) -> list[Any]:
@@ -76,7 +73,7 @@ class Live:
 class ViewLive(Live):
     """What stands for MuJoCo's state."""
 
-    def __init__(self, core: Core) -> None:
+    def __init__(self, core: Beneath) -> None:
         """Makes a state of the environment's model."""
         super().__init__(core)
         engine, parts = core.engine, core.parts
@@ -105,10 +102,10 @@ class ViewLive(Live):
         self.core.parts.fill(self.arrays)
         own["time"] = self.core.engine.time
         own["_contacts"] = None
-        self.stale = False
+        self.course.change("show")
 
     def forward(self) -> None:
         """Computes everything at the positions and velocities that a script has written: ``mujoco.mj_forward``."""
         self.core.parts.forward(self.data.qpos, self.data.qvel)
-        self.core.forget()
+        self.core.written()
         self.refresh()

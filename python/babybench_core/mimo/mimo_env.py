@@ -18,6 +18,7 @@ from .. import _native
 from . import tables
 from .actuation import MODELS, ActuationModel, SpringDamperModel
 from .core import Core
+from .course import Share
 from .renderer import MujocoRenderer
 from .scene import Scene, read_scene
 from .sensing import Observation, SensingEnv
@@ -144,9 +145,15 @@ class MIMoEnv(SensingEnv):
         self._core.forward(self.init_qpos, self.init_qvel)
         self._env_setup()
         self.goal = self.sample_goal()
-        self._plain = self._observes_plainly()
-        self._quiet = self._plain and all(getattr(type(self), m) is getattr(MIMoEnv, m) for m in _WITHIN_STEP)
+        self._share = self._share_of_the_script()
         self._set_observation_space()
+
+    def _share_of_the_script(self) -> Share:
+        """Returns what of this environment a subclass has replaced."""
+        if not self._observes_plainly():
+            return Share.SENSES
+        kept = all(getattr(type(self), method) is getattr(MIMoEnv, method) for method in _WITHIN_STEP)
+        return Share.NOTHING if kept else Share.STEP
 
     def _compile(self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any]) -> Core:
         """Compiles a scene for the senses and the actuation that the arguments ask for."""
@@ -298,14 +305,19 @@ class MIMoEnv(SensingEnv):
         """Applies an action, and returns what is sensed then."""
         core = self._core
         core.pull()
-        # unless a subclass takes part, nobody writes to the state before the observation
-        core.settled = self._quiet
+        if self._share is not Share.NOTHING:
+            return self._acted(action)
+        # as no subclass takes part, nobody writes to the state before the observation
+        core.course.change("begin")
         try:
-            self.do_simulation(action, self.frame_skip)
-            self._step_callback()
-            return self._get_obs()
+            return self._acted(action)
         finally:
-            core.settled = False
+            core.course.change("end")
+
+    def _acted(self, action: ArrayLike) -> Observation:
+        self.do_simulation(action, self.frame_skip)
+        self._step_callback()
+        return self._get_obs()
 
     def step(self, action: ArrayLike) -> tuple[Observation, Any, bool, bool, dict[str, Any]]:
         """Applies an action, (n,), for ``frame_skip`` physics steps.

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import os
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
 from .. import _native
 from ..standin import MUJOCO
+from .beneath import Beneath
 from .utils import JOINT_EQUALITY
 from .views import ModelView
-
-if TYPE_CHECKING:
-    from .core import Core
 
 _CHECKED = ("body", "jnt", "dof", "geom", "site", "cam", "tendon", "actuator", "pair", "eq", "qpos")
 _ALLOWED = frozenset({"eq_active0", "eq_data", "geom_rgba", "site_rgba"})
@@ -53,7 +51,7 @@ def _with_small_textures(config: dict[str, Any], xml: str, images: dict[str, byt
     return ElementTree.tostring(root, encoding="unicode"), {**kept, **own_images}
 
 
-def mujoco_model(mujoco: ModuleType, core: Core) -> Any:
+def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
     """Compiles the scene of an environment with MuJoCo; pictures on surfaces are the library's small ones."""
     xml, images = _native.scene_file(core.config, core.assets)
     if core.assets is not None:
@@ -72,7 +70,7 @@ def mujoco_model(mujoco: ModuleType, core: Core) -> Any:
     return model
 
 
-def view_model(core: Core) -> ModelView:
+def view_model(core: Beneath) -> ModelView:
     """Returns what stands for MuJoCo's model."""
     model = ModelView(core.blueprint)
     if core.place is not None:
@@ -87,7 +85,7 @@ def view_model(core: Core) -> ModelView:
 class Watched:
     """A model that a script has, of which only locks may be changed."""
 
-    def __init__(self, core: Core, model: Any) -> None:
+    def __init__(self, core: Beneath, model: Any) -> None:
         """Remembers what the model is."""
         self.core = core
         self.model = model
@@ -139,7 +137,7 @@ class Watched:
             self.core.engine.unlock(joint)
 
 
-def make_model(core: Core) -> Any:
+def make_model(core: Beneath) -> Any:
     """Makes the model that scripts see: MuJoCo's own where it is installed."""
     mujoco = mujoco_module()
     model = mujoco_model(mujoco, core) if mujoco is not None else view_model(core)

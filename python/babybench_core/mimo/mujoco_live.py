@@ -12,14 +12,13 @@ import weakref
 from collections.abc import Callable
 from functools import lru_cache
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .beneath import Beneath
+from .course import Copy
 from .live import STATE, Live
-
-if TYPE_CHECKING:
-    from .core import Core
 
 _POSITION = ("mj_comPos", "mj_camlight", "mj_tendon", "mj_crb", "mj_factorM", "mj_transmission", "mj_comVel")
 """What follows from poses and is cheap."""
@@ -75,14 +74,12 @@ def data_class(mujoco: ModuleType) -> Any:
 class MujocoLive(Live):
     """MuJoCo's own state."""
 
-    def __init__(self, core: Core, mujoco: ModuleType) -> None:
+    def __init__(self, core: Beneath, mujoco: ModuleType) -> None:
         """Makes a state of the environment's model."""
         super().__init__(core)
         self.model = core.model
         self.data = data_class(mujoco)(core.model)
         self.data._live = weakref.ref(self)
-        self.whole = False
-        self.partial = False
         self.position = [getattr(mujoco, name) for name in _POSITION]
         self.constraint = [getattr(mujoco, name) for name in _CONSTRAINT]
         self.arrays = [getattr(self.data, name) for name in core.parts.FILLED]
@@ -114,11 +111,11 @@ class MujocoLive(Live):
             model.actuator_gear[:, 0] = parts.gear
         data.time = self.core.engine.time
         self._compute(self.position)
-        if self.whole:
+        if self.course.copy.contacts:
             self._compute(self.constraint)
             self._fill_forces()
         parts.fill_position(self._state[:2])
-        self.stale, self.partial = False, not self.whole
+        self.course.change("show")
 
     def _compute(self, functions: list[Any]) -> None:
         """Calls functions of MuJoCo with the positions and velocities that all computed numbers are of, which stay there."""
@@ -129,9 +126,9 @@ class MujocoLive(Live):
 
     def complete(self) -> None:
         """Computes contacts and constraints, now and from now on with every step."""
-        if not self.partial or self.stale:
+        if self.course.copy is not Copy.POSES:
             return
-        self.partial, self.whole = False, True
+        self.course.change("complete")
         data, core = self.data, self.core
         if not np.array_equal(data.xpos, core.engine.state_array("xpos")):
             return  # a script has computed another state
@@ -143,7 +140,9 @@ class MujocoLive(Live):
 
     def show_normals(self, contacts: Any) -> None:
         """Inverts normals as MIMo's own touch does, in contacts of the engine's state."""
-        if self.core.felt and not self.stale and np.array_equal(self.data.xpos, self.core.engine.state_array("xpos")):
+        if not (self.course.moment.felt and self.course.copy.present):
+            return
+        if np.array_equal(self.data.xpos, self.core.engine.state_array("xpos")):
             self.core.show_normals(contacts.frame)
 
     def _fill_forces(self) -> None:

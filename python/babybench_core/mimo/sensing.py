@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .actuation import ActuationModel
 from .core import Core
+from .course import Share
 from .senses import Proprioception, SimpleProprioception, SimpleVestibular, SimpleVision, Vestibular, Vision
 from .touch import Touch, TrimeshTouch
 
@@ -39,6 +40,7 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
     goal: Any
     actuation_model: ActuationModel
     _core: Core
+    _share = Share.SENSES
 
     # --- construction ---
 
@@ -85,7 +87,6 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         return (
             all(getattr(type(self), hook) is getattr(SensingEnv, hook) for hook in _HOOKS)
             and all(type(sense) in known for sense in senses)
-            and not getattr(self.touch, "_own", False)
             and components == set(SimpleProprioception.VALID_COMPONENTS)
             and self._core.plain_actuation
             and not self.goals_in_observation
@@ -118,8 +119,9 @@ class SensingEnv(gym.Env):  # type: ignore[type-arg,unused-ignore]
         core = self._core
         core.observe()
         # what is felt again at one instant is something else
-        if getattr(self, "_plain", False) and not core.felt:
-            core.felt = int(self.touch is not None)
+        if self._share is not Share.SENSES and not core.course.moment.felt:
+            if self.touch is not None:
+                core.course.change("feel")
             return core.observation()
         observation: Observation = {"observation": self.get_proprio_obs()}
         if self.touch:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _native
 from . import utils
+from .course import Share
 from .utils import EPS
 
 if TYPE_CHECKING:
@@ -143,12 +144,12 @@ class TrimeshTouch(Touch):
         self._shown = self._felt = -1
         self._outputs: dict[int, NDArray[np.float32]] = {}
         self._contacts: list[tuple[int, int, Array]] = []
-        self._framed: dict[str, NDArray[Any]] | None = None
-        self._inverted = False
+        self._inverted: dict[str, NDArray[Any]] | None = None
         env._core.frames = self._frames
         self._sensed = np.isin(env._core.body_of_geom, list(self.sensor_positions))
         # a subclass that changes a step computes all of them in Python
-        self._own = any(getattr(type(self), step) is not getattr(TrimeshTouch, step) for step in self._steps)
+        kept = all(getattr(type(self), step) is getattr(TrimeshTouch, step) for step in self._steps)
+        self.share = Share.NOTHING if kept else Share.SENSES
 
     # --- sensors ---
 
@@ -226,12 +227,13 @@ class TrimeshTouch(Touch):
     def _frames(self, pull: bool = True) -> Array:
         """Returns the frames of all contacts, (n, 9), as MIMo's own has left them."""
         contacts = self._core.contacts(pull)
-        if self._framed is not contacts:
-            self._framed, self._inverted = contacts, False
-        if self._core.felt and not self._own and not self._inverted:
-            self._inverted = True  # as the engine, which felt first, does not
+        if self._felt_by_engine() and self._inverted is not contacts:
+            self._inverted = contacts  # as the engine, which felt first, does not
             self._invert(contacts)
         return contacts["frame"]
+
+    def _felt_by_engine(self) -> bool:
+        return self._core.course.moment.felt and self.share is Share.NOTHING
 
     def _invert(self, contacts: dict[str, NDArray[Any]]) -> None:
         """Inverts the normals that are inverted when everything is felt once."""
@@ -272,7 +274,7 @@ class TrimeshTouch(Touch):
         """Returns what :meth:`get_contacts` found when touch was last felt."""
         if self._felt == self._core.observed:
             return self._contacts
-        felt = self._core.felt and not self._own
+        felt = self._felt_by_engine()
         self._frames()
         contacts = self._core.contacts()
         if felt:  # as they were before
@@ -306,8 +308,9 @@ class TrimeshTouch(Touch):
         """Feels, and returns the output of all bodies, by ascending id: (sensors, touch_size), N."""
         core = self._core
         core.observe()
-        first, core.felt = not core.felt, core.felt + 1
-        if first and not self._own:
+        first = not core.course.moment.felt
+        core.course.change("feel")
+        if first and self.share is Share.NOTHING:
             return core.touch().reshape(self._shape)
         sides = self.get_contacts()
         self.sensor_outputs = self.get_empty_sensor_dict(self.touch_size)

@@ -1,0 +1,153 @@
+"""Where an environment stands between two changes of its state: all that is not a number of the simulation.
+
+A :class:`Course` has three parts, each of which changes in the ways of its table and in no other; ``-`` is refused.
+
+What is known of the present instant, :class:`Moment`:
+
+| at               | clear     | compute    | write      | sense            | feel           |
+|------------------|-----------|------------|------------|------------------|----------------|
+| `CLEARED`        | `CLEARED` | `COMPUTED` | `CLEARED`  | `CLEARED_SENSED` | -              |
+| `CLEARED_SENSED` | `CLEARED` | `COMPUTED` | `CLEARED`  | -                | `CLEARED_FELT` |
+| `CLEARED_FELT`   | `CLEARED` | `COMPUTED` | `CLEARED`  | -                | `CLEARED_FELT` |
+| `COMPUTED`       | `CLEARED` | `COMPUTED` | `COMPUTED` | `SENSED`         | -              |
+| `SENSED`         | `CLEARED` | `COMPUTED` | `COMPUTED` | -                | `FELT`         |
+| `FELT`           | `CLEARED` | `COMPUTED` | `COMPUTED` | -                | `FELT`         |
+
+What the copy of the state that scripts hold shows of it, :class:`Copy`:
+
+| at           | advance      | show    | complete |
+|--------------|--------------|---------|----------|
+| `LATE`       | `LATE`       | `POSES` | -        |
+| `POSES`      | `LATE`       | `POSES` | `WHOLE`  |
+| `LATE_WHOLE` | `LATE_WHOLE` | `WHOLE` | -        |
+| `WHOLE`      | `LATE_WHOLE` | `WHOLE` | -        |
+
+Who may write to that copy, :class:`Turn`:
+
+| at       | begin    | end      |
+|----------|----------|----------|
+| `SCRIPT` | `ENGINE` | -        |
+| `ENGINE` | -        | `SCRIPT` |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import TypeVar
+
+
+class Moment(Enum):
+    """What is known of the present instant: whether its forces and contacts are computed, sensed, and felt by the skin."""
+
+    CLEARED = (False, False, False)
+    """The past is forgotten, and nothing computed: after ``mujoco.mj_resetData``."""
+    CLEARED_SENSED = (False, True, False)
+    CLEARED_FELT = (False, True, True)
+    COMPUTED = (True, False, False)
+    """After a physics step, or at positions that were set."""
+    SENSED = (True, True, False)
+    FELT = (True, True, True)
+    """Touch was observed. The kit's own inverts normals then, so what is felt again is something else."""
+
+    def __init__(self, computed: bool, sensed: bool, felt: bool) -> None:
+        """Names the three parts."""
+        self.computed, self.sensed, self.felt = computed, sensed, felt
+
+
+class Copy(Enum):
+    """What the copy of the state that scripts hold shows."""
+
+    LATE = "late"
+    """An earlier instant; also while there is no copy, as nobody has asked for one."""
+    POSES = "poses"
+    """The present, but for contacts and constraints."""
+    LATE_WHOLE = "late, then whole"
+    """An earlier instant; as contacts were asked for once, they will be there with the next."""
+    WHOLE = "whole"
+    """The present, contacts and constraints included."""
+
+    @property
+    def present(self) -> bool:
+        """Whether it shows the present."""
+        return self is Copy.POSES or self is Copy.WHOLE
+
+    @property
+    def contacts(self) -> bool:
+        """Whether contacts and constraints were asked for, and are there whenever it shows the present."""
+        return self is Copy.LATE_WHOLE or self is Copy.WHOLE
+
+
+class Turn(Enum):
+    """Who goes on at present."""
+
+    SCRIPT = "script"
+    """Code that may hold the copy and write to it."""
+    ENGINE = "engine"
+    """The engine alone, from an action to its observation, with no method that a subclass has replaced."""
+
+
+class Share(Enum):
+    """What of an environment or of a sense is a script's own: fixed when it is made."""
+
+    NOTHING = "nothing"
+    """The engine does it all."""
+    STEP = "step"
+    """Methods between an action and its observation."""
+    SENSES = "senses"
+    """What is observed, too."""
+
+
+class IllegalChange(RuntimeError):
+    """A change that the tables do not have: a fault of this package, not of a script."""
+
+
+_MOMENTS: dict[str, dict[Moment, Moment]] = {
+    "clear": dict.fromkeys(Moment, Moment.CLEARED),
+    "compute": dict.fromkeys(Moment, Moment.COMPUTED),
+    "write": {moment: Moment.COMPUTED if moment.computed else Moment.CLEARED for moment in Moment},
+    "sense": {Moment.CLEARED: Moment.CLEARED_SENSED, Moment.COMPUTED: Moment.SENSED},
+    "feel": {m: Moment.FELT if m.computed else Moment.CLEARED_FELT for m in Moment if m.sensed},
+}
+_COPIES: dict[str, dict[Copy, Copy]] = {
+    "advance": {copy: Copy.LATE_WHOLE if copy.contacts else Copy.LATE for copy in Copy},
+    "show": {copy: Copy.WHOLE if copy.contacts else Copy.POSES for copy in Copy},
+    "complete": {Copy.POSES: Copy.WHOLE},
+}
+_TURNS: dict[str, dict[Turn, Turn]] = {"begin": {Turn.SCRIPT: Turn.ENGINE}, "end": {Turn.ENGINE: Turn.SCRIPT}}
+
+_Part = TypeVar("_Part", bound=Enum)
+
+
+def _after(changes: Mapping[str, Mapping[_Part, _Part]], change: str, present: _Part) -> _Part:
+    following = changes[change].get(present)
+    if following is None:
+        raise IllegalChange(f"{change} does not follow {type(present).__name__}.{present.name}: see {__name__}")
+    return following
+
+
+class Course:
+    """Where an environment stands.
+
+    Attributes:
+        moment: What is known of the present instant.
+        copy: What the copy that scripts hold shows of it.
+        turn: Who may write to that copy.
+    """
+
+    def __init__(self) -> None:
+        """Begins before anything is computed."""
+        self.moment, self.copy, self.turn = Moment.CLEARED, Copy.LATE, Turn.SCRIPT
+
+    def change(self, change: str) -> None:
+        """Makes a change of one of the tables.
+
+        Raises:
+            IllegalChange: The table does not have it here.
+        """
+        if change in _MOMENTS:
+            self.moment = _after(_MOMENTS, change, self.moment)
+        elif change in _COPIES:
+            self.copy = _after(_COPIES, change, self.copy)
+        else:
+            self.turn = _after(_TURNS, change, self.turn)
