@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from babybench_core._native import __version__, config_examples, config_keys
 from babybench_core._paths import extended as _extended
+from babybench_core.swap import claim as _claim
 
 if TYPE_CHECKING:
     from babybench_core.env import Env, make
@@ -59,3 +60,4 @@ def _tell_gymnasium() -> None:
 
 
 _tell_gymnasium()
+_claim()

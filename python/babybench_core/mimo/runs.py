@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import importlib
 import os
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 
-from ..standin import CHOICE
+from .. import swap
 from .assets import assets_folder
 from .build_xml import build
 from .scene import kit_assets
@@ -34,15 +33,11 @@ def make_save_dirs(save_dir: str | os.PathLike[str]) -> None:
 def _mimo() -> str | None:
     """Imports ``mimoEnv``, which registers the ids; returns where it is if it is MIMo's own."""
     module = importlib.import_module("mimoEnv")
+    if swap.is_own(module):
+        return None
     folder = Path(module.__file__ or "").parent
-    if (folder / "assets" / "babybench").is_dir():
-        warnings.warn(
-            f"MIMo is installed ({folder}) and runs these environments, with MuJoCo. To run them with this library's engine, "
-            f"uninstall MIMo (pip uninstall MIMo-BabyBench), or set {CHOICE}=babybench if it was installed with pip install -e",
-            stacklevel=4,
-        )
-        return str(folder / "assets")
-    return None
+    swap.tell("mimoEnv", str(folder))
+    return str(folder / "assets")
 
 
 def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> Any:

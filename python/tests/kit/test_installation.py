@@ -83,15 +83,36 @@ def test_environments_of_an_installed_mimo_are_made_with_a_warning(
     kit_python: str, whole: Path, checkout: Path
 ) -> None:
     make = (
-        f"import sys; sys.path.remove(''); sys.path.append({str(whole / 'MIMo')!r}); import yaml, babybench.utils as u\n"
+        f"import sys; sys.path.remove(''); sys.path.append({str(whole / 'MIMo')!r}); import mimoEnv, yaml, babybench.utils as u\n"
         "c = yaml.safe_load(open('examples/config_selftouch.yml')); c['touch_active'] = False\n"
         "print(type(u.make_env(c).unwrapped).__module__)\n"
     )
     done = run(kit_python, "-c", make, cwd=checkout)
     assert done.stdout.split()[-1] == "mimoEnv.babybench.selftouch"
     assert "BABYBENCH_MIMO=babybench" in done.stderr
-    done = run(kit_python, "-c", make, cwd=checkout, BABYBENCH_MIMO="babybench")
-    assert done.stdout.split()[-1] == "babybench_core.mimo.env"
+    done = run(kit_python, "-c", make, cwd=checkout, BABYBENCH_MIMO="original")
+    assert done.stdout.split()[-1] == "mimoEnv.babybench.selftouch"
+    assert "BABYBENCH_MIMO" not in done.stderr
+    for how in ({"BABYBENCH_MIMO": "babybench"}, {}):
+        first = make if how else make.replace("import mimoEnv, ", "import ")
+        done = run(kit_python, "-c", first, cwd=checkout, **how)
+        assert done.stdout.split()[-1] == "babybench_core.mimo.env"
+        assert "BABYBENCH_MIMO" not in done.stderr
+
+
+def test_a_checkout_with_mimo_and_babybench_of_its_own_reaches_the_package(kit_python: str, whole: Path) -> None:
+    script = whole / "whoever.py"
+    script.write_text(
+        "import sys; sys.path.insert(0, 'MIMo')\nimport babybench.utils as u, mimoEnv\nprint(u.__file__, mimoEnv.__file__)"
+    )
+    for arguments, env in ((("-m", "babybench_core", "run"), {}), ((), {"BABYBENCH_MIMO": "babybench"})):
+        done = run(kit_python, *arguments, script, cwd=whole, **env)
+        utils, mimo = done.stdout.split()
+        assert utils == str(whole / "babybench" / "utils.py")
+        assert "babybench_core" in mimo
+    done = run(kit_python, script, cwd=whole)
+    assert done.stdout.split()[1] == str(whole / "MIMo" / "mimoEnv" / "__init__.py")
+    assert "python -m babybench_core run SCRIPT" in done.stderr
 
 
 def test_the_stand_in_for_mujoco_tells_what_it_does_not_have() -> None:

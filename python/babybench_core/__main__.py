@@ -1,0 +1,5 @@
+"""Runs the command line."""
+
+from babybench_core.command import main
+
+main()
