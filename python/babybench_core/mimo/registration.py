@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, NoReturn
+from typing import Any
 
 import gymnasium as gym
+
+from . import experiments
 
 IDS = {
     "BabyBench": "BabyBenchEnv",
@@ -12,11 +14,6 @@ IDS = {
     "BabyBench-HandRegard": "BabyBenchHandRegardEnv",
 }
 """Ids of the environments, with their classes."""
-
-_MIMO_ONLY = (
-    "{name} is one of MIMo's own experiments, which this library does not have: install MIMo (pip install -e MIMo), "
-    "which then serves mimoEnv. BabyBench's environments are BabyBench, BabyBench-SelfTouch and BabyBench-HandRegard"
-)
 
 
 def _forwarded(self: gym.Wrapper[Any, Any, Any, Any], name: str) -> Any:
@@ -43,10 +40,8 @@ def register_kit() -> None:
         # a seed alone does not decide how an episode starts: see MIMoEnv.reset
         entry_point = f"babybench_core.mimo.env:{cls}"
         gym.register(id=name, entry_point=entry_point, max_episode_steps=1000, nondeterministic=True)
-
-
-def missing_env(name: str) -> NoReturn:
-    """Tells where an experiment of MIMo's is to be had."""
-    if name.startswith("MIMo"):
-        raise ImportError(_MIMO_ONLY.format(name=name))
-    raise AttributeError(f"module 'mimoEnv.envs' has no attribute {name!r}")
+    for name, (experiment, steps) in experiments.IDS.items():
+        entry_point = f"{experiments.__name__}:{experiment.__name__}"
+        gym.register(id=name, entry_point=entry_point, max_episode_steps=steps, disable_env_checker=True)
+    for name in experiments.ELSEWHERE:
+        gym.register(id=name, entry_point=f"{experiments.__name__}:refuse", kwargs={"experiment": name})

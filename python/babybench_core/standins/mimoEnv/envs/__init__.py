@@ -1,10 +1,10 @@
 """MIMo's environments."""
 
 from babybench_core.mimo.env import MIMoEnv
-from babybench_core.mimo.registration import missing_env
+from babybench_core.mimo.experiments import MIMoCatchEnv, MIMoReachEnv, MIMoSelfBodyEnv, MIMoStandupEnv, missing
 
-__all__ = ["MIMoEnv"]
+__all__ = ["MIMoCatchEnv", "MIMoEnv", "MIMoReachEnv", "MIMoSelfBodyEnv", "MIMoStandupEnv"]
 
 
 def __getattr__(name: str) -> object:
-    return missing_env(name)
+    return missing(__name__, name)

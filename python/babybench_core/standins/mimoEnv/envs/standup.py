@@ -1,0 +1,5 @@
+"""Standing up."""
+
+from babybench_core.mimo.experiments import MIMoStandupEnv
+
+__all__ = ["MIMoStandupEnv"]
