@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import warnings
 
 import gymnasium
@@ -110,3 +112,25 @@ def test_the_spaces_say_what_is_observed():
         "vestibular": "float64",
     }
     assert set(env.reset(seed=0)[0]) == set(kinds)
+
+
+@pytest.mark.parametrize("actuation_model", ["spring_damper", "positional", "muscle"])
+def test_action_spaces_draw_what_a_box_draws(actuation_model):
+    space = babybench.Env(SMALL, actuation_model=actuation_model).action_space
+    box = gymnasium.spaces.Box(space.low, space.high, space.shape, np.float32)
+    assert space == box
+    assert box == space
+    assert repr(space) == repr(box)
+    for other in (space, box):
+        other.seed(3)
+    for _ in range(100):
+        sample = space.sample()
+        assert sample.dtype == np.float32
+        assert np.array_equal(sample, box.sample())
+    copies = copy.deepcopy(space), pickle.loads(pickle.dumps(space))
+    sample = space.sample()
+    assert all(np.array_equal(other.sample(), sample) for other in copies)
+    space.low[:] = space.high
+    assert np.array_equal(space.sample(), space.high)
+    with pytest.raises(gymnasium.error.Error, match="mask"):
+        space.sample(mask=np.ones(3))
