@@ -9,8 +9,10 @@ Example:
 
 :func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
 Stable-Baselines3. Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
-``babybench/HandRegard-v0`` and ``babybench/Installation-v0``. ``babybench.utils``, ``babybench.eval``,
-``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter kit, for scripts written for it.
+``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
+``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0`` and ``babybench/RollOver-v0``.
+``babybench.utils``, ``babybench.eval``, ``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter
+kit, for scripts written for it.
 """
 
 from __future__ import annotations

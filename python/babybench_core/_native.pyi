@@ -41,7 +41,7 @@ def config_keys() -> dict[str, dict[str, Any]]:
     """Returns every key of a configuration: ``default``, ``section``, ``expected``, ``doc`` and, for names, ``choices``."""
 
 def config_examples() -> dict[str, dict[str, Any]]:
-    """Returns the three example configurations: ``self_touch``, ``hand_regard``, ``test_installation``."""
+    """Returns the example configurations: ``self_touch``, ``hand_regard``, ``test_installation`` and those of tasks."""
 
 def config_from_mapping(mapping: Mapping[str, object]) -> dict[str, Any]:
     """Checks a configuration and returns all its keys; those left out have their default."""

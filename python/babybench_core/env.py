@@ -11,7 +11,7 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from babybench_core import _native, scenes, spaces
+from babybench_core import _native, hints, locks, scenes, spaces
 from babybench_core.goals import ComputeReward, compute_reward
 from babybench_core.records import LockReport
 from babybench_core.senses import Proprioception, Touch
@@ -157,7 +157,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             ValueError: When it is called: goals of another shape.
         """
         if "desired_goal" not in self.observation_space.spaces:
-            raise AttributeError("compute_reward: this environment has no goals")
+            raise AttributeError(hints.ENV["compute_reward"])
         reward, terms = self._core.compute_reward, self._core.reward_terms
         return lambda achieved_goal, desired_goal, info: compute_reward(
             reward, achieved_goal, desired_goal, info, terms
@@ -294,16 +294,27 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     def lock(self, target: Union[str, int], angle: float = 0.0) -> LockReport:
         """Locks a joint (``"robot:right_elbow"``), or all joints of a part (``"head"``), at an angle in rad.
 
-        Locks outlast resets.
+        Locks outlast resets. An angle that a joint's range does not contain is taken with a warning: the lock and the limit pull
+        against each other.
 
         Raises:
             KeyError: There is no such joint.
         """
-        return self._core.lock(target, angle)
+        with locks.known(target, self._core.blueprint):
+            return locks.within_limits(self._core.lock(target, angle), angle, self._core.blueprint)
 
     def unlock(self, target: Union[str, int]) -> LockReport:
         """Unlocks a joint, or all joints of a part."""
-        return self._core.unlock(target)
+        with locks.known(target, self._core.blueprint):
+            return self._core.unlock(target)
+
+    def __getattr__(self, name: str) -> Any:
+        """Says what to use instead of attributes that the starter kit's environments have.
+
+        Raises:
+            AttributeError: Always.
+        """
+        hints.refuse(self, name, hints.ENV)
 
     def __getstate__(self) -> dict[str, Any]:
         """Returns what a copy needs to go on with the same bits."""
@@ -332,7 +343,8 @@ def make(config: scenes.ConfigLike = "self_touch", **arguments: Any) -> Env:
     """Builds an environment.
 
     Args:
-        config: An example (``self_touch``, ``hand_regard``, ``test_installation``), a mapping, or the path of a YAML file.
+        config: An example (``self_touch``, ``hand_regard``, ``test_installation``; tasks are ``reach``, ``standup``,
+            ``selfbody``, ``catch``, ``roll_over``), a mapping, or the path of a YAML file.
         **arguments: Arguments of :class:`Env`, and keys that replace those of the configuration.
 
     Example:

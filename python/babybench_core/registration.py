@@ -6,6 +6,8 @@ from typing import Any
 
 import gymnasium
 
+from babybench_core._native import config_examples
+
 IDS = {
     "babybench/SelfTouch-v0": "self_touch",
     "babybench/HandRegard-v0": "hand_regard",
@@ -22,6 +24,7 @@ IDS = {
 def register() -> None:
     """Tells Gymnasium the names, once."""
     vectors = "vector_entry_point" in gymnasium.envs.registration.EnvSpec.__dataclass_fields__
+    examples = config_examples()
     for name, example in IDS.items():
         if name in gymnasium.registry:
             continue
@@ -30,6 +33,7 @@ def register() -> None:
             name,
             entry_point="babybench_core.env:Env",
             kwargs={"config": example},
+            max_episode_steps=examples[example]["max_episode_steps"],
             disable_env_checker=True,  # checked in the tests, not with every environment
             **more,
         )

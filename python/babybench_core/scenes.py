@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Optional, Union
 from weakref import WeakValueDictionary
 
+from babybench_core import hints
 from babybench_core._native import Blueprint, config_examples, config_from_mapping, config_from_yaml
 
 ConfigLike = Union[Mapping[str, object], str, "os.PathLike[str]", None]
@@ -29,8 +30,8 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
     """Returns all keys of a configuration with their values.
 
     Args:
-        config: A mapping, the name of an example (``self_touch``, ``hand_regard``, ``test_installation``), the path of a
-            YAML file, or nothing for the defaults.
+        config: A mapping, the name of an example (``self_touch``, ``hand_regard``, ``test_installation``, or a task: ``reach``,
+            ``standup``, ``selfbody``, ``catch``, ``roll_over``), the path of a YAML file, or nothing for the defaults.
         **keys: Keys that replace those of ``config``.
 
     Raises:
@@ -60,7 +61,8 @@ def _read_file(path: Path, examples: list[str]) -> dict[str, Any]:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         choices = ", ".join(examples)
-        text = f"there is no file {str(path)!r}, and no example of that name; examples are {choices}"
+        meant = hints.nearest(str(path), examples)
+        text = f"there is no file {str(path)!r}, and no example of that name; examples are {choices}{meant}"
         raise FileNotFoundError(text) from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: {error}; save the file as UTF-8") from None

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from babybench_core import _native
+from babybench_core import _native, hints
 
 Floats = npt.NDArray[np.float64]
 
@@ -71,6 +71,14 @@ class Proprioception:
             if (found, entry) == (component, name):
                 return slice(start, stop)
         raise KeyError(f"proprioception has no {name!r} in {component!r}")
+
+    def __getattr__(self, name: str) -> Any:
+        """Says what to use instead of attributes that the starter kit's sense has.
+
+        Raises:
+            AttributeError: Always.
+        """
+        hints.refuse(self, name, hints.PROPRIOCEPTION)
 
 
 class Touch:
@@ -157,3 +165,11 @@ class Touch:
         origins: Floats = self._core.state_array("xpos")[self.body_ids]
         world: Floats = origins + np.einsum("nij,nj->ni", frames, positions)
         return world
+
+    def __getattr__(self, name: str) -> Any:
+        """Says what to use instead of attributes that the starter kit's sense has.
+
+        Raises:
+            AttributeError: Always.
+        """
+        hints.refuse(self, name, hints.TOUCH)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.vector.utils import batch_space
 
-from babybench_core import _native, scenes, spaces
+from babybench_core import _native, locks, scenes, spaces
 from babybench_core.goals import Infos, compute_reward
 from babybench_core.records import LockReport
 
@@ -269,11 +269,13 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
     def lock(self, env: int, target: Union[str, int], angle: float = 0.0) -> LockReport:
         """Locks a joint, or all joints of a part, of one environment at an angle in rad."""
-        return self._core.lock(env, target, angle)
+        with locks.known(target, self._blueprints[env]):
+            return locks.within_limits(self._core.lock(env, target, angle), angle, self._blueprints[env])
 
     def unlock(self, env: int, target: Union[str, int]) -> LockReport:
         """Unlocks a joint, or all joints of a part, of one environment."""
-        return self._core.unlock(env, target)
+        with locks.known(target, self._blueprints[env]):
+            return self._core.unlock(env, target)
 
     def array(self, env: int, name: str) -> npt.NDArray[Any]:
         """Returns a copy of an array of the state of one environment by MuJoCo's name, such as ``xpos``."""

@@ -313,3 +313,49 @@ def test_a_vector_that_is_dropped_in_flight_ends_its_threads():
     envs.reset(seed=0)
     envs.send(np.zeros((4, 44)))
     del envs
+
+
+def test_examples_and_joints_that_may_be_meant(env):
+    with pytest.raises(FileNotFoundError, match="did you mean `self_touch`"):
+        babybench.make("selftouch")
+    for lock in (env.lock, babybench.VectorEnv(SMALL, num_envs=2).__getattribute__("lock")):
+        target = () if lock == env.lock else (1,)
+        with pytest.raises(KeyError, match='no joint "right_elbow"; did you mean `robot:right_elbow`'):
+            lock(*target, "right_elbow", -1.0)
+    with pytest.raises(KeyError, match="did you mean `head`"):
+        env.unlock("headd")
+    with pytest.raises(KeyError, match=r"no joint \"999\"'?$"):
+        env.lock(999)
+
+
+def test_an_angle_out_of_range_is_said(env):
+    with pytest.warns(
+        UserWarning, match=r"locked at -10.0 rad, beyond the limits of robot:right_elbow \(-2.55 to 0.0873\)"
+    ):
+        assert env.lock("robot:right_elbow", -10.0)["beyond_limits"] == ["robot:right_elbow"]
+    envs = babybench.VectorEnv(SMALL, num_envs=2)
+    with pytest.warns(UserWarning, match="beyond the limits of robot:right_elbow"):
+        envs.lock(1, "robot:right_elbow", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "instead"),
+    [
+        ("data", r"env\.array\('qpos'\)"),
+        ("model", r"env\.array\('jnt_range'\)"),
+        ("mujoco_renderer", r"env\.picture\("),
+        ("init_qpos", r"env\.reset\(\)"),
+        ("touch.sensor_outputs", r"env\.touch\.of\(body\)"),
+        ("touch.get_contacts", r"env\.touch\.contacts\(\)"),
+        ("proprioception.sensor_outputs", r"env\.proprioception\.slices"),
+        ("compute_reward", "has no goals"),
+        ("nonsense", "'Env' object has no attribute 'nonsense'"),
+        ("touch.nonsense", "'Touch' object has no attribute 'nonsense'"),
+    ],
+)
+def test_attributes_of_the_starter_kit_name_what_to_use(env, attribute, instead):
+    *path, name = attribute.split(".")
+    owner = env if not path else getattr(env, path[0])
+    assert not hasattr(owner, name)
+    with pytest.raises(AttributeError, match=instead):
+        getattr(owner, name)

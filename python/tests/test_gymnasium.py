@@ -12,6 +12,7 @@ import pytest
 from conftest import SEEING, SMALL
 
 import babybench
+from babybench_core.registration import IDS as IDS_OF_ALL
 
 IDS = ["babybench/SelfTouch-v0", "babybench/HandRegard-v0", "babybench/Installation-v0"]
 
@@ -134,3 +135,11 @@ def test_action_spaces_draw_what_a_box_draws(actuation_model):
     assert np.array_equal(space.sample(), space.high)
     with pytest.raises(gymnasium.error.Error, match="mask"):
         space.sample(mask=np.ones(3))
+
+
+@pytest.mark.parametrize("name", sorted(IDS_OF_ALL))
+def test_the_length_of_an_episode_is_known(name):
+    spec = gymnasium.spec(name)
+    assert spec.max_episode_steps == babybench.config_examples()[IDS_OF_ALL[name]]["max_episode_steps"]
+    assert name in (babybench.__doc__ or "")
+    assert IDS_OF_ALL[name] in (babybench.make.__doc__ or "")

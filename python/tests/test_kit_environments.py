@@ -19,6 +19,7 @@ from mimoEnv.babybench import BabyBenchEnv, BabyBenchSelfTouchEnv
 from mimoEnv.envs.mimo_env import MIMoEnv
 from mimoTouch.touch import TrimeshTouch
 
+import babybench
 import babybench.utils as bb_utils
 import mujoco
 from babybench.eval import EVALS
@@ -263,3 +264,27 @@ def test_defaults_that_a_script_has_changed_hold(monkeypatch: pytest.MonkeyPatch
     scales = dict(TOUCH_PARAMS["scales"])
     env = BabyBenchSelfTouchEnv(config={**CONFIG, "touch_active": True, "touch_scale": 2}, training=False)
     assert TOUCH_PARAMS["scales"] == scales  # one environment does not change the next
+
+
+def test_keys_that_are_left_out_have_their_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for behavior in ("hand_regard", "self_touch", "none"):
+        feels = {"touch_active": False} if behavior == "hand_regard" else {}  # the kit's skin is that of MIMo v1
+        env = bb_utils.make_env({"behavior": behavior, "vision_active": False, **feels})
+        env.reset()
+        env.step(env.action_space.sample())
+        assert env.unwrapped.frame_skip == 1
+        assert env.spec.max_episode_steps == 1000
+    folder = tmp_path / babybench.config_keys()["save_dir"]["default"]
+    assert (folder / "scene.xml").is_file()
+    assert bb_utils.make_env({}, training=False).unwrapped.behavior == "none"
+
+
+def test_what_is_no_configuration_says_so() -> None:
+    for wrong in ("self_touch", None, 3):
+        with pytest.raises(
+            TypeError, match=r"make_env needs a configuration, a dict, not .*babybench\.make\('self_touch'\)"
+        ):
+            bb_utils.make_env(wrong)
+    with pytest.raises(ValueError, match="did you mean `self_touch`"):
+        bb_utils.make_env({"behavior": "selftouch"})

@@ -10,10 +10,11 @@ from typing import Any
 
 import gymnasium as gym
 
-from .. import swap
+from .. import _native, hints, swap
 from .assets import assets_folder
 from .build_xml import build
 from .scene import kit_assets
+from .tables import PARTS
 
 ENVS = {"none": "BabyBench", "self_touch": "BabyBench-SelfTouch", "hand_regard": "BabyBench-HandRegard"}
 """The id of each behavior's environment."""
@@ -40,6 +41,31 @@ def _mimo() -> str | None:
     return str(folder / "assets")
 
 
+_NEEDED = (
+    "behavior",
+    "scene",
+    "actuation_model",
+    *(f"act_{part}" for part in PARTS),
+    "save_dir",
+    "save_logs_every",
+    "max_episode_steps",
+    "frame_skip",
+    "render_size",
+)
+"""Keys that a scene and a run cannot do without."""
+
+
+def _complete(config: Any) -> dict[str, Any]:
+    """Returns a configuration with the defaults of keys that a scene and a run need."""
+    if not isinstance(config, Mapping):
+        raise TypeError(
+            f"make_env needs a configuration, a dict, not {type(config).__name__}: "
+            "make_env(yaml.safe_load(open('config.yml'))), or babybench.make('self_touch') for an example"
+        )
+    keys = _native.config_keys()
+    return {**{key: keys[key]["default"] for key in _NEEDED}, **config}
+
+
 def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> Any:
     """Makes the environment of a configuration.
 
@@ -47,17 +73,20 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
     The files that the scene includes are those of the first checkout of the kit on ``sys.path``, or else the library's own.
 
     Args:
-        config: The configuration.
+        config: The configuration. Keys that are left out have their default (``babybench.config_keys()``), but for those of
+            the senses: without them the senses are the kit's own.
         training: Whether this is training.
 
     Raises:
         AssertionError: There is no scene to evaluate.
+        TypeError: What is given is no mapping.
+        ValueError: A behavior that the kit does not have.
     """
-    if config is None:
-        raise TypeError("make_env needs a configuration: make_env(yaml.safe_load(open('config.yml')))")
+    config = _complete(config)
     behavior = config["behavior"]
     if behavior not in ENVS:
-        raise ValueError(f"configuration: behavior is {behavior!r}, expected one of {', '.join(ENVS)}")
+        meant = hints.nearest(str(behavior), ENVS)
+        raise ValueError(f"configuration: behavior is {behavior!r}, expected one of {', '.join(ENVS)}{meant}")
     scene_path = Path(config["save_dir"]) / "scene.xml"
     own_assets = _mimo()
     if training is True:
@@ -72,11 +101,11 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
     return gym.make(
         ENVS[behavior],
         model_path=str(scene_path.resolve()),
-        actuation_model=config.get("actuation_model", "spring_damper"),
-        max_episode_steps=config.get("max_episode_steps"),
-        frame_skip=config.get("frame_skip", 1),
-        width=config.get("render_size", 480),
-        height=config.get("render_size", 480),
+        actuation_model=config["actuation_model"],
+        max_episode_steps=config["max_episode_steps"],
+        frame_skip=config["frame_skip"],
+        width=config["render_size"],
+        height=config["render_size"],
         config=config,
         training=training,
     )
