@@ -1,8 +1,8 @@
 //! Numbers of the library as arrays of NumPy, and back.
 
 use babybench::model::{BiasType, GeomType, JointType, SensorType};
-use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 
@@ -108,13 +108,9 @@ pub fn read<T: Element + Copy>(
     shape: &[usize],
     out: &mut Vec<T>,
 ) -> PyResult<()> {
-    let py = values.py();
     let array = match values.cast::<PyArrayDyn<T>>() {
-        Ok(array) => array.clone(),
-        Err(_) => {
-            let asarray = py.import(intern!(py, "numpy"))?.getattr(intern!(py, "asarray"))?;
-            asarray.call1((values, T::get_dtype(py)))?.cast_into()?
-        }
+        Ok(array) if values.is_exact_instance_of::<PyUntypedArray>() => array.clone(),
+        _ => converted(what, values)?,
     };
     if array.shape() != shape {
         let (found, needed) = (tuple(array.shape()), tuple(shape));
@@ -129,6 +125,29 @@ pub fn read<T: Element + Copy>(
         Err(_) => out.extend(array.as_array().iter().copied()),
     }
     Ok(())
+}
+
+/// Returns an array of what NumPy can turn into real numbers without leaving something out.
+fn converted<'py, T: Element>(what: &str, values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    let py = values.py();
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let masked = numpy.getattr(intern!(py, "ma"))?.getattr(intern!(py, "MaskedArray"))?;
+    if values.is_instance(&masked)? {
+        return Err(PyTypeError::new_err(format!(
+            "{what} is a masked array: fill what is masked in, with its method filled(0)"
+        )));
+    }
+    let asarray = numpy.getattr(intern!(py, "asarray"))?;
+    let array = asarray.call1((values,))?;
+    let dtype = array.getattr(intern!(py, "dtype"))?;
+    let kind: String = dtype.getattr(intern!(py, "kind"))?.extract()?;
+    // NumPy would drop imaginary parts and field names, and count the ticks of times
+    if matches!(kind.as_str(), "c" | "V" | "m" | "M") {
+        return Err(PyTypeError::new_err(format!(
+            "{what} has the number type {dtype}, but real numbers are needed"
+        )));
+    }
+    Ok(asarray.call1((array, T::get_dtype(py)))?.cast_into()?)
 }
 
 /// Writes a shape as Python does.

@@ -14,6 +14,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::arrays::{read, shaped};
 use crate::blueprint::Blueprint;
 use crate::config::to_dict;
+use crate::env::UNINTERRUPTED;
 use crate::errors::{IntoException, detached};
 use crate::info::{Space, info_dict, report_dict, spaces, target_of};
 use crate::observation::dict_of_row;
@@ -172,10 +173,15 @@ impl VectorEnv {
         let [n, width] = [inner.envs.len(), inner.envs.single_action_space().len()];
         read("actions", actions, &[actions.len()?, n, width], &mut inner.actions)?;
         let Inner { envs, actions, .. } = inner;
-        let batches = actions.chunks_exact((n * width).max(1));
-        detached(py, || {
-            batches.into_iter().try_for_each(|batch| envs.step(batch).map(|_| ()))
-        })
+        let row = (n * width).max(1);
+        for rows in actions.chunks(row * UNINTERRUPTED.div_ceil(n.max(1))) {
+            detached(py, || {
+                rows.chunks_exact(row)
+                    .try_for_each(|batch| envs.step(batch).map(|_| ()))
+            })?;
+            py.check_signals()?;
+        }
+        Ok(())
     }
 
     fn send(&self, py: Python<'_>, actions: &Bound<'_, PyAny>, ids: Vec<usize>) -> PyResult<()> {

@@ -94,6 +94,13 @@ def bad_actions(width):
     yield ["a"] * width, ValueError, "could not convert"
     yield None, ValueError, "shape"
     yield [object()] * width, TypeError, "float"
+    for kind in (np.float32, np.float64):
+        yield np.ma.masked_array(good.astype(kind), mask=good == 0), TypeError, r"masked array.*filled\(0\)"
+    yield good + 1j, TypeError, "number type complex"
+    yield [1j] * width, TypeError, "number type complex"
+    yield np.zeros(width, [("torque", "f4")]), TypeError, "real numbers are needed"
+    yield np.zeros(width, "datetime64[s]"), TypeError, "real numbers are needed"
+    yield np.zeros(width, "timedelta64[s]"), TypeError, "real numbers are needed"
 
 
 def test_actions_that_are_not_allowed_change_nothing(env):
@@ -114,6 +121,11 @@ def test_actions_that_are_not_allowed_change_nothing(env):
     for wrong in (actions[:1], actions[0], actions[:, 1:]):
         with pytest.raises(ValueError, match="shape"):
             envs.step(wrong)
+    for wrong in (np.ma.masked_array(actions, mask=actions == 0), actions + 1j):
+        with pytest.raises(TypeError, match=r"masked array|real numbers"):
+            envs.step(wrong)
+        with pytest.raises(TypeError, match=r"masked array|real numbers"):
+            envs.send(wrong)
     assert before == [envs.snapshot(i) for i in range(2)]
 
 
@@ -359,3 +371,29 @@ def test_attributes_of_the_starter_kit_name_what_to_use(env, attribute, instead)
     assert not hasattr(owner, name)
     with pytest.raises(AttributeError, match=instead):
         getattr(owner, name)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no timers of processes")
+@pytest.mark.parametrize("many", [False, True])
+def test_a_long_run_heeds_ctrl_c(many):
+    endless = {**SMALL, "max_episode_steps": 1_000_000_000}
+    steps = 200_000
+    if many:
+        envs = babybench.VectorEnv(endless, num_envs=2)
+        envs.reset(seed=0)
+        core, shape = envs._core, (steps, 2, envs.single_action_space.shape[0])
+    else:
+        env = babybench.Env(endless)
+        env.reset(seed=0)
+        core, shape = env._core, (steps, env.action_space.shape[0])
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    actions = np.zeros(shape, np.float32)
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            core.run(actions)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    done = (core.info(1) if many else core.info())["steps"]
+    assert 0 < done < steps  # it was not heard at the end only
