@@ -2,11 +2,11 @@
 import { Blueprint } from "./blueprint.js";
 import start, { configKeys as coreKeys } from "./core.js";
 import { Env } from "./env.js";
-import { ModuleError } from "./errors.js";
+import { ArgumentError, FreedError, MissingError, ModuleError } from "./errors.js";
 import { locate, once } from "./load.js";
-import { module } from "./module.js";
+import { guarded, memory, module } from "./module.js";
 
-export { Blueprint, Env, ModuleError };
+export { ArgumentError, Blueprint, Env, FreedError, MissingError, ModuleError };
 
 /** @typedef {import("./types.js").Settings} Settings */
 /** @typedef {import("./types.js").ConfigKey} ConfigKey */
@@ -21,8 +21,7 @@ export { Blueprint, Env, ModuleError };
  */
 const init = once(async (source) => {
   const bytes = await locate(source, new URL("core_bg.wasm", import.meta.url));
-  const { memory } = await start({ module_or_path: bytes });
-  module.memory = memory;
+  ({ memory: module.memory } = await start({ module_or_path: bytes }));
 });
 export default init;
 
@@ -30,7 +29,7 @@ export default init;
  * Lists the keys of a configuration: names, sections, what is allowed, defaults, meanings.
  * @returns {ConfigKey[]}
  */
-export const configKeys = () => coreKeys();
+export const configKeys = () => (memory(), guarded(coreKeys));
 
 /** Returns the memory that the module takes, bytes. It never shrinks. */
 export const memoryBytes = () => module.memory?.buffer.byteLength ?? 0;

@@ -1,12 +1,15 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 // What environments of one configuration share.
+import { text } from "./check.js";
 import { Blueprint as CoreBlueprint } from "./core.js";
 import { Env } from "./env.js";
-import { guarded } from "./errors.js";
-import { module } from "./module.js";
+import { FreedError } from "./errors.js";
+import { guarded, memory } from "./module.js";
 import { yamlOf } from "./yaml.js";
 
 /** What all environments of one configuration share: environments from it are cheap. */
 export class Blueprint {
+  /** @type {CoreBlueprint | undefined} */
   #core;
 
   /**
@@ -15,8 +18,9 @@ export class Blueprint {
    * @param {string} [name] of the file, for errors
    */
   constructor(config = {}, name = "configuration") {
-    if (!module.memory) throw new Error("the module is not loaded: `await init()` first");
-    this.#core = guarded(() => new CoreBlueprint(yamlOf(config), name));
+    const [yaml, file] = [yamlOf(config), text("name", name)];
+    memory();
+    this.#core = guarded(() => new CoreBlueprint(yaml, file));
   }
 
   /** Makes an environment. */
@@ -26,7 +30,7 @@ export class Blueprint {
 
   /** The complete configuration, as the text of a YAML file. */
   get yaml() {
-    return guarded(() => this.#core.toYaml());
+    return guarded(() => this.core.toYaml());
   }
 
   /**
@@ -34,16 +38,24 @@ export class Blueprint {
    * @returns {import("./types.js").Config}
    */
   get config() {
-    return Object.fromEntries(guarded(() => this.#core.config()));
+    return Object.fromEntries(guarded(() => this.core.config()));
   }
 
-  /** Frees the memory. Environments made from it stay. */
+  /** Frees the memory. Environments made from it stay. A second call throws a `FreedError`. */
   free() {
-    this.#core.free();
+    const { core } = this;
+    this.#core = undefined;
+    guarded(() => core.free());
+  }
+
+  /** Frees the memory at the end of a block with `using`, unless it was freed before. */
+  [Symbol.dispose]() {
+    if (this.#core) this.free();
   }
 
   /** @internal */
   get core() {
+    if (!this.#core) throw new FreedError("blueprint");
     return this.#core;
   }
 }

@@ -1,7 +1,9 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 // One environment.
 import { Blueprint } from "./blueprint.js";
-import { guarded } from "./errors.js";
-import { module } from "./module.js";
+import * as check from "./check.js";
+import { ArgumentError, FreedError } from "./errors.js";
+import { guarded, memory } from "./module.js";
 
 /** @typedef {import("./types.js").Observation} Observation */
 /** @typedef {Float32Array | Float64Array | Int32Array | Uint8Array} Numbers */
@@ -14,7 +16,9 @@ const SENSES = [
 ];
 
 /**
- * An environment. Numbers are views on the module's memory, without copies: they change with the next step.
+ * An environment. Numbers are views on the module's memory, without copies: they change with the next step, and one that is kept has
+ * length 0 once that memory has grown, as a reset, a first picture or another environment may make it. Read them anew from
+ * {@link Env.observation}, {@link Env.action} or {@link Env.view}, or copy them with `slice()`.
  *
  * ```js
  * import init, { Env } from "babybench";
@@ -25,6 +29,7 @@ const SENSES = [
  * ```
  */
 export class Env {
+  /** @type {import("./core.js").Core | undefined} */
   #core;
   /** @type {Map<string, Numbers>} */
   #views = new Map();
@@ -46,13 +51,11 @@ export class Env {
   constructor(config = {}, name) {
     const shared = config instanceof Blueprint;
     const blueprint = shared ? config : new Blueprint(config, name);
-    try {
-      this.#core = guarded(() => blueprint.core.env());
-      this.#config = blueprint.config;
-      this.#yaml = blueprint.yaml;
-    } finally {
-      if (!shared) blueprint.free();
-    }
+    this.#core = guarded(() => blueprint.core.env());
+    this.#config = blueprint.config;
+    this.#yaml = blueprint.yaml;
+    // after a trap nothing can be freed; what was refused is freed when nobody holds it
+    if (!shared) blueprint.free();
     const env = this;
     const getters = SENSES.map((name) => [name, { enumerable: true, get: () => env.view(name) }]);
     this.#observation = Object.defineProperties(/** @type {any} */ ({}), Object.fromEntries(getters));
@@ -73,7 +76,8 @@ export class Env {
    * @param {number | bigint} [seed]
    */
   reset(seed) {
-    guarded(() => this.#core.reset(seed === undefined ? undefined : BigInt(seed)));
+    const from = seed === undefined ? undefined : check.seed("seed", seed);
+    this.#call((core) => core.reset(from));
     return this.observation;
   }
 
@@ -83,7 +87,8 @@ export class Env {
    * @param {ArrayLike<number>} qvel
    */
   resetTo(qpos, qvel) {
-    guarded(() => this.#core.resetTo(Float64Array.from(qpos), Float64Array.from(qvel)));
+    const [positions, velocities] = [check.numbers("qpos", qpos, this.model.nq), check.numbers("qvel", qvel, this.model.nv)];
+    this.#call((core) => core.resetTo(positions, velocities));
     return this.observation;
   }
 
@@ -93,7 +98,8 @@ export class Env {
    * @param {ArrayLike<number>} qvel
    */
   setState(qpos, qvel) {
-    guarded(() => this.#core.setState(Float64Array.from(qpos), Float64Array.from(qvel)));
+    const [positions, velocities] = [check.numbers("qpos", qpos, this.model.nq), check.numbers("qvel", qvel, this.model.nv)];
+    this.#call((core) => core.setState(positions, velocities));
     return this.observation;
   }
 
@@ -102,7 +108,8 @@ export class Env {
    * @param {ArrayLike<number>} activity
    */
   setActivity(activity) {
-    guarded(() => this.#core.setActivity(Float64Array.from(activity)));
+    const values = check.numbers("activity", activity, this.view("act")?.length);
+    this.#call((core) => core.setActivity(values));
   }
 
   /**
@@ -112,23 +119,17 @@ export class Env {
    */
   step(action) {
     const own = this.action;
-    if (action !== undefined && action !== own) {
-      if (action.length !== own.length) {
-        throw new Error(`the action has ${action.length} values but the action space has ${own.length}`);
-      }
-      own.set(action);
-    }
-    guarded(() => this.#core.step());
+    if (action !== undefined && action !== own) own.set(check.numbers("action", action, own.length));
     const env = this;
-    return {
+    return this.#call((core) => (core.step(), {
       observation: this.observation,
-      reward: this.#core.reward(),
-      terminated: this.#core.terminated(),
-      truncated: this.#core.truncated(),
+      reward: core.reward(),
+      terminated: core.terminated(),
+      truncated: core.truncated(),
       get info() {
         return env.info; // made when it is read: most steps need none
       },
-    };
+    }));
   }
 
   /**
@@ -136,7 +137,8 @@ export class Env {
    * @param {ArrayLike<number>} desired
    */
   setGoal(desired) {
-    guarded(() => this.#core.setGoal(Float64Array.from(desired)));
+    const goal = check.numbers("desired", desired, this.view("desired_goal")?.length);
+    this.#call((core) => core.setGoal(goal));
     return this.observation;
   }
 
@@ -148,9 +150,12 @@ export class Env {
    * @returns {Float64Array} a reward for each row
    */
   computeReward(achieved, desired, infos) {
-    const flat = (/** @type {ArrayLike<number>[]} */ rows) => Float64Array.from(rows.flatMap((row) => Array.from(row)));
-    const terms = flat(infos.map((info) => info.reward_terms ?? []));
-    return guarded(() => this.#core.computeReward(flat(achieved), flat(desired), terms, achieved.length));
+    const [reached, wanted] = [check.rows("achieved", achieved), check.rows("desired", desired)];
+    for (const [name, list] of /** @type {const} */ ([["desired", desired], ["infos", infos]])) {
+      if (!Array.isArray(list) || list.length !== achieved.length) check.refuse(name, list, `an array of ${achieved.length}, as \`achieved\``);
+    }
+    const terms = check.rows("infos", infos.map((info, i) => (info?.reward_terms === undefined ? check.refuse(`infos[${i}]`, info, "the info of a step") : (info.reward_terms ?? []))));
+    return this.#call((core) => core.computeReward(reached, wanted, terms, achieved.length));
   }
 
   /** The next action, to write into. */
@@ -160,7 +165,7 @@ export class Env {
 
   /** Fills {@link Env.action} with a random action, the one that Gymnasium draws from the same seed, and returns it. */
   sampleAction() {
-    guarded(() => this.#core.sampleAction());
+    this.#call((core) => core.sampleAction());
     return this.action;
   }
 
@@ -169,7 +174,8 @@ export class Env {
    * @param {number | bigint} seed
    */
   seedActionSpace(seed) {
-    guarded(() => this.#core.seedActionSpace(BigInt(seed)));
+    const from = check.seed("seed", seed);
+    this.#call((core) => core.seedActionSpace(from));
   }
 
   /** What MIMo senses since the last reset or step. Its views are made when they are read, so that they are always valid. */
@@ -179,12 +185,13 @@ export class Env {
 
   /**
    * Returns a view of numbers by name: of the observation, or of the state by MuJoCo's names (`qpos`, `xpos`,
-   * `geom_xmat`, `actuator_force` ...). It is valid until the module's memory grows or a snapshot is restored.
+   * `geom_xmat`, `actuator_force` ...). It is valid until the module's memory grows, which empties it, or a snapshot is restored.
    * @param {string} name
    * @returns {Numbers | null} `null` for a sense that is off and for names that do not exist
    */
   view(name) {
-    const buffer = /** @type {WebAssembly.Memory} */ (module.memory).buffer;
+    check.text("name", name);
+    const buffer = memory();
     const known = this.#views.get(name);
     if (known && known.buffer === buffer) return known;
     const view = this.#place(name, buffer);
@@ -197,7 +204,7 @@ export class Env {
    * @param {ArrayBuffer} buffer
    */
   #place(name, buffer) {
-    const place = guarded(() => this.#core.view(name));
+    const place = this.#call((core) => core.view(name));
     if (!place) return null;
     const [kind, at, length] = place;
     return new KINDS[/** @type {1 | 4 | 5 | 8} */ (kind)](buffer, at, length);
@@ -205,12 +212,12 @@ export class Env {
 
   /** What the last step reports. */
   get info() {
-    return /** @type {import("./types.js").Info} */ (guarded(() => this.#core.info()));
+    return /** @type {import("./types.js").Info} */ (this.#call((core) => core.info()));
   }
 
   /** The simulated time, s. */
   get time() {
-    return guarded(() => this.#core.time());
+    return this.#call((core) => core.time());
   }
 
   /**
@@ -218,20 +225,20 @@ export class Env {
    * @returns {import("./types.js").Frame}
    */
   update() {
-    guarded(() => this.#core.update());
-    const { buffer } = /** @type {WebAssembly.Memory} */ (module.memory);
+    this.#call((core) => core.update());
+    const buffer = memory();
     const view = (/** @type {string} */ name) => /** @type {Float32Array} */ (this.#place(name, buffer));
     return { poses: view("poses"), bodies: view("bodies"), felt: view("felt"), contacts: view("contacts") };
   }
 
   /** Bodies, joints, geoms, cameras and actions. */
   get model() {
-    return (this.#model ??= /** @type {import("./types.js").Model} */ (guarded(() => this.#core.model())));
+    return (this.#model ??= /** @type {import("./types.js").Model} */ (this.#call((core) => core.model())));
   }
 
   /** Shapes, colours, textures and lights. */
   get look() {
-    return (this.#look ??= /** @type {import("./types.js").Look} */ (guarded(() => this.#core.look())));
+    return (this.#look ??= /** @type {import("./types.js").Look} */ (this.#call((core) => core.look())));
   }
 
   /**
@@ -240,15 +247,15 @@ export class Env {
    * @param {number} [face] of a cube
    */
   texturePixels(texture, face = 0) {
-    const place = guarded(() => this.#core.texturePixels(texture, face));
-    if (!place) throw new Error(`there is no face ${face} of a texture ${texture}`);
-    return new Uint8Array(/** @type {WebAssembly.Memory} */ (module.memory).buffer, place[1], place[2]).slice();
+    const [which, side] = [check.whole("texture", texture), check.whole("face", face)];
+    const place = this.#call((core) => core.texturePixels(which, side));
+    if (!place) throw new ArgumentError("texture", `there is no face ${face} of a texture ${texture}`);
+    return new Uint8Array(memory(), place[1], place[2]).slice();
   }
 
   /** Where the touch sensors are: three numbers each in the frame of their body, m; the body; values for each sensor. */
   get skin() {
-    const core = this.#core;
-    return guarded(() => ({ positions: core.skinPositions(), bodies: core.skinBodies(), width: core.touchWidth() }));
+    return this.#call((core) => ({ positions: core.skinPositions(), bodies: core.skinBodies(), width: core.touchWidth() }));
   }
 
   /**
@@ -256,7 +263,7 @@ export class Env {
    * @returns {{ component: string, name: string, start: number, end: number }[]}
    */
   get proprioceptionNames() {
-    return guarded(() => this.#core.proprioceptionNames());
+    return this.#call((core) => core.proprioceptionNames());
   }
 
   /**
@@ -266,7 +273,8 @@ export class Env {
    * @returns {import("./types.js").LockReport}
    */
   lock(target, angle = 0) {
-    return guarded(() => this.#core.lock(target, angle));
+    const [which, at] = [check.text("target", target), check.finite("angle", angle)];
+    return this.#call((core) => core.lock(which, at));
   }
 
   /**
@@ -275,17 +283,18 @@ export class Env {
    * @returns {import("./types.js").LockReport}
    */
   unlock(target) {
-    return guarded(() => this.#core.unlock(target));
+    check.text("target", target);
+    return this.#call((core) => core.unlock(target));
   }
 
   /** The locked joints, by number. */
   get locked() {
-    return guarded(() => this.#core.locked());
+    return this.#call((core) => core.locked());
   }
 
   /** Takes a snapshot: all that decides how the run goes on, random numbers, locks and applied forces included. */
   snapshot() {
-    return guarded(() => this.#core.snapshot());
+    return this.#call((core) => core.snapshot());
   }
 
   /**
@@ -294,7 +303,8 @@ export class Env {
    * @param {Uint8Array} bytes
    */
   restore(bytes) {
-    guarded(() => this.#core.restore(bytes));
+    check.bytes("bytes", bytes);
+    this.#call((core) => core.restore(bytes));
     this.#views.clear();
   }
 
@@ -307,28 +317,31 @@ export class Env {
    * @param {ArrayLike<number>} [point] by default the centre of mass
    */
   applyForce(body, force, torque = [0, 0, 0], point) {
-    const centre = () => /** @type {Float64Array} */ (this.view("xipos")).slice(3 * body, 3 * body + 3);
-    const at = point ? Float64Array.from(point) : centre();
-    guarded(() => this.#core.applyForce(body, Float64Array.from(force), Float64Array.from(torque), at));
+    const centres = /** @type {Float64Array} */ (this.view("xipos"));
+    check.whole("body", body, 0, centres.length / 3 - 1);
+    const at = point === undefined ? centres.slice(3 * body, 3 * body + 3) : check.numbers("point", point, 3);
+    const [push, turn] = [check.numbers("force", force, 3), check.numbers("torque", torque, 3)];
+    this.#call((core) => core.applyForce(body, push, turn, at));
   }
 
   /** Takes off all forces on bodies. */
   releaseForces() {
-    guarded(() => this.#core.releaseForces());
+    this.#call((core) => core.releaseForces());
   }
 
   /**
    * Draws the scene from one of its cameras, by name, or from anywhere. The pixels are a view, ready for `ImageData`: red,
-   * green, blue and 255, rows from the top, until the next picture.
+   * green, blue and 255, rows from the top, until the next picture. Memory may grow for it, which empties the views that one kept.
    * @param {string | import("./types.js").FreeCamera} camera
    * @param {number} width
    * @param {number} height
    */
   draw(camera, width, height) {
     const named = typeof camera === "string";
-    const free = named ? undefined : [...camera.lookat, camera.distance, camera.azimuth, camera.elevation];
-    const [at, length] = guarded(() => this.#core.draw(named ? camera : "", free && Float64Array.from(free), width, height));
-    return new Uint8ClampedArray(/** @type {WebAssembly.Memory} */ (module.memory).buffer, at, length);
+    const free = named ? undefined : check.camera("camera", camera);
+    const [w, h] = [check.whole("width", width, 1), check.whole("height", height, 1)];
+    const [at, length] = this.#call((core) => core.draw(named ? camera : "", free, w, h));
+    return new Uint8ClampedArray(memory(), at, length);
   }
 
   /**
@@ -336,7 +349,8 @@ export class Env {
    * @param {boolean} deferred
    */
   deferVision(deferred) {
-    guarded(() => this.#core.deferVision(deferred));
+    check.flag("deferred", deferred);
+    this.#call((core) => core.deferVision(deferred));
   }
 
   /**
@@ -345,24 +359,44 @@ export class Env {
    * high, as {@link Env.draw} does.
    */
   lookThroughEyes() {
-    const [at, length] = guarded(() => this.#core.lookThroughEyes());
-    return new Uint8ClampedArray(/** @type {WebAssembly.Memory} */ (module.memory).buffer, at, length);
+    const [at, length] = this.#call((core) => core.lookThroughEyes());
+    return new Uint8ClampedArray(memory(), at, length);
   }
 
   /** Draws what the eyes see into the observation. */
   drawEyes() {
-    guarded(() => this.#core.drawEyes());
+    this.#call((core) => core.drawEyes());
     return this.observation;
   }
 
   /** Returns the checksum of positions, velocities and senses that `examples/checksum` prints. */
   checksum() {
-    return guarded(() => this.#core.checksum());
+    return this.#call((core) => core.checksum());
   }
 
-  /** Frees the memory. Without it, it is freed some time after the last use. */
+  /** Frees the memory. Without it, it is freed some time after the last use. A second call throws a `FreedError`. */
   free() {
-    this.#core.free();
+    this.#call((core) => {
+      this.#core = undefined;
+      core.free();
+    });
     this.#views.clear();
+  }
+
+  /** Frees the memory at the end of a block with `using`, unless it was freed before. */
+  [Symbol.dispose]() {
+    if (this.#core) this.free();
+  }
+
+  /**
+   * Calls into the module.
+   * @template T
+   * @param {(core: import("./core.js").Core) => T} call
+   * @returns {T}
+   */
+  #call(call) {
+    const core = this.#core;
+    if (!core) throw new FreedError("environment");
+    return guarded(() => call(core));
   }
 }

@@ -13,17 +13,55 @@ export class ModuleError extends Error {
   }
 }
 
-/**
- * Runs a call into a module; a trap becomes a {@link ModuleError}.
- * @template T
- * @param {() => T} call
- * @returns {T}
- */
-export function guarded(call) {
-  try {
-    return call();
-  } catch (error) {
-    if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) throw new ModuleError(error);
-    throw error;
+/** An argument is of another type than it must be, or out of its range. */
+export class ArgumentError extends TypeError {
+  /**
+   * @param {string} argument its name, with the place of a value in it, as `qpos[3]`
+   * @param {string} problem
+   */
+  constructor(argument, problem) {
+    super(`${argument}: ${problem}`);
+    this.name = "ArgumentError";
+    this.argument = argument;
   }
+}
+
+/** Something was used after its `free`. */
+export class FreedError extends Error {
+  /** @param {string} what */
+  constructor(what) {
+    super(`the ${what} was freed: make another one`);
+    this.name = "FreedError";
+  }
+}
+
+/** Something is missing that this place of JavaScript does not have, or that was not loaded yet. */
+export class MissingError extends Error {
+  /** @param {string} message */
+  constructor(message) {
+    super(message);
+    this.name = "MissingError";
+  }
+}
+
+/** @typedef {<T>(call: () => T) => T} Guard */
+
+/**
+ * Makes the guard of a module: it runs calls into it, and a trap becomes a {@link ModuleError}. After one, no call reaches the module:
+ * what it was doing is half done.
+ * @returns {Guard}
+ */
+export function guard() {
+  /** @type {ModuleError | undefined} */
+  let lost;
+  return (call) => {
+    if (lost) throw new ModuleError(lost.cause);
+    try {
+      return call();
+    } catch (error) {
+      // a stack that overflows is a RangeError; arguments that could cause one are checked before
+      if (!(error instanceof WebAssembly.RuntimeError) && !(error instanceof RangeError)) throw error;
+      throw (lost = new ModuleError(error));
+    }
+  };
 }

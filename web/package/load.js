@@ -1,4 +1,5 @@
 // How a module of WebAssembly is found and started, in browsers and in node.
+import { refuse } from "./check.js";
 
 /** @typedef {string | URL | Request | Response | BufferSource | WebAssembly.Module} Source */
 
@@ -26,11 +27,18 @@ export async function locate(source, beside) {
 export function once(start) {
   /** @type {Promise<T> | undefined} */
   let started;
-  return (source) => {
+  return async (source) => {
+    if (source !== undefined && !isSource(source)) refuse("source", source, "an address, a Request, a Response, bytes or a WebAssembly.Module");
     started ??= start(source).catch((/** @type {unknown} */ error) => {
       started = undefined;
       throw error;
     });
     return started;
   };
+}
+
+/** @param {unknown} source */
+function isSource(source) {
+  const kinds = [URL, Request, Response, ArrayBuffer, WebAssembly.Module];
+  return (typeof source === "string" && source !== "") || ArrayBuffer.isView(source) || kinds.some((kind) => source instanceof kind);
 }

@@ -1,4 +1,14 @@
 // What the files of the package share of the loaded module.
+import { guard, MissingError } from "./errors.js";
 
 /** @type {{ memory?: WebAssembly.Memory }} */
 export const module = {};
+
+/** Runs a call into the module. */
+export const guarded = guard();
+
+/** Returns the module's memory as it is now: one that grows gets another buffer. */
+export function memory() {
+  if (!module.memory) throw new MissingError("the module is not loaded: `await init()` first");
+  return module.memory.buffer;
+}

@@ -1,7 +1,13 @@
+/// <reference lib="esnext.disposable" preserve="true" />
 // ONNX policies, in a module of its own that is loaded when it is wanted.
 import start, { Model } from "./onnx_core.js";
-import { guarded } from "./errors.js";
+import { bytes as bytesOf, refuse, text } from "./check.js";
+import { Env } from "./env.js";
+import { FreedError, guard, MissingError } from "./errors.js";
 import { locate, once } from "./load.js";
+
+const guarded = guard();
+let loaded = false;
 
 /**
  * Loads the module, once, before the first {@link OnnxPolicy}. Without a source it is the file `onnx_core_bg.wasm` beside
@@ -11,6 +17,7 @@ import { locate, once } from "./load.js";
 const init = once(async (source) => {
   const bytes = await locate(source, new URL("onnx_core_bg.wasm", import.meta.url));
   await start({ module_or_path: bytes });
+  loaded = true;
 });
 export default init;
 
@@ -26,6 +33,7 @@ export default init;
  * ```
  */
 export class OnnxPolicy {
+  /** @type {Model | undefined} */
   #model;
 
   /**
@@ -35,9 +43,13 @@ export class OnnxPolicy {
    * @param {string} [name] of the file, for errors
    */
   constructor(bytes, env, name = "model") {
+    bytesOf("bytes", bytes);
+    if (!(env instanceof Env)) refuse("env", env, "an Env");
+    text("name", name);
+    if (!loaded) throw new MissingError("the module is not loaded: `await init()` of babybench/onnx first");
     const { actions } = env.model;
     const bounds = (/** @type {"low" | "high"} */ side) => Float32Array.from(actions, (a) => a[side]);
-    this.#model = guarded(() => new Model(bytes, name, bounds("low"), bounds("high")));
+    const model = guarded(() => new Model(bytes, name, bounds("low"), bounds("high")));
     const { observation: seen } = env;
     const eye = (/** @type {Uint8Array | null} */ pixels) => pixels && [Math.sqrt(pixels.length / 3), Math.sqrt(pixels.length / 3), 3];
     const vector = (/** @type {ArrayLike<number> | null} */ values) => values && [values.length];
@@ -48,13 +60,12 @@ export class OnnxPolicy {
       ["eye_right", eye(seen.eye_right)],
       ["vestibular", vector(seen.vestibular)],
     ]);
-    try {
-      for (const [key, shape] of senses) if (shape) this.#model.sense(key, Uint32Array.from(shape));
-      this.#model.connect();
-    } catch (error) {
-      this.#model.free();
-      throw error;
-    }
+    // what was refused is freed when nobody holds it
+    guarded(() => {
+      for (const [key, shape] of senses) if (shape) model.sense(key, Uint32Array.from(shape));
+      model.connect();
+    });
+    this.#model = model;
   }
 
   /**
@@ -63,12 +74,26 @@ export class OnnxPolicy {
    * @returns {Float32Array}
    */
   act(env) {
-    const o = env.observation;
-    return guarded(() => this.#model.act(o.proprioception, o.touch, o.vestibular, o.eye_left, o.eye_right));
+    if (!(env instanceof Env)) refuse("env", env, "an Env");
+    const [model, o] = [this.#live(), env.observation];
+    const senses = /** @type {const} */ ([o.proprioception, o.touch, o.vestibular, o.eye_left, o.eye_right]);
+    return guarded(() => model.act(...senses));
   }
 
-  /** Frees the memory. Without it, it is freed some time after the last use. */
+  /** Frees the memory. Without it, it is freed some time after the last use. A second call throws a `FreedError`. */
   free() {
-    this.#model.free();
+    const model = this.#live();
+    this.#model = undefined;
+    guarded(() => model.free());
+  }
+
+  /** Frees the memory at the end of a block with `using`, unless it was freed before. */
+  [Symbol.dispose]() {
+    if (this.#model) this.free();
+  }
+
+  #live() {
+    if (!this.#model) throw new FreedError("policy");
+    return this.#model;
   }
 }

@@ -1,4 +1,7 @@
 // Environments in a worker: the same calls as of `Env`, each of which returns a promise.
+import { refuse, text } from "./check.js";
+import { MissingError } from "./errors.js";
+import { yamlOf } from "./yaml.js";
 
 /**
  * A worker with environments.
@@ -17,8 +20,12 @@ export class Connection {
   /** @type {Map<number, { resolve: (value: any) => void, reject: (error: Error) => void }>} */
   #waiting = new Map();
 
+  /** @type {Error | undefined} why it is over */
+  #over;
+
   /** @param {Worker} worker */
   constructor(worker) {
+    if (typeof worker?.postMessage !== "function") refuse("worker", worker, "a Worker");
     this.#worker = worker;
     worker.onmessage = ({ data }) => this.#settle(data);
     worker.onerror = (event) => this.#die(new Error(event.message || "the worker could not be loaded"));
@@ -34,6 +41,7 @@ export class Connection {
 
   /** @param {Error} error */
   #die(error) {
+    this.#over ??= error;
     for (const { reject } of this.#waiting.values()) reject(error);
     this.#waiting.clear();
   }
@@ -45,10 +53,11 @@ export class Connection {
    * @returns {Promise<any>}
    */
   send(env, what, args) {
+    if (this.#over) return Promise.reject(this.#over);
     const call = this.#calls++;
     return new Promise((resolve, reject) => {
+      this.#worker.postMessage({ call, env, what, args }); // throws where something cannot be copied
       this.#waiting.set(call, { resolve, reject });
-      this.#worker.postMessage({ call, env, what, args });
     });
   }
 
@@ -57,8 +66,9 @@ export class Connection {
    * @param {import("./types.js").Settings | string} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
    */
-  async create(config = {}, name) {
-    return new RemoteEnv(this, await this.send(undefined, "create", [config, name]));
+  async create(config = {}, name = "configuration") {
+    const args = [yamlOf(config), text("name", name)];
+    return new RemoteEnv(this, await this.send(undefined, "create", args));
   }
 
   /** Ends the worker and all its environments. */
@@ -84,11 +94,13 @@ export class RemoteEnv {
 
   /**
    * Calls a method of the environment, or reads a property, by name; see `Env`.
-   * @param {string} what
-   * @param {...unknown} args
-   * @returns {Promise<any>}
+   * @template {import("./calls.js").Asked} K
+   * @param {K} what
+   * @param {import("./calls.js").Arguments<K>} args
+   * @returns {Promise<import("./calls.js").Answer<K>>}
    */
-  call(what, ...args) {
+  async call(what, ...args) {
+    text("what", what);
     return this.#connection.send(this.#id, what, args);
   }
 
@@ -98,7 +110,8 @@ export class RemoteEnv {
   }
 }
 
-/** Starts a worker in a browser. */
+/** Starts a worker: in browsers, Deno and Bun. */
 export function connect() {
+  if (typeof Worker !== "function") throw new MissingError("there is no `Worker` here, as in node: use `Env` itself, in a thread of `node:worker_threads` if it must not block");
   return new Connection(new Worker(new URL("./worker.js", import.meta.url), { type: "module" }));
 }

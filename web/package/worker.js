@@ -1,16 +1,16 @@
 // A worker that holds environments, so that no step freezes the page. `remote.js` is its other end.
 import init, { Env } from "./babybench.js";
+import { METHODS, PROPERTIES } from "./calls.js";
+import { FreedError } from "./errors.js";
 
 /** @type {Map<number, Env>} */
 const environments = new Map();
 let next = 0;
 
-/** What may be asked of an environment by name. */
-const METHODS = new Set([
-  "reset", "resetTo", "setState", "setActivity", "step", "sampleAction", "seedActionSpace", "update", "texturePixels",
-  "lock", "unlock", "snapshot", "restore", "applyForce", "releaseForces", "draw", "lookThroughEyes", "deferVision", "drawEyes", "checksum", "view",
-]);
-const PROPERTIES = new Set(["config", "yaml", "observation", "info", "time", "model", "look", "skin", "proprioceptionNames", "locked"]);
+/** @type {ReadonlySet<string>} */
+const methods = new Set(METHODS);
+/** @type {ReadonlySet<string>} */
+const properties = new Set(PROPERTIES);
 
 /**
  * Copies views on the module's memory, which must not leave the worker.
@@ -42,14 +42,14 @@ async function answer({ env: id, what, args }) {
     return next++;
   }
   const env = environments.get(/** @type {number} */ (id));
-  if (!env) throw new Error(`there is no environment ${id}; it may have been freed`);
+  if (!env) throw new FreedError("environment");
   if (what === "free") {
     environments.delete(/** @type {number} */ (id));
     return env.free();
   }
   const any = /** @type {any} */ (env);
-  if (METHODS.has(what)) return any[what](...args);
-  if (PROPERTIES.has(what)) return any[what];
+  if (methods.has(what)) return any[what](...args);
+  if (properties.has(what)) return any[what];
   throw new Error(`an environment has no ${what}`);
 }
 
@@ -63,8 +63,8 @@ async function receive(data) {
     const value = copied(await answer(data), moved);
     scope.postMessage({ call: data.call, value }, moved);
   } catch (error) {
-    const { name, message, key, line, column } = /** @type {any} */ (error);
-    scope.postMessage({ call: data.call, error: { name, message, key, line, column } });
+    const { name, message, key, line, column, argument } = /** @type {any} */ (error);
+    scope.postMessage({ call: data.call, error: { name, message, key, line, column, argument } });
   }
 }
 scope.onmessage = (/** @type {MessageEvent} */ event) => receive(event.data);

@@ -56,12 +56,12 @@ test("errors tell key and place", () => {
   const env = new Env(crib);
   assert.throws(() => env.step(), /call reset before step/);
   env.reset(0);
-  assert.throws(() => env.step([0]), /the action has 1 values/);
-  assert.throws(() => env.step(env.action.map(() => NaN)), /actions must be finite/);
+  assert.throws(() => env.step([0]), /action: it has 1 values but needs \d+/);
+  assert.throws(() => env.step(env.action.map(() => NaN)), /action\[0\]: NaN is not a finite number/);
   assert.throws(() => env.lock("robot:third_elbow"), /no joint "robot:third_elbow"/);
-  assert.throws(() => env.applyForce(9999, [0, 0, 1], [0, 0, 0], [0, 0, 0]), /there is no body 9999/);
+  assert.throws(() => env.applyForce(9999, [0, 0, 1], [0, 0, 0], [0, 0, 0]), /body: 9999 is not a whole number from 0 to \d+/);
   assert.throws(() => env.draw("moon", 8, 8), /camera named "moon"/);
-  assert.throws(() => env.draw("corner", 0, 8), /0 x 8 pixels/);
+  assert.throws(() => env.draw("corner", 0, 8), /width: 0 is not a whole number from 1/);
   assert.throws(() => env.restore(new Uint8Array(3)), /not a snapshot/);
   env.free();
 });

@@ -1,0 +1,23 @@
+// What a worker may be asked of an environment, by name.
+
+export const METHODS = /** @type {const} */ ([
+  "reset", "resetTo", "setState", "setActivity", "setGoal", "step", "computeReward", "sampleAction", "seedActionSpace", "update",
+  "texturePixels", "lock", "unlock", "snapshot", "restore", "applyForce", "releaseForces", "draw", "lookThroughEyes", "deferVision",
+  "drawEyes", "checksum", "view", "free",
+]);
+export const PROPERTIES = /** @type {const} */ ([
+  "config", "yaml", "observation", "action", "info", "time", "model", "look", "skin", "proprioceptionNames", "locked",
+]);
+
+/** @typedef {typeof METHODS[number] | typeof PROPERTIES[number]} Asked */
+/** @typedef {import("./env.js").Env} Env */
+/**
+ * What is asked with: the arguments of a method, nothing for a property.
+ * @template {Asked} K
+ * @typedef {Env[K] extends (...args: infer A) => unknown ? A : []} Arguments
+ */
+/**
+ * What is answered.
+ * @template {Asked} K
+ * @typedef {Env[K] extends (...args: any[]) => infer R ? R : Env[K]} Answer
+ */
