@@ -1,24 +1,16 @@
 // What the page is: one world, one stage, one state; the panels look at it and ask it to change.
+import { STATES } from "./announce.js";
+import { Recordings } from "./recordings.js";
+import { Sharing } from "./sharing.js";
+import { FIRST } from "./state.js";
 import { World, WorldError } from "./world.js";
-import * as link from "./link.js";
 
 /** @typedef {import("./types").PageState} PageState */
 /** @typedef {import("./types").Scene} Scene */
 /** @typedef {import("./types").Moment} Moment */
 /** @typedef {import("./types").Settings} Settings */
-/** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "eyes" | "tape" | "fault"} Event */
-
-/** What a first visitor sees: an infant in its cot, all senses on. */
-/** @type {PageState} */
-const FIRST = {
-  settings: { behavior: "self_touch", scene: "crib", vision_active: false, max_episode_steps: 12_000 },
-  seed: 0,
-  policy: "babbling",
-  held: {},
-  vigour: 0.6,
-  speed: 1,
-  locks: [],
-};
+/** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
+/** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "tape"} Event */
 
 /** Milliseconds between looks at numbers: faster than one reads. */
 const TICK = 100;
@@ -39,7 +31,14 @@ export class App {
     /** @type {Moment | null} */
     this.moment = null;
     this.frame = new Float32Array(0);
+    /** Whether time passes. */
     this.playing = false;
+    /** The network that was brought. */
+    /** @type {Network | null} */
+    this.model = null;
+    /** Asks a question with two answers. */
+    /** @type {(text: string, yes: string, no: string) => Promise<boolean>} */
+    this.confirm = async () => true;
     /** Whether something is pulled. */
     this.held = false;
     /** @type {Map<Event, Set<(data: any) => void>>} */
@@ -51,6 +50,8 @@ export class App {
     /** Changes that wait for their world, the first of them first. */
     /** @type {Settings[]} */
     this.asked = [];
+    this.recordings = new Recordings(this);
+    this.sharing = new Sharing(this);
     this.world = this.connect(worker);
   }
 
@@ -64,7 +65,8 @@ export class App {
     return new World(this.script, {
       frame: (frame, moment) => this.see(frame, moment),
       event: (name, data) => this.hear(name, data),
-      died: (why) => this.emit("fault", why),
+      died: (why) => this.announce("lost", why),
+      busy: () => this.playing,
     }, worker);
   }
 
@@ -92,7 +94,18 @@ export class App {
    * @param {boolean} [bad]
    */
   notice(text, bad = false) {
-    this.emit("notice", { text, bad });
+    this.emit("notice", { name: text, text, bad });
+  }
+
+  /**
+   * Announces a state: the only way that one is told.
+   * @param {keyof typeof STATES} name
+   * @param {unknown} [data]
+   */
+  announce(name, data) {
+    // time stands in these, and the button must not say that it passes
+    if (name === "stopped" || name === "lost" || name === "hung") this.setPlaying(false);
+    this.emit("notice", { name, ...STATES[name](this, data) });
   }
 
   /**
@@ -121,9 +134,9 @@ export class App {
    */
   hear(name, data) {
     if (name === "error") this.notice(data, true);
-    else if (name === "slow") this.notice("The simulation has not answered for a while. It may be busy; it can be started again in the tab Setup.", true);
-    else if (name === "note") this.notice(data);
-    else this.emit(/** @type {Event} */ (name), data);
+    else if (name === "awake") this.emit("over", "hung");
+    else if (name === "tape") this.recordings.keep(data.recording, data.full);
+    else this.announce(/** @type {keyof typeof STATES} */ (name), data);
   }
 
   /** @param {boolean} on */
@@ -137,26 +150,7 @@ export class App {
   async start() {
     // not waited for: the page has graphics to prepare, and the worker goes on by itself
     this.world.ask("load").then(() => performance.mark("module"), () => {});
-    let opened = null;
-    try {
-      opened = await link.decode(location.hash);
-    } catch {
-      this.notice("The link is damaged. The page starts afresh.", true);
-    }
-    if (opened) {
-      const { state, snapshot } = opened;
-      this.state = { ...structuredClone(FIRST), ...state };
-      try {
-        await this.make(this.state.settings, snapshot);
-        if (this.state.view) this.stage.orbit.view = this.state.view;
-        return Boolean(snapshot);
-      } catch (e) {
-        this.notice(`The link cannot be opened: ${/** @type {Error} */ (e).message}`, true);
-        this.state = structuredClone(FIRST);
-      }
-    }
-    await this.make(this.state.settings, null);
-    return false;
+    return this.sharing.start();
   }
 
   /**
@@ -164,9 +158,12 @@ export class App {
    * @param {Settings} settings
    * @param {Uint8Array<ArrayBuffer> | null} snapshot
    * @param {string} [yaml] the settings as a file, which may hold more than the page shows
+   * @returns {Promise<boolean>} whether it was done: not if somebody would rather go on recording
    */
-  make(settings, snapshot, yaml) {
-    return this.inTurn(() => this.build(settings, snapshot, yaml));
+  async make(settings, snapshot, yaml) {
+    if (!(await this.recordings.consent("This change"))) return false;
+    await this.inTurn(() => this.build(settings, snapshot, yaml));
+    return true;
   }
 
   /**
@@ -187,7 +184,12 @@ export class App {
   async build(settings, snapshot, yaml) {
     const { seed, policy, held, vigour, speed, locks } = this.state;
     /** @type {Scene} */
-    const scene = await this.world.ask("make", { settings: yaml ?? settings, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot });
+    const scene = await this.world.ask("make", { settings: yaml ?? settings, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot, network: policy === "model" ? this.model?.bytes : undefined });
+    if (scene.misfit !== null) {
+      this.state.policy = "babbling";
+      this.announce("misfit", scene.misfit);
+      this.move();
+    }
     if (!snapshot) this.state.held = {};
     if (!this.scene) performance.mark("scene");
     this.scene = scene;
@@ -213,6 +215,7 @@ export class App {
    * @param {Settings} change
    */
   async change(change) {
+    if (!(await this.recordings.consent("This change"))) return;
     this.asked.push(change);
     try {
       await this.inTurn(() => {
@@ -225,18 +228,35 @@ export class App {
     }
   }
 
-  /** Starts the worker again after it died, with what the page knows. */
+  /** Starts the worker again, after it died or instead of one that hangs, with what the page knows. */
   async revive() {
-    this.world.stop();
-    this.turn = Promise.resolve();
-    this.asked = [];
-    this.world = this.connect();
+    if (this.world.alive && !this.world.hung && !(await this.recordings.consent("A new start"))) return;
+    this.connectAnew();
     await this.world.ask("load");
     await this.make(this.state.settings, null);
   }
 
+  connectAnew() {
+    this.world.stop("The simulation is started again.");
+    this.turn = Promise.resolve();
+    this.asked = [];
+    if (this.moment) Object.assign(this.moment, { recorded: null, replay: null, over: false });
+    this.setPlaying(false);
+    for (const name of ["hung", "lost", "stopped"]) this.emit("over", name);
+    this.world = this.connect();
+  }
+
+  /** Starts the next episode, as a program does after the last one. */
+  async nextEpisode() {
+    await this.reset(this.state.seed + 1);
+    this.play(true);
+  }
+
   /** @param {number} [seed] */
   async reset(seed = this.state.seed) {
+    if (!(await this.recordings.consent("A reset"))) return;
+    this.emit("over", "episode");
+    this.emit("over", "stopped");
     this.state.seed = seed;
     await this.world.ask("reset", seed);
     this.stage.jump = true;
@@ -244,8 +264,15 @@ export class App {
     this.emit("state");
   }
 
-  /** @param {boolean} on */
+  /**
+   * Lets time pass, or stand. An episode that is over goes on with the next one.
+   * @param {boolean} on
+   * @returns {Promise<void> | void}
+   */
   play(on) {
+    if (!this.world.alive) return this.announce("lost", "it has to be started again");
+    if (on && this.moment?.over) return this.nextEpisode();
+    if (on) this.emit("over", "stopped");
     this.world.tell("play", on);
     this.setPlaying(on);
   }
@@ -286,22 +313,24 @@ export class App {
     this.emit("state");
   }
 
+  /**
+   * Makes a network move MIMo.
+   * @param {Network} network
+   */
+  async bring(network) {
+    const about = await this.world.ask("model", network.bytes);
+    this.model = network;
+    this.state.policy = "model";
+    this.emit("over", "missing");
+    this.move();
+    this.notice(`${network.name} moves MIMo now. ${about}`);
+  }
+
   /** Lets the worker know what the state says about movement. */
   move() {
     const { policy, held, vigour, speed, seed } = this.state;
     this.world.tell("move", { policy, held, vigour, speed, seed });
     this.emit("state");
-  }
-
-  /**
-   * Returns the address of the page with its state.
-   * @param {boolean} withMoment whether it continues from this very moment
-   */
-  async address(withMoment) {
-    const snapshot = withMoment ? await this.world.ask("snapshot") : null;
-    const state = { ...this.state, settings: this.scene ? this.scene.changed : this.state.settings, view: this.stage.orbit.view };
-    const fragment = await link.encode(state, snapshot);
-    return new URL(`#${fragment}`, location.href).href;
   }
 
   /**

@@ -2,6 +2,9 @@
 
 /** @typedef {import("./types").PageState} PageState */
 
+/** Most bytes that a part of a link may unpack to: a snapshot has less than a tenth of it. */
+const MOST = 8 << 20;
+
 /**
  * @param {Uint8Array} bytes
  * @returns {string}
@@ -23,42 +26,51 @@ export function unbase64(text) {
 /**
  * @param {Uint8Array<ArrayBuffer>} bytes
  * @param {CompressionStream | DecompressionStream} stream
+ * @param {number} most bytes that may come out
  * @returns {Promise<Uint8Array<ArrayBuffer>>}
  */
-export async function through(bytes, stream) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+export async function through(bytes, stream, most) {
+  /** @type {Uint8Array<ArrayBuffer>[]} */
+  const parts = [];
+  let size = 0;
+  for await (const part of new Blob([bytes]).stream().pipeThrough(stream)) {
+    size += part.length;
+    if (size > most) throw new Error(`it unpacks to more than ${most >> 20} MB`);
+    parts.push(part);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
+
+/** @param {Uint8Array<ArrayBuffer>} bytes */
+export const pack = (bytes) => through(bytes, new CompressionStream("deflate-raw"), Infinity);
+
+/** What a link holds: a state, where it goes on from, the network that moves MIMo. */
+/** @typedef {{ state: Record<string, any>, snapshot: Uint8Array<ArrayBuffer> | null, network: Uint8Array<ArrayBuffer> | null }} Link */
 
 /**
  * @param {PageState} state
  * @param {Uint8Array<ArrayBuffer> | null} snapshot
+ * @param {Uint8Array<ArrayBuffer> | null} network packed
  * @returns {Promise<string>} the fragment, without #
  */
-export async function encode(state, snapshot) {
-  const json = new TextEncoder().encode(JSON.stringify(state));
-  const parts = [`s=${base64(await through(json, new CompressionStream("deflate-raw")))}`];
-  if (snapshot) parts.push(`m=${base64(await through(snapshot, new CompressionStream("deflate-raw")))}`);
+export async function encode(state, snapshot, network) {
+  const parts = [`s=${base64(await pack(new TextEncoder().encode(JSON.stringify(state))))}`];
+  if (snapshot) parts.push(`m=${base64(await pack(snapshot))}`);
+  if (network) parts.push(`n=${base64(network)}`);
   return parts.join("&");
 }
 
 /**
  * @param {string} hash
- * @returns {Promise<{ state: Partial<PageState>, snapshot: Uint8Array<ArrayBuffer> | null } | null>} nothing for a link without state
+ * @returns {Promise<Link | null>} nothing for a link without state
  */
 export async function decode(hash) {
   const query = new URLSearchParams(hash.replace(/^#/, ""));
-  const [s, m] = [query.get("s"), query.get("m")];
-  if (!s) return null;
-  const open = async (/** @type {string} */ text) => through(unbase64(text), new DecompressionStream("deflate-raw"));
-  const state = JSON.parse(new TextDecoder().decode(await open(s)));
+  const open = async (/** @type {string} */ text) => through(unbase64(text), new DecompressionStream("deflate-raw"), MOST);
+  const part = async (/** @type {string} */ name) => (query.get(name) ? open(/** @type {string} */ (query.get(name))) : null);
+  const said = await part("s");
+  if (!said) return null;
+  const state = JSON.parse(new TextDecoder().decode(said));
   if (typeof state !== "object" || state === null) throw new Error("the link holds no state");
-  return { state, snapshot: m ? await open(m) : null };
-}
-
-/**
- * Puts the state into the address without a new entry in the history.
- * @param {string} fragment
- */
-export function show(fragment) {
-  history.replaceState(null, "", `#${fragment}`);
+  return { state, snapshot: await part("m"), network: await part("n") };
 }

@@ -5,7 +5,7 @@ import { help } from "./panels/help.js";
 import { move } from "./panels/move.js";
 import { fatal, hideVeil, notices, veil } from "./panels/notices.js";
 import { setup } from "./panels/setup.js";
-import { replay, share } from "./panels/share.js";
+import { share } from "./panels/share.js";
 import { tabs } from "./panels/tabs.js";
 import { caption, transport } from "./panels/transport.js";
 import { watch } from "./panels/watch.js";
@@ -14,6 +14,7 @@ import { drawnInSoftware } from "./stage/graphics.js";
 import { HEAT, heatGradient, place, SCALE } from "./stage/heat.js";
 import { Pointer } from "./stage/pointer.js";
 import { Stage } from "./stage/stage.js";
+import { kept } from "./storage.js";
 import { World } from "./world.js";
 import { el } from "./dom.js";
 
@@ -37,15 +38,16 @@ function stageOrExplain() {
 /** @param {Stage} stage */
 function theme(stage) {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  let chosen = /** @type {"light" | "dark" | null} */ (null);
+  let chosen = [kept("theme")].find((name) => name === "light" || name === "dark") ?? null;
   const apply = () => {
-    const name = chosen ?? (dark.matches ? "dark" : "light");
+    const name = /** @type {"light" | "dark"} */ (chosen ?? (dark.matches ? "dark" : "light"));
     document.documentElement.dataset.theme = name;
     stage.theme = name;
   };
   dark.addEventListener("change", apply);
   $("theme").addEventListener("click", () => {
     chosen = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    kept("theme", chosen);
     apply();
   });
   apply();
@@ -98,13 +100,10 @@ function drops(app) {
     const file = e.dataTransfer?.files[0];
     if (!file) return;
     app.attempt(async () => {
-      if (/\.npz$/i.test(file.name)) await replay(app, await fromFile(new Uint8Array(await file.arrayBuffer())));
+      if (/\.npz$/i.test(file.name)) await app.recordings.replay(await fromFile(new Uint8Array(await file.arrayBuffer())));
       else if (/\.ya?ml$/i.test(file.name)) await app.make({}, null, await file.text());
       else if (/\.onnx$/i.test(file.name)) {
-        const about = await app.world.ask("model", await file.arrayBuffer());
-        app.state.policy = "model";
-        app.move();
-        app.notice(`${file.name} moves MIMo now. ${about}`);
+        await app.bring({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), url: null });
       } else throw new Error(`${file.name} is no recording (.npz), model (.onnx) or configuration (.yml).`);
     });
   });
@@ -146,7 +145,8 @@ async function main() {
     stage.invalidate();
     if (!continued && !calm() && !new URLSearchParams(location.search).has("paused")) app.play(true);
   } catch (e) {
-    app.emit("fault", e instanceof Error ? e.message : String(e));
+    if (app.world.alive) app.announce("lost", e instanceof Error ? e.message : String(e)); // else it was told
+    hideVeil();
   }
   if ("serviceWorker" in navigator && location.protocol !== "file:") navigator.serviceWorker.register("./sw.js").catch(() => {});
 }

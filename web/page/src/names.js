@@ -45,6 +45,20 @@ const WORDS = {
   th: "thumb",
 };
 
+/**
+ * MIMo's tasks: each has a scene and a body of its own.
+ * @type {Record<string, { title: string, goal: string }>}
+ */
+export const TASKS = {
+  reach: { title: "Reach", goal: "Knock the hovering ball from its place with the right hand, on which his eyes are." },
+  standup: { title: "Stand up", goal: "Rise from a crouch by the railing, until the head is half a metre above the ground." },
+  selfbody: { title: "Touch a part", goal: "Touch one part of the own body, another in each episode, with the right hand." },
+  catch: { title: "Catch", goal: "Hold the ball that falls into the right hand for a hundred steps; every effort costs." },
+  roll_over: { title: "Roll over", goal: "Roll from the back to the belly, with as little effort as it takes." },
+};
+/** The behaviors of BabyBench. @type {Record<string, string>} */
+export const BEHAVIORS = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "None" };
+
 /** The parts of the body in the order of a person, with their names. */
 export const PARTS = /** @type {const} */ ({
   head: "Head",

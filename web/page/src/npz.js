@@ -130,7 +130,7 @@ export async function read(bytes) {
     if (local + 30 > bytes.length) throw new Error("The archive is cut off.");
     const start = local + 30 + v.getUint16(local + 26, true) + v.getUint16(local + 28, true);
     const raw = bytes.slice(start, start + packed);
-    const body = method === 8 ? await through(raw, new DecompressionStream("deflate-raw")) : raw;
+    const body = method === 8 ? await through(raw, new DecompressionStream("deflate-raw"), MOST) : raw;
     const array = parse(body, name);
     if (array) out[name] = array;
   }

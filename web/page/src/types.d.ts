@@ -70,6 +70,8 @@ export interface Scene {
   layout: Layout;
   /** Seconds of a step. */
   timestep: number;
+  /** Why the network that moved MIMo cannot go on, if so. */
+  misfit: string | null;
 }
 
 /** Where the parts of a frame start, in numbers of 4 bytes. */
@@ -92,6 +94,7 @@ export interface Score {
   steps: number;
   /** Whether a task's goal is reached, and what it has earned in this episode. */
   success: boolean | null;
+  failure: boolean | null;
   earned: number | null;
   hands: { right: string[]; left: string[]; reachable: number } | null;
   regards: [number, number, number, number] | null;
@@ -114,6 +117,8 @@ export interface Moment {
   pace: number;
   playing: boolean;
   truncated: boolean;
+  /** Whether a task has ended, which goes on with its next episode only. */
+  over: boolean;
   contacts: number;
   score: Score;
   recorded: number | null;
@@ -122,7 +127,7 @@ export interface Moment {
   pull: { body: number; at: [number, number, number]; force: number } | null;
 }
 
-export type PolicyName = "babbling" | "random" | "sine" | "zero" | "model" | "replay";
+export type PolicyName = "babbling" | "random" | "sine" | "zero" | "model";
 
 /** What makes a page: enough to continue with the same bits. */
 export interface PageState {
@@ -136,6 +141,8 @@ export interface PageState {
   speed: number;
   view?: number[];
   locks: string[];
+  /** The network of the policy `model`, in links and in what is remembered. */
+  network?: { name: string; size: number; url: string | null };
 }
 
 /** A request to the worker: a name, an id to answer with, and its arguments. */

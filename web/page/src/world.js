@@ -3,15 +3,26 @@
 /** @typedef {import("./types").Moment} Moment */
 
 /** A request that the worker refused: the message is the library's. */
-export class WorldError extends Error {}
+export class WorldError extends Error {
+  /**
+   * @param {string} message
+   * @param {string | null} [key] of the configuration that is at fault
+   */
+  constructor(message, key = null) {
+    super(message);
+    this.key = key;
+  }
+}
 
-/** Milliseconds after which a silent worker is reported. */
-const PATIENCE = 15_000;
+/** Milliseconds after which a worker that does not answer counts as hung. */
+const PATIENCE = 10_000;
+/** Milliseconds between looks at whether it answers. */
+const LOOK = 1000;
 
 export class World {
   /**
    * @param {URL} script
-   * @param {{ frame: (frame: Float32Array, moment: Moment) => void, event: (name: string, data: any) => void, died: (why: string) => void }} to
+   * @param {{ frame: (frame: Float32Array, moment: Moment) => void, event: (name: string, data?: any) => void, died: (why: string) => void, busy: () => boolean }} to
    * @param {Worker} [worker] one that was started before
    */
   constructor(script, to, worker = World.worker(script)) {
@@ -21,6 +32,11 @@ export class World {
     this.next = 1;
     this.alive = true;
     this.worker = worker;
+    this.heard = performance.now();
+    /** When it was asked whether it lives, if it has not answered yet. */
+    this.pinged = 0;
+    this.hung = false;
+    this.watch = setInterval(() => this.look(), LOOK);
     this.worker.onmessage = (e) => this.hear(e.data);
     this.worker.onerror = (e) => this.die(e.message || "The worker could not be loaded.");
     this.worker.onmessageerror = () => this.die("A message could not be read.");
@@ -36,8 +52,29 @@ export class World {
     return worker;
   }
 
+  /** Asks a worker that has something to do and is silent whether it lives. */
+  look() {
+    const now = performance.now();
+    if (document.hidden) this.pinged &&= now; // nobody waits, and clocks of hidden pages are slow
+    else if (!this.pinged) {
+      if (now - this.heard < LOOK || (!this.waiting.size && !this.to.busy())) return;
+      this.pinged = now;
+      this.worker.postMessage({ ping: true });
+    } else if (!this.hung && now - this.pinged > PATIENCE) {
+      this.hung = true;
+      this.to.event("hung");
+    }
+  }
+
   /** @param {any} d */
   hear(d) {
+    this.heard = performance.now();
+    this.pinged = 0;
+    if (this.hung) {
+      this.hung = false;
+      this.to.event("awake");
+    }
+    if (d.pong) return;
     if (d.frame) {
       const frame = new Float32Array(d.frame);
       this.to.frame(frame, d.moment);
@@ -47,7 +84,7 @@ export class World {
       this.waiting.delete(d.id);
       if (!w) return;
       if (d.error === undefined) w.resolve(d.value);
-      else w.reject(new WorldError(d.error));
+      else w.reject(new WorldError(d.error, d.key));
       if (d.fatal) this.die(d.error);
     } else if (d.fatal) this.die(d.fatal);
     else this.to.event(d.event, d.data);
@@ -65,9 +102,6 @@ export class World {
       const id = this.next++;
       this.waiting.set(id, { resolve, reject, name });
       this.worker.postMessage({ id, name, args });
-      setTimeout(() => {
-        if (this.waiting.has(id)) this.to.event("slow", { name });
-      }, PATIENCE);
     });
   }
 
@@ -83,16 +117,16 @@ export class World {
   /** @param {string} why */
   die(why) {
     if (!this.alive) return;
-    this.alive = false;
-    this.worker.terminate();
-    for (const { reject } of this.waiting.values()) reject(new WorldError(why));
-    this.waiting.clear();
+    this.stop(why);
     this.to.died(why);
   }
 
-  stop() {
+  /** @param {string} why what those hear who wait for an answer */
+  stop(why) {
     this.alive = false;
+    clearInterval(this.watch);
     this.worker.terminate();
+    for (const { reject } of this.waiting.values()) reject(new WorldError(why));
     this.waiting.clear();
   }
 }

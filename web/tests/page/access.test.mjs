@@ -106,3 +106,14 @@ test("with reduced motion nothing starts by itself", async () => {
   assert.equal(await page.evaluate(() => mimo.moment.steps), 0);
   await page.context().close();
 });
+
+test("each tab has its own place to read on", async () => {
+  const page = await host.open();
+  await tab(page, "Setup");
+  await page.evaluate(() => (document.getElementById("panels").scrollTop = 300));
+  await tab(page, "Share");
+  assert.equal(await page.evaluate(() => document.getElementById("panels").scrollTop), 0);
+  await tab(page, "Setup");
+  assert.equal(await page.evaluate(() => document.getElementById("panels").scrollTop), 300);
+  await page.context().close();
+});

@@ -6,6 +6,8 @@ import { chromium } from "playwright-core";
 import { serve } from "../../page/serve.mjs";
 
 export const dist = process.env.DIST ?? fileURLToPath(new URL("../../dist", import.meta.url));
+/** Milliseconds that a test waits for the page, at most. */
+const PATIENCE = Number(process.env.PATIENCE ?? 120_000);
 const ARGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb", "--font-render-hinting=none"];
 
 /** Starts the browser and the server; the page lies in a subfolder, as it may. */
@@ -16,12 +18,13 @@ export async function start() {
     browser,
     url: server.url,
     /** Opens the page and waits for its first picture. */
-    async open({ hash = "", query = "?paused", width = 900, height = 640, scheme = "light", before = undefined, wait = true, ...more } = {}) {
+    async open({ hash = "", query = "?paused", width = 900, height = 640, scheme = "light", before = undefined, wait = true, routes = {}, ...more } = {}) {
       const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: "no-preference", acceptDownloads: true, ...more });
       const page = await context.newPage();
       page.errors = [];
       page.on("pageerror", (e) => page.errors.push(e.message));
       page.on("console", (m) => m.type() === "error" && page.errors.push(m.text()));
+      for (const [name, body] of Object.entries(routes)) await page.route(`**/${name}`, (route) => route.fulfill({ body }));
       if (before) await page.addInitScript(before);
       await page.goto(`${server.url}${query}${hash}`);
       if (wait) await ready(page);
@@ -37,16 +40,32 @@ export async function start() {
 }
 
 /** Waits until a scene has been drawn. */
-export const ready = (page) => page.waitForFunction(() => globalThis.mimo?.scene && globalThis.mimo.stage.frames > 0 && document.getElementById("veil").classList.contains("gone"), null, { timeout: 120_000 });
+export const ready = (page) => page.waitForFunction(() => globalThis.mimo?.scene && globalThis.mimo.stage.frames > 0 && document.getElementById("veil").classList.contains("gone"), null, { timeout: PATIENCE });
 
 /** Waits until a predicate of the page holds. */
-export const until = (page, predicate, argument) => page.waitForFunction(predicate, argument, { timeout: 120_000 });
+export const until = (page, predicate, argument) => page.waitForFunction(predicate, argument, { timeout: PATIENCE });
 
 /** Steps the world without the clock and returns when it is drawn. */
 export const steps = (page, n) => page.evaluate((k) => mimo.world.ask("step", k).then(() => new Promise((done) => { mimo.stage.after.push(done); mimo.stage.invalidate(); })), n);
 
 /** Returns the checksum of the world. */
 export const checksum = (page) => page.evaluate(() => mimo.world.ask("checksum"));
+
+/** A network, what it was made for, and how a file is dropped on the page. */
+export const network = (name) => readFileSync(join(import.meta.dirname, `../../../tests/data/policies/${name}.onnx`));
+const parts = ["hands", "fingers", "arms", "feet", "legs", "body", "head"];
+export const eyesOnly = {
+  behavior: "self_touch",
+  touch_active: false,
+  vision_active: false,
+  ...Object.fromEntries(["velocity", "torque", "limits", "actuation"].map((what) => [`proprio_${what}`, false])),
+  ...Object.fromEntries(parts.map((part) => [`act_${part}`, false])),
+};
+export const drop = (page, name, bytes) => page.evaluate(([file, numbers]) => {
+  const data = new DataTransfer();
+  data.items.add(new File([Uint8Array.from(numbers)], file));
+  document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+}, [name, [...bytes]]);
 
 /** Opens a tab of the panel. */
 export const tab = (page, name) => page.getByRole("tab", { name }).click();

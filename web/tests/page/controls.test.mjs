@@ -215,7 +215,7 @@ test("senses and movements come late", async () => {
     return late;
   });
   assert.ok(late[0] < 0.201 && late.slice(5).every((s) => Math.abs(s - 0.2) < 0.001), late.join());
-  const link = await look(() => mimo.address(false));
+  const link = await look(() => mimo.sharing.address(false));
   const other = await host.open({ hash: new URL(link).hash });
   assert.deepEqual(await other.evaluate(() => [mimo.scene.settings.delay_unit, mimo.scene.settings.delay_sensory, mimo.scene.settings.delay_motor]), ["ms", 200, 100]);
   await other.context().close();

@@ -1,20 +1,8 @@
 // A trained network that is dropped on the page.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { start, steps, until } from "./browser.mjs";
+import { drop as dropOn, eyesOnly as settings, network as model, start, steps, until } from "./browser.mjs";
 
-const model = (name) => readFileSync(join(import.meta.dirname, `../../../tests/data/policies/${name}.onnx`));
-const parts = ["hands", "fingers", "arms", "feet", "legs", "body", "head"];
-/** What the networks were made for: the eyes alone move, and little is sensed. */
-const settings = {
-  behavior: "self_touch",
-  touch_active: false,
-  vision_active: false,
-  ...Object.fromEntries(["velocity", "torque", "limits", "actuation"].map((what) => [`proprio_${what}`, false])),
-  ...Object.fromEntries(parts.map((part) => [`act_${part}`, false])),
-};
 let host;
 let page;
 before(async () => {
@@ -23,12 +11,7 @@ before(async () => {
 });
 after(() => host.stop());
 
-/** Drops a file on the page, as a person does. */
-const drop = (name, bytes) => page.evaluate(([file, numbers]) => {
-  const data = new DataTransfer();
-  data.items.add(new File([Uint8Array.from(numbers)], file));
-  document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
-}, [name, [...bytes]]);
+const drop = (name, bytes) => dropOn(page, name, bytes);
 const action = () => page.evaluate(() => [...mimo.frame.subarray(mimo.scene.layout.action, mimo.scene.layout.angles)]);
 
 test("the second module is loaded when a model is dropped, and the network acts", async () => {

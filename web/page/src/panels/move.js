@@ -15,7 +15,6 @@ const MEANINGS = {
   sine: "Every joint swings, each a little later than its neighbour.",
   zero: "No effort. Gravity, contacts and your sliders remain.",
   model: "A trained network decides. It sees what BabyBench lets policies see.",
-  replay: "A recording plays.",
 };
 
 /** @param {import("../app.js").App} app */
@@ -31,27 +30,22 @@ function policies(app) {
     app.move();
   });
   const model = drop("Drop an ONNX model here, or choose one", ".onnx", (file) => {
-    app.attempt(async () => {
-      const about = await app.world.ask("model", await file.arrayBuffer());
-      app.state.policy = "model";
-      app.move();
-      app.notice(`${file.name} moves MIMo now. ${about}`);
-      hasModel = true;
-    });
+    app.attempt(async () => app.bring({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), url: null }));
   });
-  let hasModel = false;
   const pick = choice("What moves MIMo", POLICIES, (value) => {
-    if (value === "model" && !hasModel) {
+    const { model: network } = app;
+    if (value === "model") {
+      if (network) return void app.attempt(() => app.bring(network)).then((brought) => brought || app.emit("state"));
+      pick.set(app.state.policy); // until there is one
       model.hidden = false;
-      model.input.focus();
-      return;
+      return model.input.focus();
     }
     app.state.policy = /** @type {PolicyName} */ (value);
     app.move();
   });
   app.on("state", () => {
     pick.set(app.state.policy);
-    say(meaning, MEANINGS[app.state.policy]);
+    say(meaning, `${app.moment?.replay ? "A recording plays; after it: " : ""}${app.state.policy === "model" && app.model ? `${app.model.name}: ` : ""}${MEANINGS[app.state.policy]}`);
     vigour.hidden = app.state.policy !== "babbling" && app.state.policy !== "sine";
     vigour.set(app.state.vigour);
     model.hidden = app.state.policy !== "model";
@@ -76,12 +70,14 @@ function pulling(app) {
   up.setAttribute("aria-pressed", "false");
   const force = el("span", { className: "soft small number" });
   app.on("scene", (/** @type {Scene} */ scene) => {
-    const own = scene.bodies.map((b, i) => ({ ...b, i })).filter((b) => b.mass > 0 && app.movable(b.i));
+    const own = scene.bodies.map((b, i) => ({ ...b, i })).filter((b) => b.mass > 0 && b.i > 0 && b.movable);
     const before = own.find((b) => b.name === "right_hand")?.i ?? own[0]?.i;
     which.replaceChildren(...own.map((b) => el("option", { value: b.i, selected: b.i === before }, readable(b.name))));
   });
   app.on("tick", (/** @type {import("../types").Moment} */ m) => {
-    say(force, m.pull ? `${m.pull.force.toFixed(1)} N` : "");
+    const taken = m.recorded !== null || m.replay !== null;
+    up.disabled = taken;
+    say(force, m.pull ? `${m.pull.force.toFixed(1)} N` : taken ? "waits until the recording ends" : "");
     if (!m.pull && up.getAttribute("aria-pressed") === "true" && !app.held) {
       up.setAttribute("aria-pressed", "false");
       up.classList.remove("on");

@@ -1,40 +1,54 @@
-// Messages: what happened, in words, with what one can do about it.
+// Messages: what happened, in words, with what one can do about it; and questions.
 import { $, el, say } from "../dom.js";
 import { button } from "./controls.js";
 
-/** Milliseconds that a message stays. Errors stay until they are closed. */
+/** Milliseconds that a message stays. Errors, and what offers something to do, stay until they are closed. */
 const STAY = 5000;
 
 /** @param {import("../app.js").App} app */
 export function notices(app) {
   const list = $("notices");
-  app.on("notice", ({ text, bad }) => {
-    for (const old of list.children) if (old.firstChild?.textContent === text) old.remove();
+  const gone = (/** @type {string} */ name) => list.querySelectorAll(`[data-name="${CSS.escape(name)}"]`).forEach((box) => box.remove());
+  app.on("notice", (/** @type {{ name: string } & import("../announce.js").Notice} */ { name, text, bad, stays, alert, actions = [] }) => {
+    gone(name);
     while (list.children.length > 2) list.firstChild?.remove();
-    const box = el("div", { className: bad ? "notice bad" : "notice" }, el("span", {}, text), button("Close", () => box.remove(), "tiny"));
+    const close = () => box.remove();
+    const buttons = actions.map(([title, act], i) => button(title, () => {
+      close();
+      app.attempt(async () => void (await act()));
+    }, i === 0 ? "main" : ""));
+    const box = el("div", { className: bad ? "notice bad" : "notice" }, el("span", {}, text), alert ? null : button("Close", close, "tiny"), buttons.length ? el("div", { className: "actions" }, ...buttons) : null);
+    box.dataset.name = name;
+    if (alert) box.setAttribute("role", "alert");
     list.append(box);
-    if (!bad) setTimeout(() => box.remove(), STAY);
+    if (alert) {
+      buttons[0]?.focus();
+      hideVeil();
+    }
+    if (!bad && !stays) setTimeout(close, STAY);
   });
-  app.on("fault", (/** @type {string} */ why) => {
-    list.replaceChildren();
-    const again = button("Start again", () => {
-      box.remove();
-      app.attempt(() => app.revive());
-    }, "main");
-    const box = el("div", { className: "notice bad", role: "alert" }, el("span", {}, `The simulation has stopped: ${explain(why)}`), el("div", { className: "actions" }, again));
-    list.append(box);
-    again.focus();
-    app.setPlaying(false);
-    hideVeil();
-  });
+  app.on("over", gone);
+  app.confirm = question;
 }
 
-/** @param {string} why */
-function explain(why) {
-  if (/^ModuleError/.test(why)) return why.replace(/^ModuleError: (the simulation stopped: )?/, "");
-  if (/memory|allocation|grow/i.test(why)) return `the browser gave it no more memory (${why}). Close other tabs, or choose a smaller scene.`;
-  if (/unreachable|RuntimeError/.test(why)) return `an internal error (${why}). Your settings are kept.`;
-  return why;
+/**
+ * Asks a question with two answers; closing it says no.
+ * @param {string} text
+ * @param {string} yes
+ * @param {string} no
+ * @returns {Promise<boolean>}
+ */
+function question(text, yes, no) {
+  return new Promise((resolve) => {
+    const answer = (/** @type {string} */ value) => () => dialog.close(value);
+    const dialog = el("dialog", { className: "question", "aria-label": text }, el("p", {}, text), el("div", { className: "row" }, button(yes, answer("yes"), "main"), button(no, answer("no"))));
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      resolve(dialog.returnValue === "yes");
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
 }
 
 /** @param {string} text */

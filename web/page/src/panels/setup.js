@@ -1,6 +1,7 @@
 // The configuration: scene, behavior, body, muscles, senses, seed; and every key of the file, from the library's own table.
 import { download, el, say } from "../dom.js";
-import { capital } from "../names.js";
+import { BEHAVIORS, capital, TASKS } from "../names.js";
+import { MOST_SEED } from "../state.js";
 import { button, card, check, choice, drop, slider } from "./controls.js";
 import { senses } from "./senses.js";
 
@@ -10,11 +11,6 @@ import { senses } from "./senses.js";
 
 /** @type {[string, string][]} */
 const SCENES = [["crib", "Crib"], ["cubes", "Cubes"], ["base", "Floor"]];
-/** @type {[string, string][]} */
-const BEHAVIORS = [["self_touch", "Self-touch"], ["hand_regard", "Hand regard"], ["none", "None"]];
-/** Each has a scene and a body of its own. */
-/** @type {[string, string][]} */
-const TASKS = [["reach", "Reach"], ["standup", "Stand up"], ["selfbody", "Touch a part"], ["catch", "Catch"], ["roll_over", "Roll over"]];
 /** @type {[string, string][]} */
 const BODIES = [["v1", "Mitten hands (v1)"], ["v2", "Five fingers (v2)"]];
 /** @type {[string, string][]} */
@@ -31,7 +27,7 @@ export function setup(app) {
 /** @param {import("../app.js").App} app */
 function scene(app) {
   const error = el("p", { className: "error", role: "alert" });
-  const attempt = async (/** @type {() => Promise<void>} */ work) => {
+  const attempt = async (/** @type {() => Promise<unknown>} */ work) => {
     say(error, "");
     try {
       await work();
@@ -42,7 +38,7 @@ function scene(app) {
   };
   const change = (/** @type {import("../types").Settings} */ settings) => attempt(() => app.change(settings));
   const places = choice("Scene", SCENES, (v) => change({ scene: v }));
-  const isTask = (/** @type {unknown} */ name) => TASKS.some(([task]) => task === name);
+  const isTask = (/** @type {unknown} */ name) => String(name) in TASKS;
   const choose = (/** @type {string} */ v) => {
     const { behavior, age } = app.settings;
     // what another task left would stand against the defaults of this one
@@ -51,8 +47,8 @@ function scene(app) {
     else if (isTask(behavior)) attempt(() => app.begin({ ...kept, scene: "crib" }));
     else change({ behavior: v });
   };
-  const behaviors = choice("Behavior", BEHAVIORS, choose);
-  const task = el("select", { "aria-label": "Task", onchange: () => choose(task.value || "self_touch") }, el("option", { value: "" }, "None"), ...TASKS.map(([value, text]) => el("option", { value }, text)));
+  const behaviors = choice("Behavior", Object.entries(BEHAVIORS), choose);
+  const task = el("select", { "aria-label": "Task", onchange: () => choose(task.value || "self_touch") }, el("option", { value: "" }, "None"), ...Object.entries(TASKS).map(([value, { title }]) => el("option", { value }, title)));
   const bodies = choice("Body", BODIES, (v) => change({ behavior: v === "v2" ? "hand_regard" : "self_touch" }));
   const actuation = choice("Actuation", ACTUATION, (v) => change({ actuation_model: v }));
   const original = button("Original", () => change({ age: null }), "tiny");
@@ -69,6 +65,8 @@ function scene(app) {
     bodies.set(s.behavior === "hand_regard" ? "v2" : "v1");
     actuation.set(String(s.actuation_model));
   });
+  const goal = el("p", { className: "small" });
+  app.on("state", () => say(goal, TASKS[String(app.settings.behavior)]?.goal ?? ""));
   const line = (/** @type {string} */ title, /** @type {HTMLElement} */ control, /** @type {string} */ hint) =>
     el("div", { style: "display:grid;gap:5px" }, el("div", { className: "small" }, title), control, hint ? el("p", { className: "soft small" }, hint) : null);
   const place = line("Scene", places, "");
@@ -77,6 +75,7 @@ function scene(app) {
     "World",
     line("Behavior", behaviors, ""),
     line("Task", task, "A task has a goal, a reward, and a scene and a body of its own."),
+    goal,
     place,
     body,
     line("Growth", el("div", { className: "age" }, age, original), "Size, mass and strength at an age. The original is measured as a child of 18 months."),
@@ -87,8 +86,8 @@ function scene(app) {
 
 /** @param {import("../app.js").App} app */
 function start(app) {
-  const seed = el("input", { type: "number", min: 0, max: 2 ** 32 - 1, step: 1, value: 0, "aria-label": "Seed" });
-  const read = () => Math.min(2 ** 32 - 1, Math.max(0, Math.floor(seed.valueAsNumber) || 0));
+  const seed = el("input", { type: "number", min: 0, max: MOST_SEED, step: 1, value: 0, "aria-label": "Seed" });
+  const read = () => Math.min(MOST_SEED, Math.max(0, Math.floor(seed.valueAsNumber) || 0));
   const again = () => app.attempt(() => app.reset(read()));
   seed.addEventListener("change", again);
   app.on("state", () => {
@@ -111,8 +110,7 @@ function file(app) {
     say(error, "");
     try {
       app.state.locks = [];
-      await app.make({}, null, text.value);
-      app.notice("The configuration is in use.");
+      if (await app.make({}, null, text.value)) app.notice("The configuration is in use.");
     } catch (e) {
       say(error, /** @type {Error} */ (e).message);
     }

@@ -1,6 +1,6 @@
 // What one takes away: a link, a recording, a picture, a video.
+import { seconds } from "../announce.js";
 import { download, el, say } from "../dom.js";
-import * as link from "../link.js";
 import { fromFile, toFile } from "../recording.js";
 import { Film, picture } from "../stage/film.js";
 import { button, card, drop } from "./controls.js";
@@ -16,16 +16,16 @@ function address(app) {
   shown.hidden = true;
   const copy = (/** @type {boolean} */ moment) =>
     app.attempt(async () => {
-      const href = await app.address(moment);
-      link.show(new URL(href).hash.slice(1));
+      const { href, lacks } = await app.sharing.made(moment);
+      app.sharing.show(href, moment);
       shown.hidden = false;
       say(shown, href.length > 400 ? `${href.slice(0, 380)}…` : href);
       shown.dataset.href = href;
       try {
         await navigator.clipboard.writeText(href);
-        app.notice("The link is in the clipboard.");
+        app.notice(`The link is in the clipboard. ${lacks}`, lacks !== "");
       } catch {
-        app.notice("The link is in the address bar.");
+        app.notice(`The link is in the address bar. ${lacks}`, lacks !== "");
       }
     });
   return card(
@@ -43,57 +43,37 @@ function tape(app) {
   const state = el("p", { className: "soft small", role: "status" });
   const record = button("Record", () =>
     app.attempt(async () => {
-      if (app.moment?.recorded === null || !app.moment) {
-        await app.world.ask("record");
-        app.play(true);
-      } else {
-        last = await app.world.ask("endRecording");
-        save.disabled = again.disabled = false;
-        app.emit("tick", app.moment);
-      }
+      if (app.moment?.recorded != null) return app.recordings.end();
+      await app.world.ask("record");
+      app.play(true);
     }),
   );
   const save = button("Save .npz", () => last && download("recording.npz", toFile(last)));
   const config = button("Save its configuration", () => app.scene && download("babybench.yml", new Blob([app.scene.yaml], { type: "text/yaml" })));
-  const again = button("Replay", () => app.attempt(() => replay(app, last)));
+  const again = button("Replay", () => app.attempt(() => last ? app.recordings.replay(last) : undefined));
   save.disabled = again.disabled = true;
   const command = "babybench replay --config babybench.yml --recording recording.npz --compat api --out replay";
   app.on("tick", (/** @type {import("../types").Moment} */ m) => {
     const on = m.recorded !== null;
     say(record, on ? "Stop" : "Record");
     record.classList.toggle("recording", on);
-    const seconds = (/** @type {number} */ n) => `${(n * (app.scene?.timestep ?? 0)).toFixed(1)} s`;
-    if (m.replay) say(state, `Replaying ${seconds(m.replay.done)} of ${seconds(m.replay.of)}`);
-    else if (on) say(state, `Recording: ${seconds(m.recorded ?? 0)}. Pulling and locking wait until it ends, as a recording knows actions only.`);
-    else say(state, last ? `Recorded ${seconds(last.steps)}, ${last.steps} steps.` : "A recording starts a new episode from this very pose.");
+    if (m.replay) say(state, `Replaying ${seconds(app, m.replay.done)} of ${seconds(app, m.replay.of)}`);
+    else if (on) say(state, `Recording: ${seconds(app, m.recorded ?? 0)}. Pulling and locking wait until it ends, as a recording knows actions only.`);
+    else say(state, last ? `Recorded ${seconds(app, last.steps)}, ${last.steps} steps.` : "A recording starts a new episode from this very pose.");
   });
-  app.on("tape", (/** @type {import("../types").Recording} */ full) => {
-    last = full;
+  app.on("tape", (/** @type {{ recording: import("../types").Recording }} */ { recording }) => {
+    last = recording;
     save.disabled = again.disabled = false;
-    app.notice("The recording is full and has stopped.");
+    if (app.moment) app.emit("tick", app.moment);
   });
   return card(
     "Recording",
     state,
     el("div", { className: "row" }, record, again, save, config),
-    drop("Drop a recording (.npz) here to replay it", ".npz", (f) => app.attempt(async () => replay(app, await fromFile(new Uint8Array(await f.arrayBuffer()))))),
+    drop("Drop a recording (.npz) here to replay it", ".npz", (f) => app.attempt(async () => app.recordings.replay(await fromFile(new Uint8Array(await f.arrayBuffer()))))),
     el("p", { className: "soft small" }, "On the command line the same bits come from"),
     el("code", { className: "block" }, command),
   );
-}
-
-/**
- * @param {import("../app.js").App} app
- * @param {import("../types").Recording | null} recording
- */
-export async function replay(app, recording) {
-  if (!recording) return;
-  if (recording.yaml !== null && recording.yaml !== app.scene?.yaml) await app.make({}, null, recording.yaml);
-  app.state.held = {};
-  await app.world.ask("replay", recording);
-  app.state.policy = "replay";
-  app.emit("state");
-  app.play(true);
 }
 
 /** @param {import("../app.js").App} app */

@@ -1,5 +1,6 @@
 // Tabs, as the ARIA practices describe them: one stop of the tab key, arrows between them.
 import { $, el } from "../dom.js";
+import { kept } from "../storage.js";
 
 /**
  * @param {Record<string, HTMLElement>} panels by title
@@ -18,14 +19,26 @@ export function tabs(panels, shown) {
     panel.setAttribute("aria-labelledby", button.id);
     return button;
   });
+  /** How far down each tab was read: the panel scrolls, or the page on phones. */
+  /** @type {Map<string, [number, number]>} */
+  const read = new Map();
   /** @param {string} title */
   function choose(title) {
+    const before = titles.find((t) => !panels[t].hidden);
+    const room = $("panels");
+    if (before) read.set(before, [room.scrollTop, scrollY]);
     titles.forEach((t, i) => {
       const on = t === title;
       buttons[i].setAttribute("aria-selected", String(on));
       buttons[i].tabIndex = on ? 0 : -1;
       panels[t].hidden = !on;
     });
+    const [inside, page] = read.get(title) ?? [0, 0];
+    if (title !== before) {
+      room.scrollTop = inside;
+      scrollTo({ top: page, behavior: "instant" });
+    }
+    kept("tab", title);
     shown(title);
   }
   bar.addEventListener("keydown", (e) => {
@@ -40,6 +53,7 @@ export function tabs(panels, shown) {
   });
   bar.append(...buttons);
   $("panels").append(...Object.values(panels));
-  choose(titles[0]);
+  for (const t of titles) panels[t].hidden = true;
+  choose(titles.find((t) => t === kept("tab")) ?? titles[0]);
   return choose;
 }

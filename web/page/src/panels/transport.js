@@ -1,16 +1,15 @@
 // Time: play, one step, reset, speed, the clock; and their keys.
 import { $, el, say } from "../dom.js";
+import { SPEEDS } from "../state.js";
 
-/** @type {[number, string][]} */
-const SPEEDS = [[0.1, "0.1 ×"], [0.25, "0.25 ×"], [0.5, "0.5 ×"], [1, "1 ×"], [2, "2 ×"], [4, "4 ×"], [16, "16 ×"]];
 
 /** @param {import("../app.js").App} app */
 export function transport(app) {
   const play = $("play");
   const speed = /** @type {HTMLSelectElement} */ ($("speed"));
   const clock = $("clock");
-  speed.append(...SPEEDS.map(([value, text]) => el("option", { value, selected: value === 1 }, text)));
-  const toggle = () => app.play(!app.playing);
+  speed.append(...SPEEDS.map((value) => el("option", { value, selected: value === 1 }, `${value} ×`)));
+  const toggle = () => app.attempt(() => app.play(!app.playing));
   const step = () => {
     app.play(false);
     app.attempt(() => app.world.ask("step", 1));

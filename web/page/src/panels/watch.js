@@ -1,6 +1,6 @@
 // What one watches: both eyes, the score of the behavior, the skin, signals over time.
 import { el, say } from "../dom.js";
-import { capital, readable } from "../names.js";
+import { BEHAVIORS, capital, readable, TASKS } from "../names.js";
 import { card, check } from "./controls.js";
 import { signals } from "./signals.js";
 
@@ -44,9 +44,6 @@ function optics(s, late) {
   return capital(said.join(" · "));
 }
 
-/** @type {Record<string, string>} */
-const TITLES = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "No behavior", reach: "Reach", standup: "Stand up", selfbody: "Touch a part", catch: "Catch", roll_over: "Roll over" };
-
 /** @param {import("../app.js").App} app */
 function score(app) {
   const number = el("strong", {}, "0");
@@ -54,13 +51,16 @@ function score(app) {
   const fill = el("i");
   const bar = el("div", { className: "bar", role: "progressbar", "aria-label": "Score", "aria-valuemin": 0, "aria-valuemax": 100 }, fill);
   const detail = el("div");
-  const section = card("Score so far", el("div", { className: "value" }, number, unit), bar, detail);
+  const goal = el("p", { className: "small" });
+  const section = card("Score so far", goal, el("div", { className: "value" }, number, unit), bar, detail);
   const heading = /** @type {HTMLElement} */ (section.querySelector("h2"));
   let drawn = "";
   app.on("tick", (/** @type {import("../types").Moment} */ moment) => {
     const s = moment.score;
     const what = s.earned === null ? "score so far" : "return so far";
-    say(heading, s.behavior === "none" ? "Score" : `${TITLES[s.behavior] ?? s.behavior}: ${what}`);
+    say(heading, s.behavior === "none" ? "Score" : `${TASKS[s.behavior]?.title ?? BEHAVIORS[s.behavior]}: ${what}`);
+    say(goal, TASKS[s.behavior]?.goal ?? "");
+    goal.hidden = !goal.textContent;
     const percent = s.value === null ? 0 : 100 * s.value;
     say(number, s.earned !== null ? s.earned.toFixed(1) : s.value === null ? "–" : `${percent.toFixed(1)} %`);
     fill.style.width = `${Math.min(100, percent)}%`;
@@ -82,7 +82,7 @@ function score(app) {
  */
 function caption(s, truncated) {
   const over = truncated ? " · episode complete" : "";
-  if (s.earned !== null) return `${s.success ? "the goal is reached" : "rewards of this episode"}${over}`;
+  if (s.earned !== null) return `${s.success ? "the goal is reached" : s.failure ? "the goal is out of reach" : "rewards of this episode"}${over}`;
   if (s.behavior === "self_touch") return `of the parts both palms can touch${over}`;
   if (s.behavior === "hand_regard") return `of the time, hands in view${over}`;
   return "Choose a behavior in Setup to count";

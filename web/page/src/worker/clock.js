@@ -4,6 +4,8 @@
 const BUDGET = 24;
 /** Milliseconds between looks at the time. */
 const BEAT = 8;
+/** Seconds that the shown pace looks back. */
+const MEMORY = 0.5;
 
 export class Clock {
   /**
@@ -53,9 +55,11 @@ export class Clock {
         this.step();
         done++;
       }
+      // beats without a step count, too: steps may be longer than they
+      const share = 1 - Math.exp(-passed / MEMORY);
+      if (passed > 0) this.pace += share * ((done * this.seconds()) / passed - this.pace);
       if (!done) return;
       this.cost += 0.1 * ((performance.now() - now) / done - this.cost);
-      this.pace += 0.05 * ((done * this.seconds()) / Math.max(passed, 1e-3) - this.pace);
       // the last frame is shown in any case
       if (this.ready() || !this.playing) this.show(done);
     } catch (e) {

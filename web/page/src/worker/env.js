@@ -138,12 +138,13 @@ export class PageEnv {
 
   /** @returns {import("../types").Score} */
   score() {
-    const { behavior, score, touched_parts, regards, is_success, return: earned } = this.env.info;
+    const { behavior, score, touched_parts, regards, is_success, is_failure, return: earned } = this.env.info;
     return {
       behavior,
       value: score,
       steps: this.steps,
       success: is_success,
+      failure: is_failure,
       earned,
       hands: touched_parts && { right: touched_parts.right_hand, left: touched_parts.left_hand, reachable: PARTS },
       regards: /** @type {import("../types").Score["regards"]} */ (regards),

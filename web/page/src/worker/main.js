@@ -33,12 +33,24 @@ async function bring(bytes) {
  * Whether the module is past using: it trapped, or got no memory.
  * @param {unknown} e
  */
-const deadly = (e) => e instanceof WebAssembly.RuntimeError || e instanceof RangeError || (e instanceof Error && e.name === "ModuleError");
+const deadly = (e) => e instanceof WebAssembly.RuntimeError || (e instanceof RangeError && /memory/i.test(e.message)) || (e instanceof Error && e.name === "ModuleError");
 
-/** @param {unknown} e */
-function failed(e) {
+/**
+ * @param {string} name of the event
+ * @param {unknown} e
+ */
+function failed(name, e) {
   if (deadly(e)) post({ fatal: String(e) });
-  else event("error", e instanceof Error ? e.message : String(e));
+  else event(name, e instanceof Error ? e.message : String(e));
+}
+
+/**
+ * What stops the clock; time stands until somebody lets it go on.
+ * @param {unknown} e
+ */
+function stopped(e) {
+  wanted = false;
+  failed("stopped", e);
 }
 
 /**
@@ -65,7 +77,7 @@ const answers = {
   /** Loads ahead of time; who asks for it later hears what went wrong. */
   warm: () => load().then(() => {}, () => {}),
 
-  /** @param {{ settings: import("../types").Settings | string, locks: string[], snapshot: Uint8Array | null } & Movement} d */
+  /** @param {{ settings: import("../types").Settings | string, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array } & Movement} d */
   async make(d) {
     await load();
     live?.clock.play(false);
@@ -81,20 +93,19 @@ const answers = {
       live?.clock.play(wanted);
       throw e;
     }
-    const bytes = live?.model?.bytes;
     live?.model?.free();
     const strength = live?.spring.strength;
-    live = new LiveWorld(env, d, { frame: (buffer, moment) => post({ frame: buffer, moment }, [buffer]), event, fail: failed });
+    live = new LiveWorld(env, d, { frame: (buffer, moment) => post({ frame: buffer, moment }, [buffer]), event, fail: stopped });
     if (strength !== undefined) live.spring.strength = strength;
-    if (bytes) await bring(bytes).catch((e) => event("error", `The model does not fit this configuration: ${e.message}`));
+    const misfit = d.network ? await bring(d.network).then(() => null, (/** @type {Error} */ e) => e.message) : null;
     live.clock.play(wanted);
-    return { ...env.scene(), layout: live.layout };
+    return { ...env.scene(), layout: live.layout, misfit };
   },
   look: () => world().show(),
   play(/** @type {boolean} */ on) {
     wanted = on;
-    world().clock.play(on);
-    if (!on) world().show();
+    live?.clock.play(on); // one that is being made plays when it is there
+    if (!on) live?.show();
   },
   asleep(/** @type {boolean} */ asleep) {
     live?.clock.play(wanted && !asleep);
@@ -118,11 +129,12 @@ const answers = {
   record: () => world().record(),
   endRecording: () => world().endRecording(),
   replay: (/** @type {import("../types").Recording} */ r) => world().startReplay(r),
-  model: async (/** @type {ArrayBuffer} */ bytes) => bring(new Uint8Array(bytes)),
+  model: async (/** @type {Uint8Array} */ bytes) => bring(bytes),
   checksum: () => world().env.checksum(),
 };
 
 onmessage = async ({ data }) => {
+  if (data.ping) return post({ pong: true });
   if (data.back) return live?.back(data.back);
   const { id, name, args } = data;
   try {
@@ -131,7 +143,8 @@ onmessage = async ({ data }) => {
   } catch (e) {
     const fatal = deadly(e);
     const error = e instanceof Error ? e.message : String(e);
-    if (id) post({ id, error, fatal });
-    else failed(e);
+    const key = /** @type {any} */ (e)?.key ?? null;
+    if (id) post({ id, error, key, fatal });
+    else failed("error", e);
   }
 };

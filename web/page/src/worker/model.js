@@ -22,12 +22,10 @@ async function onnx() {
 export class Model {
   /**
    * @param {import("babybench/onnx.js").OnnxPolicy} policy
-   * @param {Uint8Array} bytes
    * @param {PageEnv} env that it moves
    */
-  constructor(policy, bytes, env) {
+  constructor(policy, env) {
     this.policy = policy;
-    this.bytes = bytes;
     this.about = `It decides ${env.actions.length} numbers in every step.`;
     this.sees = env.settings.vision_active === true;
   }
@@ -38,7 +36,7 @@ export class Model {
    */
   static async load(bytes, env) {
     const { OnnxPolicy } = await onnx();
-    return new Model(new OnnxPolicy(bytes, env.env), bytes, env);
+    return new Model(new OnnxPolicy(bytes, env.env), env);
   }
 
   /**

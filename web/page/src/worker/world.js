@@ -40,6 +40,8 @@ export class LiveWorld {
     this.scored = 0;
     this.score = env.score();
     this.truncated = false;
+    /** Whether a task has ended: it goes on with its next episode only. */
+    this.over = false;
     this.clock = new Clock(
       () => this.step(),
       () => env.seconds,
@@ -76,6 +78,7 @@ export class LiveWorld {
 
   step() {
     const { env, spring } = this;
+    if (this.over) return this.clock.play(false);
     this.decide();
     env.clearForces();
     const held = spring.held;
@@ -84,14 +87,28 @@ export class LiveWorld {
       const pulled = spring.apply(env.pose(held.body), mass, env.seconds);
       if (pulled) env.pull(held.body, pulled.force, pulled.at);
     }
-    if (this.tape && !this.tape.add(this.action)) this.to.event("tape", this.endRecording());
-    this.truncated = env.step(this.action);
+    if (this.tape && !this.tape.add(this.action)) this.to.event("tape", { recording: this.endRecording(), full: true });
+    this.end(env.step(this.action));
     if (this.replay && ++this.replay.done >= this.replay.recording.steps) this.endReplay();
+  }
+
+  /**
+   * Tells when an episode is over; a task stops there, so that its return does.
+   * @param {boolean} over
+   */
+  end(over) {
+    if (over && !this.truncated && !this.replay) {
+      this.score = this.env.score();
+      this.over = this.score.earned !== null;
+      if (this.over) this.clock.play(false);
+      this.to.event("episode", { ...this.score, time: this.env.time });
+    }
+    this.truncated = over;
   }
 
   /** @param {number} n */
   steps(n) {
-    for (let i = 0; i < n; i++) this.step();
+    for (let i = 0; i < n && !this.over; i++) this.step();
     this.show();
   }
 
@@ -100,13 +117,13 @@ export class LiveWorld {
     this.movement.seed = seed;
     this.settle();
     this.env.reset(seed);
-    this.truncated = false;
     this.scored = 0;
   }
 
   /** Lets go of everything that belongs to a run. */
   settle() {
     this.tape = this.replay = null;
+    this.truncated = this.over = false;
     this.spring.hold(null);
     this.env.clearForces();
     this.clock.debt = 0;
@@ -145,8 +162,7 @@ export class LiveWorld {
     this.clock.play(false);
     if (!replay) return;
     const { end, steps } = replay.recording;
-    const verdict = end ? (sameBits(end, this.env.qpos()) ? " It ends with the same bits." : " It ends elsewhere than the recording did: another version or configuration made it.") : "";
-    this.to.event("note", `Replayed ${steps} steps.${verdict}`);
+    this.to.event("replayed", { steps, same: end && sameBits(end, this.env.qpos()) });
   }
 
   /** Sends a frame. */
@@ -176,6 +192,7 @@ export class LiveWorld {
       pace: this.clock.pace,
       playing: this.clock.playing,
       truncated: this.truncated,
+      over: this.over,
       contacts,
       score: this.score,
       recorded: this.tape?.steps ?? null,

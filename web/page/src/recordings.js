@@ -1,0 +1,58 @@
+// Recordings of the page: nothing ends one unasked, and what was recorded is kept.
+
+/** @typedef {import("./types").Recording} Recording */
+
+export class Recordings {
+  /** @param {import("./app.js").App} app */
+  constructor(app) {
+    this.app = app;
+    /** What was replayed last. */
+    /** @type {Recording | null} */
+    this.last = null;
+  }
+
+  /**
+   * Asks before something ends a recording that runs. What was recorded is kept.
+   * @param {string} what
+   * @returns {Promise<boolean>} whether to go on
+   */
+  async consent(what) {
+    if (this.app.moment?.recorded == null) return true;
+    if (!(await this.app.confirm(`${what} ends the recording that runs.`, "End it and go on", "Keep recording"))) {
+      this.app.emit("state"); // controls show again what is
+      return false;
+    }
+    await this.end();
+    return true;
+  }
+
+  /** Ends the recording that runs and keeps it. */
+  async end() {
+    const recording = await this.app.world.ask("endRecording");
+    if (this.app.moment) this.app.moment.recorded = null;
+    this.keep(recording, false);
+  }
+
+  /**
+   * @param {Recording} recording
+   * @param {boolean} full whether it ended by itself
+   */
+  keep(recording, full) {
+    this.app.emit("tape", { recording });
+    this.app.announce("tape", { steps: recording.steps, full });
+  }
+
+  /**
+   * Replays a recording, in the world that it was made in.
+   * @param {Recording} recording
+   * @param {boolean} [play]
+   */
+  async replay(recording, play = true) {
+    if (!(await this.consent("A replay"))) return;
+    if (recording.yaml !== null && recording.yaml !== this.app.scene?.yaml) await this.app.make({}, null, recording.yaml);
+    await this.app.world.ask("replay", recording);
+    this.last = recording;
+    this.app.emit("over", "replayed");
+    this.app.play(play);
+  }
+}

@@ -1,0 +1,239 @@
+// The page and its links: what an address holds is opened, and what there is goes into an address.
+import * as link from "./link.js";
+import { fromFile } from "./recording.js";
+import { checked, FIRST } from "./state.js";
+import { WorldError } from "./world.js";
+
+/** @typedef {import("./types").PageState} PageState */
+/** @typedef {import("./link.js").Link} Link */
+
+/** Largest network that goes into a link, bytes as it is packed: messengers take links of a hundred thousand characters. */
+const LARGEST = 64 << 10;
+/** Milliseconds after a change until it is remembered: sliders change often. */
+const LATER = 300;
+
+export class Sharing {
+  /** @param {import("./app.js").App} app */
+  constructor(app) {
+    this.app = app;
+    /** What the link in the address bar says, if there is one. */
+    /** @type {string | null} */
+    this.linked = null;
+    this.opening = false;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.later = undefined;
+    app.on("state", () => {
+      clearTimeout(this.later);
+      this.later = setTimeout(() => this.remember(), LATER);
+    });
+    addEventListener("pagehide", () => this.remember());
+    // an address that was pasted here, too; never from one that the page itself writes
+    addEventListener("popstate", () => app.attempt(() => this.follow()));
+  }
+
+  /** What there is, for a link: without what is as it always is. */
+  get state() {
+    const { state, scene, stage, model } = this.app;
+    const network = state.policy === "model" && model ? { name: model.name, size: model.bytes.length, url: model.url } : undefined;
+    return { ...state, settings: scene ? scene.changed : state.settings, view: stage.orbit.view, network };
+  }
+
+  /** Tells states apart, wherever one looks from. */
+  get key() {
+    return JSON.stringify({ ...this.state, view: null });
+  }
+
+  /** Keeps what there is in this entry of the history, for a reload; a link that no longer says it becomes the entry before. */
+  remember() {
+    if (!this.app.scene || this.opening) return;
+    if (this.linked !== null && this.linked === this.key) return;
+    const { model } = this.app;
+    const kept = { state: this.state, network: this.state.network && model ? model.bytes : null };
+    const plain = location.pathname + location.search;
+    if (this.linked === null) history.replaceState(kept, "", plain);
+    else history.pushState(kept, "", plain);
+    this.linked = null;
+  }
+
+  /** Starts from the address: a link, what this entry of the history keeps, or `?config=`; then `?policy=` and `?recording=`. */
+  async start() {
+    const query = new URLSearchParams(location.search);
+    const opened = await this.arrive();
+    if (!opened) {
+      const yaml = await this.fetched(query.get("config"), (answer) => answer.text());
+      const made = yaml !== null && (await this.app.attempt(() => this.app.make({}, null, yaml)));
+      if (!made) await this.app.make(this.app.state.settings, null);
+    }
+    const url = query.get("policy");
+    const network = this.app.model ? null : await this.fetched(url, (answer) => answer.arrayBuffer());
+    if (network && url) await this.app.attempt(() => this.app.bring({ name: nameOf(url), bytes: new Uint8Array(network), url }));
+    const recording = opened ? null : await this.fetched(query.get("recording"), (answer) => answer.arrayBuffer());
+    if (recording) await this.app.attempt(async () => this.app.recordings.replay(await fromFile(new Uint8Array(recording)), !query.has("paused")));
+    return opened === "moment" || recording !== null;
+  }
+
+  /** Opens what the address, or this entry of the history, has. */
+  async arrive() {
+    if (/[#&]s=/.test(location.hash)) return this.open(location.hash);
+    const kept = history.state;
+    return kept?.state ? this.enter({ state: kept.state, snapshot: null, network: kept.network ?? null }) : null;
+  }
+
+  /** Goes where the address has gone: back, forward, or to a link that was pasted. */
+  async follow() {
+    if (!(await this.app.recordings.consent("Another address"))) return;
+    this.app.play(false);
+    this.linked = null;
+    if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, network: null });
+  }
+
+  /**
+   * Opens a link.
+   * @param {string} hash
+   */
+  async open(hash) {
+    let found;
+    try {
+      found = await link.decode(hash);
+    } catch {
+      this.app.notice(`The link is damaged. ${this.app.scene ? "What is here stays." : "The page starts afresh."}`, true);
+    }
+    const opened = found ? await this.enter(found) : null;
+    if (opened) this.linked = this.key;
+    return opened;
+  }
+
+  /**
+   * Makes what a link holds the state of the page. What there is not is named, and the rest kept.
+   * @param {Link} found
+   * @returns {Promise<"moment" | "settings" | null>} nothing if it cannot be opened
+   */
+  async enter(found) {
+    const { app } = this;
+    const { state, refused } = checked(found.state);
+    const [before, model] = [app.state, app.model];
+    app.state = state;
+    this.opening = true;
+    try {
+      await this.network(state, found.network);
+      await this.makeOf(state, found.snapshot, refused);
+    } catch (e) {
+      app.state = app.scene ? before : structuredClone(FIRST);
+      app.model = model;
+      if (!app.world.alive) app.connectAnew();
+      app.notice(`The link cannot be opened: ${/** @type {Error} */ (e).message} ${app.scene ? "What was here stays." : "The page starts afresh."}`, true);
+      return null;
+    } finally {
+      this.opening = false;
+    }
+    if (state.view) app.stage.orbit.view = state.view;
+    if (refused.length) app.announce("refused", refused);
+    app.emit("state");
+    return found.snapshot ? "moment" : "settings";
+  }
+
+  /**
+   * Gets the network that moves a state: the link's, that of its address, or the one that is here. Without one MIMo babbles, and it is
+   * said what is missing.
+   * @param {PageState} state
+   * @param {Uint8Array<ArrayBuffer> | null} bytes
+   */
+  async network(state, bytes) {
+    const { app } = this;
+    const { network } = state;
+    delete state.network;
+    if (state.policy !== "model") return;
+    const { name, url, size } = network ?? { name: "a network", url: null, size: 0 };
+    const own = app.model?.name === name && app.model.bytes.length === size ? app.model.bytes : null;
+    const found = bytes ?? own ?? (await this.fetched(url, async (answer) => new Uint8Array(await answer.arrayBuffer())));
+    if (found) {
+      app.model = { name, bytes: found, url };
+      return;
+    }
+    app.model = null;
+    state.policy = "babbling";
+    app.announce("missing", { name, size });
+  }
+
+  /**
+   * Builds a world of a state from outside, without the settings that the library refuses.
+   * @param {PageState} state
+   * @param {Uint8Array<ArrayBuffer> | null} snapshot
+   * @param {string[]} refused what is left out is added
+   */
+  async makeOf(state, snapshot, refused) {
+    const { app } = this;
+    const { locks } = state;
+    for (;;) {
+      try {
+        await app.make(state.settings, snapshot);
+        const joints = new Set(app.scene?.joints.map((j) => j.name));
+        refused.push(...locks.filter((name) => !joints.has(name)).map((name) => `lock ${name}`));
+        return;
+      } catch (e) {
+        const key = e instanceof WorldError && app.world.alive ? e.key : null;
+        if (key === null || !(key in state.settings)) throw e;
+        refused.push(`${key} ${JSON.stringify(state.settings[key])}`);
+        delete state.settings[key];
+      }
+    }
+  }
+
+  /**
+   * Fetches a file; what goes wrong is said.
+   * @template T
+   * @param {string | null} url
+   * @param {(answer: Response) => Promise<T>} read
+   * @returns {Promise<T | null>}
+   */
+  async fetched(url, read) {
+    if (!url) return null;
+    try {
+      const answer = await fetch(new URL(url, location.href));
+      if (!answer.ok) throw new Error(`the server answers ${answer.status}`);
+      return await read(answer);
+    } catch (e) {
+      this.app.notice(`${url} cannot be fetched: ${/** @type {Error} */ (e).message}. Its server may have to allow other pages (CORS).`, true);
+      return null;
+    }
+  }
+
+  /**
+   * Returns the address of the page with its state.
+   * @param {boolean} withMoment whether it continues from this very moment
+   */
+  async address(withMoment) {
+    return (await this.made(withMoment)).href;
+  }
+
+  /**
+   * @param {boolean} withMoment
+   * @returns {Promise<{ href: string, lacks: string }>} the address, and what it cannot hold
+   */
+  async made(withMoment) {
+    const { app, state } = this;
+    const snapshot = withMoment ? await app.world.ask("snapshot") : null;
+    const packed = state.network && app.model && !state.network.url ? await link.pack(app.model.bytes) : null;
+    const fits = packed !== null && packed.length <= LARGEST;
+    const href = new URL(`#${await link.encode(state, snapshot, fits ? packed : null)}`, location.href).href;
+    const lacks = [];
+    if (packed && !fits) lacks.push(`It does not hold the network ${app.model?.name} (${(packed.length / 1e3).toFixed(0)} kB): who opens it must drop that file on the page, or you put it on a server and open this page with ?policy= and its address.`);
+    if (app.moment?.replay) lacks.push("A recording plays here, which the link does not hold: from this moment its policy goes on.");
+    return { href, lacks: lacks.join(" ") };
+  }
+
+  /**
+   * Puts a link into the address bar: a moment becomes an entry of the history.
+   * @param {string} href
+   * @param {boolean} moment
+   */
+  show(href, moment) {
+    this.remember();
+    if (moment) history.pushState(null, "", href);
+    else history.replaceState(null, "", href);
+    this.linked = this.key;
+  }
+}
+
+/** @param {string} url */
+const nameOf = (url) => decodeURIComponent(new URL(url, location.href).pathname.split("/").at(-1) || "network.onnx");

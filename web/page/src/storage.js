@@ -1,0 +1,15 @@
+// What the browser keeps for the next visit: little, and the page works without it.
+
+/**
+ * @param {string} key
+ * @param {string} [value] kept from now on
+ * @returns {string | null}
+ */
+export function kept(key, value) {
+  try {
+    if (value !== undefined) localStorage.setItem(`mimo ${key}`, value);
+    return localStorage.getItem(`mimo ${key}`);
+  } catch {
+    return null; // private windows and frames of other pages may have no storage
+  }
+}
