@@ -117,3 +117,77 @@ test("each tab has its own place to read on", async () => {
   assert.equal(await page.evaluate(() => document.getElementById("panels").scrollTop), 300);
   await page.context().close();
 });
+
+test("nothing that changes by itself is read out", async () => {
+  const page = await host.open({ query: "" });
+  await until(page, () => mimo.moment.steps > 20);
+  for (const name of TABS) {
+    await tab(page, name);
+    const live = await page.evaluate(async () => {
+      const changed = new Set();
+      const watch = new MutationObserver((all) => all.forEach(({ target }) => changed.add((target.nodeType === 1 ? target : target.parentElement).closest("output, [role=status], [role=log], [role=alert], [aria-live=polite], [aria-live=assertive]"))));
+      watch.observe(document.body, { childList: true, characterData: true, subtree: true });
+      await new Promise((done) => setTimeout(done, 1200));
+      watch.disconnect();
+      return [...changed].filter(Boolean).map((e) => e.outerHTML.slice(0, 90));
+    });
+    assert.deepEqual(live, [], name);
+  }
+  await page.context().close();
+});
+
+test("with the system's colours the chosen tab, the chosen option and the track of a slider can be told", async () => {
+  const page = await host.open({ forcedColors: "active" });
+  await tab(page, "Setup");
+  const colours = await page.evaluate(() => {
+    const of = (e) => getComputedStyle(e).backgroundColor;
+    const pair = (all, on) => [of(all.find(on)), of(all.find((e) => !on(e)))];
+    const labels = [...document.querySelectorAll("#panel-setup .choice label")];
+    return [pair([...document.querySelectorAll("[role=tab]")], (t) => t.ariaSelected === "true"), pair(labels, (l) => l.querySelector(":checked"))];
+  });
+  for (const [on, off] of colours) assert.notEqual(on, off);
+  const slider = page.getByLabel("Age of the body");
+  await slider.scrollIntoViewIfNeeded();
+  const picture = await slider.screenshot();
+  const seen = await page.evaluate(async (data) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const c = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    c.drawImage(bitmap, 0, 0);
+    const at = (y) => c.getImageData(8, y, 1, 1).data.join();
+    return at(Math.floor(bitmap.height / 2)) !== at(2);
+  }, picture.toString("base64"));
+  assert.ok(seen, "the track is drawn");
+  await page.context().close();
+});
+
+for (const [width, height, what] of [[320, 640, "320 pixels"], [320, 256, "400 % zoom"]]) {
+  test(`at ${what} nothing is cut off or covered`, async () => {
+    const page = await host.open({ width, height, query: "" });
+    await until(page, () => mimo.moment.steps > 5);
+    const found = await page.evaluate(() => {
+      const box = (s) => document.querySelector(s).getBoundingClientRect();
+      const [play, transport, mast, clock, stage] = ["#play", ".transport", ".masthead h1", "#clock", ".stage"].map(box);
+      return { wide: document.scrollingElement.scrollWidth, round: play.width - play.height, apart: transport.top - mast.bottom, clock: transport.right - clock.right, stage: stage.height };
+    });
+    assert.ok(found.wide <= width, `${found.wide} wide`);
+    assert.ok(Math.abs(found.round) < 1, "the button is round");
+    assert.ok(found.apart > 0 && found.clock >= 0, JSON.stringify(found));
+    assert.ok(found.stage >= 200, `a scene of ${found.stage}`);
+    await page.context().close();
+  });
+}
+
+test("every target is at least 24 pixels large, or has as much room", async () => {
+  const page = await host.open();
+  await page.evaluate(axe);
+  const findings = [];
+  for (const name of TABS) {
+    await tab(page, name);
+    await page.evaluate(() => document.querySelectorAll("#panels details").forEach((d) => (d.open = true)));
+    await page.waitForTimeout(400);
+    const { violations } = await page.evaluate(() => axe.run({ runOnly: ["target-size"] }));
+    findings.push(...violations.flatMap((v) => v.nodes.map((n) => `${name}: ${n.target}`)));
+  }
+  assert.deepEqual(findings, []);
+  await page.context().close();
+});

@@ -86,7 +86,7 @@ test("signals come and go", async () => {
   await page.getByLabel("Add a signal").selectOption({ label: "Left elbow" });
   assert.equal(await plots.count(), before + 1);
   await steps(page, 3);
-  assert.match(await plots.last().locator("output").innerText(), /°/);
+  assert.match(await plots.last().locator(".reading").innerText(), /°/);
   await page.getByRole("button", { name: "Remove Left elbow" }).click();
   assert.equal(await plots.count(), before);
 });

@@ -52,10 +52,12 @@ export function check(text, changed, checked = false) {
  */
 export function slider(text, { min, max, step = "any", value, format = (v) => v.toFixed(2), label = text }, moved) {
   const input = el("input", { type: "range", min, max, step, value, "aria-label": label });
-  const output = el("output", {}, format(value));
+  const output = el("span", { className: "reading" }, format(value));
   const say = () => {
-    output.value = format(input.valueAsNumber);
-    input.setAttribute("aria-valuetext", output.value);
+    const read = format(input.valueAsNumber);
+    if (output.textContent === read) return;
+    output.textContent = read;
+    input.setAttribute("aria-valuetext", read);
   };
   // a range without steps does not listen to arrow keys finely enough
   input.addEventListener("keydown", (e) => {
@@ -69,7 +71,7 @@ export function slider(text, { min, max, step = "any", value, format = (v) => v.
     say();
     moved(input.valueAsNumber);
   });
-  say();
+  input.setAttribute("aria-valuetext", format(value));
   const root = el("div", { className: "slider" }, el("span", { title: text }, text), input, output);
   return Object.assign(root, {
     input,

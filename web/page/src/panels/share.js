@@ -40,7 +40,7 @@ function address(app) {
 function tape(app) {
   /** @type {import("../types").Recording | null} */
   let last = null;
-  const state = el("p", { className: "soft small", role: "status" });
+  const state = el("p", { className: "soft small" });
   const record = button("Record", () =>
     app.attempt(async () => {
       if (app.moment?.recorded != null) return app.recordings.end();

@@ -52,7 +52,7 @@ class Strip {
     this.values = new Float64Array(KEPT);
     this.count = 0;
     this.canvas = el("canvas", { role: "img", "aria-label": `${signal.title} over the last ${SPAN} seconds` });
-    this.output = el("output");
+    this.output = el("span", { className: "reading" });
     const swatch = el("span", { className: "swatch", "aria-hidden": "true" });
     swatch.style.background = color;
     const x = el("button", { "aria-label": `Remove ${signal.title}`, title: "Remove", onclick: close }, "✕");
