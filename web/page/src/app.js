@@ -10,7 +10,7 @@ import { World, WorldError } from "./world.js";
 /** @typedef {import("./types").Moment} Moment */
 /** @typedef {import("./types").Settings} Settings */
 /** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
-/** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "tape"} Event */
+/** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "tape" | "pull"} Event */
 
 /** Milliseconds between looks at numbers: faster than one reads. */
 const TICK = 100;
@@ -291,6 +291,7 @@ export class App {
     this.held = true;
     this.stage.target = pull.target;
     this.world.tell("pull", pull);
+    this.emit("pull");
     if (!this.playing) this.world.tell("look");
   }
 

@@ -53,7 +53,22 @@ function theme(stage) {
   apply();
 }
 
-function legend() {
+/**
+ * Says on the scene what one can do with MIMo, until somebody has done it once.
+ * @param {App} app
+ */
+function hint(app) {
+  const text = $("hint");
+  app.on("scene", () => (text.hidden = kept("pulled") !== null));
+  app.on("pull", () => {
+    kept("pulled", "yes");
+    text.classList.add("gone");
+  });
+}
+
+/** @param {App} app */
+function legend(app) {
+  app.on("scene", (/** @type {import("./types").Scene} */ s) => ($("legend").hidden = s.skin.of.length === 0));
   $("ramp").style.background = heatGradient();
   $("ticks").append(...SCALE.map((f, i) => {
     const tick = el("span", {}, i === SCALE.length - 1 ? `${f} N` : String(f));
@@ -120,9 +135,9 @@ async function main() {
   }
   const app = new App(stage, script, worker);
   theme(stage);
-  legend();
+  legend(app);
   notices(app);
-  const openHelp = help();
+  const openHelp = help(app);
   transport(app);
   caption(app);
   new Pointer(stage, { pull: (p) => app.pull(p), release: () => app.letGo(), mayPull: (b) => app.movable(b) });
@@ -132,6 +147,7 @@ async function main() {
     e.preventDefault();
     app.notice("The graphics were reset. The picture returns in a moment.", true);
   });
+  hint(app);
   drops(app);
   document.addEventListener("visibilitychange", () => app.world.tell("asleep", document.hidden));
   // for the console, and for those who test the page

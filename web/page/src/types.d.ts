@@ -2,6 +2,7 @@
 
 /** A visible geom or site; `size` scales the unit shape, m. */
 export interface Drawable {
+  name: string;
   body: number;
   shape: "plane" | "sphere" | "capsule" | "cylinder" | "box";
   size: [number, number, number];

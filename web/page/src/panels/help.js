@@ -1,16 +1,24 @@
 // "What am I seeing?"
-import { $, el } from "../dom.js";
+import { $, el, say } from "../dom.js";
+import { TASKS } from "../names.js";
 import { button } from "./controls.js";
 
 const link = (/** @type {string} */ href, /** @type {string} */ text) => el("a", { href, rel: "noopener", target: "_blank" }, text);
 
-export function help() {
+/** @param {import("../app.js").App} app */
+export function help(app) {
   const dialog = /** @type {HTMLDialogElement} */ ($("help"));
+  const size = el("p", {});
+  app.on("state", () => {
+    const { age } = app.settings;
+    say(size, typeof age === "number" ? `Here he is as large, heavy and strong as at ${age} month${age === 1 ? "" : "s"}.` : "Here he has his original size, that of a child of about 18 months; the tab Setup has other ages, from birth to two years.");
+  });
   const close = button("Close", () => dialog.close(), "close tiny");
   dialog.append(
     close,
     el("h2", { id: "help-title" }, "What am I seeing?"),
-    el("p", {}, "MIMo is a model of an infant of about 18 months, built to ask how a mind begins: what can be learned from one’s own body, before words, tasks or rewards? Everything here is computed in this tab, 200 times a simulated second: joints, muscles, contacts, skin, balance and what the eyes see."),
+    size,
+    el("p", {}, "MIMo is a model of an infant, built to ask how a mind begins: what can be learned from one’s own body, before words, tasks or rewards? Everything here is computed in this tab, 200 times a simulated second: joints, muscles, contacts, skin, balance and what the eyes see."),
     el("h3", {}, "The skin"),
     el("p", {}, "Thousands of sensors cover the body, dense on the fingertips and sparse on the back. Each reports the force upon it. The heat map shows these forces on a logarithmic scale, from a tenth of a newton to ten. What lies hidden under the body shines through faintly."),
     el("h3", {}, "The eyes"),
@@ -20,6 +28,8 @@ export function help() {
     el("ul", {},
       el("li", {}, "Self-touch: how many parts of the body have the palms found, of all they can reach?"),
       el("li", {}, "Hand regard: how much of the time is a hand in the centre of an eye’s view?")),
+    el("p", {}, "Beside them are tasks of MIMo’s own, with a goal and a reward:"),
+    el("ul", {}, ...Object.values(TASKS).map(({ title, goal }) => el("li", {}, `${title}: ${goal}`))),
     el("h3", {}, "What one can do"),
     el("ul", {},
       el("li", {}, "Drag any part: a spring pulls it. Drag beside MIMo to turn, scroll or pinch to come closer, hold Shift to move."),

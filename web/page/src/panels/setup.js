@@ -21,7 +21,21 @@ const ORIGINAL = 18;
 
 /** @param {import("../app.js").App} app */
 export function setup(app) {
-  return el("div", {}, scene(app), senses(app), start(app), file(app), all(app));
+  return el("div", {}, presets(app), scene(app), senses(app), start(app), file(app), all(app));
+}
+
+/** Where to begin: names, and what they set beside what a first visitor sees. @type {[string, import("../types").Settings][]} */
+const PRESETS = [
+  ["A newborn’s eyes", { behavior: "hand_regard", scene: "cubes", age: 0, vision_active: true, vision_acuity: true }],
+  ["Three months, in the crib", { behavior: "self_touch", scene: "crib", age: 3 }],
+  ["Hands in sight", { behavior: "hand_regard", scene: "crib", vision_active: true }],
+  ["A ball to reach", { behavior: "reach" }],
+];
+
+/** @param {import("../app.js").App} app */
+function presets(app) {
+  const begin = (/** @type {import("../types").Settings} */ settings) => app.attempt(() => app.begin({ vision_active: false, max_episode_steps: 12_000, ...settings }));
+  return card("Begin with", el("div", { className: "row" }, ...PRESETS.map(([title, settings]) => button(title, () => begin(settings)))));
 }
 
 /** @param {import("../app.js").App} app */
@@ -66,7 +80,10 @@ function scene(app) {
     actuation.set(String(s.actuation_model));
   });
   const goal = el("p", { className: "small" });
-  app.on("state", () => say(goal, TASKS[String(app.settings.behavior)]?.goal ?? ""));
+  app.on("state", () => {
+    say(goal, TASKS[String(app.settings.behavior)]?.goal ?? "");
+    goal.hidden = !goal.textContent;
+  });
   const line = (/** @type {string} */ title, /** @type {HTMLElement} */ control, /** @type {string} */ hint) =>
     el("div", { style: "display:grid;gap:5px" }, el("div", { className: "small" }, title), control, hint ? el("p", { className: "soft small" }, hint) : null);
   const place = line("Scene", places, "");

@@ -20,7 +20,7 @@ function eyes(app) {
   });
   const note = el("p", { className: "soft small" });
   app.on("eyes", (/** @type {import("../types").Glance} */ { pixels, side, late }) => {
-    say(note, optics(app.state.settings, late));
+    say(note, [optics(app.state.settings, late), ...(plain(pixels) ? ["Nothing in sight but a plain surface, as the ceiling over the crib is."] : [])].filter(Boolean).join(". "));
     const size = 4 * side * side;
     sides.forEach(({ canvas }, i) => {
       if (canvas.width !== side) canvas.width = canvas.height = side;
@@ -29,6 +29,22 @@ function eyes(app) {
     });
   });
   return card("What MIMo sees", el("div", { className: "eyes" }, ...sides.map((s) => s.figure)), note);
+}
+
+/** Brightness, of 255, that differs within a picture in which something is to be seen. */
+const SOMETHING = 30;
+
+/**
+ * Whether there is nothing to see in pictures, RGBA.
+ * @param {Uint8ClampedArray} pixels
+ */
+function plain(pixels) {
+  let [least, most] = [255, 0];
+  for (let i = 1; i < pixels.length; i += 4) {
+    if (pixels[i] < least) least = pixels[i];
+    if (pixels[i] > most) most = pixels[i];
+  }
+  return most - least < SOMETHING;
 }
 
 /**
@@ -133,6 +149,7 @@ function skin(app) {
   const count = el("p", { className: "soft small" });
   app.on("scene", (/** @type {import("../types").Scene} */ scene) => {
     const n = scene.skin.of.length;
+    for (const box of [glow, dots]) box.hidden = n === 0;
     say(count, n ? `${n.toLocaleString("en")} sensors. Each glows with the force upon it and fades when it ends.` : "This configuration has no sense of touch. Turn on touch_active in Setup.");
     follow.input.checked = stage.orbit.follow;
   });

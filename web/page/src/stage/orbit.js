@@ -1,7 +1,8 @@
 // A camera that circles a point: turned, moved and brought closer by pointer, wheel and keys.
 import { PerspectiveCamera, Vector3 } from "three";
 
-const LOW = -0.12;
+/** The camera stays above what it looks at: below a mattress or a floor there is nothing to see. */
+const LOW = 0.03;
 const HIGH = 1.5;
 
 export class Orbit {
@@ -25,7 +26,8 @@ export class Orbit {
 
   set view(v) {
     if (v.length !== 7 || !v.every(Number.isFinite)) return;
-    [this.azimuth, this.elevation] = v;
+    this.azimuth = v[0];
+    this.elevation = Math.min(HIGH, Math.max(LOW, v[1]));
     this.distance = Math.min(12, Math.max(0.15, v[2]));
     this.offset.set(v[3], v[4], v[5]);
     this.follow = v[6] === 1;

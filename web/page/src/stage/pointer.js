@@ -2,6 +2,9 @@
 import { Plane, Raycaster, Vector2, Vector3 } from "three";
 import { toBody } from "./skin.js";
 
+/** Milliseconds between looks at what is under a pointer that only passes. */
+const HOVER = 60;
+
 /** @typedef {{ body: number, point: [number, number, number], target: [number, number, number] }} Pull */
 
 export class Pointer {
@@ -18,6 +21,7 @@ export class Pointer {
     /** @type {{ pointer: number, body: number, point: [number, number, number], plane: Plane } | null} */
     this.held = null;
     this.panning = false;
+    this.hovered = 0;
     const c = stage.canvas;
     c.addEventListener("pointerdown", (e) => this.start(e));
     c.addEventListener("pointermove", (e) => this.move(e));
@@ -83,7 +87,8 @@ export class Pointer {
 
   /** @param {PointerEvent} e */
   hover(e) {
-    if (e.pointerType !== "mouse" || this.stage.busy) return;
+    if (e.pointerType !== "mouse" || e.timeStamp - this.hovered < HOVER) return;
+    this.hovered = e.timeStamp;
     this.aim(e);
     const hit = this.stage.pick(this.ray);
     this.stage.canvas.classList.toggle("grab", hit !== null && this.to.mayPull(hit.body));

@@ -98,8 +98,7 @@ export class Stage {
     this.root.remove(...[this.bodies, this.skin].filter((o) => o !== null));
     this.scene = scene;
     // the page has its own ground
-    const drawables = scene.drawables.map((d) => (d.shape === "plane" && d.body === 0 ? { ...d, rgba: /** @type {[number, number, number, number]} */ ([0, 0, 0, 0]) } : d));
-    this.bodies = new Bodies({ ...scene, drawables }, this.shared, this.plain);
+    this.bodies = new Bodies({ ...scene, drawables: scene.drawables.map(ofThePage) }, this.shared, this.plain);
     this.skin = new Skin(scene);
     this.skin.dots = this.dots;
     this.skin.visible &&= this.glow;
@@ -216,6 +215,19 @@ export class Stage {
     this.frames++;
     for (const done of this.after.splice(0)) done();
   }
+}
+
+/** Felt, where the model's image of a rug could be taken for water. @type {[number, number, number, number]} */
+const FELT = [0.8, 0.76, 0.71, 1];
+
+/**
+ * Leaves out what the page has its own of, and gives the rug a look that nobody mistakes.
+ * @param {import("../types").Drawable} d
+ * @returns {import("../types").Drawable}
+ */
+function ofThePage(d) {
+  if (d.shape === "plane" && d.body === 0) return { ...d, rgba: [0, 0, 0, 0] };
+  return d.name === "rug" ? { ...d, texture: null, specular: 0, rgba: FELT } : d;
 }
 
 /**
