@@ -1,9 +1,25 @@
 #!/usr/bin/env bash
 # Builds web/dist/: the page, all that a static host needs, and in web/dist/babybench/ the npm package.
 #   web/build.sh [package]   # package: without the page
-# Needs Rust with the target wasm32-unknown-unknown (or RUSTC_WASM, a compiler that has it: scripts/toolchain.sh) and Node.
+# Needs Rust, Node 20 and the Rust target wasm32-unknown-unknown, which rustup adds here where it is missing; or RUSTC_WASM, a compiler that
+# has it, as scripts/toolchain.sh makes one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+# What is missing is said before anything is built.
+missing() {
+  echo "web/build.sh: $1" >&2
+  exit 1
+}
+command -v cargo >/dev/null || missing 'cargo is missing: install Rust, https://rustup.rs'
+command -v node >/dev/null || missing 'node is missing: install Node 20 or later, https://nodejs.org'
+command -v npm >/dev/null || missing 'npm is missing: it comes with Node, https://nodejs.org'
+node -e 'process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)' || missing "node is $(node --version), but must be 20 or later"
+if [ -z "${RUSTC_WASM:-}" ] && ! [ -d "$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown" ]; then
+  hint='install the Rust target wasm32-unknown-unknown, or name a compiler that has it: RUSTC_WASM=$(scripts/toolchain.sh target/toolchain wasm32-unknown-unknown) web/build.sh'
+  command -v rustup >/dev/null || missing "$hint"
+  rustup target add wasm32-unknown-unknown || missing "rustup cannot fetch the target: $hint"
+fi
 
 target=${CARGO_TARGET_DIR:-target}
 wasm=wasm32-unknown-unknown

@@ -1,6 +1,7 @@
 // Makes the page's files: `node build.mjs OUT_DIR`. Sources are plain modules; esbuild joins and minifies them, and
 // drops what the page does not use of three.js.
 import { build } from "esbuild";
+import { createHash } from "node:crypto";
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -39,12 +40,14 @@ const licenses = { "three.js": "three/LICENSE", Inter: "@fontsource-variable/int
 const texts = Object.entries(licenses).map(([name, file]) => `${name}\n\n${readFileSync(join(here, "../node_modules", file), "utf8")}`);
 writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
 
-// what a visit needs is kept for the next one; the module for models only after it was wanted
+// what a visit needs is kept for the next one, by its contents; the module for models only after it was wanted
 const files = readdirSync(out, { recursive: true, withFileTypes: true })
   .filter((f) => f.isFile())
-  .map((f) => relative(out, join(f.parentPath, f.name)))
-  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2)$|^babybench\/(?!onnx|remote|worker)\w+\.(js|wasm)$/.test(f));
-const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = [];", `const FILES = ${JSON.stringify(["./", ...files])};`);
+  .map((f) => relative(out, join(f.parentPath, f.name)).replaceAll("\\", "/"))
+  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg)$|^babybench\/\w+\.(js|wasm)$/.test(f))
+  .sort();
+const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, { hash: createHash("sha256").update(readFileSync(join(out, f))).digest("hex"), wanted: !/onnx|remote|babybench\/worker/.test(f) }]));
+const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = {};", `const FILES = ${JSON.stringify(table)};`);
 await build({ stdin: { contents: sw }, outfile: join(out, "sw.js"), minify: true, logLevel: "warning" });
 
 const scripts = ["main.js", "worker.js", "sw.js"].map((name) => ({ name, raw: statSync(join(out, name)).size, gzip: gzipSync(readFileSync(join(out, name)), { level: 9 }).length }));

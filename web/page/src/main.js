@@ -124,6 +124,19 @@ function drops(app) {
   });
 }
 
+/**
+ * Keeps the page's files in the browser, and says when there are newer ones.
+ * @param {App} app
+ */
+async function keepFiles(app) {
+  if (!("serviceWorker" in navigator) || location.protocol === "file:") return;
+  const before = navigator.serviceWorker.controller;
+  navigator.serviceWorker.addEventListener("controllerchange", () => {
+    if (before) app.notice("There is a newer version of this page: it shows after a reload.");
+  });
+  await navigator.serviceWorker.register("./sw.js").catch(() => {}); // the page works without
+}
+
 async function main() {
   performance.mark("page");
   const script = new URL("./worker.js", import.meta.url);
@@ -164,7 +177,7 @@ async function main() {
     if (app.world.alive) app.announce("lost", e instanceof Error ? e.message : String(e)); // else it was told
     hideVeil();
   }
-  if ("serviceWorker" in navigator && location.protocol !== "file:") navigator.serviceWorker.register("./sw.js").catch(() => {});
+  keepFiles(app);
 }
 
 veil("Loading MIMo");

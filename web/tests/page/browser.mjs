@@ -11,8 +11,8 @@ const PATIENCE = Number(process.env.PATIENCE ?? 120_000);
 const ARGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb", "--font-render-hinting=none"];
 
 /** Starts the browser and the server; the page lies in a subfolder, as it may. */
-export async function start() {
-  const server = await serve(dist, 0, "/some/folder/");
+export async function start(how = {}) {
+  const server = await serve(dist, 0, "/some/folder/", how);
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ARGS });
   return {
     browser,
