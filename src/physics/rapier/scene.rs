@@ -75,8 +75,9 @@ pub struct SceneContact {
 /// scene.sync(&state)?;
 ///
 /// let down = Ray::new(Vector::new(3.0, 3.0, 1.0), -Vector::Z);
-/// let (collider, distance) = scene.queries(QueryFilter::default()).cast_ray(&down, 10.0, true).ok_or("a floor")?;
-/// assert_eq!((scene.geom_of(collider), distance), (engine.model().geom("floor"), 1.0));
+/// let (collider, distance) = scene.queries(QueryFilter::default()).cast_ray(&down, 10.0, true).ok_or("a hit")?;
+/// let geom = scene.geom_of(collider).ok_or("a geom")?;
+/// assert_eq!((engine.model().geom_bodyid[geom], distance), (0, 1.0)); // the floor is the world's
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct RapierScene {
