@@ -33,7 +33,12 @@ await build({
 });
 const css = ["tokens", "layout", "controls"].map((name) => readFileSync(join(here, `css/${name}.css`), "utf8")).join("\n");
 await build({ stdin: { contents: css, loader: "css" }, outfile: join(out, "page.css"), minify: true, logLevel: "warning" });
-copyFileSync(join(here, "index.html"), join(out, "index.html"));
+// who unfolds a link to the page needs whole addresses: PAGE_URL says where the page will be
+const home = process.env.PAGE_URL;
+const html = readFileSync(join(here, "index.html"), "utf8");
+writeFileSync(join(out, "index.html"), home ? html.replace('content="./card.png"', `content="${new URL("card.png", home.endsWith("/") ? home : `${home}/`).href}"`) : html);
+for (const file of ["icon.svg", "page.webmanifest"]) copyFileSync(join(here, file), join(out, file));
+copyFileSync(join(here, "../../docs/page.png"), join(out, "card.png"));
 const font = join(here, "../node_modules/@fontsource-variable/inter");
 copyFileSync(join(font, "files/inter-latin-wght-normal.woff2"), join(out, "inter.woff2"));
 const licenses = { "three.js": "three/LICENSE", Inter: "@fontsource-variable/inter/LICENSE" };
@@ -44,7 +49,7 @@ writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
 const files = readdirSync(out, { recursive: true, withFileTypes: true })
   .filter((f) => f.isFile())
   .map((f) => relative(out, join(f.parentPath, f.name)).replaceAll("\\", "/"))
-  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg)$|^babybench\/\w+\.(js|wasm)$/.test(f))
+  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$/.test(f))
   .sort();
 const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, { hash: createHash("sha256").update(readFileSync(join(out, f))).digest("hex"), wanted: !/onnx|remote|babybench\/worker/.test(f) }]));
 const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = {};", `const FILES = ${JSON.stringify(table)};`);

@@ -66,6 +66,24 @@ function hint(app) {
   });
 }
 
+/**
+ * Shows the scene and its time alone, for a frame in another page: `?embed`. A link leads to the whole page as it is there.
+ * @param {App} app
+ */
+function embed(app) {
+  if (!new URLSearchParams(location.search).has("embed")) return;
+  document.documentElement.dataset.embed = "";
+  const whole = /** @type {HTMLAnchorElement} */ (/** @type {unknown} */ ($("whole")));
+  whole.hidden = false;
+  const url = new URL(location.href);
+  url.searchParams.delete("embed");
+  whole.href = url.href;
+  whole.addEventListener("pointerdown", () => app.attempt(async () => {
+    url.hash = new URL(await app.sharing.address(true)).hash;
+    whole.href = url.href;
+  }));
+}
+
 /** @param {App} app */
 function legend(app) {
   app.on("scene", (/** @type {import("./types").Scene} */ s) => ($("legend").hidden = s.skin.of.length === 0));
@@ -161,6 +179,7 @@ async function main() {
     app.notice("The graphics were reset. The picture returns in a moment.", true);
   });
   hint(app);
+  embed(app);
   drops(app);
   document.addEventListener("visibilitychange", () => app.world.tell("asleep", document.hidden));
   // for the console, and for those who test the page

@@ -45,7 +45,7 @@ export class Sharing {
 
   /** Keeps what there is in this entry of the history, for a reload; a link that no longer says it becomes the entry before. */
   remember() {
-    if (!this.app.scene || this.opening) return;
+    if (!this.app.scene || this.opening || window !== top) return; // the history of a frame is that of the page around it
     if (this.linked !== null && this.linked === this.key) return;
     const { model } = this.app;
     const kept = { state: this.state, network: this.state.network && model ? model.bytes : null };

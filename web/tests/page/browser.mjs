@@ -19,7 +19,7 @@ export async function start(how = {}) {
     url: server.url,
     /** Opens the page and waits for its first picture. */
     async open({ hash = "", query = "?paused", width = 900, height = 640, scheme = "light", before = undefined, wait = true, routes = {}, ...more } = {}) {
-      const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: "no-preference", acceptDownloads: true, ...more });
+      const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: "no-preference", acceptDownloads: true, bypassCSP: true, ...more });
       const page = await context.newPage();
       page.errors = [];
       page.on("pageerror", (e) => page.errors.push(e.message));
