@@ -1,7 +1,7 @@
 //! A task of one's own: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, another one each time.
 
 use babybench::env::task::{TaskScene, TaskSizes, TaskView};
-use babybench::env::{EnvError, Goal, Task};
+use babybench::env::{BlueprintOptions, EnvError, Goal, Task};
 use babybench::{Blueprint, Config, Model};
 
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
         vision_active: false,
         ..Config::default()
     };
-    let mut env = Blueprint::with_task(config, Lift::default())?.env()?;
+    let mut env = Blueprint::with(config, BlueprintOptions::default().with_task(Lift::default()))?.env()?;
     let arm: Vec<f32> = env
         .model()
         .actuator_name

@@ -8,10 +8,9 @@ mod program;
 use std::path::Path;
 
 use babybench::config::{ActuationModel, Behavior, Scene};
-use babybench::mimo::embedded;
 use babybench::runs::logs::evaluation_path;
 use babybench::runs::{
-    EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, read_training, start_training_from,
+    EvaluationLog, KeptScene, SceneFileError, keep_scene, read_config, read_scene, read_training, start_training,
 };
 use babybench::{Blueprint, Config, make_env};
 use common::*;
@@ -337,7 +336,7 @@ fn scenes_are_kept_or_refused() {
         ..free(Behavior::SelfTouch, scene)
     };
     let make = |scene, actuation| blueprint(config(scene, actuation));
-    let keep = |blueprint: &Blueprint| keep_scene(blueprint, &embedded());
+    let keep = |blueprint: &Blueprint| keep_scene(blueprint);
     let motors = make(Scene::Crib, ActuationModel::SpringDamper);
     assert!(matches!(keep(&motors), Ok(KeptScene::Written)));
     assert!(matches!(keep(&motors), Ok(KeptScene::Same)));
@@ -349,8 +348,8 @@ fn scenes_are_kept_or_refused() {
     assert!(matches!(keep(&servos), Ok(KeptScene::Similar)));
     let cubes = make(Scene::Cubes, ActuationModel::SpringDamper);
     assert!(matches!(keep(&cubes), Err(SceneFileError::Different { .. })));
-    start_training_from(&motors, &embedded(), false).expect("a training");
-    let resumed = start_training_from(&cubes, &embedded(), true);
+    start_training(&motors, false).expect("a training");
+    let resumed = start_training(&cubes, true);
     let error = resumed.expect_err("another scene");
     assert!(error.to_string().contains("the scene crib with MIMo v1"), "{error}");
     folder.file("scene.xml", "<mujoco>");

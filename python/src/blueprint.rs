@@ -1,9 +1,9 @@
 //! Compiled scenes.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use babybench::assets::DirAssets;
+use babybench::env::BlueprintOptions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,7 +27,7 @@ impl Blueprint {
         let assets = assets.map(DirAssets::new).transpose();
         let assets = assets.map_err(IntoException::into_exception)?;
         let inner = detached(py, || match assets {
-            Some(assets) => babybench::Blueprint::with_kept_assets(config, Arc::new(assets)),
+            Some(assets) => babybench::Blueprint::with(config, BlueprintOptions::default().with_assets(assets)),
             None => babybench::Blueprint::new(config),
         })?;
         Ok(Self { inner })

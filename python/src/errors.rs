@@ -37,7 +37,6 @@ impl IntoException for EnvError {
             | Self::Skin(_)
             | Self::Render(_)
             | Self::Actuation(_)
-            | Self::OtherActuators { .. }
             | Self::NoVision
             | Self::SenseOff { .. }
             | Self::Rapier(_)

@@ -9,8 +9,7 @@
 //!
 //! let mut changed = MemoryAssets::new();
 //! changed.insert("babybench/crib.xml", "<mujoco/>")?;
-//! let assets = embedded();
-//! let assets = Overlay::new(vec![&changed, &assets]);
+//! let assets = Overlay::new(embedded()).with(changed);
 //! assert_eq!(assets.read("babybench/crib.xml")?.len(), 9);
 //! # Ok::<(), babybench::assets::AssetError>(())
 //! ```
@@ -21,6 +20,7 @@ pub use directory::DirAssets;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::text::quoted;
 
@@ -54,8 +54,9 @@ pub enum AssetError {
 
 /// A source of files by their paths.
 ///
-/// Paths are normalised, relative to the root of the source and separated by `/`.
-pub trait AssetSource {
+/// Paths are normalised, relative to the root of the source and separated by `/`. Threads share sources: a
+/// [`Blueprint`](crate::Blueprint) keeps the one that it is built from.
+pub trait AssetSource: Send + Sync {
     /// Returns the content of a file.
     ///
     /// # Errors
@@ -144,13 +145,14 @@ impl AssetSource for EmbeddedAssets {
     }
 }
 
-/// Combines several sources: the first that has a file gives it.
+/// Several sources, one over another: the topmost that has a file gives it.
 #[derive(Clone)]
-pub struct Overlay<'a> {
-    layers: Vec<&'a dyn AssetSource>,
+pub struct Overlay {
+    /// The topmost last.
+    layers: Vec<Arc<dyn AssetSource>>,
 }
 
-impl std::fmt::Debug for Overlay<'_> {
+impl std::fmt::Debug for Overlay {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Overlay")
             .field("layers", &self.layers.len())
@@ -158,16 +160,25 @@ impl std::fmt::Debug for Overlay<'_> {
     }
 }
 
-impl<'a> Overlay<'a> {
-    /// Lays sources over each other, the topmost first.
-    pub fn new(layers: Vec<&'a dyn AssetSource>) -> Self {
-        Overlay { layers }
+impl Overlay {
+    /// Creates an overlay of a single source, the lowest.
+    pub fn new(base: impl AssetSource + 'static) -> Self {
+        Self {
+            layers: vec![Arc::new(base)],
+        }
+    }
+
+    /// Lays a source over those that are there.
+    #[must_use]
+    pub fn with(mut self, layer: impl AssetSource + 'static) -> Self {
+        self.layers.push(Arc::new(layer));
+        self
     }
 }
 
-impl AssetSource for Overlay<'_> {
+impl AssetSource for Overlay {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
-        for layer in &self.layers {
+        for layer in self.layers.iter().rev() {
             match layer.read(path) {
                 Err(AssetError::NotFound(_)) => {}
                 answer => return answer,
@@ -178,5 +189,15 @@ impl AssetSource for Overlay<'_> {
 
     fn contains(&self, path: &str) -> bool {
         self.layers.iter().any(|layer| layer.contains(path))
+    }
+}
+
+impl<A: AssetSource + ?Sized> AssetSource for Arc<A> {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        (**self).read(path)
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        (**self).contains(path)
     }
 }

@@ -32,57 +32,114 @@ use crate::spaces::NumpyRng;
 #[derive(Clone, Debug)]
 pub struct Blueprint {
     config: Arc<Config>,
-    /// The task, which knows the model.
+    /// The task, bound to the model.
     task: Box<dyn Task>,
     model: Arc<Model>,
     engines: Engines,
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
-    /// The assets, if they stay at hand.
-    assets: Option<Assets>,
     /// What a snapshot must fit.
     fingerprint: u64,
+    surface: Surface,
+}
+
+/// What belongs to the bodies of a scene, whatever moves them.
+#[derive(Clone)]
+struct Surface {
+    assets: Arc<dyn AssetSource>,
     skin: Option<Arc<SkinLayout>>,
-    /// The look of the scene; where the assets stay at hand it is made when it is first needed.
+    /// Meshes and textures, made when they are first needed.
     visual: Arc<OnceLock<Arc<Visual>>>,
     /// The renderer on a GPU, opened when it is first needed.
     gpu: Arc<OnceLock<SharedGpu>>,
 }
 
-/// Assets that stay at hand.
-#[derive(Clone)]
-struct Assets(Arc<dyn AssetSource + Send + Sync>);
-
-impl std::fmt::Debug for Assets {
+impl std::fmt::Debug for Surface {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Assets")
+        f.debug_struct("Surface")
+            .field("skin", &self.skin)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What a blueprint is built from besides its configuration.
+///
+/// ```
+/// use babybench::assets::{MemoryAssets, Overlay};
+/// use babybench::config::Scene;
+/// use babybench::env::BlueprintOptions;
+/// use babybench::mimo::embedded;
+/// use babybench::{Blueprint, Config};
+///
+/// // files of one's own over the embedded ones
+/// let mut own = MemoryAssets::new();
+/// let wall = "<geom name='wall' type='box' size='.05 1 .5' pos='2 0 .5'/>";
+/// own.insert("babybench/crib.xml", format!("<mujocoinclude><worldbody>{wall}</worldbody></mujocoinclude>"))?;
+/// let options = BlueprintOptions::default().with_assets(Overlay::new(embedded()).with(own));
+/// let config = Config { scene: Scene::Crib, touch_active: false, vision_active: false, ..Config::default() };
+/// let blueprint = Blueprint::with(config, options)?;
+/// assert!(blueprint.model().geom_name.iter().any(|name| name == "wall"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct BlueprintOptions {
+    /// The task; `None` for that of the key `behavior`, which is not used otherwise.
+    pub task: Option<Box<dyn Task>>,
+    /// Where documents and textures come from, laid out like the embedded ones, which are the default.
+    pub assets: Arc<dyn AssetSource>,
+}
+
+impl Default for BlueprintOptions {
+    fn default() -> Self {
+        Self {
+            task: None,
+            assets: Arc::new(embedded()),
+        }
+    }
+}
+
+impl BlueprintOptions {
+    /// Sets the task.
+    #[must_use]
+    pub fn with_task(mut self, task: impl Task + 'static) -> Self {
+        self.task = Some(Box::new(task));
+        self
+    }
+
+    /// Sets where documents and textures come from.
+    #[must_use]
+    pub fn with_assets(mut self, assets: impl AssetSource + 'static) -> Self {
+        self.assets = Arc::new(assets);
+        self
+    }
+}
+
+impl std::fmt::Debug for BlueprintOptions {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BlueprintOptions")
+            .field("task", &self.task)
+            .finish_non_exhaustive()
     }
 }
 
 impl Blueprint {
-    /// Builds the scene from the embedded assets.
+    /// Builds the scene and the task of a configuration from the embedded assets.
     ///
     /// # Errors
-    /// As [`Blueprint::with_assets`].
+    /// As [`Blueprint::with`].
     pub fn new(config: Config) -> Result<Self, EnvError> {
-        Self::with_kept_assets(config, Arc::new(embedded()))
+        Self::with(config, BlueprintOptions::default())
     }
 
-    /// Builds the scene from other assets, as [`Blueprint::with_assets`] does, and keeps them: textures are decoded when something
-    /// is first drawn, and [`Blueprint::with_actuation`] reads what it needs.
+    /// Builds a scene with a user-defined task, from other assets, or both.
     ///
-    /// # Errors
-    /// As [`Blueprint::with_assets`]; textures that cannot be read are an error when something is drawn.
-    pub fn with_kept_assets(config: Config, assets: Arc<dyn AssetSource + Send + Sync>) -> Result<Self, EnvError> {
-        let task = of_config(&config);
-        Self::with_task_and_assets(config, task, assets)
-    }
-
-    /// Builds the scene of a task of a program's own, from the embedded assets. The key `behavior` is not used.
+    /// Compiles the document of the task, applies the locks (under `compat: reference` after settling) and lets the task settle the
+    /// scene: for BabyBench's behaviors 100 steps from `qpos0` with the action 0. The blueprint keeps the assets: textures are
+    /// decoded when something is first drawn, at once if `vision_active`.
     ///
     /// ```
-    /// use babybench::env::{Goal, Task};
+    /// use babybench::env::{BlueprintOptions, Goal, Task};
     /// use babybench::{Blueprint, Config};
     ///
     /// #[derive(Clone, Debug)]
@@ -98,45 +155,16 @@ impl Blueprint {
     /// }
     ///
     /// let config = Config { touch_active: false, vision_active: false, ..Config::default() };
-    /// let mut env = Blueprint::with_task(config, Wait)?.env()?;
+    /// let mut env = Blueprint::with(config, BlueprintOptions::default().with_task(Wait))?.env()?;
     /// env.reset(Some(0))?;
     /// assert_eq!(env.step(&vec![0.0; env.action_space().len()])?.reward, 1.0);
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
     ///
     /// # Errors
-    /// As [`Blueprint::new`]; whatever the task refuses.
-    pub fn with_task(config: Config, task: impl Task + 'static) -> Result<Self, EnvError> {
-        Self::with_task_and_assets(config, Box::new(task), Arc::new(embedded()))
-    }
-
-    /// Builds the scene of a task from assets, which stay at hand.
-    ///
-    /// # Errors
-    /// As [`Blueprint::with_task`].
-    pub fn with_task_and_assets(
-        config: Config,
-        task: Box<dyn Task>,
-        assets: Arc<dyn AssetSource + Send + Sync>,
-    ) -> Result<Self, EnvError> {
-        let mut blueprint = Self::build(config, task, &*assets, true)?;
-        blueprint.assets = Some(Assets(assets));
-        Ok(blueprint)
-    }
-
-    /// Builds the scene from other assets, laid out like the embedded ones.
-    ///
-    /// Builds the scene, applies the locks (under `compat: reference` after settling) and lets the task settle the scene: for BabyBench's
-    /// behaviors 100 steps from `qpos0` with the action 0.
-    ///
-    /// # Errors
-    /// A configuration that is not allowed, assets that do not load, a scene that the engine cannot simulate or that diverges.
-    pub fn with_assets(config: Config, assets: &dyn AssetSource) -> Result<Self, EnvError> {
-        let task = of_config(&config);
-        Self::build(config, task, assets, false)
-    }
-
-    fn build(config: Config, mut task: Box<dyn Task>, assets: &dyn AssetSource, lazy: bool) -> Result<Self, EnvError> {
+    /// A configuration that is not allowed, assets that do not load, a scene that the engine cannot simulate or that diverges, and
+    /// any error the task returns.
+    pub fn with(config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
         config.validate()?;
         if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
             return Err(RenderError::NoWgpu.into());
@@ -144,18 +172,31 @@ impl Blueprint {
         if config.engine == EngineKind::Rapier && cfg!(not(feature = "rapier")) {
             return Err(EnvError::NoRapier);
         }
-        let model = Arc::new(task_model(&config, &*task, assets)?);
+        let assets = options.assets;
+        let task = options.task.unwrap_or_else(|| of_config(&config));
+        let model = Arc::new(task_model(&config, &*task, &*assets)?);
         let skin = match config.touch_enabled() {
-            true => Some(Arc::new(make_skin(&model, &config, &*task, assets)?)),
+            true => Some(Arc::new(make_skin(&model, &config, &*task, &*assets)?)),
             false => None,
         };
+        let surface = Surface {
+            assets,
+            skin,
+            visual: Arc::default(),
+            gpu: Arc::default(),
+        };
+        let blueprint = Self::settled(config, task, model, surface)?;
+        if blueprint.config.vision_active {
+            blueprint.visual()?;
+        }
+        Ok(blueprint)
+    }
+
+    /// Binds the task to a model and lets it settle the scene.
+    fn settled(config: Config, mut task: Box<dyn Task>, model: Arc<Model>, surface: Surface) -> Result<Self, EnvError> {
         let engines = Engines::new(&config, &model)?;
         task.bind(&config, &model)?;
         let settled = Settled::new(&config, &*task, &engines, &model)?;
-        let visual = OnceLock::new();
-        if config.vision_active || !lazy {
-            let _ = visual.set(Arc::new(Visual::new(&model, assets)?));
-        }
         Ok(Self {
             fingerprint: fingerprint(&model, &config),
             config: Arc::new(config),
@@ -165,50 +206,29 @@ impl Blueprint {
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
             params: Arc::new(settled.params),
-            assets: None,
-            skin,
-            visual: Arc::new(visual),
-            gpu: Arc::default(),
+            surface,
         })
     }
 
     /// Returns the same blueprint with another actuation model: settled anew, on the same compiled scene where the actuators are the same.
     ///
-    /// `spring_damper` and `muscle` share the scene's motors. To and from `positional`, whose actuators are servos, a scene
-    /// whose assets are at hand is compiled again; all that is not an actuator keeps its number.
+    /// `spring_damper` and `muscle` share the scene's motors. To and from `positional`, whose actuators are servos, the scene is
+    /// compiled again; all that is not an actuator keeps its number.
     ///
     /// # Errors
-    /// As [`Blueprint::new`]; other actuators are needed and the assets of the scene were lent ([`Blueprint::with_assets`]).
+    /// As [`Blueprint::with`].
     pub fn with_actuation(&self, actuation_model: ActuationModel) -> Result<Self, EnvError> {
-        let present = self.config.actuation_model;
         let config = Config {
             actuation_model,
             ..Config::clone(&self.config)
         };
         let servos = |a| a == ActuationModel::Positional;
-        let model = if servos(present) == servos(actuation_model) {
+        let model = if servos(self.config.actuation_model) == servos(actuation_model) {
             self.model.clone()
-        } else if let Some(Assets(assets)) = &self.assets {
-            Arc::new(task_model(&config, &*self.task, &**assets)?)
         } else {
-            let wanted = actuation_model;
-            return Err(EnvError::OtherActuators { present, wanted });
+            Arc::new(task_model(&config, &*self.task, self.assets())?)
         };
-        let engines = Engines::new(&config, &model)?;
-        let mut task = self.task.clone();
-        task.bind(&config, &model)?;
-        let settled = Settled::new(&config, &*task, &engines, &model)?;
-        Ok(Self {
-            fingerprint: fingerprint(&model, &config),
-            config: Arc::new(config),
-            task,
-            model,
-            engines,
-            init_qpos: Arc::new(settled.qpos),
-            init_qvel: Arc::new(settled.qvel),
-            params: Arc::new(settled.params),
-            ..self.clone()
-        })
+        Self::settled(config, self.task.clone(), model, self.surface.clone())
     }
 
     /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
@@ -217,14 +237,22 @@ impl Blueprint {
     /// [`Config::touch_grows`].
     ///
     /// # Errors
-    /// As [`Blueprint::new`]; the assets of the scene were lent ([`Blueprint::with_assets`]).
+    /// As [`Blueprint::with`].
     pub fn with_age(&self, age: Option<f64>) -> Result<Self, EnvError> {
-        let Some(Assets(assets)) = &self.assets else {
-            return Err(EnvError::OtherBody);
+        let config = Config {
+            age,
+            ..Config::clone(&self.config)
         };
-        let mut config = Config::clone(&self.config);
-        config.age = age;
-        Self::with_task_and_assets(config, self.task.clone(), assets.clone())
+        let options = BlueprintOptions {
+            task: Some(self.task.clone()),
+            assets: self.surface.assets.clone(),
+        };
+        Self::with(config, options)
+    }
+
+    /// Returns the assets that the scene is built from.
+    pub fn assets(&self) -> &dyn AssetSource {
+        &*self.surface.assets
     }
 
     /// Returns the task, which environments copy.
@@ -277,7 +305,7 @@ impl Blueprint {
 
     /// Returns where the touch sensors are, if touch is active.
     pub fn skin(&self) -> Option<&Arc<SkinLayout>> {
-        self.skin.as_ref()
+        self.surface.skin.as_ref()
     }
 
     /// Returns the look of the scene, which its environments share.
@@ -285,14 +313,12 @@ impl Blueprint {
     /// # Errors
     /// Textures that cannot be read.
     pub fn visual(&self) -> Result<Arc<Visual>, EnvError> {
-        if let Some(visual) = self.visual.get() {
+        let shared = &self.surface.visual;
+        if let Some(visual) = shared.get() {
             return Ok(visual.clone());
         }
-        let made = Arc::new(match &self.assets {
-            Some(Assets(assets)) => Visual::new(&self.model, &**assets)?,
-            None => Visual::new(&self.model, &embedded())?,
-        });
-        Ok(self.visual.get_or_init(|| made).clone())
+        let made = Arc::new(Visual::new(&self.model, self.assets())?);
+        Ok(shared.get_or_init(|| made).clone())
     }
 
     /// Creates the renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
@@ -312,11 +338,11 @@ impl Blueprint {
     /// # Errors
     /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
     pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
-        if let Some(gpu) = self.gpu.get() {
+        if let Some(gpu) = self.surface.gpu.get() {
             return Ok(gpu.clone());
         }
         let opened = open_gpu(self.visual()?)?;
-        Ok(self.gpu.get_or_init(|| opened).clone())
+        Ok(self.surface.gpu.get_or_init(|| opened).clone())
     }
 }
 

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::actuation::ActuationError;
-use crate::config::{ActuationModel, ConfigError};
+use crate::config::ConfigError;
 use crate::env::SnapshotError;
 use crate::mimo::{GrowthError, LockError, SceneError};
 use crate::mjcf_loader::LoadError;
@@ -45,22 +45,6 @@ pub enum EnvError {
     /// An actuator does not fit the actuation model.
     #[error(transparent)]
     Actuation(#[from] ActuationError),
-    /// The actuation model needs actuators that the scene does not have, and its assets are not at hand.
-    #[error(
-        "actuation_model {wanted} needs other actuators than {present}, and the scene does not come from the embedded \
-         assets; build it with Blueprint::with_assets"
-    )]
-    OtherActuators {
-        /// Actuation model of the scene.
-        present: ActuationModel,
-        /// Actuation model asked for.
-        wanted: ActuationModel,
-    },
-    /// Another body is asked for, and the assets of the scene are not at hand.
-    #[error(
-        "the assets of the scene are not at hand, so MIMo cannot change his age; build it with Blueprint::with_kept_assets"
-    )]
-    OtherBody,
     /// Something cannot be locked or unlocked.
     #[error(transparent)]
     Lock(#[from] LockError),

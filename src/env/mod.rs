@@ -24,7 +24,7 @@ pub mod task;
 mod transforms;
 mod viewer;
 
-pub use blueprint::Blueprint;
+pub use blueprint::{Blueprint, BlueprintOptions};
 pub use details::{InfoDetails, PartNames};
 pub use error::EnvError;
 #[cfg(feature = "eval")]

@@ -425,7 +425,7 @@ fn layers_and_embedded_files_are_found() {
     static FILES: &[(&str, &[u8])] = &[("kit/a.xml", b"<mujoco model='embedded'/>"), ("b.xml", b"\xff")];
     let below = EmbeddedAssets(FILES);
     let above = source(&[("kit/c.xml", "<mujoco model='above'/>")]);
-    let both = Overlay::new(vec![&above, &below]);
+    let both = Overlay::new(below).with(above);
     assert_eq!(load(&both, "kit/./a.xml").unwrap().name(), "embedded");
     assert_eq!(load(&both, "x/../kit/c.xml").unwrap().name(), "above");
     assert_eq!(load(&both, "b.xml").unwrap_err().to_string(), "b.xml: not UTF-8 text");

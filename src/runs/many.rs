@@ -4,7 +4,6 @@ use std::ops::Deref;
 
 use super::logs::TrainingLog;
 use super::training::{RunError, open_training_log};
-use crate::assets::AssetSource;
 use crate::config::Compat;
 use crate::env::Blueprint;
 use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions};
@@ -15,7 +14,6 @@ use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions}
 /// number of threads.
 ///
 /// ```
-/// use babybench::mimo::embedded;
 /// use babybench::runs::RunVector;
 /// use babybench::{Blueprint, Config, VectorOptions};
 ///
@@ -27,7 +25,7 @@ use crate::vector::{AutoresetMode, Batch, VectorEnv, VectorError, VectorOptions}
 ///     max_episode_steps: 5,
 ///     ..Config::default()
 /// };
-/// let mut envs = RunVector::start(&Blueprint::new(config)?, 2, VectorOptions::default(), &embedded(), false)?;
+/// let mut envs = RunVector::start(&Blueprint::new(config)?, 2, VectorOptions::default(), false)?;
 /// let mut actions = Vec::new();
 /// for _ in 0..15 {
 ///     envs.start_episodes()?;
@@ -58,24 +56,18 @@ impl Deref for RunVector {
 }
 
 impl RunVector {
-    /// Makes `n` environments for training from the embedded assets or others: writes `scene.xml` and starts the training
-    /// log, or resumes the one that is there, as [`start_training_from`](super::start_training_from) does.
+    /// Makes `n` environments for training: writes `scene.xml` and starts the training
+    /// log, or resumes the one that is there, as [`start_training`](super::start_training) does.
     ///
     /// # Errors
-    /// As [`VectorEnv::new`], [`start_training_from`](super::start_training_from).
-    pub fn start(
-        blueprint: &Blueprint,
-        n: usize,
-        options: VectorOptions,
-        assets: &dyn AssetSource,
-        resume: bool,
-    ) -> Result<Self, RunError> {
+    /// As [`VectorEnv::new`], [`start_training`](super::start_training).
+    pub fn start(blueprint: &Blueprint, n: usize, options: VectorOptions, resume: bool) -> Result<Self, RunError> {
         let options = VectorOptions {
             autoreset: AutoresetMode::Disabled,
             ..options
         };
         let vector = VectorEnv::new(blueprint, n, options)?;
-        let log = open_training_log(blueprint, assets, resume)?;
+        let log = open_training_log(blueprint, resume)?;
         let config = blueprint.config();
         Ok(Self {
             log,

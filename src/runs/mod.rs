@@ -60,4 +60,4 @@ pub use scene_file::{
     KeptScene, SceneFile, SceneFileError, complete_scene, complete_scene_from, keep_scene, read_config, read_scene,
     write_scene, write_scene_from,
 };
-pub use training::{RunEnv, RunError, for_evaluation, make_env, start_training, start_training_from};
+pub use training::{RunEnv, RunError, for_evaluation, make_env, start_training};

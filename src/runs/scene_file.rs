@@ -145,9 +145,9 @@ pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Pa
 }
 
 /// Writes the scene of a blueprint, whatever its task, into the folder of its run.
-pub(super) fn write_scene_of(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<PathBuf, SceneFileError> {
+pub(super) fn write_scene_of(blueprint: &Blueprint) -> Result<PathBuf, SceneFileError> {
     let config = blueprint.config();
-    let scene = complete_document(&blueprint.task().document(config), config, assets)?;
+    let scene = complete_document(&blueprint.task().document(config), config, blueprint.assets())?;
     write_scene_file(&scene, Path::new(&config.save_dir))
 }
 
@@ -183,16 +183,16 @@ pub enum KeptScene {
 /// Ensures that the folder of a run holds the scene of an environment.
 ///
 /// If there is none, it is written as training writes it; one that is there belongs to the logs beside it and is never
-/// changed. `assets` are those of the blueprint.
+/// changed.
 ///
 /// # Errors
-/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; errors of the file system.
-pub fn keep_scene(blueprint: &Blueprint, assets: &dyn AssetSource) -> Result<KeptScene, SceneFileError> {
+/// [`SceneFileError::Different`] for a scene in which positions and geom ids mean something else; what the file system says.
+pub fn keep_scene(blueprint: &Blueprint) -> Result<KeptScene, SceneFileError> {
     let (config, model) = (blueprint.config(), blueprint.model());
     let save_dir = Path::new(&config.save_dir);
     let path = save_dir.join(SCENE);
     if !path.exists() {
-        write_scene_of(blueprint, assets)?;
+        write_scene_of(blueprint)?;
         return Ok(KeptScene::Written);
     }
     Ok(match read_scene(save_dir) {

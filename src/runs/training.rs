@@ -6,10 +6,8 @@ use thiserror::Error;
 
 use super::logs::{LogError, TrainingLog};
 use super::scene_file::{SceneFileError, keep_scene, write_scene_of};
-use crate::assets::AssetSource;
 use crate::config::{Behavior, Compat, Config};
 use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step};
-use crate::mimo::embedded;
 use crate::vector::VectorError;
 
 /// An error that keeps a run from starting or continuing.
@@ -159,22 +157,14 @@ pub fn make_env(config: Config, training: bool) -> Result<RunEnv, RunError> {
     }
 }
 
-/// Creates an environment for training, from the embedded assets: writes `scene.xml` and starts the training log, or
+/// Creates an environment for training: writes `scene.xml` and starts the training log, or
 /// resumes the one that is there.
 ///
 /// # Errors
 /// Files that cannot be written; to go on, a log that is damaged or of another behavior, a scene with other bodies.
 pub fn start_training(blueprint: &Blueprint, resume: bool) -> Result<RunEnv, RunError> {
-    start_training_from(blueprint, &embedded(), resume)
-}
-
-/// Creates an environment for training from other assets; see [`start_training`].
-///
-/// # Errors
-/// As [`start_training`], and assets that are missing.
-pub fn start_training_from(blueprint: &Blueprint, assets: &dyn AssetSource, resume: bool) -> Result<RunEnv, RunError> {
     let env = blueprint.env()?;
-    let log = open_training_log(blueprint, assets, resume)?;
+    let log = open_training_log(blueprint, resume)?;
     Ok(RunEnv::new(env, Some(log)))
 }
 
@@ -185,11 +175,7 @@ fn part_names(blueprint: &Blueprint) -> Option<PartNames> {
 
 /// Starts the training log in the configuration's `save_dir`, or resumes the one that is there, and writes the scene
 /// beside it.
-pub(super) fn open_training_log(
-    blueprint: &Blueprint,
-    assets: &dyn AssetSource,
-    resume: bool,
-) -> Result<TrainingLog, RunError> {
+pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<TrainingLog, RunError> {
     let config = blueprint.config();
     let names = part_names(blueprint);
     let log = if resume {
@@ -198,9 +184,9 @@ pub(super) fn open_training_log(
         TrainingLog::create(config)?.with_names(names)
     };
     if resume {
-        keep_scene(blueprint, assets)?;
+        keep_scene(blueprint)?;
     }
-    write_scene_of(blueprint, assets)?;
+    write_scene_of(blueprint)?;
     Ok(log)
 }
 

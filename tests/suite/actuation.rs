@@ -9,7 +9,7 @@ use babybench::config::{ActuationModel, Behavior, Compat, Part, Scene};
 use babybench::mimo::{LockError, build_model, embedded};
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State};
 use babybench::sensors::Component;
-use babybench::{Blueprint, Config, Env, EnvError, Model};
+use babybench::{Config, Env, EnvError, Model};
 
 fn config(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, compat: Compat) -> Config {
     Config {
@@ -484,12 +484,6 @@ fn actuation_models_change_without_building_the_scene_again() {
             .expect("the embedded assets");
         assert_eq!((back.init_qpos(), back.model()), (motors.init_qpos(), motors.model()));
     }
-    let own = Blueprint::with_assets(free(Behavior::None, Scene::Base), &embedded()).expect("the assets load");
-    assert!(own.with_actuation(ActuationModel::Muscle).is_ok());
-    let error = own
-        .with_actuation(ActuationModel::Positional)
-        .expect_err("other actuators");
-    assert!(matches!(error, EnvError::OtherActuators { .. }), "{error}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
-//! The parts of a reset and of a step, put together by hand, and blueprints that keep their assets.
-
-use std::sync::Arc;
+//! The parts of a reset and of a step, put together by hand, and blueprints of other assets.
 
 use crate::common::*;
+use babybench::assets::{AssetSource, MemoryAssets, Overlay};
 use babybench::config::{ActuationModel, Behavior, Compat, Scene};
+use babybench::env::BlueprintOptions;
 use babybench::mimo::embedded;
 use babybench::{Blueprint, Config, Env, EnvError};
 
@@ -78,14 +78,19 @@ fn parts_refuse_what_does_not_fit_and_change_nothing() {
 }
 
 #[test]
-fn blueprints_that_keep_their_assets_change_their_actuators() {
+fn blueprints_of_other_assets_change_their_actuators_and_their_age() {
     let config = config(ActuationModel::SpringDamper);
-    let kept = Blueprint::with_kept_assets(config.clone(), Arc::new(embedded())).expect("the assets load");
+    let mut changed = MemoryAssets::new();
+    let crib = embedded().read("babybench/crib.xml").expect("embedded").into_owned();
+    changed.insert("babybench/crib.xml", crib).expect("a path");
+    let options = BlueprintOptions::default().with_assets(Overlay::new(embedded()).with(changed));
+    let kept = Blueprint::with(config.clone(), options).expect("the assets load");
     let own = blueprint(config);
     assert_eq!((kept.model(), kept.init_qpos()), (own.model(), own.init_qpos()));
-    let servos = kept
-        .with_actuation(ActuationModel::Positional)
-        .expect("the assets are at hand");
+    let servos = kept.with_actuation(ActuationModel::Positional).expect("servos");
     assert_eq!(servos.config().actuation_model, ActuationModel::Positional);
+    let newborn = kept.with_age(Some(0.0)).expect("he grows");
+    assert_eq!(newborn.model().body_name, own.model().body_name);
+    assert!(newborn.model().body_mass < own.model().body_mass);
     assert!(kept.visual().is_ok_and(|look| !look.textures.is_empty()));
 }

@@ -14,8 +14,7 @@ fn survives(name: &str, replaced: &[(&str, String)]) {
     for (path, text) in replaced {
         memory.insert(path, text.as_bytes()).expect("a path");
     }
-    let base = embedded();
-    let assets = Overlay::new(vec![&memory, &base]);
+    let assets = Overlay::new(embedded()).with(memory);
     let config = free(Behavior::SelfTouch, Scene::Crib);
     let folder = Folder::new(name);
     let meant = build_model(&config, &assets).expect("a scene");

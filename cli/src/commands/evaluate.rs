@@ -130,7 +130,7 @@ impl Evaluate {
     /// Writes the scene beside the logs, or checks the one that is there.
     fn keep_scene(&self, blueprint: &Blueprint) -> Result<(), Box<dyn Error>> {
         let dir = &blueprint.config().save_dir;
-        match keep_scene(blueprint, &*self.source.assets()?)? {
+        match keep_scene(blueprint)? {
             KeptScene::Written | KeptScene::Same => {}
             KeptScene::Similar => note!(
                 "warning: the scene.xml in {dir} has the same bodies but different numbers: it comes from other \

@@ -15,9 +15,11 @@ mod train;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use babybench::assets::{AssetSource, DirAssets};
 use babybench::config::{Compat, Config, RendererKind};
+use babybench::env::BlueprintOptions;
 use babybench::formats::npz::Npz;
 use babybench::mimo::embedded;
 use babybench::runs::{Recording, ReplayError};
@@ -102,22 +104,27 @@ impl Source {
 
     /// Builds the blueprint of a configuration.
     fn build(&self, config: Config) -> Result<Blueprint, Box<dyn Error>> {
-        let blueprint = match &self.assets {
-            Some(dir) => Blueprint::with_assets(config, &*self.assets()?)
-                .map_err(|e| format!("--assets {}: {e}", dir.display()))?,
-            None => Blueprint::new(config)?,
+        let Some(dir) = &self.assets else {
+            return Ok(Blueprint::new(config)?);
         };
-        Ok(blueprint)
+        let options = BlueprintOptions {
+            assets: self.assets()?,
+            ..BlueprintOptions::default()
+        };
+        let built = Blueprint::with(config, options);
+        // a texture that cannot be read is the fault of the folder, whenever it is drawn
+        let checked = built.and_then(|blueprint| blueprint.visual().map(|_| blueprint));
+        Ok(checked.map_err(|e| format!("--assets {}: {e}", dir.display()))?)
     }
 
     /// Returns the assets that the blueprint is built from.
-    fn assets(&self) -> Result<Box<dyn AssetSource>, Box<dyn Error>> {
+    fn assets(&self) -> Result<Arc<dyn AssetSource>, Box<dyn Error>> {
         Ok(match &self.assets {
-            Some(dir) => Box::new(
+            Some(dir) => Arc::new(
                 DirAssets::new(dir)
                     .map_err(|e| format!("--assets: {e}; give a folder with babybench/*.xml and tex/*.png"))?,
             ),
-            None => Box::new(embedded()),
+            None => Arc::new(embedded()),
         })
     }
 }

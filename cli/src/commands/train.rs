@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use babybench::config::Compat;
 use babybench::eval::Score;
 use babybench::runs::logs::{TrainingTotals, read_recent, training_path};
-use babybench::runs::{RunVector, TrainingLog, start_training_from};
+use babybench::runs::{RunVector, TrainingLog, start_training};
 use babybench::{AutoresetMode, Config};
 use clap::Args;
 use indicatif::ProgressBar;
@@ -49,13 +49,12 @@ impl Train {
         if !self.resume {
             look_at_old_log(config)?;
         }
-        let assets = self.source.assets()?;
         if let Some(n) = self.many.envs() {
             let options = self.many.options(AutoresetMode::Disabled);
-            let envs = RunVector::start(&blueprint, n, options, &*assets, self.resume)?;
+            let envs = RunVector::start(&blueprint, n, options, self.resume)?;
             return self.many_envs(envs, config, &interrupt);
         }
-        let mut env = start_training_from(&blueprint, &*assets, self.resume)?;
+        let mut env = start_training(&blueprint, self.resume)?;
         let (seed, done, bar) = self.begin(env.log(), config)?;
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use babybench::assets::{DirAssets, MemoryAssets, Overlay};
 use babybench::config::{ActuationModel, Behavior, Config, Scene};
+use babybench::env::BlueprintOptions;
 use babybench::formats::npz::Npz;
 use babybench::mimo::{DOCUMENT, Version, build_model, embedded, scene_xml};
 use babybench::mjcf_loader::{Spec, load, load_str, load_str_with, load_with};
@@ -54,7 +55,7 @@ fn loaded(config: &Config, text: &str) -> Vec<(&'static str, Arc<Model>)> {
     let (limits, files, own) = (Limits::default(), embedded(), own_files());
     let mut memory = MemoryAssets::new();
     memory.insert(DOCUMENT, scene_xml(config)).expect("a relative path");
-    let layers = Overlay::new(vec![&memory, &own]);
+    let layers = Overlay::new(own_files()).with(memory);
     let mut flat = MemoryAssets::new();
     let scene = complete_scene(config).expect("the embedded assets load");
     flat.insert("flat.xml", scene.xml).expect("a relative path");
@@ -89,7 +90,8 @@ fn loaded(config: &Config, text: &str) -> Vec<(&'static str, Arc<Model>)> {
 /// The models of environments.
 fn of_environments(config: &Config) -> Vec<(&'static str, Arc<Model>)> {
     let blueprint = Blueprint::new(config.clone()).expect("the scenes settle");
-    let own = Blueprint::with_assets(config.clone(), &own_files()).expect("the scenes settle");
+    let own = Blueprint::with(config.clone(), BlueprintOptions::default().with_assets(own_files()))
+        .expect("the scenes settle");
     let there_and_back = blueprint
         .with_actuation(ActuationModel::Positional)
         .and_then(|servos| servos.with_actuation(ActuationModel::SpringDamper))
@@ -98,7 +100,7 @@ fn of_environments(config: &Config) -> Vec<(&'static str, Arc<Model>)> {
     let evaluation = make_env(config.clone(), false).expect("an environment");
     vec![
         ("Blueprint::new", blueprint.model().clone()),
-        ("Blueprint::with_assets", own.model().clone()),
+        ("Blueprint::with", own.model().clone()),
         ("Blueprint::with_actuation", there_and_back.model().clone()),
         ("Env::new", env.model().clone()),
         ("make_env", evaluation.model().clone()),

@@ -128,7 +128,7 @@ fn never_panic(originals: &DirAssets, seed: u64) {
         let mut changed = MemoryAssets::new();
         let text = damaged(&String::from_utf8_lossy(&bytes), round, &mut rng);
         changed.insert(path, text).expect("a valid name");
-        let source = Overlay::new(vec![&changed, originals]);
+        let source = Overlay::new(originals.clone()).with(changed);
         if let Ok(model) = load_str(scene, "babybench/scene.xml", &source).and_then(compile) {
             assert_sane(&model);
             loaded += 1;

@@ -3,6 +3,7 @@
 
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
 use babybench::config::{Config, Scene};
+use babybench::env::BlueprintOptions;
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::load_str;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
@@ -154,7 +155,8 @@ fn recorded_eyes_with_the_original_files() {
             touch_active: false,
             ..g.config.clone()
         };
-        let blueprint = Blueprint::with_assets(config, &assets).expect("the original files load");
+        let blueprint = Blueprint::with(config, BlueprintOptions::default().with_assets(assets.clone()))
+            .expect("the original files load");
         let bytes = blueprint.visual().expect("textures").texture_bytes();
         assert!(bytes < 128 << 20, "{bytes} bytes of textures");
         let mut env: Env = blueprint.env().expect("the environment builds");

@@ -2,7 +2,6 @@
 
 use babybench::env::Info;
 use babybench::eval::Score;
-use babybench::mimo::embedded;
 use babybench::runs::RunVector;
 use babybench::{Blueprint, VectorOptions};
 
@@ -90,7 +89,7 @@ impl Training {
             threads: settings.threads,
             ..VectorOptions::default()
         };
-        let mut envs = RunVector::start(blueprint, settings.envs, options, &embedded(), false)?;
+        let mut envs = RunVector::start(blueprint, settings.envs, options, false)?;
         envs.vector_mut().seed_action_spaces(1000 * settings.seed)?;
         let mind = Mind::new(envs.env(0)?, settings.seed)?;
         Ok(Self {

@@ -3,7 +3,7 @@
 
 use babybench::config::{ActuationModel, DelayUnit};
 use babybench::env::task::{TaskScene, TaskSizes, TaskView};
-use babybench::env::{Goal, Task};
+use babybench::env::{BlueprintOptions, Goal, Task};
 use babybench::{Blueprint, Config, Env};
 
 /// A step of MIMo costs as much as hundreds of the small scene: he goes on after one input in so many.
@@ -92,7 +92,8 @@ pub fn small() -> Env {
     config.delays.unit = DelayUnit::Steps;
     (config.delays.sensory, config.delays.motor) = (2.0, 1.0);
     config.noise.proprioception = 0.01;
-    let mut env = Blueprint::with_task(config, Small::default()).expect("the small scene").env().expect("an environment");
+    let blueprint = Blueprint::with(config, BlueprintOptions::default().with_task(Small::default()));
+    let mut env = blueprint.expect("the small scene").env().expect("an environment");
     env.reset(Some(0)).expect("a reset");
     env
 }

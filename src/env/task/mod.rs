@@ -1,7 +1,7 @@
 //! Tasks of environments.
 //!
 //! A [`Task`] is a value: which scene, where episodes start, what is counted or rewarded, when an episode succeeds or fails. BabyBench's
-//! behaviors are tasks, and so are MIMo's tasks with goals; [`Blueprint::with_task`](crate::Blueprint::with_task) takes any other.
+//! behaviors are tasks, and so are MIMo's tasks with goals; [`BlueprintOptions`](crate::env::BlueprintOptions) take any other.
 
 mod catch;
 mod free_play;

@@ -65,8 +65,8 @@ pub(super) fn touch_section(run: &mut Run) -> Markup {
 /// Draws MIMo from both sides for each hand.
 fn dolls(run: &Run, model: &Model, touchables: &Touchables, touched: &Touched) -> Markup {
     let assets = DirAssets::new(&run.dir).ok();
-    let mut doll = match &assets {
-        Some(assets) => Doll::new(model, &Overlay::new(vec![assets, &embedded()])),
+    let mut doll = match assets {
+        Some(assets) => Doll::new(model, &Overlay::new(embedded()).with(assets)),
         None => Doll::new(model, &embedded()),
     };
     let palms = ["right_hand", "left_hand"].map(|name| model.body(name));

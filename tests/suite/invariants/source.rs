@@ -174,7 +174,7 @@ fn invariant_6_damaged_scenes_never_panic() {
         let text = mutate(&assets.read(&path).expect("embedded"), WORDS, &mut rng);
         let mut damaged = MemoryAssets::new();
         damaged.insert(&path, text).expect("a path of the assets");
-        let source = Overlay::new(vec![&damaged, &assets]);
+        let source = Overlay::new(assets).with(damaged);
         match load_str(&scene_xml(&free(Behavior::None, scene)), DOCUMENT, &source) {
             Ok(_) => good += 1,
             Err(e) => assert!(!e.place.file.is_empty(), "{e} names no file"),
