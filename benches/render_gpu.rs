@@ -56,7 +56,7 @@ fn environments(blueprint: &Blueprint) -> Result<Vec<Env>, Box<dyn std::error::E
     let mut environments: Vec<Env> = (0..ENVIRONMENTS).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
     let mut action = Vec::new();
     for (seed, env) in environments.iter_mut().enumerate() {
-        env.defer_vision(true);
+        env.senses_mut().defer_vision(true);
         env.reset(Some(seed as u64))?;
         for _ in 0..20 {
             env.sample_action(&mut action);
@@ -72,7 +72,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let visual = blueprint.visual()?;
         let mut gpu = GpuRenderer::new(visual.clone())?;
         let environments = environments(&blueprint)?;
-        let requests: Vec<RenderRequest> = environments.iter().filter_map(Env::eyes).flatten().collect();
+        let requests: Vec<RenderRequest> = environments
+            .iter()
+            .filter_map(|e| Some(e.senses().vision()?.requests(e.state())))
+            .flatten()
+            .collect();
         println!(
             "{scene}: {} eyes of 64 x 64 in one submission, {}",
             requests.len(),

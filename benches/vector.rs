@@ -226,7 +226,7 @@ const EYE_STEPS: usize = 64;
 fn eyes(name: &str, blueprint: &Blueprint) {
     let [mut one, mut two] = [1, 2].map(|threads| {
         let mut env = blueprint.env().expect("available");
-        env.set_vision_threads(threads);
+        env.senses_mut().set_vision_threads(threads);
         env.reset(Some(0)).expect("no divergence");
         env
     });
@@ -242,7 +242,7 @@ fn eyes(name: &str, blueprint: &Blueprint) {
         }
     };
     pair(
-        &format!("eyes/{name}, {} threads over 1", two.vision_threads()),
+        &format!("eyes/{name}, {} threads over 1", two.senses().vision_threads()),
         [EYE_STEPS, 1],
         wall_time,
         &actions,

@@ -10,6 +10,7 @@
 use std::time::Instant;
 
 use babybench::config::{Behavior, RendererKind, Scene};
+use babybench::env::draw_eyes;
 use babybench::{Blueprint, Config, Env};
 
 const COLUMNS: usize = 8;
@@ -26,8 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
     let mut environments: Vec<Env> = (0..COLUMNS * ROWS).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
     for (seed, env) in environments.iter_mut().enumerate() {
-        // steps leave the eyes to `Env::draw_eyes`, which draws them all at once
-        env.defer_vision(true);
+        // steps leave the eyes to `env::draw_eyes`, which draws them all at once
+        env.senses_mut().defer_vision(true);
         env.reset(Some(seed as u64))?;
     }
     let mut action = Vec::new();
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             env.step(&action)?;
         }
         let start = Instant::now();
-        Env::draw_eyes(&mut environments)?;
+        draw_eyes(&mut environments)?;
         drawing += start.elapsed().as_secs_f64();
     }
     let images = f64::from(STEPS) * (2 * environments.len()) as f64;

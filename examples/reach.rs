@@ -61,7 +61,8 @@ impl Arena {
         let place = |component| -> Result<[usize; JOINTS], &str> {
             let of = |&joint: &usize| {
                 let name = &model.jnt_name[joint];
-                env.proprioception()
+                env.senses()
+                    .proprioception()
                     .find(model, component, name)
                     .map(|range| range.start)
             };

@@ -499,7 +499,7 @@ fn all_behaviors_and_actuation_models_run_from_the_command_line() {
             for name in env.actuation().action_names(env.model()) {
                 assert!(inspected.contains(&name), "{name} is not explained");
             }
-            for entry in env.proprioception().entries(env.model(), env.actuation()) {
+            for entry in env.senses().proprioception().entries(env.model(), env.actuation()) {
                 let line = format!(
                     "{:4}..{:4} {:10} {}",
                     entry.range.start,

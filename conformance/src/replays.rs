@@ -52,9 +52,9 @@ pub fn one_step(g: &Golden) -> OneStep {
     };
     let qvel = |k: usize| relative_to_change(row(&ours.qvel, k, nv), row(&recording.qvel, k, nv), before(k));
     let observation = g.observation();
-    let no = env.proprioception().len();
+    let no = env.senses().proprioception().len();
     let mut outputs = Vec::new();
-    for (component, range) in env.proprioception().layout() {
+    for (component, range) in env.senses().proprioception().layout() {
         let part = |table: &[f64], k: usize| row(table, k, no)[range.clone()].to_vec();
         let part_errors = (0..t).map(|k| relative(&part(&ours.observation, k), &part(&observation, k)));
         outputs.push((component.name(), Summary::new(part_errors)));
@@ -101,7 +101,7 @@ pub fn open_loop(g: &Golden) -> Vec<f64> {
     let mut env = g.env();
     let (recording, ours): (Recording, Replay) = g.replay(&mut env, false);
     let nq = env.model().nq;
-    let joints = &env.proprioception().joints().qpos;
+    let joints = &env.senses().proprioception().joints().qpos;
     let at = |table: &[f64], k: usize| pick(row(table, k, nq), joints);
     (0..ours.len)
         .map(|k| rms(&at(&ours.qpos, k), &at(&recording.qpos, k)))

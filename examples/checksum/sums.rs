@@ -29,7 +29,7 @@ fn walk(env: &mut Env, steps: usize) -> Sum {
 /// Makes an environment whose eyes are drawn by one or two threads.
 fn seeing(case: Case, threads: usize) -> Result<Env, Box<dyn std::error::Error>> {
     let mut env = blueprint(case, |config| config)?.env()?;
-    env.set_vision_threads(threads);
+    env.senses_mut().set_vision_threads(threads);
     Ok(env)
 }
 
@@ -144,7 +144,7 @@ pub fn pictures(case: Case) -> Sum {
                 segmentation: Some(segmentation),
             })
         };
-        env.eye_buffers([eye()?, eye()?])?;
+        env.senses_mut().eye_buffers([eye()?, eye()?])?;
         rgb.iter().chain(&gray).for_each(|image| hash.bytes(image));
         hash.depth(&depth.each_ref().map(|image| &image[..]));
         hash.segmentation(&geoms.each_ref().map(|image| &image[..]));

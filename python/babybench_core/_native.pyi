@@ -103,14 +103,14 @@ class Env:
         """Starts an episode at positions (nq) and velocities (nv), without start actions."""
     def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
         """Puts the scene at positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
-    def forward(self) -> dict[str, _Array]:
-        """Computes everything that follows from the present positions, velocities and controls, without advancing."""
+    def refresh(self) -> dict[str, _Array]:
+        """Computes poses, contacts, forces and senses of the present state, without advancing."""
     def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
         """Applies an action; returns observation, reward, terminated and truncated."""
     def run(self, actions: npt.ArrayLike) -> None:
         """Applies actions, (K, action size), one after the other, and returns nothing: to replay, and to time the core."""
-    def observe(self) -> dict[str, _Array]:
-        """Returns the observation of the last reset or step."""
+    def observation(self) -> dict[str, _Array]:
+        """Returns the observation of the last reset, step or :meth:`refresh`."""
     def info(self, details: bool = True) -> dict[str, Any]:
         """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
     def set_goal(self, desired: npt.ArrayLike) -> dict[str, _Array]:
@@ -191,9 +191,6 @@ class Env:
     @property
     def proprioception_entries(self) -> list[tuple[str, str, int, int]]:
         """Component, name, first and last plus one place of each entry of the observation."""
-    @property
-    def gaze_angles(self) -> list[float] | None:
-        """How far each hand is off the axis of each eye, rad: right-right, right-left, left-right, left-left (eye, hand)."""
 
     def render(self, camera: str, width: int, height: int) -> npt.NDArray[np.uint8]:
         """Draws from a camera of the scene, (height, width, 3), red, green, blue, rows from the top."""

@@ -124,7 +124,7 @@ impl Blocks {
         let mut felt = match (kept, self.touch) {
             (kept, true) => {
                 let off = || PyValueError::new_err("touch is off: set touch_active to True");
-                let touch = env.touch_observed().ok_or_else(off)?;
+                let touch = env.senses().touch_observed().ok_or_else(off)?;
                 let width = touch.width();
                 let fresh = || Felt::new::<f32>(py, &self.blocks, touch.values().len() / width, width);
                 let felt = kept.map_or_else(fresh, Ok)?;

@@ -121,7 +121,7 @@ impl Env {
         let (rows, width) = (actions.len()?, inner.env.action_space().len());
         read("actions", actions, &[rows, width], &mut inner.action)?;
         let Inner { env, action, .. } = &mut *inner;
-        detached(py, || env.reset_with(action).map(|_| ()))?;
+        detached(py, || env.by_hand().reset_with(action).map(|_| ()))?;
         Self::observed(py, inner)
     }
 
@@ -143,11 +143,10 @@ impl Env {
         self.placed(py, [qpos, qvel], |env, qpos, qvel| env.set_state(qpos, qvel).map(drop))
     }
 
-    fn forward<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn refresh<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;
-        let (qpos, qvel) = (inner.env.state().qpos.clone(), inner.env.state().qvel.clone());
-        detached(py, || inner.env.set_state(&qpos, &qvel).map(|_| ()))?;
+        detached(py, || inner.env.refresh().map(drop))?;
         Self::observed(py, inner)
     }
 
@@ -185,7 +184,7 @@ impl Env {
         Ok(())
     }
 
-    fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn observation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         Self::observed(py, guard.open()?)
     }
@@ -344,7 +343,7 @@ impl Env {
 
     #[getter]
     fn touch_width(&self) -> PyResult<usize> {
-        Ok(self.guard()?.open()?.env.touch().map_or(0, |t| t.width()))
+        Ok(self.guard()?.open()?.env.senses().touch().map_or(0, |t| t.width()))
     }
 
     fn touch_layout<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
@@ -367,15 +366,14 @@ impl Env {
     fn proprioception_entries(&self) -> PyResult<Vec<(&'static str, String, usize, usize)>> {
         let mut guard = self.guard()?;
         let env = &guard.open()?.env;
-        let entries = env.proprioception().entries(env.model(), env.actuation()).into_iter();
+        let entries = env
+            .senses()
+            .proprioception()
+            .entries(env.model(), env.actuation())
+            .into_iter();
         Ok(entries
             .map(|e| (e.component.name(), e.name, e.range.start, e.range.end))
             .collect())
-    }
-
-    #[getter]
-    fn gaze_angles(&self) -> PyResult<Option<[f64; 4]>> {
-        Ok(self.guard()?.open()?.env.gaze_angles().map(|angles| angles.to_array()))
     }
 
     // --- pictures ---
@@ -401,5 +399,5 @@ impl Env {
 
 fn felt(inner: &Inner) -> PyResult<&babybench::sensors::Touch> {
     let off = "touch is off: set touch_active to True";
-    inner.env.touch().ok_or_else(|| PyValueError::new_err(off))
+    inner.env.senses().touch().ok_or_else(|| PyValueError::new_err(off))
 }

@@ -25,23 +25,23 @@ fn goals<'a>(o: &Observation<'a>) -> Option<[&'a [f64]; 2]> {
 pub fn fresh<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDict>> {
     let (dict, o) = (PyDict::new(py), env.observation());
     dict.set_item(intern!(py, "observation"), PyArray1::from_slice(py, o.proprioception))?;
-    if let Some(touch) = env.touch_observed() {
+    if let Some(touch) = env.senses().touch_observed() {
         dict.set_item(intern!(py, "touch"), sparse(py, touch)?)?;
     }
-    if let (Some(pool), Some(pooled)) = (env.touch_pool(), o.touch_pooled) {
+    if let (Some(pool), Some(pooled)) = (env.senses().touch_pool(), o.touch_pooled) {
         dict.set_item(
             intern!(py, "touch_pooled"),
             shaped(py, pooled, &[pool.bodies().len(), POOLED])?,
         )?;
     }
-    if let Some(pain) = env.pain_observed() {
+    if let Some(pain) = env.senses().pain_observed() {
         dict.set_item(intern!(py, "pain"), sparse(py, pain)?)?;
     }
-    if let (Some(vision), Some(left), Some(right)) = (env.vision(), o.eye_left, o.eye_right) {
+    if let (Some(vision), Some(left), Some(right)) = (env.senses().vision(), o.eye_left, o.eye_right) {
         dict.set_item(intern!(py, "eye_left"), shaped(py, left, &vision.shape())?)?;
         dict.set_item(intern!(py, "eye_right"), shaped(py, right, &vision.shape())?)?;
     }
-    if let Some([height, width, _]) = env.vision().map(|vision| vision.shape()) {
+    if let Some([height, width, _]) = env.senses().vision().map(|vision| vision.shape()) {
         let shape = [height, width];
         set_pair(&dict, EYES_GRAY, o.eye_gray, shape)?;
         set_pair(&dict, EYES_DEPTH, o.eye_depth, shape)?;
@@ -232,7 +232,7 @@ impl Views {
             Some([goal, _]) => Some([Slab::new(py, &[goal.len()])?, Slab::new(py, &[goal.len()])?]),
             None => None,
         };
-        let eyes = match env.vision().filter(|_| eye_left.is_some()) {
+        let eyes = match env.senses().vision().filter(|_| eye_left.is_some()) {
             Some(vision) => Some([Slab::new(py, &vision.shape())?, Slab::new(py, &vision.shape())?]),
             None => None,
         };
@@ -240,7 +240,7 @@ impl Views {
         let mut views = Self {
             dict: PyDict::new(py).unbind(),
             proprioception: Slab::new(py, &[proprioception.len()])?,
-            touch: env.touch().map(|t| Slab::new(py, &[t.len()])).transpose()?,
+            touch: env.senses().touch().map(|t| Slab::new(py, &[t.len()])).transpose()?,
             touched: Vec::new(),
             pooled: touch_pooled
                 .map(|v| Slab::new(py, &[v.len() / POOLED, POOLED]))
@@ -291,7 +291,7 @@ impl Views {
         if let (Some(slab), Some(pain)) = (&self.pain, o.pain) {
             slab.write(py, |out| out.copy_from_slice(pain))?;
         }
-        if let (Some(slab), Some(touch)) = (&self.touch, env.touch_observed()) {
+        if let (Some(slab), Some(touch)) = (&self.touch, env.senses().touch_observed()) {
             let (width, touched) = (touch.width(), &mut self.touched);
             slab.write(py, |out| {
                 for &sensor in &*touched {

@@ -80,31 +80,34 @@ impl Parts {
 
     fn reset_data(&self) -> PyResult<()> {
         self.with(|env, m| {
-            env.reset_data();
+            env.by_hand().reset_data();
             m.note_start(env.state());
             Ok(())
         })
     }
 
     fn forward(&self, py: Python<'_>, qpos: &Bound<'_, PyAny>, qvel: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.place(py, [qpos, qvel], |env, qpos, qvel| env.forward(qpos, qvel))
+        self.place(py, [qpos, qvel], |env, qpos, qvel| env.by_hand().forward(qpos, qvel))
     }
 
     fn set_position(&self, py: Python<'_>, qpos: &Bound<'_, PyAny>, qvel: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.place(py, [qpos, qvel], |env, qpos, qvel| env.set_position(qpos, qvel))
+        self.place(py, [qpos, qvel], |env, qpos, qvel| {
+            env.by_hand().set_position(qpos, qvel)
+        })
     }
 
     fn set_action(&self, action: &Bound<'_, PyAny>) -> PyResult<()> {
         self.with(|env, m| {
             read("action", action, &[env.action_space().len()], &mut m.action)?;
-            env.set_action(&m.action)
+            env.by_hand()
+                .set_action(&m.action)
                 .map_err(crate::errors::IntoException::into_exception)
         })
     }
 
     fn substep(&self) -> PyResult<()> {
         self.with(|env, _| {
-            env.substep();
+            env.by_hand().substep();
             Ok(())
         })
     }
@@ -112,24 +115,24 @@ impl Parts {
     fn physics_step(&self, py: Python<'_>) -> PyResult<()> {
         self.with(|env, m| {
             m.note_start(env.state());
-            detached(py, || env.physics_step())
+            detached(py, || env.by_hand().physics_step())
         })
     }
 
     fn observe(&self, py: Python<'_>) -> PyResult<()> {
-        self.with(|env, _| detached(py, || env.observe()))
+        self.with(|env, _| detached(py, || env.by_hand().observe()))
     }
 
     fn track(&self) -> PyResult<()> {
         self.with(|env, _| {
-            env.track();
+            env.by_hand().track();
             Ok(())
         })
     }
 
     fn clear_info(&self) -> PyResult<()> {
         self.with(|env, _| {
-            env.clear_info();
+            env.by_hand().clear_info();
             Ok(())
         })
     }
@@ -167,7 +170,7 @@ impl Parts {
     /// Returns the touch of the last observation.
     #[getter]
     fn touch<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f32>>>> {
-        self.with(|env, _| env.touch_observed().map(|touch| sparse(py, touch)).transpose())
+        self.with(|env, _| env.senses().touch_observed().map(|touch| sparse(py, touch)).transpose())
     }
 
     /// Returns which equality constraints hold after a reset.

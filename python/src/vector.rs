@@ -113,7 +113,7 @@ impl VectorEnv {
         let touch_width = envs
             .env(0)
             .ok()
-            .and_then(|env| env.touch())
+            .and_then(|env| env.senses().touch())
             .map_or(0, |touch| touch.width());
         let inner = Box::new(Inner {
             all: Arrays::new(py, envs.len(), &spaces, touch_width)?,

@@ -1,4 +1,4 @@
-//! What an environment consists of: spaces, configuration, model, state, engine, senses, pictures.
+//! Access to the parts of an environment: spaces, configuration, model, state, engine, senses.
 
 use std::sync::Arc;
 
@@ -6,11 +6,9 @@ use crate::actuation::Actuation;
 use crate::config::Config;
 use crate::env::senses::vector;
 use crate::env::task::rewards;
-use crate::env::{Blueprint, Env, EnvError, Goal, GoalError, Info, PerEyeAndHand, Task, check_vector};
+use crate::env::{Blueprint, Env, EnvError, Goal, GoalError, Info, Senses, SensesMut, Task, check_vector};
 use crate::model::Model;
 use crate::physics::{Engine, State};
-use crate::render::RenderRequest;
-use crate::sensors::{EyeImages, Proprioception, Touch, Vestibular, Vision};
 use crate::spaces::{BoxSpace, ObservationSpace};
 
 impl Env {
@@ -33,16 +31,6 @@ impl Env {
     /// Returns the information of the last step.
     pub fn info(&self) -> &Info {
         &self.info
-    }
-
-    /// Returns how far each hand was off the axis of each eye in the last step, rad, in the order of
-    /// [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the behavior is `hand_regard`. Less than 15 degrees
-    /// count.
-    pub fn gaze_angles(&self) -> Option<PerEyeAndHand<f64>> {
-        self.physics.check_shape().ok()?;
-        let mut now = Info::default();
-        self.task.describe(Some(&self.physics.state), &mut now);
-        now.details.gaze_angles
     }
 
     /// Returns the task.
@@ -111,7 +99,7 @@ impl Env {
     }
 
     /// Returns the state of the scene, to change positions, velocities, warm start, applied forces or parameters. Quantities that
-    /// follow from them are brought up to date by the next step.
+    /// follow from them, and the observation, are brought up to date by the next step or [`Env::refresh`].
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.physics.state
     }
@@ -126,35 +114,22 @@ impl Env {
         &mut *self.physics.engine
     }
 
-    /// Returns the proprioceptive sense: names and ranges of its values.
-    pub fn proprioception(&self) -> &Proprioception {
-        &self.senses.proprioception
+    /// Returns the senses: what they consist of, and what they felt last.
+    pub fn senses(&self) -> &Senses {
+        &self.senses
     }
 
-    /// Returns the sense of touch, if it is active: sensor positions, active sensors, contacts and sums of forces.
-    pub fn touch(&self) -> Option<&Touch> {
-        self.senses.touch.as_ref()
+    /// Returns the senses, to change them or to draw what the eyes see now.
+    pub fn senses_mut(&mut self) -> SensesMut<'_> {
+        SensesMut {
+            senses: &mut self.senses,
+            physics: &self.physics,
+        }
     }
 
-    /// Returns the images of both eyes, left and right.
-    pub(crate) fn eye_images(&self) -> &[EyeImages; 2] {
-        &self.senses.eyes
-    }
-
-    /// Returns the sense of vision, if it is active.
-    pub fn vision(&self) -> Option<&Vision> {
-        self.senses.vision.as_ref()
-    }
-
-    /// Returns what the eyes see of the present state, left and right, to be drawn by any renderer, if vision is active.
-    pub fn eyes(&self) -> Option<[RenderRequest<'_>; 2]> {
-        self.physics.check_shape().ok()?;
-        self.senses.vision.as_ref().map(|v| v.requests(&self.physics.state))
-    }
-
-    /// Returns the vestibular sense, if it is active.
-    pub fn vestibular(&self) -> Option<&Vestibular> {
-        self.senses.vestibular.as_ref()
+    /// Returns the memory that delays and other transforms take, bytes.
+    pub(crate) fn transform_memory(&self) -> usize {
+        self.senses.pipeline.memory() + self.action_delay.memory()
     }
 
     /// Returns the actuation model.

@@ -29,7 +29,7 @@ impl Env {
         grown.set_probe(self.probe.take());
         grown.episode.accumulate = self.episode.accumulate;
         grown.senses.vision_deferred = self.senses.vision_deferred;
-        grown.set_vision_threads(self.vision_threads());
+        grown.senses_mut().set_vision_threads(self.senses.vision_threads());
         grown.senses.take_added(&mut self.senses);
         *self = grown;
     }

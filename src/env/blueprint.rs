@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use crate::actuation;
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
+use crate::env::pipeline::effective;
 use crate::env::snapshot::fingerprint;
 use crate::env::task::{TaskScene, of_config};
 use crate::env::{Env, EnvError, Task};
@@ -268,6 +269,11 @@ impl Blueprint {
         Env::from_blueprint(self)
     }
 
+    /// Returns how many steps of an environment pass until an action reaches the actuators.
+    pub fn action_delay(&self) -> usize {
+        effective(&self.config, self.config.delays.motor)
+    }
+
     /// Creates an engine of the kind that the configuration asks for.
     pub fn engine(&self) -> Box<dyn Engine> {
         self.engines.make()
@@ -453,7 +459,7 @@ impl Settled {
             engine: &mut *engine,
             base: &mut params,
             actuation: &*actuation,
-            motor: None,
+            delay: None,
             start: [&model.qpos0, &still],
             action: &mut Vec::new(),
         })?;

@@ -1,36 +1,40 @@
 //! The environment: Gymnasium's reset and step.
 
 mod access;
+mod action_delay;
 mod age;
 mod blueprint;
+mod by_hand;
 mod details;
 mod error;
 mod eyes;
 mod info;
-mod motor;
 mod observation;
 mod outcome;
-mod parts;
 mod physics;
 mod pipeline;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod senses;
+mod sensing;
 #[cfg(feature = "serde")]
 mod serial;
 mod snapshot;
 mod stage;
 pub mod task;
-mod transforms;
 mod viewer;
 
 pub use blueprint::{Blueprint, BlueprintOptions};
+pub use by_hand::Parts;
 pub use details::{InfoDetails, PartNames};
 pub use error::EnvError;
+pub use eyes::draw_eyes;
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
 pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand, TaskInfo};
 pub use observation::{Observation, Step};
+pub use senses::Senses;
+pub use sensing::SensesMut;
 #[cfg(feature = "serde")]
 pub use serial::Detailed;
 pub use snapshot::{Snapshot, SnapshotError, SnapshotInfo};
@@ -40,15 +44,16 @@ pub use task::{Goal, GoalError, Outcome, Task};
 pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
 
+use std::sync::Arc;
+
 use crate::actuation::{self, Actuation};
 use crate::config::{Compat, Config};
 use crate::mimo::{LockReport, LockTarget};
 use crate::physics::EngineError;
 use crate::spaces::NumpyRng;
-use motor::Motor;
+use action_delay::ActionDelay;
 use outcome::clear;
 use physics::Physics;
-use senses::Senses;
 use task::{Goals, TaskScene};
 
 /// A BabyBench environment.
@@ -74,8 +79,8 @@ use task::{Goals, TaskScene};
 pub struct Env {
     blueprint: Blueprint,
     physics: Physics,
-    actuation: Box<dyn Actuation>,
-    motor: Motor,
+    actuation: Arc<dyn Actuation>,
+    action_delay: ActionDelay,
     senses: Senses,
     task: Box<dyn Task>,
     goals: Goals,
@@ -87,6 +92,40 @@ pub struct Env {
     /// The action of the present step, as the task has changed it.
     applied: Vec<f32>,
     probe: Option<EnvProbe>,
+}
+
+/// A copy goes on with the same bits as the original. It shares the blueprint and has no probe.
+impl Clone for Env {
+    fn clone(&self) -> Self {
+        Self {
+            blueprint: self.blueprint.clone(),
+            physics: Physics {
+                // an engine remembers nothing that changes a later step
+                engine: self.blueprint.engine(),
+                state: self.physics.state.clone(),
+                base: self.physics.base.clone(),
+            },
+            actuation: self.actuation.clone(),
+            action_delay: self.action_delay.clone(),
+            senses: self.senses.clone(),
+            task: self.task.clone(),
+            goals: self.goals.clone(),
+            info: self.info.clone(),
+            episode: self.episode,
+            rng: self.rng.clone(),
+            action: self.action.clone(),
+            applied: self.applied.clone(),
+            probe: None,
+        }
+    }
+}
+
+/// The scene of an environment and its task, to be used together.
+struct Play<'a> {
+    scene: TaskScene<'a>,
+    task: &'a mut dyn Task,
+    goals: &'a mut Goals,
+    applied: &'a mut Vec<f32>,
 }
 
 /// The progress of an episode.
@@ -124,13 +163,13 @@ impl Env {
 
     fn from_blueprint(blueprint: &Blueprint) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
-        let actuation = actuation::build(model, config)?;
+        let actuation: Arc<dyn Actuation> = actuation::build(model, config)?.into();
         let task = blueprint.task().clone_task();
         let mut info = Info::default();
         clear(&*task, config, &mut info);
         Ok(Self {
             physics: Physics::new(blueprint, &*actuation),
-            motor: Motor::new(blueprint, &*actuation),
+            action_delay: ActionDelay::new(blueprint, &*actuation),
             senses: Senses::new(blueprint, &*actuation, task.sizes())?,
             goals: Goals::new(task.sizes()),
             rng: NumpyRng::seed(config.seed),
@@ -158,14 +197,14 @@ impl Env {
             self.seed_action_space(seed);
         }
         self.end_episode();
-        let (mut scene, task) = self.play();
+        let Play { mut scene, task, .. } = self.play();
         task.reset(&mut scene)?;
         self.begin_episode()?;
         Ok(self.observation())
     }
 
     /// Returns the scene and the task that plays in it.
-    fn play(&mut self) -> (TaskScene<'_>, &mut dyn Task) {
+    fn play(&mut self) -> Play<'_> {
         let scene = TaskScene {
             config: self.blueprint.config(),
             model: self.blueprint.model(),
@@ -174,51 +213,16 @@ impl Env {
             engine: &mut *self.physics.engine,
             base: &mut self.physics.base,
             actuation: &*self.actuation,
-            motor: Some(&mut self.motor),
+            delay: Some(&mut self.action_delay),
             start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
             action: &mut self.action,
         };
-        (scene, &mut *self.task)
-    }
-
-    /// Starts an episode as [`Env::reset`] does, with start actions of the caller's, (any number, len), instead of random
-    /// ones: each is applied for one physics step, whatever the behavior.
-    ///
-    /// ```
-    /// use babybench::config::Behavior;
-    /// use babybench::{Config, Env};
-    ///
-    /// let behavior = Behavior::SelfTouch;
-    /// let config = Config { behavior, vision_active: false, ..Config::default() };
-    /// let (mut one, mut other) = (Env::new(config.clone())?, Env::new(config)?);
-    /// let (mut actions, mut action) = (Vec::new(), Vec::new());
-    /// other.seed_action_space(7);
-    /// for _ in 0..10 {
-    ///     other.sample_action(&mut action);
-    ///     actions.extend_from_slice(&action);
-    /// }
-    /// assert_eq!(one.reset(Some(7))?, other.reset_with(&actions)?);
-    /// # Ok::<(), babybench::EnvError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// Actions of wrong length or with numbers that are not finite, which change nothing; the simulation diverged.
-    pub fn reset_with(&mut self, start_actions: &[f32]) -> Result<Observation<'_>, EnvError> {
-        let len = self.action_space().len();
-        let (actions, rest) = start_actions.split_at(start_actions.len() - start_actions.len() % len.max(1));
-        if !rest.is_empty() {
-            self.check_action(rest)?;
+        Play {
+            scene,
+            task: &mut *self.task,
+            goals: &mut self.goals,
+            applied: &mut self.applied,
         }
-        let actions = actions.chunks_exact(len.max(1));
-        actions.clone().try_for_each(|action| self.check_action(action))?;
-        self.end_episode();
-        let (mut scene, _) = self.play();
-        scene.restart()?;
-        for action in actions {
-            scene.act(action, 1)?;
-        }
-        self.begin_episode()?;
-        Ok(self.observation())
     }
 
     /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
@@ -228,7 +232,7 @@ impl Env {
     /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges; the episode is then over.
     pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
         self.end_episode();
-        self.play().0.place(qpos, qvel)?;
+        self.play().scene.place(qpos, qvel)?;
         self.begin_episode()?;
         Ok(self.observation())
     }
@@ -249,15 +253,59 @@ impl Env {
         Ok(self.observation())
     }
 
-    /// Sets the activations of the muscles ([`act`](crate::physics::State::act)), in the order of the action, each clipped to [0, 1].
+    /// Computes poses, contacts, forces and senses anew from the present state, after [`Env::restore`] or changes to
+    /// [`Env::state_mut`], and returns the observation.
+    ///
+    /// The next step has the same bits as without it: time, the start of the solver, the random generator and what delays, pain and
+    /// other transforms remember are left as they were. So are counters, reward and the end of the episode. After a step, poses and
+    /// forces are those at the start of its last physics step; here they belong to the present positions. Noise is that of the next
+    /// draw, and a delayed sense shows the moment that it would show one step later.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let snapshot = env.snapshot();
+    /// let mut other = env.blueprint().env()?;
+    /// other.restore(&snapshot)?;
+    /// assert!(other.observation().touch.is_none()); // a snapshot does not hold it
+    /// assert_eq!(other.refresh()?, env.refresh()?);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
     ///
     /// # Errors
-    /// A wrong length (models without muscles have none) or numbers that are not finite; nothing is changed then.
-    pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
-        check_vector("activity", activity, self.physics.state.act.len())?;
-        for (act, &new) in self.physics.state.act.iter_mut().zip(activity) {
-            *act = new.clamp(0.0, 1.0);
+    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which
+    /// [`Env::reset`] is needed; as the renderer.
+    pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
+        // the solver leaves its solution in the state as the start of the next one: on a copy, the state keeps its own
+        let mut posed = self.physics.state.clone();
+        if let Err(e) = self.physics.engine.forward(&mut posed) {
+            self.episode.ready = false;
+            return Err(e.into());
         }
+        posed.copy_dynamic_from(&self.physics.state);
+        self.physics.state = posed;
+        let (rng, mut memory) = (self.rng.clone(), Vec::new());
+        self.save_memory(&mut memory);
+        let sensed = self.sense();
+        self.load_memory(&memory)?;
+        self.rng = rng;
+        sensed?;
+        let last = self.episode;
+        self.judge();
+        self.episode = last;
+        Ok(self.observation())
+    }
+
+    /// Sets positions (nq) and velocities (nv), of which nothing is computed yet.
+    fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        let model = self.blueprint.model();
+        check_vector("qpos", qpos, model.nq)?;
+        check_vector("qvel", qvel, model.nv)?;
+        self.physics.check_shape()?;
+        self.physics.state.qpos.copy_from_slice(qpos);
+        self.physics.state.qvel.copy_from_slice(qvel);
         Ok(())
     }
 
@@ -302,8 +350,7 @@ impl Env {
         self.episode.steps >= self.blueprint.config().max_episode_steps
     }
 
-    /// Ends the episode and returns how many steps it had. The next step needs a reset.
-    pub fn end_episode(&mut self) -> u64 {
+    fn end_episode(&mut self) -> u64 {
         self.episode.ready = false;
         std::mem::take(&mut self.episode.steps)
     }
@@ -319,11 +366,11 @@ impl Env {
         if !self.episode.accumulate || self.task.reports_outcome() {
             clear(&*self.task, self.blueprint.config(), &mut self.info);
         }
-        let mut goals = std::mem::take(&mut self.goals);
-        let (mut scene, task) = self.play();
+        let Play {
+            mut scene, task, goals, ..
+        } = self.play();
         task.begin(&mut scene, &mut goals.desired);
-        self.goals = goals;
-        self.motor.rest();
+        self.action_delay.rest();
         self.senses.reset();
         self.episode.ready = true;
         self.sense()?;
@@ -347,18 +394,19 @@ impl Env {
         self.physics.check_shape()?;
         self.mark(Some(EnvStage::Actuation));
         let frame_skip = self.blueprint.config().frame_skip;
-        let mut applied = std::mem::take(&mut self.applied);
+        self.senses.prepare();
+        let Play {
+            mut scene,
+            task,
+            applied,
+            ..
+        } = self.play();
         applied.clear();
         applied.extend_from_slice(action);
-        if let Some(vision) = &self.senses.vision {
-            vision.renderer().prepare();
-        }
-        let (mut scene, task) = self.play();
-        task.before_step(&mut applied);
+        task.before_step(applied);
         let stepped = scene
-            .step(&applied, frame_skip)
+            .step(applied, frame_skip)
             .and_then(|()| task.after_step(&mut scene));
-        self.applied = applied;
         if let Err(e) = stepped {
             self.episode.ready = false;
             return Err(e);
@@ -404,6 +452,12 @@ impl Env {
         Ok(())
     }
 
+    /// Counts what the behavior counts.
+    fn track(&mut self) {
+        self.task.count(&self.physics.state, &mut self.info);
+        self.task.describe(Some(&self.physics.state), &mut self.info);
+    }
+
     fn sense(&mut self) -> Result<(), EnvError> {
         self.physics.check_shape()?;
         let model = self.blueprint.model();
@@ -413,7 +467,8 @@ impl Env {
             .observe(model, state, &*self.actuation, append, &mut self.rng)
     }
 
-    /// Returns the observation of the last reset or step.
+    /// Returns the observation of the last reset, step or [`Env::refresh`], all of it of one moment: after [`Env::restore`] it is without
+    /// what a snapshot does not hold (touch, pain, images), and changes of [`Env::state_mut`] are not in it.
     pub fn observation(&self) -> Observation<'_> {
         fn goal(values: &[f64]) -> Option<&[f64]> {
             (!values.is_empty()).then_some(values)

@@ -6,10 +6,10 @@ use crate::sensors::EyeImages;
 /// The observation: what MIMo senses. The vectors belong to the environment and change with the next step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Observation<'a> {
-    /// Proprioception, Gymnasium's key `observation`; [`Env::proprioception`](crate::Env::proprioception) tells what stands where. A task may append to it: the
+    /// Proprioception, Gymnasium's key `observation`; [`Senses::proprioception`](crate::env::Senses::proprioception) tells what stands where. A task may append to it: the
     /// last number of `catch` is the radius of the ball, m.
     pub proprioception: &'a [f64],
-    /// What the skin feels, N, if `touch_active`; [`Env::touch`](crate::Env::touch) tells what stands where.
+    /// What the skin feels, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) tells what stands where.
     pub touch: Option<&'a [f32]>,
     /// What each body with skin feels, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
     pub touch_pooled: Option<&'a [f64]>,
@@ -19,12 +19,12 @@ pub struct Observation<'a> {
     pub eye_left: Option<&'a [u8]>,
     /// What the right eye sees.
     pub eye_right: Option<&'a [u8]>,
-    /// What both eyes see in grey, left and right, (H, W) bytes, if `vision_outputs` has `gray`: see [`Env::eye_gray`](crate::Env::eye_gray).
+    /// What both eyes see in grey, left and right, (H, W) bytes, if `vision_outputs` has `gray`: see [`SensesMut::eye_gray`](crate::env::SensesMut::eye_gray).
     pub eye_gray: Option<[&'a [u8]; 2]>,
-    /// How far away it is, left and right, (H, W), m, if `vision_outputs` has `depth`: see [`Env::eye_depth`](crate::Env::eye_depth).
+    /// How far away it is, left and right, (H, W), m, if `vision_outputs` has `depth`: see [`SensesMut::eye_depth`](crate::env::SensesMut::eye_depth).
     pub eye_depth: Option<[&'a [f32]; 2]>,
     /// Which geoms they are, left and right, (H, W), if `vision_outputs` has `segmentation`: see
-    /// [`Env::eye_segmentation`](crate::Env::eye_segmentation).
+    /// [`SensesMut::eye_segmentation`](crate::env::SensesMut::eye_segmentation).
     pub eye_segmentation: Option<[&'a [i32]; 2]>,
     /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
     pub vestibular: Option<&'a [f64]>,

@@ -14,6 +14,14 @@ pub(super) struct Physics {
     pub base: Params,
 }
 
+impl std::fmt::Debug for Physics {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Physics")
+            .field("state", &self.state)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Physics {
     pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Self {
         let engine = blueprint.engine();

@@ -7,13 +7,14 @@ use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Noise, 
 use crate::spaces::NumpyRng;
 
 /// A transform, and whether the configuration asked for it.
+#[derive(Clone)]
 struct Stage {
     transform: Box<dyn Transform>,
     configured: bool,
 }
 
 /// The transforms of all senses.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Pipeline {
     /// By sense, in the order of [`Sense::ALL`].
     chains: [Vec<Stage>; Sense::ALL.len()],

@@ -15,29 +15,42 @@ use crate::sensors::{
 };
 use crate::spaces::{Dtype, NumpyRng, ObservationSpace};
 
-/// The senses that the configuration turns on, with the vectors of the present observation.
-pub(super) struct Senses {
-    pub proprioception: Proprioception,
-    pub touch: Option<Touch>,
-    pub vision: Option<Vision>,
-    pub vestibular: Option<Vestibular>,
-    pub pool: Option<TouchPool>,
-    pub pain: Option<Pain>,
-    pub proprioception_values: Vec<f64>,
-    pub pooled_values: Vec<f64>,
-    pub vestibular_values: Vec<f64>,
-    pub eyes: [EyeImages; 2],
-    pub pipeline: Pipeline,
+/// The images of eyes of which nothing is known.
+static NO_IMAGES: [EyeImages; 2] = [EyeImages::NONE, EyeImages::NONE];
+
+/// The senses of an environment that the configuration turns on, with what they observed last: [`Env::senses`](crate::Env::senses).
+#[derive(Clone)]
+pub struct Senses {
+    pub(super) proprioception: Proprioception,
+    pub(super) touch: Option<Touch>,
+    pub(super) vision: Option<Vision>,
+    pub(super) vestibular: Option<Vestibular>,
+    pub(super) pool: Option<TouchPool>,
+    pub(super) pain: Option<Pain>,
+    pub(super) proprioception_values: Vec<f64>,
+    pub(super) pooled_values: Vec<f64>,
+    pub(super) vestibular_values: Vec<f64>,
+    pub(super) eyes: [EyeImages; 2],
+    pub(super) pipeline: Pipeline,
     /// Touch and pain after their transforms, where they have any.
     touch_values: SkinValues,
     pain_values: SkinValues,
     outputs: VisionOutputs,
-    /// Whether [`super::Env::draw_eyes`] draws what the eyes see, instead of each step.
-    pub vision_deferred: bool,
+    /// Whether [`super::draw_eyes`] draws what the eyes see, instead of each step.
+    pub(super) vision_deferred: bool,
+    /// Whether touch, pain and images belong to the same moment as the rest: a restored snapshot does not hold them.
+    pub(super) known: bool,
+}
+
+impl std::fmt::Debug for Senses {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let on = Sense::ALL.into_iter().filter(|&sense| self.is_on(sense));
+        f.debug_set().entries(on).finish()
+    }
 }
 
 impl Senses {
-    pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation, sizes: TaskSizes) -> Result<Self, EnvError> {
+    pub(super) fn new(blueprint: &Blueprint, actuation: &dyn Actuation, sizes: TaskSizes) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
         let proprioception = Proprioception::new(model, config, actuation.observation_len());
         let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
@@ -65,6 +78,7 @@ impl Senses {
             eyes: [images(), images()],
             outputs: config.vision_outputs,
             vision_deferred: false,
+            known: true,
             pipeline: Pipeline::default(),
             touch_values: empty(touch.as_ref().map(Touch::felt)),
             pain_values: empty(pain.as_ref().map(Pain::felt)),
@@ -88,7 +102,7 @@ impl Senses {
     }
 
     /// Returns whether a sense is observed.
-    pub fn is_on(&self, sense: Sense) -> bool {
+    pub(super) fn is_on(&self, sense: Sense) -> bool {
         match sense {
             Sense::Proprioception => true,
             Sense::Touch => self.touch.is_some(),
@@ -100,13 +114,13 @@ impl Senses {
     }
 
     /// Adds a transform to a sense that is on.
-    pub fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) {
+    pub(super) fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         self.pipeline.add(sense, transform);
         self.make_room();
     }
 
     /// Takes over the transforms that were added to other senses of the same kinds.
-    pub fn take_added(&mut self, other: &mut Self) {
+    pub(super) fn take_added(&mut self, other: &mut Self) {
         self.pipeline.take_added(&mut other.pipeline);
         self.make_room();
     }
@@ -152,7 +166,7 @@ impl Senses {
     }
 
     /// Forgets the last episode.
-    pub fn reset(&mut self) {
+    pub(super) fn reset(&mut self) {
         if let Some(pain) = &mut self.pain {
             pain.reset();
         }
@@ -160,7 +174,7 @@ impl Senses {
     }
 
     /// Observes a state: each sense, then its transforms. `append` writes what the task adds to proprioception.
-    pub fn observe(
+    pub(super) fn observe(
         &mut self,
         model: &Model,
         state: &State,
@@ -181,6 +195,7 @@ impl Senses {
             v.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
             self.transform_eyes(rng);
         }
+        self.known = true;
         Ok(())
     }
 
@@ -206,22 +221,29 @@ impl Senses {
     }
 
     /// Transforms the images that have just been drawn.
-    pub fn transform_eyes(&mut self, rng: &mut NumpyRng) {
+    pub(super) fn transform_eyes(&mut self, rng: &mut NumpyRng) {
         for sense in Sense::EYES {
             self.transform(sense, rng);
         }
     }
 
-    /// Returns touch as it is observed, if it is.
-    pub fn touch_observed(&self) -> Option<&SkinValues> {
+    /// Wakes the thread that draws the second eye, as both will be drawn in a moment.
+    pub(super) fn prepare(&self) {
+        if let Some(vision) = &self.vision {
+            vision.renderer().prepare();
+        }
+    }
+
+    /// Returns touch as it was observed last, if it is.
+    pub(super) fn touch_values(&self) -> Option<&SkinValues> {
         match self.pipeline.changes(Sense::Touch) {
             true => Some(&self.touch_values),
             false => self.touch.as_ref().map(Touch::felt),
         }
     }
 
-    /// Returns pain as it is observed, if it is.
-    pub fn pain_observed(&self) -> Option<&SkinValues> {
+    /// Returns pain as it was observed last, if it is.
+    pub(super) fn pain_values(&self) -> Option<&SkinValues> {
         match self.pipeline.changes(Sense::Pain) {
             true => Some(&self.pain_values),
             false => self.pain.as_ref().map(Pain::felt),
@@ -229,19 +251,20 @@ impl Senses {
     }
 
     /// Returns what was observed last.
-    pub fn observation(&self) -> Observation<'_> {
+    pub(super) fn observation(&self) -> Observation<'_> {
+        let eyes = if self.known { &self.eyes } else { &NO_IMAGES };
         Observation {
             proprioception: &self.proprioception_values,
             touch: self.touch_observed().map(SkinValues::values),
             touch_pooled: self.pool.as_ref().map(|_| &self.pooled_values[..]),
             pain: self.pain_observed().map(SkinValues::values),
             vestibular: self.vestibular.as_ref().map(|_| &self.vestibular_values[..]),
-            ..Observation::of_eyes(&self.eyes)
+            ..Observation::of_eyes(eyes)
         }
     }
 
     /// Returns keys, shapes, types and bounds of the observation.
-    pub fn spaces(&self) -> Vec<ObservationSpace> {
+    pub(super) fn spaces(&self) -> Vec<ObservationSpace> {
         let mut spaces = vec![vector("observation", self.proprioception_values.len())];
         if let Some(t) = &self.touch {
             let dtype = Dtype::F32;

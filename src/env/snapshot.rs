@@ -130,8 +130,10 @@ impl Env {
         Snapshot { bytes }
     }
 
-    /// Goes back to a snapshot of this environment, or of another of the same configuration and scene. Whatever is not in
-    /// a snapshot (touch, images, poses, contacts) is brought up to date by the next step.
+    /// Goes back to a snapshot of this environment, or of another of the same configuration and scene.
+    ///
+    /// Touch, pain, images, poses and contacts are not in a snapshot: the next step or [`Env::refresh`] computes them. Until then,
+    /// [`Env::observation`] is without touch, pain and images; its other parts are the original's.
     ///
     /// # Errors
     /// A snapshot of another environment, or a damaged one; nothing is changed then.
@@ -182,6 +184,7 @@ impl Env {
         (self.episode.reward, self.episode.terminated) = (reward, self.episode.terminated && steps > 0);
         self.episode.ready = ready == 1;
         self.rng = NumpyRng::at(seed, drawn);
+        self.senses.known = false;
         Ok(())
     }
 

@@ -113,7 +113,7 @@ impl<'a> Line<'a> {
     /// Takes the present observation of an environment, and the action space at the start of an episode.
     pub fn new(env: &'a Env, Moment { episode, step }: Moment) -> Self {
         let (observation, space) = (env.observation(), env.action_space());
-        let shape = env.vision().map_or([0; 3], |v| v.shape());
+        let shape = env.senses().vision().map_or([0; 3], |v| v.shape());
         let image = |data| Image { shape, data };
         Self {
             episode,

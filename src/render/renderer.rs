@@ -23,6 +23,24 @@ enum Backend {
     Gpu(SharedGpu),
 }
 
+/// A copy draws the same scene by as many threads, with memory of its own; on a GPU, both share it.
+impl Clone for Renderer {
+    fn clone(&self) -> Self {
+        let backend = match &self.backend {
+            Backend::Cpu { pair, .. } => Backend::Cpu {
+                renderer: Box::default(),
+                pair: pair.as_ref().map(|_| Pair::default()),
+            },
+            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
+            Backend::Gpu(gpu) => Backend::Gpu(gpu.clone()),
+        };
+        Self {
+            visual: self.visual.clone(),
+            backend,
+        }
+    }
+}
+
 impl Renderer {
     /// Creates a renderer on the CPU.
     pub fn cpu(visual: Arc<Visual>) -> Self {

@@ -128,7 +128,7 @@ impl RunVector {
     fn log_episode(&mut self, env: usize) -> Result<(), RunError> {
         let first = env == 0;
         let env = self.vector.env_mut(env)?;
-        let steps = env.end_episode();
+        let steps = env.by_hand().end_episode();
         if steps > 0 || first {
             // the empty record that the kit's first reset adds stands there once
             self.log.end_episode(steps, &env.info().behavior)?;

@@ -83,7 +83,7 @@ pub fn replay_with_images(
         }
     };
     env.reset_to(&recording.qpos0, &recording.qvel0).map_err(at(0))?;
-    env.set_activity(&recording.activity0).map_err(at(0))?;
+    env.by_hand().set_activity(&recording.activity0).map_err(at(0))?;
     let muscles = recording.activity0.len();
     let mut out = Replay::begin(env, recording.len);
     let mut viewer = match images_every {
@@ -143,7 +143,7 @@ fn begin_episode(env: &mut Env, start: &EpisodeStart) -> Result<(), EnvError> {
         let model = env.model().clone();
         env.state_mut().set_free_body(&model, body, change)?;
     }
-    env.set_activity(&start.activity)?;
+    env.by_hand().set_activity(&start.activity)?;
     if !start.desired_goal.is_empty() {
         env.set_goal(&start.desired_goal)?;
     }

@@ -104,7 +104,7 @@ impl RunEnv {
     }
 
     fn log_episode(&mut self) -> Result<(), LogError> {
-        let steps = self.env.end_episode();
+        let steps = self.env.by_hand().end_episode();
         match &mut self.log {
             Some(log) => log.end_episode(steps, &self.env.info().behavior),
             None => Ok(()),

@@ -50,7 +50,15 @@ pub struct EyeImages {
 }
 
 impl EyeImages {
-    /// Creates images with a number of pixels, one of each output.
+    /// Images without pixels.
+    pub(crate) const NONE: Self = Self {
+        rgb: Vec::new(),
+        gray: Vec::new(),
+        depth: Vec::new(),
+        segmentation: Vec::new(),
+    };
+
+    /// Makes room for images of so many pixels.
     pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
         let len = |output| if outputs.contains(output) { pixels } else { 0 };
         Self {
@@ -89,7 +97,7 @@ impl EyeImages {
 }
 
 /// The two eyes: images of (resolution, resolution, 3) bytes each, red, green and blue, rows from the top.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Vision {
     renderer: Renderer,
     eyes: [usize; 2],

@@ -5,7 +5,7 @@
 
 use super::slot::{Slot, Task};
 use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
-use crate::env::Env;
+use crate::env::draw_eyes;
 
 impl VectorEnv {
     /// Starts an episode in all environments. With one seed, environment i gets `seed + i`.
@@ -327,7 +327,7 @@ impl VectorEnv {
         let slots = self.slots.iter_mut().flatten();
         let envs = slots.filter(|slot| slot.env.ready() && ids.contains(&slot.index));
         let first = ids.first().copied().unwrap_or_default();
-        Env::draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
+        draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
     }
 
     /// Writes the results of an environment.

@@ -149,12 +149,12 @@ impl VectorEnv {
         }
         let deferred = envs
             .iter()
-            .all(|e| e.vision().is_some() && e.config().renderer == RendererKind::Wgpu);
+            .all(|e| e.senses().vision().is_some() && e.config().renderer == RendererKind::Wgpu);
         let layout = Layout::new(&envs);
         let (action_space, observation_space) = (envs[0].action_space().clone(), envs[0].observation_space());
         let slots = envs.into_iter().enumerate().map(|(index, mut env)| {
-            env.defer_vision(deferred);
-            env.set_vision_threads(1); // the vector has threads of its own
+            env.senses_mut().defer_vision(deferred);
+            env.senses_mut().set_vision_threads(1); // the vector has threads of its own
             Some(Box::new(Slot::new(index, env, mode)))
         });
         let (threads, clipped) = options::threads(options.threads, n);

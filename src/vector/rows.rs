@@ -37,10 +37,10 @@ impl Layout {
             layout.action = env.action_space().len();
             layout.proprioception = observation.proprioception.len();
             layout.touch = observation.touch.map(<[f32]>::len);
-            layout.sensors = env.touch().map_or(0, |touch| touch.layout().len());
+            layout.sensors = env.senses().touch().map_or(0, |touch| touch.layout().len());
             layout.pooled = observation.touch_pooled.map(<[f64]>::len);
             layout.pain = observation.pain.map(<[f32]>::len);
-            layout.pixels = env.vision().map(|v| v.shape()[0] * v.shape()[1]);
+            layout.pixels = env.senses().vision().map(|v| v.shape()[0] * v.shape()[1]);
             layout.outputs = env.config().vision_outputs;
             layout.vestibular = observation.vestibular.map(<[f64]>::len);
             layout.regards |= env.info().behavior.regards().is_some();
@@ -173,7 +173,9 @@ impl Buffers<'_> {
     /// that is enough. There is room, which was checked before.
     pub(super) fn write(&mut self, row: usize, env: &Env) {
         let observation = env.observation();
-        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.touch, env.touch_observed()) else {
+        let (Some(touched), Some(out), Some(touch)) =
+            (&mut self.touched, &mut self.touch, env.senses().touch_observed())
+        else {
             return self.write_whole(row, &observation);
         };
         let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());

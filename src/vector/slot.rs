@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand};
+use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, draw_eyes};
 use crate::sensors::EyeImages;
 use crate::threads::Job;
 use crate::vector::AutoresetMode;
@@ -121,19 +121,19 @@ impl Slot {
     /// Rebuilds an environment after a panic, since its state may be inconsistent.
     fn revive(&mut self) -> Result<(), EnvError> {
         if self.panicked.is_some() {
-            let deferred = self.env.vision_is_deferred();
+            let deferred = self.env.senses().vision_is_deferred();
             self.env = self.env.blueprint().env()?;
-            self.env.defer_vision(deferred);
-            self.env.set_vision_threads(1);
+            self.env.senses_mut().defer_vision(deferred);
+            self.env.senses_mut().set_vision_threads(1);
             self.panicked = None;
         }
         Ok(())
     }
 
     fn keep_last(&mut self) {
-        if self.env.vision_is_deferred() && self.env.ready() {
+        if self.env.senses().vision_is_deferred() && self.env.ready() {
             // the others are still under way: this environment draws what it saw last by itself
-            if let Err(e) = Env::draw_eyes([&mut self.env]) {
+            if let Err(e) = draw_eyes([&mut self.env]) {
                 self.failure.get_or_insert(e);
             }
         }
@@ -167,7 +167,7 @@ impl Last {
             touch: vec![0.0; observation.touch.map_or(0, <[f32]>::len)],
             pooled: vec![0.0; observation.touch_pooled.map_or(0, <[f64]>::len)],
             pain: vec![0.0; observation.pain.map_or(0, <[f32]>::len)],
-            eyes: env.eye_images().clone(),
+            eyes: env.senses().eye_images().clone(),
             vestibular: vec![0.0; observation.vestibular.map_or(0, <[f64]>::len)],
             achieved_goal: vec![0.0; env.goal().achieved.len()],
             desired_goal: vec![0.0; env.goal().desired.len()],
@@ -184,7 +184,7 @@ impl Last {
         self.pooled
             .copy_from_slice(observation.touch_pooled.unwrap_or_default());
         self.pain.copy_from_slice(observation.pain.unwrap_or_default());
-        for (own, eye) in self.eyes.iter_mut().zip(env.eye_images()) {
+        for (own, eye) in self.eyes.iter_mut().zip(env.senses().eye_images()) {
             own.copy_from(eye);
         }
         self.vestibular

@@ -106,7 +106,7 @@ fn muscles_are_activated_in_every_physics_step() {
         env.step(&[1.0; 88]).expect("no divergence");
         let expect = if frame_skip == 3 { 0.875 } else { 0.5 };
         assert!(env.state().act.iter().all(|a| *a == expect));
-        let range = env.proprioception().range(Component::Actuation).expect("on");
+        let range = env.senses().proprioception().range(Component::Actuation).expect("on");
         let seen = &env.observation().proprioception[range];
         assert_eq!((seen.len(), seen[0], seen[87]), (176, expect, expect));
         // sum |a^2 F| / (2n sum F)
@@ -162,7 +162,7 @@ fn muscles_after_a_reset() {
         assert_eq!(max_abs(&s.ctrl), if compat == Compat::Reference { 0.0 } else { 1.0 });
         assert_eq!(max_abs(&s.qfrc_actuator) == 0.0, compat == Compat::Reference);
         let knee = actuator(env.model(), "act:right_knee");
-        let range = env.proprioception().range(Component::Actuation).expect("on");
+        let range = env.senses().proprioception().range(Component::Actuation).expect("on");
         let force = env.observation().proprioception[range.start + 88 + knee];
         let p = MuscleParams::of_actuator(env.model(), knee).expect("a muscle");
         let q = env.model().jnt_qposadr[env.model().actuator_trnid[knee]];
@@ -193,7 +193,7 @@ fn servos_hold_their_target_for_all_substeps_except_in_the_reference() {
             f64::from(-146f64.to_radians() as f32)
         };
         assert_eq!(env.state().ctrl[elbow], expect, "{compat} {frame_skip}");
-        let range = env.proprioception().range(Component::Actuation).expect("on");
+        let range = env.senses().proprioception().range(Component::Actuation).expect("on");
         assert_eq!(env.observation().proprioception[range][elbow], expect);
         assert_eq!(env.actuation().cost(env.model(), env.state()), 0.0);
     }
@@ -216,7 +216,7 @@ fn servos_of_held_joints_stay_at_0() {
     env.reset(Some(0)).expect("no divergence");
     let action: Vec<f32> = env.action_space().high().to_vec();
     env.step(&action).expect("no divergence");
-    let range = env.proprioception().range(Component::Actuation).expect("on");
+    let range = env.senses().proprioception().range(Component::Actuation).expect("on");
     let seen: Vec<f32> = env.observation().proprioception[range]
         .iter()
         .map(|v| *v as f32)
@@ -337,6 +337,7 @@ fn actuation_allocates_nothing() {
 
 fn angle(env: &Env, joint: &str) -> f64 {
     let range = env
+        .senses()
         .proprioception()
         .find(env.model(), Component::Angles, joint)
         .expect("a joint of MIMo");
@@ -431,7 +432,7 @@ fn every_number_of_proprioception_has_a_name() {
         for compat in [Compat::Api, Compat::Reference] {
             let mut env = env(config(kind, Behavior::HandRegard, Scene::Base, compat));
             env.reset(Some(0)).expect("no divergence");
-            let (p, model) = (env.proprioception(), env.model());
+            let (p, model) = (env.senses().proprioception(), env.model());
             let entries = p.entries(model, env.actuation());
             let mut end = 0;
             let mut names = std::collections::BTreeSet::new();
@@ -502,16 +503,19 @@ fn states_and_activities_are_set_and_checked() {
         Err(EnvError::StateLength { what: "qvel", .. })
     ));
     assert!(env.set_state(&vec![f64::NAN; qpos.len()], &qvel).is_err());
-    assert!(matches!(env.set_activity(&[0.0; 3]), Err(EnvError::StateLength { .. })));
-    assert!(env.set_activity(&[f64::NAN; 88]).is_err());
+    assert!(matches!(
+        env.by_hand().set_activity(&[0.0; 3]),
+        Err(EnvError::StateLength { .. })
+    ));
+    assert!(env.by_hand().set_activity(&[f64::NAN; 88]).is_err());
     assert_eq!(env.snapshot(), before);
     qpos[2] += 1.0;
     env.set_state(&qpos, &qvel).expect("a state");
     assert_eq!(env.state().qpos, qpos);
     assert_eq!(env.state().xpos[1][2], qpos[2], "poses are brought up to date");
-    env.set_activity(&[2.0; 88]).expect("clipped");
+    env.by_hand().set_activity(&[2.0; 88]).expect("clipped");
     assert!(env.state().act.iter().all(|a| *a == 1.0));
     let mut motors = crate::common::env(free(Behavior::None, Scene::Base));
-    assert!(motors.set_activity(&[]).is_ok() && motors.set_activity(&[0.0]).is_err());
+    assert!(motors.by_hand().set_activity(&[]).is_ok() && motors.by_hand().set_activity(&[0.0]).is_err());
     assert!(motors.state().act.is_empty());
 }

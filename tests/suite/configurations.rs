@@ -76,7 +76,8 @@ fn spaces(env: &Env, config: &Config, length: usize) -> Result<(), String> {
     expect("space of the observation", spaces[0].shape[0], length)?;
     expect(
         "entries",
-        env.proprioception()
+        env.senses()
+            .proprioception()
             .entries(env.model(), env.actuation())
             .iter()
             .map(|e| e.range.len())

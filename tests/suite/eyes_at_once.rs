@@ -39,7 +39,10 @@ fn two_threads_draw_the_same_bytes_as_one() {
     let scenes = Scene::ALL.iter().map(|&scene| every_output(scene));
     for config in scenes.chain([infant()]) {
         let [mut one, mut other] = [1, 2].map(|threads| with_threads(&config, threads));
-        assert_eq!((one.vision_threads(), other.vision_threads()), (1, two()));
+        assert_eq!(
+            (one.senses().vision_threads(), other.senses().vision_threads()),
+            (1, two())
+        );
         for env in [&mut one, &mut other] {
             env.reset(Some(3)).expect("no divergence");
         }
@@ -48,8 +51,8 @@ fn two_threads_draw_the_same_bytes_as_one() {
             step(&mut one);
             step(&mut other);
             if k == 4 {
-                other.set_vision_threads(1); // the thread ends, and another begins
-                other.set_vision_threads(2);
+                other.senses_mut().set_vision_threads(1); // the thread ends, and another begins
+                other.senses_mut().set_vision_threads(2);
             }
         }
     }
@@ -59,7 +62,7 @@ fn two_threads_draw_the_same_bytes_as_one() {
 fn both_eyes_cost_one_pass_each() {
     let mut env = with_threads(&seen(Scene::Cubes), 2);
     env.reset(Some(0)).expect("no divergence");
-    let passes = |env: &Env| env.vision().expect("it sees").renderer().passes();
+    let passes = |env: &Env| env.senses().vision().expect("it sees").renderer().passes();
     let before = passes(&env);
     step(&mut env);
     assert_eq!(passes(&env) - before, 2);
@@ -71,10 +74,12 @@ fn what_one_eye_cannot_draw_is_an_error_and_the_next_images_are_right() {
     env.reset(Some(0)).expect("no divergence");
     let pixels = 64 * 64;
     let mut expected = [vec![0; pixels], vec![0; pixels]];
-    env.eye_gray(expected.each_mut().map(|v| &mut v[..])).expect("both fit");
+    env.senses_mut()
+        .eye_gray(expected.each_mut().map(|v| &mut v[..]))
+        .expect("both fit");
     for lengths in [[pixels, 3], [3, pixels], [3, 5]] {
         let mut eyes = lengths.map(|n| vec![0; n]);
-        let wrong = env.eye_gray(eyes.each_mut().map(|v| &mut v[..]));
+        let wrong = env.senses_mut().eye_gray(eyes.each_mut().map(|v| &mut v[..]));
         let found = lengths.into_iter().find(|&n| n != pixels).expect("one is wrong");
         let error = RenderError::Buffer {
             found,
@@ -82,7 +87,9 @@ fn what_one_eye_cannot_draw_is_an_error_and_the_next_images_are_right() {
         };
         assert!(matches!(&wrong, Err(EnvError::Render(e)) if *e == error), "{wrong:?}");
         let mut eyes = [vec![0; pixels], vec![0; pixels]];
-        env.eye_gray(eyes.each_mut().map(|v| &mut v[..])).expect("both fit");
+        env.senses_mut()
+            .eye_gray(eyes.each_mut().map(|v| &mut v[..]))
+            .expect("both fit");
         assert!(eyes == expected);
     }
 }
@@ -91,7 +98,7 @@ fn what_one_eye_cannot_draw_is_an_error_and_the_next_images_are_right() {
 fn any_number_of_images_is_drawn_two_by_two() {
     let env = with_threads(&every_output(Scene::Cubes), 1);
     let view = |vision: &babybench::sensors::Vision| vision.requests(env.state());
-    let [left, right] = view(env.vision().expect("it sees"));
+    let [left, right] = view(env.senses().vision().expect("it sees"));
     let draw = |threads, count: usize| {
         let mut renderer = Renderer::cpu(env.blueprint().visual().expect("embedded"));
         renderer.set_threads(threads);
@@ -121,14 +128,14 @@ fn growing_keeps_the_thread_and_a_vector_has_its_own() {
     };
     let blueprint = Blueprint::new(config).expect("embedded assets");
     let mut env = blueprint.env().expect("embedded assets");
-    env.set_vision_threads(1);
+    env.senses_mut().set_vision_threads(1);
     env.set_age(Some(3.0)).expect("any age");
-    assert_eq!(env.vision_threads(), 1);
-    env.set_vision_threads(2);
+    assert_eq!(env.senses().vision_threads(), 1);
+    env.senses_mut().set_vision_threads(2);
     env.set_age(Some(5.0)).expect("any age");
-    assert_eq!(env.vision_threads(), two());
+    assert_eq!(env.senses().vision_threads(), two());
     let mut envs = VectorEnv::new(&blueprint, 2, VectorOptions::default()).expect("memory and threads");
-    assert_eq!(envs.env(0).expect("it is here").vision_threads(), 1);
+    assert_eq!(envs.env(0).expect("it is here").senses().vision_threads(), 1);
     envs.set_age(1, Some(3.0)).expect("any age");
-    assert_eq!(envs.env(1).expect("it is here").vision_threads(), 1);
+    assert_eq!(envs.env(1).expect("it is here").senses().vision_threads(), 1);
 }

@@ -18,15 +18,15 @@ fn config(actuation_model: ActuationModel) -> Config {
 
 /// Does what [`Env::step`] does with an action, part by part.
 fn step(env: &mut Env, action: &[f32]) {
-    env.set_action(action).expect("an action of the space");
+    env.by_hand().set_action(action).expect("an action of the space");
     for k in 0..env.config().frame_skip {
         if k > 0 {
-            env.substep();
+            env.by_hand().substep();
         }
-        env.physics_step().expect("no divergence");
+        env.by_hand().physics_step().expect("no divergence");
     }
-    env.observe().expect("nothing to draw");
-    env.track();
+    env.by_hand().observe().expect("nothing to draw");
+    env.by_hand().track();
 }
 
 #[test]
@@ -38,12 +38,12 @@ fn the_parts_of_a_reset_and_of_a_step_are_a_reset_and_a_step() {
         let mut action = Vec::new();
         for episode in 0..2 {
             whole.reset_to(&qpos, &qvel).expect("no divergence");
-            apart.reset_data();
+            apart.by_hand().reset_data();
             assert_eq!(apart.state().qpos, apart.model().qpos0);
             assert_eq!(apart.state().time, 0.0);
-            apart.forward(&qpos, &qvel).expect("no divergence");
-            apart.clear_info();
-            apart.observe().expect("nothing to draw");
+            apart.by_hand().forward(&qpos, &qvel).expect("no divergence");
+            apart.by_hand().clear_info();
+            apart.by_hand().observe().expect("nothing to draw");
             assert_eq!(whole.observation(), apart.observation());
             for k in 0..4 {
                 whole.sample_action(&mut action);
@@ -68,11 +68,14 @@ fn parts_refuse_what_does_not_fit_and_change_nothing() {
     let (before, qvel) = (env.state().qpos.clone(), env.state().qvel.clone());
     let mut broken = before.clone();
     broken[3] = f64::NAN;
-    assert!(env.forward(&before[1..], &qvel).is_err());
-    assert!(env.set_position(&broken, &qvel).is_err());
+    assert!(env.by_hand().forward(&before[1..], &qvel).is_err());
+    assert!(env.by_hand().set_position(&broken, &qvel).is_err());
     let action = vec![f32::NAN; env.action_space().len()];
-    assert!(matches!(env.set_action(&action), Err(EnvError::ActionNotFinite { .. })));
-    assert!(env.set_action(&[0.0]).is_err());
+    assert!(matches!(
+        env.by_hand().set_action(&action),
+        Err(EnvError::ActionNotFinite { .. })
+    ));
+    assert!(env.by_hand().set_action(&[0.0]).is_err());
     assert_eq!(env.state().qpos, before);
     assert!(env.ready());
 }

@@ -167,7 +167,7 @@ fn the_floor_carries_mimos_weight() {
     let mut env = rapier_touch();
     let action = vec![0.0; env.action_space().len()];
     repeat(&mut env, &action, 50);
-    let touch = env.touch().expect("touch is active");
+    let touch = env.senses().touch().expect("touch is active");
     let felt = touch.values().iter().filter(|v| **v > 0.0).count();
     println!("{felt} of {} touch values are above 0", touch.values().len());
     assert!(felt > 10);

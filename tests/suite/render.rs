@@ -192,7 +192,10 @@ fn eyes_see_distances_geoms_and_grey() {
         ..Config::default()
     })
     .unwrap();
-    assert!(matches!(blind.eye_gray([&mut [], &mut []]), Err(EnvError::NoVision)));
+    assert!(matches!(
+        blind.senses_mut().eye_gray([&mut [], &mut []]),
+        Err(EnvError::NoVision)
+    ));
     let mut e = Env::new(Config {
         vision_active: true,
         vision_resolution: 32,
@@ -204,9 +207,11 @@ fn eyes_see_distances_geoms_and_grey() {
     let mut gray = [vec![0; 32 * 32], vec![0; 32 * 32]];
     let mut depth = gray.clone().map(|v| vec![0.0; v.len()]);
     let mut geoms = gray.clone().map(|v| vec![0; v.len()]);
-    e.eye_gray(gray.each_mut().map(|v| &mut v[..])).unwrap();
-    e.eye_depth(depth.each_mut().map(|v| &mut v[..])).unwrap();
-    e.eye_segmentation(geoms.each_mut().map(|v| &mut v[..])).unwrap();
+    e.senses_mut().eye_gray(gray.each_mut().map(|v| &mut v[..])).unwrap();
+    e.senses_mut().eye_depth(depth.each_mut().map(|v| &mut v[..])).unwrap();
+    e.senses_mut()
+        .eye_segmentation(geoms.each_mut().map(|v| &mut v[..]))
+        .unwrap();
     let mut renderer = CpuRenderer::new();
     for (k, eye) in babybench::sensors::EYES.iter().enumerate() {
         let view = View {
@@ -226,7 +231,7 @@ fn eyes_see_distances_geoms_and_grey() {
         assert_eq!(geoms[k], expected);
         assert!(geoms[k].iter().any(|&g| g >= 0));
     }
-    let wrong = e.eye_gray([&mut [0; 3], &mut [0; 3]]);
+    let wrong = e.senses_mut().eye_gray([&mut [0; 3], &mut [0; 3]]);
     assert!(
         matches!(wrong, Err(EnvError::Render(RenderError::Buffer { .. }))),
         "{wrong:?}"
@@ -301,14 +306,16 @@ fn the_observation_has_the_images_that_the_configuration_asks_for() {
     })
     .unwrap();
     e.reset(Some(0)).unwrap();
-    let passes = |e: &Env| e.vision().unwrap().renderer().passes();
+    let passes = |e: &Env| e.senses().vision().unwrap().renderer().passes();
     let before = passes(&e);
     let action = vec![0.0; e.action_space().len()];
     e.step(&action).unwrap();
     assert_eq!(passes(&e) - before, 2, "one pass for each eye");
     let images = || EyeImages::new(every_output(), 24 * 24);
     let mut eyes = [images(), images()];
-    e.eye_buffers(eyes.each_mut().map(EyeImages::buffers)).unwrap();
+    e.senses_mut()
+        .eye_buffers(eyes.each_mut().map(EyeImages::buffers))
+        .unwrap();
     let o = e.observation();
     assert_eq!([o.eye_left, o.eye_right], eyes.each_ref().map(|i| Some(&i.rgb[..])));
     assert_eq!(o.eye_gray, Some(eyes.each_ref().map(|i| &i.gray[..])));
@@ -470,7 +477,7 @@ fn broken_images_are_errors_that_name_them() {
 fn environments_of_a_blueprint_share_the_look() {
     let blueprint = Blueprint::new(seen(Scene::Base)).unwrap();
     let (a, b) = (blueprint.env().unwrap(), blueprint.env().unwrap());
-    let look = |e: &Env| e.vision().unwrap().visual().clone();
+    let look = |e: &Env| e.senses().vision().unwrap().visual().clone();
     assert!(Arc::ptr_eq(&look(&a), &look(&b)));
     assert!(look(&a).texture_bytes() < 32 << 20);
 }

@@ -3,6 +3,7 @@
 use crate::common::*;
 use babybench::config::{ActuationModel, Behavior, Compat, Part, Scene};
 use babybench::env::{Snapshot, SnapshotError};
+use babybench::sensors::Component;
 use babybench::{Config, Env, EnvError};
 
 /// `n` random steps: everything that comes out of them, as text.
@@ -128,6 +129,124 @@ fn the_observation_comes_back() {
     env.restore(&snapshot).expect("its own snapshot");
     assert_eq!(env.observation().proprioception, before);
     assert_eq!(*env.info(), info);
+}
+
+#[test]
+fn a_restored_moment_can_be_observed_and_goes_on_with_the_same_bits() {
+    for &kind in ActuationModel::ALL {
+        let touching = |behavior, scene| Config {
+            touch_active: true,
+            touch_pooled: true,
+            pain_active: true,
+            vision_active: scene == Scene::Base,
+            vision_resolution: 16,
+            ..of(kind, behavior, scene, Compat::Api)
+        };
+        for config in [
+            touching(Behavior::SelfTouch, Scene::Crib),
+            touching(Behavior::HandRegard, Scene::Base),
+        ] {
+            let mut env = started(config);
+            random_steps(&mut env, 5);
+            let snapshot = env.snapshot();
+            let mut other = env.blueprint().env().expect("available");
+            other.restore(&snapshot).expect("the same configuration");
+            let (seen, restored) = (env.observation(), other.observation());
+            assert_eq!(restored.proprioception, seen.proprioception, "{kind}");
+            assert_eq!(restored.touch_pooled, seen.touch_pooled, "{kind}");
+            assert!(
+                seen.touch.is_some() && seen.pain.is_some(),
+                "the original knows what it feels"
+            );
+            assert_eq!(
+                (restored.touch, restored.pain, restored.eye_left),
+                (None, None, None),
+                "{kind}"
+            );
+
+            let expect = course(&mut env, 5);
+            env.restore(&snapshot).expect("its own snapshot");
+            assert_eq!(
+                env.refresh().expect("no divergence"),
+                other.refresh().expect("no divergence"),
+                "{kind}"
+            );
+            assert_eq!(
+                (&env.state().xpos, &env.state().contact),
+                (&other.state().xpos, &other.state().contact)
+            );
+            let mut here = env.blueprint().engine().new_state();
+            here.copy_dynamic_from(env.state());
+            env.blueprint().engine().forward(&mut here).expect("no divergence");
+            assert_eq!(
+                other.state().geom_xpos,
+                here.geom_xpos,
+                "{kind}: poses of the present positions"
+            );
+            assert_eq!(other.state().contact, here.contact, "{kind}");
+            assert!(
+                other
+                    .observation()
+                    .touch
+                    .is_some_and(|touch| touch.iter().any(|v| *v != 0.0)),
+                "{kind}"
+            );
+            assert!(
+                course(&mut other, 5) == expect && course(&mut env, 5) == expect,
+                "{kind}: the next steps"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_observation_is_of_one_moment() {
+    let mut env = started(Config {
+        touch_active: true,
+        ..of(
+            ActuationModel::SpringDamper,
+            Behavior::SelfTouch,
+            Scene::Crib,
+            Compat::Api,
+        )
+    });
+    let before = env.observation().proprioception.to_vec();
+    let joint = env.senses().proprioception().joints().qpos[0];
+    env.state_mut().qpos[joint] += 0.1;
+    assert_eq!(
+        env.observation().proprioception,
+        before,
+        "an edit is not observed in part"
+    );
+    let qpos = env.state().qpos.clone();
+    let range = env.senses().proprioception().range(Component::Angles).expect("on");
+    let now = env.refresh().expect("no divergence").proprioception[range.start];
+    assert_eq!(now, qpos[joint]);
+    env.state_mut().qpos[joint] = f64::NAN;
+    assert!(env.refresh().is_err() && !env.ready());
+}
+
+#[test]
+fn a_clone_goes_on_with_the_same_bits() {
+    for config in [
+        infant(),
+        Config {
+            vision_active: true,
+            vision_resolution: 16,
+            ..Config::of(Behavior::Catch)
+        },
+    ] {
+        let mut env = started(config);
+        random_steps(&mut env, 4);
+        let mut twin = env.clone();
+        assert_eq!((env.observation(), env.info()), (twin.observation(), twin.info()));
+        assert_eq!((env.reward(), env.ready()), (twin.reward(), twin.ready()));
+        let expect = course(&mut env, 6);
+        assert!(course(&mut twin, 6) == expect);
+        let mut third = twin.clone();
+        let first = third.reset(None).expect("no divergence").proprioception.to_vec();
+        assert_eq!(twin.reset(None).expect("no divergence").proprioception, first);
+    }
 }
 
 #[test]

@@ -457,7 +457,7 @@ fn the_environment_observes_touch() {
     let observation = env.reset(Some(0)).expect("no divergence");
     assert_eq!(observation.touch.map(<[f32]>::len), Some(n));
     held_steps(&mut env, 50, 10);
-    let touch = env.touch().expect("on");
+    let touch = env.senses().touch().expect("on");
     assert_eq!(env.observation().touch, Some(touch.values()));
     assert!(touch.active().next().is_some(), "MIMo lies on a mattress");
     let nonzero = touch

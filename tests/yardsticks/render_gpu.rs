@@ -1,7 +1,7 @@
 //! The renderer on a GPU: many pictures in one submission, each as if drawn alone; errors for what cannot be drawn.
 
 use babybench::config::{Config, RendererKind, Scene};
-use babybench::env::Viewer;
+use babybench::env::{Viewer, draw_eyes};
 use babybench::render::gpu::{Depth, GpuError, GpuRenderer, Gray, Pending, Rgb, Segmentation, wgpu};
 use babybench::render::{CpuRenderer, Poses, RenderError, RenderRequest, SharedGpu, View};
 use babybench::{Blueprint, Env, EnvError, VectorEnv, VectorOptions};
@@ -9,6 +9,11 @@ use testkit::harness::{Need, Trial};
 use testkit::{show, trials};
 
 use crate::common::{infant, seen};
+
+/// What both eyes see.
+fn eyes_of(env: &Env) -> [RenderRequest<'_>; 2] {
+    env.senses().vision().unwrap().requests(env.state())
+}
 
 pub fn trials() -> Vec<Trial> {
     trials![needs GPU: eyes_of_many_environments_are_drawn_together, a_vector_draws_all_eyes_in_one_submission, images_of_infants_are_transformed, a_picture_does_not_depend_on_its_company, depth_segmentation_and_gray_are_those_of_the_cpu_renderer, several_submissions_may_be_pending, wrong_requests_are_errors, a_lost_device_is_an_error, environments_and_renderers_move_between_threads]
@@ -41,7 +46,7 @@ fn open(scene: Scene) -> (Blueprint, SharedGpu) {
 fn environments(blueprint: &Blueprint, count: usize) -> Vec<Env> {
     let make = |seed: usize| {
         let mut env = blueprint.env().expect("an adapter");
-        env.defer_vision(true);
+        env.senses_mut().defer_vision(true);
         env.reset(Some(seed as u64)).expect("no divergence");
         let mut action = Vec::new();
         for _ in 0..5 + 3 * seed {
@@ -104,17 +109,17 @@ fn eyes_of_many_environments_are_drawn_together() {
         let (blueprint, gpu) = open(scene);
         let mut environments = environments(&blueprint, 6);
         assert!(environments[0].observation().eye_left.unwrap().iter().all(|&v| v == 0));
-        Env::draw_eyes(&mut environments).unwrap();
+        draw_eyes(&mut environments).unwrap();
         for env in &mut environments {
             let together = env.observation().eye_right.unwrap().to_vec();
-            let eyes = env.eyes().unwrap();
+            let eyes = eyes_of(env);
             assert_alike(&together, &cpu(env, &eyes[1]));
             // what a step draws
-            env.defer_vision(false);
+            env.senses_mut().defer_vision(false);
             let (qpos, qvel) = (env.state().qpos.clone(), env.state().qvel.clone());
             env.set_state(&qpos, &qvel).unwrap();
             let stepped = env.observation().eye_right.unwrap().to_vec();
-            let again = gpu.lock().unwrap().draw::<Rgb>(&env.eyes().unwrap()).unwrap();
+            let again = gpu.lock().unwrap().draw::<Rgb>(&eyes_of(env)).unwrap();
             assert_same(&gpu, &stepped, again.get(1).unwrap());
             let mut viewer = Viewer::new(env.blueprint()).unwrap();
             let corner = viewer.draw(env, "corner", 96, 64).unwrap().to_vec();
@@ -152,9 +157,9 @@ fn a_vector_draws_all_eyes_in_one_submission() {
         for k in 0..ENVS {
             let env = envs.env(k).unwrap();
             let row = envs.batch().row(k).unwrap();
-            let alone = gpu.lock().unwrap().draw::<Rgb>(&env.eyes().unwrap()).unwrap();
+            let alone = gpu.lock().unwrap().draw::<Rgb>(&eyes_of(env)).unwrap();
             assert_same(&gpu, row.eye_left.unwrap(), alone.get(0).unwrap());
-            assert_alike(row.eye_right.unwrap(), &cpu(env, &env.eyes().unwrap()[1]));
+            assert_alike(row.eye_right.unwrap(), &cpu(env, &eyes_of(env)[1]));
         }
     }
 }

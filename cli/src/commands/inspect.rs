@@ -101,7 +101,11 @@ impl Inspect {
             env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
         }
         let s = env.state();
-        let felt = if self.state.is_some() { env.touch() } else { None };
+        let felt = if self.state.is_some() {
+            env.senses().touch()
+        } else {
+            None
+        };
         let picture = draw_skin(env.model(), skin, &s.xpos, &s.xmat, felt, PICTURE_HEIGHT);
         write_png(path, &picture.rgb, picture.width, picture.height)?;
         writeln!(
@@ -163,7 +167,7 @@ fn write_joints(out: &mut impl Write, env: &Env) -> io::Result<()> {
         "{:>4} {:34} {:8} {low:>9} {high:>9} {:>9}  locked",
         "", "name", "part", "settled"
     )?;
-    let joints = env.proprioception().joints();
+    let joints = env.senses().proprioception().joints();
     for (k, (&j, &q)) in joints.joint.iter().zip(&joints.qpos).enumerate() {
         let part = joint_part(model, j).map_or("", |p| p.name());
         let [low, high] = model.jnt_range[j];
@@ -221,7 +225,7 @@ fn write_spaces(out: &mut impl Write, env: &Env) -> io::Result<()> {
 /// Writes what each number of the observation is.
 fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
     writeln!(out, "  components of `observation`")?;
-    let proprioception = env.proprioception();
+    let proprioception = env.senses().proprioception();
     for (component, range) in proprioception.layout() {
         let what = match component {
             Component::Angles => "rad, joints as above",
@@ -242,7 +246,7 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
             range.start, range.end, entry.name
         )?;
     }
-    if let Some(v) = env.vestibular() {
+    if let Some(v) = env.senses().vestibular() {
         writeln!(out, "  components of `vestibular`")?;
         for (name, range) in v.layout(env.model()) {
             writeln!(out, "    {:4}..{:4} {name}", range.start, range.end)?;
@@ -254,7 +258,7 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
 /// Writes the way of each sense to the observation, and that of actions to the actuators.
 fn write_pipeline(out: &mut impl Write, env: &Env) -> io::Result<()> {
     writeln!(out, "\nSenses on their way to the observation")?;
-    for (sense, chain) in env.pipeline() {
+    for (sense, chain) in env.senses().transforms() {
         let chain: Vec<String> = chain.map(|transform| transform.describe()).collect();
         let way = if chain.is_empty() {
             "as it is".to_string()
@@ -263,7 +267,7 @@ fn write_pipeline(out: &mut impl Write, env: &Env) -> io::Result<()> {
         };
         writeln!(out, "  {:12} {way}", sense.key())?;
     }
-    let (steps, config) = (env.motor_delay(), env.config());
+    let (steps, config) = (env.blueprint().action_delay(), env.config());
     let ms = steps as f64 * Delays::step_ms(config.frame_skip);
     match steps {
         0 => writeln!(out, "  actions      as they are"),

@@ -42,7 +42,7 @@ impl ReplayArgs {
         if recording.qpos.len() == result.qpos.len() && n > 0 {
             let nq = env.model().nq;
             let last = (n - 1) * nq;
-            let joints = &env.proprioception().joints().qpos;
+            let joints = &env.senses().proprioception().joints().qpos;
             let squares = joints
                 .iter()
                 .map(|&q| (result.qpos[last + q] - recording.qpos[last + q]).powi(2));

@@ -172,7 +172,7 @@ fn description(env: &Env) -> String {
         "{}{scene}, {}: {} joints, {} actuators, {} numbers observed",
         config.behavior,
         config.actuation_model,
-        env.proprioception().joints().len(),
+        env.senses().proprioception().joints().len(),
         env.model().nu(),
         spaces.iter().map(|s| s.shape.iter().product::<usize>()).sum::<usize>(),
     )

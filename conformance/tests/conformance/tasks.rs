@@ -181,7 +181,7 @@ fn tasks_open_loop_stay_near_the_recording() {
             .min(OPEN);
         recording.len = first;
         let nq = env.model().nq;
-        let joints = env.proprioception().joints().qpos.clone();
+        let joints = env.senses().proprioception().joints().qpos.clone();
         let at = |table: &[f64]| pick(row(table, first - 1, nq), &joints);
         let ours = replay(&mut env, &recording, false).expect("the replay runs");
         let distance = rms(&at(&ours.qpos), &at(&recording.qpos));
@@ -223,7 +223,7 @@ fn tasks_settle_and_reset_as_in_the_kit() {
             }
         }
         let set = g.array("reset_set_qpos");
-        let (nq, joints) = (env.model().nq, env.proprioception().joints().qpos.clone());
+        let (nq, joints) = (env.model().nq, env.senses().proprioception().joints().qpos.clone());
         for (e, start) in starts.iter().enumerate() {
             let error = match g.config.behavior {
                 // what was drawn is in the state that is set; what follows is simulated
@@ -232,7 +232,7 @@ fn tasks_settle_and_reset_as_in_the_kit() {
                     let still = vec![0.0; env.model().nv];
                     env.reset_to(row(&set, e, nq), &still).expect("a state");
                     for _ in 0..100 {
-                        env.physics_step().expect("a step");
+                        env.by_hand().physics_step().expect("a step");
                     }
                     max_abs(&pick(&env.state().qpos, &joints), &pick(&start.qpos, &joints))
                 }

@@ -49,7 +49,7 @@ impl DoubleTouch {
 
     /// Marks in `felt` the pairs that are felt in this step.
     pub fn feel(&self, env: &Env, felt: &mut [bool]) {
-        let contacts = env.touch().map_or(&[][..], |touch| touch.contacts());
+        let contacts = env.senses().touch().map_or(&[][..], |touch| touch.contacts());
         // both sides of a contact stand next to each other
         for pair in contacts.windows(2) {
             let [one, other] = pair else { continue };

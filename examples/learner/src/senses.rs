@@ -15,7 +15,7 @@ pub struct Senses {
 impl Senses {
     /// Finds the parts with skin.
     pub fn new(env: &Env) -> Self {
-        let skin = env.touch().map(|touch| touch.layout().bodies());
+        let skin = env.senses().touch().map(|touch| touch.layout().bodies());
         Self {
             bodies: skin.unwrap_or_default().iter().map(|skin| skin.body).collect(),
         }
@@ -28,7 +28,7 @@ impl Senses {
 
     /// Appends the force on each part with skin: the logarithm of newtons plus one.
     pub fn feel(&self, env: &Env, out: &mut Vec<f32>) {
-        let Some(touch) = env.touch() else { return };
+        let Some(touch) = env.senses().touch() else { return };
         out.extend(self.bodies.iter().map(|&body| {
             let force = touch.force_on_body(body);
             let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();

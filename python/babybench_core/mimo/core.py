@@ -167,7 +167,7 @@ class Core:
 
     def observation(self) -> dict[str, NDArray[Any]]:
         """Returns what was sensed last, in fresh arrays."""
-        return self.engine.observe()
+        return self.engine.observation()
 
     def proprioception(self) -> Array:
         """Returns the last proprioception, (n,)."""

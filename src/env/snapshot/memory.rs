@@ -7,9 +7,9 @@ use crate::env::pipeline::take_part;
 
 impl Env {
     /// Appends what actions on their way, pain and transforms remember, each part behind its length.
-    pub(super) fn save_memory(&self, out: &mut Vec<u8>) {
+    pub(in crate::env) fn save_memory(&self, out: &mut Vec<u8>) {
         let mut part = Vec::new();
-        self.motor.save(&mut part);
+        self.action_delay.save(&mut part);
         append(out, &mut part);
         if let Some(pain) = &self.senses.pain {
             pain.save(&mut part);
@@ -19,7 +19,7 @@ impl Env {
     }
 
     /// Takes over what [`Env::save_memory`] wrote; changes nothing if it is something else.
-    pub(super) fn load_memory(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
+    pub(in crate::env) fn load_memory(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
         let mut before = Vec::new();
         self.save_memory(&mut before);
         if self.try_load(bytes) {
@@ -38,7 +38,7 @@ impl Env {
             Some(sense) => sense.load(pain),
             None => pain.is_empty(),
         };
-        self.motor.load(motor) && felt && self.senses.pipeline.load(bytes) && bytes.is_empty()
+        self.action_delay.load(motor) && felt && self.senses.pipeline.load(bytes) && bytes.is_empty()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
-use crate::env::motor::Motor;
+use crate::env::action_delay::ActionDelay;
 use crate::env::{EnvError, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
@@ -13,7 +13,7 @@ use crate::spaces::NumpyRng;
 /// Physics steps in which a scene settles before it is used.
 const SETTLING_STEPS: u32 = 100;
 
-/// The simulation of an environment in the hands of its task, between physics steps.
+/// The simulation of an environment as its task may inspect and modify it, between physics steps.
 pub struct TaskScene<'a> {
     /// The configuration.
     pub config: &'a Config,
@@ -28,7 +28,7 @@ pub struct TaskScene<'a> {
     pub(in crate::env) base: &'a mut Params,
     pub(in crate::env) actuation: &'a dyn Actuation,
     /// The delay before the actuators; none while the scene settles.
-    pub(in crate::env) motor: Option<&'a mut Motor>,
+    pub(in crate::env) delay: Option<&'a mut ActionDelay>,
     /// Where episodes start: positions and velocities.
     pub(in crate::env) start: [&'a [f64]; 2],
     /// Room for a random action.
@@ -105,8 +105,8 @@ impl<'a> TaskScene<'a> {
 
     /// Forgets the past: `qpos0` at rest, of which nothing is computed. Actuators are as they were.
     pub(in crate::env) fn forget(&mut self) {
-        if let Some(motor) = &mut self.motor {
-            motor.clear();
+        if let Some(delay) = &mut self.delay {
+            delay.clear();
         }
         if self.engine.check_shape(self.state).is_err() {
             // a program has cleared a vector; what is forgotten need not have been whole
@@ -142,20 +142,25 @@ impl<'a> TaskScene<'a> {
         self.advance(steps)
     }
 
-    /// Gives the action of a step of the environment to the actuators, by way of its delay, and makes physics steps.
+    /// Applies an action through the delay before the actuators and advances the physics.
     pub(in crate::env) fn step(&mut self, action: &[f32], steps: u32) -> Result<(), EnvError> {
-        let action = match &mut self.motor {
-            Some(motor) => motor.pass(action),
+        self.pass(action);
+        self.advance(steps)
+    }
+
+    /// Gives the action of a step to the actuators, through the delay before them.
+    pub(in crate::env) fn pass(&mut self, action: &[f32]) {
+        let action = match &mut self.delay {
+            Some(delay) => delay.pass(action),
             None => action,
         };
         self.actuation.set_action(self.model, self.state, action);
-        self.advance(steps)
     }
 
     /// Gives an action to the actuators, as resets do.
     fn give(&mut self, action: &[f32]) {
-        let action = match &mut self.motor {
-            Some(motor) => motor.pass_in_reset(action),
+        let action = match &mut self.delay {
+            Some(delay) => delay.pass_in_reset(action),
             None => action,
         };
         self.actuation.set_action(self.model, self.state, action);
@@ -165,9 +170,9 @@ impl<'a> TaskScene<'a> {
     fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
         for k in 0..steps {
             if k > 0 {
-                self.actuation.substep(self.model, self.state);
+                self.substep();
             }
-            self.engine.step(self.state)?;
+            self.steps(1)?;
         }
         Ok(())
     }
@@ -263,7 +268,7 @@ impl<'a> TaskScene<'a> {
         self.rest(SETTLING_STEPS)
     }
 
-    /// Lends the room for an action while `work` is done.
+    /// Calls `work` with the reusable memory of an action.
     fn with_action(
         &mut self,
         work: impl FnOnce(&mut Self, &mut Vec<f32>) -> Result<(), EnvError>,

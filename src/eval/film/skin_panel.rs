@@ -32,7 +32,7 @@ impl SkinPanel {
 
     /// Draws the skin of the environment as it feels now; returns `None` if touch is off.
     pub fn draw(&mut self, env: &Env) -> Option<&[u8]> {
-        let (touch, model, s) = (env.touch()?, env.model(), env.state());
+        let (touch, model, s) = (env.senses().touch()?, env.model(), env.state());
         let hip = s.xpos[model.body("hip")?];
         self.rgb.fill(255);
         let width = touch.width();

@@ -12,7 +12,7 @@
 //!     env.reset(None)?;
 //! }
 //! let mut gpu = GpuRenderer::new(blueprint.visual()?)?;
-//! let requests: Vec<_> = environments.iter().flat_map(|e| e.eyes().into_iter().flatten()).collect();
+//! let requests: Vec<_> = environments.iter().filter_map(|e| Some(e.senses().vision()?.requests(e.state()))).flatten().collect();
 //! let pending = gpu.begin::<Rgb>(&requests)?; // the device works; so may we
 //! let images = pending.wait()?; // 128 x 64 x 64 x 3
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -166,14 +166,14 @@ impl Replay {
     pub(super) fn begin(env: &Env, len: usize) -> Self {
         Self {
             len,
-            touch: env.touch().map(|t| TouchRows {
+            touch: env.senses().touch().map(|t| TouchRows {
                 ptr: vec![0],
                 len: t.len() as i64,
                 ..TouchRows::default()
             }),
-            touch_pooled: env.touch_pool().map(|_| Vec::new()),
-            pain: env.pain().map(|_| Vec::new()),
-            vestibular: env.vestibular().map(|_| Vec::new()),
+            touch_pooled: env.senses().touch_pool().map(|_| Vec::new()),
+            pain: env.senses().pain().map(|_| Vec::new()),
+            vestibular: env.senses().vestibular().map(|_| Vec::new()),
             contact_ptr: vec![0],
             task: env.task().reports_outcome().then(TaskRows::default),
             ..Self::default()

@@ -1,13 +1,14 @@
 //! Transforms between a sense and the observation, applied one after the other to the sense's values.
 //!
 //! A transform is a small type that changes the values of one sense in place. The configuration sets up those of this
-//! module; [`Env::add_transform`](crate::Env::add_transform) adds others, such as eyes that see nothing half of the time:
+//! module; [`SensesMut::add_transform`](crate::env::SensesMut::add_transform) adds others, such as eyes that see nothing half of the time:
 //!
 //! ```
 //! use babybench::sensors::transform::{Sense, Signal, Transform};
 //! use babybench::spaces::NumpyRng;
 //! use babybench::{Config, Env};
 //!
+//! #[derive(Clone)]
 //! struct Blink;
 //!
 //! impl Transform for Blink {
@@ -22,7 +23,7 @@
 //! }
 //!
 //! let mut env = Env::new(Config { touch_active: false, ..Config::default() })?;
-//! env.add_transform(Sense::EyeLeft, Box::new(Blink))?;
+//! env.senses_mut().add_transform(Sense::EyeLeft, Box::new(Blink))?;
 //! let black = |env: &Env| env.observation().eye_left.is_some_and(|image| image.iter().all(|&v| v == 0));
 //! let blinks = (0..20).filter(|&seed| env.reset(Some(seed)).is_ok() && black(&env)).count();
 //! assert!((1..20).contains(&blinks));
@@ -138,30 +139,7 @@ impl Signal<'_> {
 }
 
 /// A transform of one sense of one environment. It must not allocate after its first steps.
-///
-/// ```
-/// use babybench::sensors::transform::{Signal, Transform};
-/// use babybench::spaces::NumpyRng;
-///
-/// /// Balance with accelerations in multiples of gravity.
-/// struct InGravities;
-///
-/// impl Transform for InGravities {
-///     fn describe(&self) -> String {
-///         "acceleration in g".to_string()
-///     }
-///     fn apply(&mut self, signal: Signal<'_>, _: &mut NumpyRng) {
-///         if let Signal::Numbers(values) = signal {
-///             values[..3].iter_mut().for_each(|v| *v /= 9.81);
-///         }
-///     }
-/// }
-///
-/// let mut values = [0.0, 0.0, 9.81, 0.5, 0.0, 0.0];
-/// InGravities.apply(Signal::Numbers(&mut values), &mut NumpyRng::seed(0));
-/// assert_eq!(values, [0.0, 0.0, 1.0, 0.5, 0.0, 0.0]);
-/// ```
-pub trait Transform: Send + Sync {
+pub trait Transform: CloneTransform + Send + Sync {
     /// Describes it in a few words, with units, for `inspect`.
     fn describe(&self) -> String;
 
@@ -185,5 +163,23 @@ pub trait Transform: Send + Sync {
     /// Returns the memory that it takes, bytes, by which a vector decides how many environments fit.
     fn memory(&self) -> usize {
         0
+    }
+}
+
+/// Makes transforms behind a pointer cloneable; every [`Transform`] that is [`Clone`] has it.
+pub trait CloneTransform {
+    /// Returns a copy, which remembers the same.
+    fn clone_transform(&self) -> Box<dyn Transform>;
+}
+
+impl<T: Transform + Clone + 'static> CloneTransform for T {
+    fn clone_transform(&self) -> Box<dyn Transform> {
+        Box::new(self.clone())
+    }
+}
+
+impl Clone for Box<dyn Transform> {
+    fn clone(&self) -> Self {
+        (**self).clone_transform()
     }
 }

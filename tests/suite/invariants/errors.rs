@@ -307,10 +307,13 @@ fn clear_each(config: Config, goes_on: &[usize]) {
         match stepped {
             Ok(()) => assert!(goes_on.contains(&k), "vector {k} is not missed"),
             Err(EnvError::Engine(EngineError::Shape { found: 0, .. })) => {
-                assert!(env.observe().is_err(), "vector {k}");
+                assert!(env.by_hand().observe().is_err(), "vector {k}");
                 let [mut left, mut right] = [0, 1].map(|_| vec![0; 16 * 16]);
-                assert!(env.eye_gray([&mut left, &mut right]).is_err(), "vector {k}");
-                assert!(env.eyes().is_none() && env.gaze_angles().is_none(), "vector {k}");
+                assert!(
+                    env.senses_mut().eye_gray([&mut left, &mut right]).is_err(),
+                    "vector {k}"
+                );
+
                 let start = [env.blueprint().init_qpos(), env.blueprint().init_qvel()].map(<[f64]>::to_vec);
                 assert!(env.set_state(&start[0], &start[1]).is_err(), "vector {k}");
                 env.restore(&before).expect("room for what it holds");

@@ -21,7 +21,11 @@ fn sensors(model: &Model, s: &State, pick: impl Fn(SensorType) -> bool) -> Vec<f
 }
 
 fn component(env: &Env, component: Component) -> &[f64] {
-    &env.observation().proprioception[env.proprioception().range(component).expect("the component is on")]
+    &env.observation().proprioception[env
+        .senses()
+        .proprioception()
+        .range(component)
+        .expect("the component is on")]
 }
 
 #[test]
@@ -57,7 +61,7 @@ fn invariant_9_forces_lag_and_positions_do_not() {
                     past.contact == now.contact && past.geom_xpos == now.geom_xpos && past.cam_xmat == now.cam_xmat,
                     "{at}"
                 );
-                let joints = env.proprioception().joints();
+                let joints = env.senses().proprioception().joints();
                 let of = |values: &[f64], index: &[usize]| index.iter().map(|&i| values[i]).collect::<Vec<_>>();
                 assert_eq!(
                     component(&env, Component::Angles),

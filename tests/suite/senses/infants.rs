@@ -1,7 +1,7 @@
 //! An infant whose senses have every transform: copies, vectors, other ages.
 
 use babybench::config::Delays;
-use babybench::env::Snapshot;
+use babybench::env::{Snapshot, draw_eyes};
 use babybench::sensors::transform::Sense;
 use babybench::vector::Buffers;
 use babybench::{AutoresetMode, Blueprint, Config, Env, VectorEnv, VectorOptions};
@@ -95,11 +95,11 @@ fn infants_in_a_vector_are_as_if_alone() {
 #[test]
 fn eyes_drawn_later_are_transformed_too() {
     let (mut direct, mut deferred) = (env(infant()), env(infant()));
-    deferred.defer_vision(true);
+    deferred.senses_mut().defer_vision(true);
     for env in [&mut direct, &mut deferred] {
         env.reset(Some(2)).expect("no divergence");
     }
-    Env::draw_eyes([&mut deferred]).expect("a renderer");
+    draw_eyes([&mut deferred]).expect("a renderer");
     let mut action = Vec::new();
     for step in 0..8 {
         assert_eq!(direct.observation(), deferred.observation(), "before step {step}");
@@ -107,7 +107,7 @@ fn eyes_drawn_later_are_transformed_too() {
             env.sample_action(&mut action);
             env.step(&action).expect("no divergence");
         }
-        Env::draw_eyes([&mut deferred]).expect("a renderer");
+        draw_eyes([&mut deferred]).expect("a renderer");
     }
 }
 
@@ -172,7 +172,8 @@ fn a_blueprint_of_an_infant_makes_infants() {
                 .expect("he grows");
             let env = blueprint.env().expect("an environment");
             let (_, mut chain) = env
-                .pipeline()
+                .senses()
+                .transforms()
                 .find(|(sense, _)| *sense == Sense::EyeRight)
                 .expect("an eye");
             let acuity = chain.next().expect("acuity").describe();

@@ -16,7 +16,10 @@ fn pooled_touch_is_the_sum_of_the_sensors() {
         });
         env.reset(Some(0)).expect("no divergence");
         random_steps(&mut env, 30);
-        let (touch, pool) = (env.touch().expect("touch"), env.touch_pool().expect("pooled"));
+        let (touch, pool) = (
+            env.senses().touch().expect("touch"),
+            env.senses().touch_pool().expect("pooled"),
+        );
         let pooled = env.observation().touch_pooled.expect("pooled");
         assert!(pool.bodies().is_sorted() && pooled.len() == 5 * pool.bodies().len());
         let mut pressed = 0;
@@ -41,7 +44,7 @@ fn pooled_touch_is_the_sum_of_the_sensors() {
 
 /// The pain of each sensor, worked out from the contacts.
 fn pain_of(env: &Env, options: &PainOptions, before: &[f32]) -> Vec<f64> {
-    let touch = env.touch().expect("touch");
+    let touch = env.senses().touch().expect("touch");
     let new = touch.values().iter().map(|&force| {
         let pain = match env.config().compat {
             Compat::Api => options.slope * (f64::from(force) - options.threshold),
@@ -107,7 +110,7 @@ fn soft_things_do_not_hurt_here_and_in_copies() {
     let hard = env.snapshot();
     assert!(left(&mut env) > 0.1);
     env.restore(&hard).expect("its own snapshot");
-    env.pain_mut().expect("pain").softness_mut().fill(0.0);
+    env.senses_mut().pain_mut().expect("pain").softness_mut().fill(0.0);
     copy.restore(&env.snapshot()).expect("of the same blueprint");
     assert!(left(&mut env) < 1e-5);
     assert!(left(&mut copy) < 1e-5);

@@ -54,6 +54,7 @@ fn noise_has_its_deviation_and_the_generator_of_the_environment() {
 }
 
 /// Counts and marks.
+#[derive(Clone)]
 struct Marks {
     applied: f64,
 }
@@ -88,11 +89,16 @@ fn a_user_adds_a_transform() {
         ..everything()
     });
     for sense in [Sense::Proprioception, Sense::Touch, Sense::EyeRight] {
-        env.add_transform(sense, Box::new(Marks { applied: 0.0 }))
+        env.senses_mut()
+            .add_transform(sense, Box::new(Marks { applied: 0.0 }))
             .expect("it is on");
     }
     let chain = |env: &Env| -> Vec<String> {
-        let (_, chain) = env.pipeline().find(|(sense, _)| *sense == Sense::Touch).expect("touch");
+        let (_, chain) = env
+            .senses()
+            .transforms()
+            .find(|(sense, _)| *sense == Sense::Touch)
+            .expect("touch");
         chain.map(|transform| transform.describe()).collect()
     };
     assert_eq!(chain(&env), ["delay of 1 step (5 ms)", "marks"]);
@@ -104,12 +110,16 @@ fn a_user_adds_a_transform() {
         assert_eq!(o.eye_right.expect("an eye")[0], k);
         random_steps(&mut env, 1);
     }
-    assert!(env.touch().expect("touch").values()[3] != 5.0, "the skin itself stays");
+    assert!(
+        env.senses().touch().expect("touch").values()[3] != 5.0,
+        "the skin itself stays"
+    );
     env.set_age(Some(6.0)).expect("he grows");
     assert_eq!(chain(&env), ["delay of 1 step (5 ms)", "marks"]);
 
     let mut blind = crate::common::env(body_only("self_touch"));
     let error = blind
+        .senses_mut()
         .add_transform(Sense::Pain, Box::new(Marks { applied: 0.0 }))
         .expect_err("it is off");
     assert!(matches!(error, EnvError::SenseOff { sense: Sense::Pain }));

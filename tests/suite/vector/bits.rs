@@ -236,7 +236,12 @@ fn only_touch<'a>(touch: &'a mut [f32], touched: &'a mut [Vec<u32>], rows: usize
 fn resets_steps_and_receipts_write_only_what_is_touched_where_the_caller_keeps_it() {
     let blueprint = blueprint(example("self_touch"));
     let [mut own, mut other] = [1, 2].map(|threads| vector(&blueprint, 2, threads, AutoresetMode::NextStep));
-    let len = blueprint.env().expect("MIMo").touch().map_or(0, |touch| touch.len());
+    let len = blueprint
+        .env()
+        .expect("MIMo")
+        .senses()
+        .touch()
+        .map_or(0, |touch| touch.len());
     let (mut touch, mut touched) = (vec![0.0; 2 * len], vec![Vec::new(); 2]);
     own.reset(3).expect("no divergence");
     other

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use babybench::Env;
 use babybench::config::Part;
-use babybench::env::{Snapshot, ViewFrom, Viewer};
+use babybench::env::{Snapshot, ViewFrom, Viewer, draw_eyes};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
 use babybench::render::{FreeCamera, Visual};
@@ -26,8 +26,6 @@ pub struct Core {
     frame: Frame,
     /// The last random action, and where the caller may write the next one.
     action: Vec<f32>,
-    /// What the skin feels after a snapshot was restored, until the next step.
-    restored: Option<Touch>,
 }
 
 #[wasm_bindgen]
@@ -39,40 +37,35 @@ impl Core {
             visual: None,
             viewer: None,
             frame: Frame::default(),
-            restored: None,
             env,
         })
     }
 
     /// Starts an episode.
     pub fn reset(&mut self, seed: Option<u64>) -> Result<(), JsValue> {
-        self.restored = None;
         done(self.env.reset(seed))
     }
 
     /// Starts an episode from positions and velocities.
     #[wasm_bindgen(js_name = resetTo)]
     pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), JsValue> {
-        self.restored = None;
         done(self.env.reset_to(qpos, qvel))
     }
 
     /// Sets positions and velocities in the middle of an episode.
     #[wasm_bindgen(js_name = setState)]
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), JsValue> {
-        self.restored = None;
         done(self.env.set_state(qpos, qvel))
     }
 
     /// Sets the activations of the muscles.
     #[wasm_bindgen(js_name = setActivity)]
     pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), JsValue> {
-        done(self.env.set_activity(activity))
+        done(self.env.by_hand().set_activity(activity))
     }
 
     /// Steps with the action in the view `action`.
     pub fn step(&mut self) -> Result<(), JsValue> {
-        self.restored = None;
         self.env.step(&self.action).map(drop).map_err(|e| js::env_error(&e))
     }
 
@@ -92,13 +85,13 @@ impl Core {
     /// Sets whether the eyes are drawn on demand only, by `drawEyes`.
     #[wasm_bindgen(js_name = deferVision)]
     pub fn defer_vision(&mut self, deferred: bool) {
-        self.env.defer_vision(deferred);
+        self.env.senses_mut().defer_vision(deferred);
     }
 
     /// Draws what the eyes see into the observation.
     #[wasm_bindgen(js_name = drawEyes)]
     pub fn draw_eyes(&mut self) -> Result<(), JsValue> {
-        done(Env::draw_eyes([&mut self.env]))
+        done(draw_eyes([&mut self.env]))
     }
 
     /// Returns where numbers stand: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. They stay there
@@ -134,7 +127,7 @@ impl Core {
     /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`.
     pub fn update(&mut self) -> Result<(), JsValue> {
         let visual = self.visual()?;
-        let touch = self.restored.as_ref().or(self.env.touch());
+        let touch = self.env.senses().touch();
         self.frame.update(self.env.model(), &visual, self.env.state(), touch);
         Ok(())
     }
@@ -162,7 +155,7 @@ impl Core {
     /// Returns where each touch sensor is in the frame of its body, m.
     #[wasm_bindgen(js_name = skinPositions)]
     pub fn skin_positions(&self) -> Vec<f32> {
-        let bodies = self.env.touch().into_iter().flat_map(|t| t.layout().bodies());
+        let bodies = self.env.senses().touch().into_iter().flat_map(|t| t.layout().bodies());
         let points = bodies.flat_map(|b| b.positions().as_flattened());
         points.map(|&v| v as f32).collect()
     }
@@ -170,14 +163,14 @@ impl Core {
     /// Returns the body of each touch sensor.
     #[wasm_bindgen(js_name = skinBodies)]
     pub fn skin_bodies(&self) -> Vec<u32> {
-        let bodies = self.env.touch().into_iter().flat_map(|t| t.layout().bodies());
+        let bodies = self.env.senses().touch().into_iter().flat_map(|t| t.layout().bodies());
         bodies.flat_map(|b| vec![b.body as u32; b.len()]).collect()
     }
 
     /// Returns the number of values of a touch sensor, 0 without touch.
     #[wasm_bindgen(js_name = touchWidth)]
     pub fn touch_width(&self) -> usize {
-        self.env.touch().map_or(0, Touch::width)
+        self.env.senses().touch().map_or(0, Touch::width)
     }
 
     /// Names the values of proprioception, in order.
@@ -185,6 +178,7 @@ impl Core {
     pub fn proprioception_names(&self) -> JsValue {
         let entries = self
             .env
+            .senses()
             .proprioception()
             .entries(self.env.model(), self.env.actuation());
         list(entries.iter().map(|e| {
@@ -254,20 +248,11 @@ impl Core {
         self.env.snapshot().as_bytes().to_vec()
     }
 
-    /// Goes back to a snapshot, with poses, contacts and forces brought up to date, so that they can be drawn at once.
+    /// Goes back to a snapshot, with poses, contacts, forces and senses brought up to date, so that they can be drawn at once.
     pub fn restore(&mut self, bytes: Vec<u8>) -> Result<(), JsValue> {
         let snapshot = Snapshot::from_bytes(bytes).map_err(js::error)?;
         self.env.restore(&snapshot).map_err(js::error)?;
-        // on a copy: what decides how the run goes on keeps its bits
-        let mut posed = self.env.state().clone();
-        self.env.engine_mut().forward(&mut posed).map_err(js::error)?;
-        posed.copy_dynamic_from(self.env.state());
-        *self.env.state_mut() = posed;
-        self.restored = self.env.touch().cloned();
-        if let Some(touch) = &mut self.restored {
-            touch.observe(self.env.model(), self.env.state());
-        }
-        Ok(())
+        done(self.env.refresh())
     }
 
     /// Adds a force and a torque at a point, in the world, to what acts on a body.

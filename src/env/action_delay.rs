@@ -3,26 +3,26 @@
 use crate::actuation::Actuation;
 use crate::config::{ActuationModel, Compat};
 use crate::env::Blueprint;
-use crate::env::pipeline::effective;
 use crate::sensors::transform::DelayLine;
 
-/// The way of actions to the actuators: at once, or later.
-pub(super) struct Motor {
+/// Passes actions to the actuators, immediately or after a delay.
+#[derive(Clone, Debug)]
+pub(super) struct ActionDelay {
     line: Option<DelayLine>,
     /// The action that comes out before the first of an episode.
     rest: Vec<f32>,
     compat: Compat,
 }
 
-impl Motor {
+impl ActionDelay {
     pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Self {
         let (config, space) = (blueprint.config(), actuation.action_space());
-        let steps = effective(config, config.delays.motor);
+        let steps = blueprint.action_delay();
         let centred = config.actuation_model == ActuationModel::Positional;
         let bounds = space.low().iter().zip(space.high());
         Self {
             line: (steps > 0).then(|| DelayLine::new(steps, space.len())),
-            // an angle of 0 is no rest
+            // an angle of 0 need not be within the limits of a joint: the middle of its range is
             rest: bounds
                 .map(|(low, high)| if centred { low + (high - low) / 2.0 } else { 0.0 })
                 .collect(),

@@ -1,0 +1,188 @@
+//! Resets and steps that a program puts together itself.
+
+use super::check_vector;
+use super::outcome::clear;
+use crate::env::{Env, EnvError, Observation};
+
+/// The parts of resets and steps of an environment, one by one: [`Env::by_hand`].
+///
+/// An [`Env::step`] without delays, noise or a task with a reward is:
+///
+/// ```
+/// use babybench::{Config, Env};
+///
+/// let config = Config { touch_active: false, vision_active: false, ..Config::default() };
+/// let (mut whole, mut env) = (Env::new(config.clone())?, Env::new(config)?);
+/// whole.reset(Some(0))?;
+/// env.reset(Some(0))?;
+/// let action = vec![0.2; env.action_space().len()];
+/// let frame_skip = env.config().frame_skip;
+/// let mut parts = env.by_hand();
+/// parts.set_action(&action)?;
+/// for k in 0..frame_skip {
+///     if k > 0 {
+///         parts.substep();
+///     }
+///     parts.physics_step()?;
+/// }
+/// parts.observe()?;
+/// parts.track();
+/// assert_eq!(env.observation(), whole.step(&action)?.observation);
+/// # Ok::<(), babybench::EnvError>(())
+/// ```
+#[derive(Debug)]
+pub struct Parts<'a> {
+    env: &'a mut Env,
+}
+
+impl Env {
+    /// Returns the parts of resets and steps, for programs that put them together in another way.
+    pub fn by_hand(&mut self) -> Parts<'_> {
+        Parts { env: self }
+    }
+}
+
+impl<'a> Parts<'a> {
+    /// Starts an episode as [`Env::reset`] does, with the given start actions, shape (n, len), instead of random ones: each is applied
+    /// for one physics step, whatever the behavior.
+    ///
+    /// ```
+    /// use babybench::config::Behavior;
+    /// use babybench::{Config, Env};
+    ///
+    /// let behavior = Behavior::SelfTouch;
+    /// let config = Config { behavior, vision_active: false, ..Config::default() };
+    /// let (mut one, mut other) = (Env::new(config.clone())?, Env::new(config)?);
+    /// let (mut actions, mut action) = (Vec::new(), Vec::new());
+    /// other.seed_action_space(7);
+    /// for _ in 0..10 {
+    ///     other.sample_action(&mut action);
+    ///     actions.extend_from_slice(&action);
+    /// }
+    /// assert_eq!(one.reset(Some(7))?, other.by_hand().reset_with(&actions)?);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Actions of wrong length or with numbers that are not finite, which change nothing; the simulation diverged.
+    pub fn reset_with(self, start_actions: &[f32]) -> Result<Observation<'a>, EnvError> {
+        let env = self.env;
+        let len = env.action_space().len();
+        let (actions, rest) = start_actions.split_at(start_actions.len() - start_actions.len() % len.max(1));
+        if !rest.is_empty() {
+            env.check_action(rest)?;
+        }
+        let actions = actions.chunks_exact(len.max(1));
+        actions.clone().try_for_each(|action| env.check_action(action))?;
+        env.end_episode();
+        let mut scene = env.play().scene;
+        scene.restart()?;
+        for action in actions {
+            scene.act(action, 1)?;
+        }
+        env.begin_episode()?;
+        Ok(env.observation())
+    }
+
+    /// Ends the episode and returns how many steps it had. The next step needs a reset.
+    pub fn end_episode(&mut self) -> u64 {
+        self.env.end_episode()
+    }
+
+    /// Forgets the past as MuJoCo's `mj_resetData` does: time and controls are 0, positions are `qpos0`, velocities are 0 and the
+    /// actuators rest. Nothing is computed there: [`Parts::forward`] does that. Delays and pain forget the past. Counters and
+    /// information stay.
+    ///
+    /// Under `compat: reference` a reset of the environment is this, [`Parts::forward`] at the settled state, and the start actions.
+    pub fn reset_data(&mut self) {
+        let mut scene = self.env.play().scene;
+        scene.forget();
+        scene.reset_actuators();
+        self.env.action_delay.rest();
+        self.env.senses.reset();
+    }
+
+    /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the
+    /// solver stay.
+    ///
+    /// # Errors
+    /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
+    pub fn forward(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        self.set_position(qpos, qvel)?;
+        let forward = self.env.play().scene.forward();
+        self.env.episode.ready = forward.is_ok();
+        forward
+    }
+
+    /// Sets positions (nq) and velocities (nv) for the next physics step, without computing anything there.
+    ///
+    /// # Errors
+    /// Wrong lengths or numbers that are not finite, which change nothing.
+    pub fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        self.env.set_position(qpos, qvel)
+    }
+
+    /// Sets the activations of the muscles ([`act`](crate::physics::State::act)), in the order of the action, each clipped to [0, 1].
+    ///
+    /// # Errors
+    /// A wrong length (models without muscles have none) or numbers that are not finite; nothing is changed then.
+    pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
+        let act = &mut self.env.physics.state.act;
+        check_vector("activity", activity, act.len())?;
+        for (act, &new) in act.iter_mut().zip(activity) {
+            *act = new.clamp(0.0, 1.0);
+        }
+        Ok(())
+    }
+
+    /// Gives an action, clipped to the action space, to the actuators, or to the delay on their way.
+    ///
+    /// # Errors
+    /// An action of wrong length or with numbers that are not finite, which changes nothing.
+    pub fn set_action(&mut self, action: &[f32]) -> Result<(), EnvError> {
+        self.env.check_action(action)?;
+        self.env.physics.check_shape()?;
+        self.env.play().scene.pass(action);
+        Ok(())
+    }
+
+    /// Updates the actuators, as before each physics step of a step but the first.
+    pub fn substep(&mut self) {
+        if self.env.physics.check_shape().is_err() {
+            return; // the physics step that follows says so
+        }
+        self.env.play().scene.substep();
+    }
+
+    /// Advances by one physics step, without sensing.
+    ///
+    /// # Errors
+    /// A simulation that diverged.
+    pub fn physics_step(&mut self) -> Result<(), EnvError> {
+        let stepped = self.env.play().scene.steps(1);
+        self.env.episode.ready &= stepped.is_ok();
+        stepped
+    }
+
+    /// Senses the state: computes [`Env::observation`] anew. Noise is drawn anew, and delays take it for a further step.
+    ///
+    /// # Errors
+    /// As the renderer.
+    pub fn observe(&mut self) -> Result<(), EnvError> {
+        self.env.sense()
+    }
+
+    /// Counts what the behavior counts, in [`Env::info`].
+    pub fn track(&mut self) {
+        if self.env.physics.check_shape().is_err() {
+            return; // the next step says so
+        }
+        self.env.track();
+    }
+
+    /// Clears what the behavior has counted.
+    pub fn clear_info(&mut self) {
+        let env = &mut *self.env;
+        clear(&*env.task, env.blueprint.config(), &mut env.info);
+    }
+}

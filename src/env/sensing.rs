@@ -1,0 +1,204 @@
+//! What a program may read of the senses of an environment, and change.
+
+use std::ops::Deref;
+
+use crate::env::physics::Physics;
+use crate::env::{EnvError, Senses};
+use crate::physics::State;
+use crate::render::ImageBuffers;
+use crate::sensors::transform::{Sense, Transform};
+use crate::sensors::{EyeImages, Pain, Proprioception, SkinValues, Touch, TouchPool, Vestibular, Vision};
+
+impl Senses {
+    /// Returns the proprioceptive sense: names and ranges of its values.
+    pub fn proprioception(&self) -> &Proprioception {
+        &self.proprioception
+    }
+
+    /// Returns the sense of touch, if it is active: sensor positions, active sensors, contacts and sums of forces, as last felt and
+    /// before all transforms.
+    pub fn touch(&self) -> Option<&Touch> {
+        self.touch.as_ref()
+    }
+
+    /// Returns touch as it is observed, with the list of sensors that are not zero, if it is active and known: see
+    /// [`Env::restore`](crate::Env::restore).
+    pub fn touch_observed(&self) -> Option<&SkinValues> {
+        self.touch_values().filter(|_| self.known)
+    }
+
+    /// Returns the bodies that pooled touch covers, if it is active.
+    pub fn touch_pool(&self) -> Option<&TouchPool> {
+        self.pool.as_ref()
+    }
+
+    /// Returns the sense of pain, if it is active.
+    pub fn pain(&self) -> Option<&Pain> {
+        self.pain.as_ref()
+    }
+
+    /// Returns pain as it is observed, if it is active and known: see [`Env::restore`](crate::Env::restore).
+    pub fn pain_observed(&self) -> Option<&SkinValues> {
+        self.pain_values().filter(|_| self.known)
+    }
+
+    /// Returns the vestibular sense, if it is active.
+    pub fn vestibular(&self) -> Option<&Vestibular> {
+        self.vestibular.as_ref()
+    }
+
+    /// Returns the sense of vision, if it is active. [`Vision::requests`] tells what the eyes see of a state, to be drawn by any
+    /// renderer.
+    pub fn vision(&self) -> Option<&Vision> {
+        self.vision.as_ref()
+    }
+
+    /// Returns the images of both eyes, left and right.
+    pub(crate) fn eye_images(&self) -> &[EyeImages; 2] {
+        &self.eyes
+    }
+
+    /// Returns by how many threads the eyes are drawn: 1 or 2.
+    pub fn vision_threads(&self) -> usize {
+        self.vision.as_ref().map_or(1, |vision| vision.renderer().threads())
+    }
+
+    /// Returns whether [`draw_eyes`](crate::env::draw_eyes) draws the eyes' images, not each step.
+    pub fn vision_is_deferred(&self) -> bool {
+        self.vision_deferred
+    }
+
+    /// Iterates over the senses that are observed, each with its transforms in their order.
+    pub fn transforms(&self) -> impl Iterator<Item = (Sense, impl Iterator<Item = &dyn Transform>)> {
+        let on = Sense::ALL.into_iter().filter(|&sense| self.is_on(sense));
+        on.map(|sense| (sense, self.pipeline.of(sense)))
+    }
+}
+
+/// The senses of an environment, to be changed, and what they could sense now: [`Env::senses_mut`](crate::Env::senses_mut).
+#[derive(Debug)]
+pub struct SensesMut<'a> {
+    pub(super) senses: &'a mut Senses,
+    pub(super) physics: &'a Physics,
+}
+
+impl Deref for SensesMut<'_> {
+    type Target = Senses;
+
+    fn deref(&self) -> &Senses {
+        self.senses
+    }
+}
+
+impl<'a> SensesMut<'a> {
+    /// Returns the eyes and the state that they see.
+    fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
+        let vision = self.senses.vision.as_mut().ok_or(EnvError::NoVision)?;
+        self.physics.check_shape()?;
+        Ok((vision, &self.physics.state))
+    }
+
+    /// Draws what both eyes see in grey: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    pub fn eye_gray(&mut self, eyes: [&mut [u8]; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.gray(state, eyes)?)
+    }
+
+    /// Draws how far away is what both eyes see: left and right, (H, W) distances from the camera's plane from the top, m;
+    /// infinite where nothing is.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let (mut left, mut right) = (vec![0.0; 64 * 64], vec![0.0; 64 * 64]);
+    /// env.senses_mut().eye_depth([&mut left, &mut right])?;
+    /// let mut geoms = [vec![0; 64 * 64], vec![0; 64 * 64]];
+    /// env.senses_mut().eye_segmentation(geoms.each_mut().map(|v| &mut v[..]))?;
+    /// assert!(left.iter().zip(&geoms[0]).all(|(distance, &geom)| distance.is_finite() || geom == -1));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    pub fn eye_depth(&mut self, eyes: [&mut [f32]; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.depth(state, eyes)?)
+    }
+
+    /// Draws which geoms both eyes see: left and right, (H, W) ids from the top; -1 where none is.
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    pub fn eye_segmentation(&mut self, eyes: [&mut [i32]; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.segmentation(state, eyes)?)
+    }
+
+    /// Draws several images of what both eyes see, left and right, those for which there are buffers. On the CPU all images
+    /// of an eye come from one pass, each with the bytes that it has alone. They are what is before the eyes, without the
+    /// transforms of the observation.
+    ///
+    /// ```
+    /// use babybench::render::ImageBuffers;
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let (mut depth, mut geoms) = ([vec![0.0; 64 * 64], vec![0.0; 64 * 64]], [vec![0; 64 * 64], vec![0; 64 * 64]]);
+    /// let [left, right] = &mut depth;
+    /// let [left_geoms, right_geoms] = &mut geoms;
+    /// env.senses_mut().eye_buffers([
+    ///     ImageBuffers { depth: Some(left), segmentation: Some(left_geoms), ..ImageBuffers::default() },
+    ///     ImageBuffers { depth: Some(right), segmentation: Some(right_geoms), ..ImageBuffers::default() },
+    /// ])?;
+    /// assert!(depth[0].iter().zip(&geoms[0]).all(|(distance, &geom)| distance.is_finite() || geom == -1));
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EnvError::NoVision`]; images of another size.
+    pub fn eye_buffers(&mut self, eyes: [ImageBuffers<'_>; 2]) -> Result<(), EnvError> {
+        let (vision, state) = self.sight()?;
+        Ok(vision.draw(state, eyes)?)
+    }
+
+    /// Sets by how many threads the eyes are drawn: with 2, a thread of its own draws the right eye, to the same bytes. It
+    /// takes the place of [`Config::vision_threads`](crate::Config::vision_threads); see
+    /// [`Renderer::set_threads`](crate::render::Renderer::set_threads). Without eyes nothing happens.
+    pub fn set_vision_threads(&mut self, threads: usize) {
+        if let Some(vision) = &mut self.senses.vision {
+            vision.set_threads(threads);
+        }
+    }
+
+    /// Sets whether resets and steps leave the eyes' images as they are, for [`draw_eyes`](crate::env::draw_eyes) to draw, once for each.
+    pub fn defer_vision(&mut self, deferred: bool) {
+        self.senses.vision_deferred = deferred;
+    }
+
+    /// Adds a transform of a sense, behind those that there are. Those of the configuration are, in this order: acuity and
+    /// foveation of the eyes, noise, delay.
+    ///
+    /// Random numbers are drawn in each reset and step after the observation is computed, sense by sense in the order of
+    /// [`Sense::ALL`] and transform by transform, from the generator that draws actions, too.
+    ///
+    /// # Errors
+    /// [`EnvError::SenseOff`].
+    pub fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) -> Result<(), EnvError> {
+        if !self.senses.is_on(sense) {
+            return Err(EnvError::SenseOff { sense });
+        }
+        self.senses.add_transform(sense, transform);
+        Ok(())
+    }
+
+    /// Returns the sense of pain, if it is active, to change how soft and how sensitive bodies are.
+    pub fn pain_mut(self) -> Option<&'a mut Pain> {
+        self.senses.pain.as_mut()
+    }
+}
