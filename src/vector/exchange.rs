@@ -3,7 +3,7 @@
 //! An environment moves to a thread and back by value: a slot that is empty is in flight, so nothing can be called on it
 //! meanwhile, and no lock is held while it steps.
 
-use super::slot::{Slot, Task};
+use super::slot::{Order, Slot};
 use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
 use crate::env::draw_eyes;
 
@@ -64,7 +64,7 @@ impl VectorEnv {
         let slots = self.slots.iter_mut().enumerate().filter(|(env, _)| marked(*env));
         let slots = slots.filter_map(|(env, place)| {
             let mut slot = place.take()?;
-            slot.task = Task::Reset(seeds.of(env));
+            slot.order = Order::Reset(seeds.of(env));
             Some(slot)
         });
         // the caller has nothing to do until all are back, so it takes jobs as well
@@ -252,8 +252,7 @@ impl VectorEnv {
         }
         for (row, action) in rows() {
             if let Some(slot) = &mut self.slots[env_of(row)] {
-                // in a second pass, when all actions have been checked: an error leaves everything untouched
-                slot.task = Task::Step;
+                slot.order = Order::Step;
                 slot.action.clear();
                 slot.action.extend_from_slice(action);
             }

@@ -10,7 +10,7 @@ use crate::vector::AutoresetMode;
 
 /// The next order of an environment.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Task {
+pub(super) enum Order {
     /// Apply [`Slot::action`], or start the next episode where the mode says so.
     Step,
     /// Start an episode, with a seed or without.
@@ -21,7 +21,7 @@ pub(super) enum Task {
 pub(super) struct Slot {
     pub index: usize,
     pub env: Env,
-    pub task: Task,
+    pub order: Order,
     pub action: Vec<f32>,
     pub mode: AutoresetMode,
     /// The last call of `send` that named it.
@@ -55,7 +55,7 @@ impl Slot {
         Self {
             index,
             env,
-            task: Task::Reset(None),
+            order: Order::Reset(None),
             action,
             mode,
             named: 0,
@@ -84,16 +84,16 @@ impl Slot {
     fn perform(&mut self) {
         (self.reward, self.terminated, self.truncated) = (0.0, false, false);
         (self.ended, self.failure) = (false, None);
-        match self.task {
-            Task::Reset(seed) => {
+        match self.order {
+            Order::Reset(seed) => {
                 if let Err(e) = self.revive() {
                     self.failure = Some(e);
                 } else {
                     self.reset(seed);
                 }
             }
-            Task::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
-            Task::Step => self.step(),
+            Order::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
+            Order::Step => self.step(),
         }
     }
 
