@@ -1,7 +1,6 @@
 //! A task of one's own: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, another one each time.
 
-use babybench::env::task::{TaskScene, TaskSizes, TaskView};
-use babybench::env::{BlueprintOptions, EnvError, Goal, Task};
+use babybench::env::{BlueprintOptions, EnvError, Goal, Task, TaskScene, TaskSizes, TaskView, Verdict};
 use babybench::{Blueprint, Config, Model};
 
 #[derive(Clone, Debug, Default)]
@@ -14,36 +13,32 @@ impl Task for Lift {
         "lift"
     }
 
-    fn bind(&mut self, _config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, _config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.hand = model.body("right_hand").ok_or(EnvError::Missing {
             what: "body",
             name: "right_hand".to_string(),
             purpose: "the task lift",
         })?;
-        Ok(())
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes {
+        Ok(TaskSizes {
             goal: 1,
             ..TaskSizes::default()
-        }
+        })
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
         desired.fill(scene.rng.uniform_in(0.3, 0.35));
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], _terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], _terms: &mut [f64]) {
         achieved.fill(view.state.xpos[self.hand][2]);
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
-        goal.achieved >= goal.desired
-    }
-
-    fn reward(&self, goal: Goal<'_>) -> f64 {
-        -(goal.desired[0] - goal.achieved[0]).max(0.0)
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
+        Verdict {
+            reward: -(goal.desired[0] - goal.achieved[0]).max(0.0),
+            is_success: goal.achieved >= goal.desired,
+            is_failure: false,
+        }
     }
 }
 

@@ -75,7 +75,7 @@ impl Env {
     /// # Errors
     /// Arrays that do not have a row of the task's length for each reward.
     pub fn compute_reward(&self, goals: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
-        rewards(&*self.task, goals, out)
+        rewards(&*self.task, self.blueprint.task_sizes(), goals, out)
     }
 
     /// Returns the configuration.

@@ -7,7 +7,7 @@ use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
 use crate::env::pipeline::effective;
 use crate::env::snapshot::fingerprint;
-use crate::env::task::{TaskScene, of_config};
+use crate::env::task::{TaskScene, TaskSizes, of_config};
 use crate::env::{Env, EnvError, Task};
 use crate::mimo::{build_scene, embedded, lock};
 use crate::model::Model;
@@ -35,6 +35,7 @@ pub struct Blueprint {
     config: Arc<Config>,
     /// The task, bound to the model.
     task: Box<dyn Task>,
+    sizes: TaskSizes,
     model: Arc<Model>,
     engines: Engines,
     init_qpos: Arc<Vec<f64>>,
@@ -140,7 +141,7 @@ impl Blueprint {
     /// decoded when something is first drawn, at once if `vision_active`.
     ///
     /// ```
-    /// use babybench::env::{BlueprintOptions, Goal, Task};
+    /// use babybench::env::{BlueprintOptions, Goal, Task, Verdict};
     /// use babybench::{Blueprint, Config};
     ///
     /// #[derive(Clone, Debug)]
@@ -150,8 +151,8 @@ impl Blueprint {
     ///     fn name(&self) -> &str {
     ///         "wait"
     ///     }
-    ///     fn reward(&self, _goal: Goal<'_>) -> f64 {
-    ///         1.0
+    ///     fn judge(&self, _goal: Goal<'_>) -> Verdict {
+    ///         Verdict { reward: 1.0, ..Verdict::default() }
     ///     }
     /// }
     ///
@@ -196,12 +197,13 @@ impl Blueprint {
     /// Binds the task to a model and lets it settle the scene.
     fn settled(config: Config, mut task: Box<dyn Task>, model: Arc<Model>, surface: Surface) -> Result<Self, EnvError> {
         let engines = Engines::new(&config, &model)?;
-        task.bind(&config, &model)?;
+        let sizes = task.bind(&config, &model)?;
         let settled = Settled::new(&config, &*task, &engines, &model)?;
         Ok(Self {
             fingerprint: fingerprint(&model, &config),
             config: Arc::new(config),
             task,
+            sizes,
             model,
             engines,
             init_qpos: Arc::new(settled.qpos),
@@ -259,6 +261,11 @@ impl Blueprint {
     /// Returns the task, which environments copy.
     pub fn task(&self) -> &dyn Task {
         &*self.task
+    }
+
+    /// Returns how many numbers the task hands out in each step.
+    pub(super) fn task_sizes(&self) -> TaskSizes {
+        self.sizes
     }
 
     /// Creates an environment.
@@ -354,12 +361,8 @@ impl Blueprint {
 
 /// Compiles the scene of a task.
 fn task_model(config: &Config, task: &dyn Task, assets: &dyn AssetSource) -> Result<Model, EnvError> {
-    Ok(build_scene(
-        &task.document(config),
-        task.version(config),
-        config,
-        assets,
-    )?)
+    let document = task.document(config);
+    Ok(build_scene(&document.xml, document.version, config, assets)?)
 }
 
 /// Places the sensors of the skin.
@@ -369,7 +372,7 @@ fn make_skin(
     task: &dyn Task,
     assets: &dyn AssetSource,
 ) -> Result<SkinLayout, EnvError> {
-    let layout = |model: &Model| match task.touch_spacing() {
+    let layout = |model: &Model| match task.document(config).touch_spacing {
         [] => SkinLayout::new(model, config),
         own => SkinLayout::with_spacing(model, |body| {
             let found = own.iter().find(|(name, _)| *name == body);

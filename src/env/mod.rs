@@ -21,7 +21,7 @@ mod sensing;
 mod serial;
 mod snapshot;
 mod stage;
-pub mod task;
+mod task;
 mod viewer;
 
 pub use blueprint::{Blueprint, BlueprintOptions};
@@ -39,7 +39,9 @@ pub use sensing::SensesMut;
 pub use serial::Detailed;
 pub use snapshot::{Snapshot, SnapshotError, SnapshotInfo};
 pub use stage::{EnvProbe, EnvStage};
-pub use task::{Goal, GoalError, Outcome, Task};
+pub use task::{
+    CloneTask, Goal, GoalError, Outcome, Task, TaskDocument, TaskEvent, TaskScene, TaskSizes, TaskView, Verdict,
+};
 #[cfg(feature = "eval")]
 pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
@@ -54,7 +56,7 @@ use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
 use outcome::clear;
 use physics::Physics;
-use task::{Goals, TaskScene};
+use task::Goals;
 
 /// A BabyBench environment.
 ///
@@ -170,8 +172,8 @@ impl Env {
         Ok(Self {
             physics: Physics::new(blueprint, &*actuation),
             action_delay: ActionDelay::new(blueprint, &*actuation),
-            senses: Senses::new(blueprint, &*actuation, task.sizes())?,
-            goals: Goals::new(task.sizes()),
+            senses: Senses::new(blueprint, &*actuation, blueprint.task_sizes())?,
+            goals: Goals::new(blueprint.task_sizes()),
             rng: NumpyRng::seed(config.seed),
             action: Vec::with_capacity(actuation.action_space().len()),
             applied: Vec::with_capacity(actuation.action_space().len()),
@@ -363,7 +365,7 @@ impl Env {
     fn begin_episode(&mut self) -> Result<(), EnvError> {
         self.episode.steps = 0;
         self.info.steps = 0;
-        if !self.episode.accumulate || self.task.reports_outcome() {
+        if !self.episode.accumulate || self.info.behavior.task().is_some() {
             clear(&*self.task, self.blueprint.config(), &mut self.info);
         }
         let Play {
@@ -454,8 +456,7 @@ impl Env {
 
     /// Counts what the behavior counts.
     fn track(&mut self) {
-        self.task.count(&self.physics.state, &mut self.info);
-        self.task.describe(Some(&self.physics.state), &mut self.info);
+        self.task.inform(TaskEvent::Step(&self.physics.state), &mut self.info);
     }
 
     fn sense(&mut self) -> Result<(), EnvError> {

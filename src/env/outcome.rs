@@ -1,6 +1,6 @@
 //! The outcome of a step: reward, success, failure.
 
-use super::task::{Goals, Task, TaskView};
+use super::task::{Goals, Task, TaskEvent, TaskView};
 use super::{BehaviorInfo, Env, Info, Outcome, TaskInfo};
 use crate::config::Config;
 
@@ -39,12 +39,12 @@ impl Env {
 
     /// Computes outcome, reward and end of the last step from its goals.
     pub(super) fn conclude(&mut self) {
-        let (task, goal) = (&*self.task, self.goals.row());
-        self.episode.reward = task.reward(goal);
+        let verdict = self.task.judge(self.goals.row());
+        self.episode.reward = verdict.reward;
         if let BehaviorInfo::Task(info) = &mut self.info.behavior {
             info.outcome = Outcome {
-                is_success: task.success(goal),
-                is_failure: task.failure(goal),
+                is_success: verdict.is_success,
+                is_failure: verdict.is_failure,
             };
             let over = info.outcome.is_success || info.outcome.is_failure;
             self.episode.terminated = self.blueprint.config().done_active && over;
@@ -54,12 +54,11 @@ impl Env {
 
 /// Sets what is counted as it is at the start of an episode.
 pub(super) fn clear(task: &dyn Task, config: &Config, info: &mut Info) {
-    if task.reports_outcome() {
+    if matches!(info.behavior, BehaviorInfo::None | BehaviorInfo::Task(_)) {
         info.behavior = BehaviorInfo::Task(TaskInfo {
             task: config.behavior,
             ..TaskInfo::default()
         });
     }
-    task.clear(info);
-    task.describe(None, info);
+    task.inform(TaskEvent::Start, info);
 }

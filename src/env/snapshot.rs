@@ -6,6 +6,7 @@ mod memory;
 pub(super) use format::fingerprint;
 pub use format::{Snapshot, SnapshotError, SnapshotInfo};
 
+use crate::env::task::TaskEvent;
 use crate::env::{BehaviorInfo, Env, PerHand, TaskInfo};
 use crate::physics::Row as _;
 use crate::spaces::NumpyRng;
@@ -19,8 +20,15 @@ const WHOLE: usize = 10;
 const MAX_COUNT: u64 = 1 << 62;
 
 impl Env {
-    /// Returns the vectors of numbers of a snapshot, in their order.
-    fn numbers(&self) -> Vec<&[f64]> {
+    /// Returns what the task remembers.
+    fn task_memory(&self) -> Vec<f64> {
+        let mut memory = Vec::new();
+        self.task.save(&mut memory);
+        memory
+    }
+
+    /// Returns the vectors of numbers of a snapshot, in their order; `memory` is that of the task.
+    fn numbers<'a>(&'a self, memory: &'a [f64]) -> Vec<&'a [f64]> {
         let mut out = Vec::with_capacity(VECTORS);
         self.physics.state.numbers(&mut out);
         out.extend([
@@ -30,7 +38,7 @@ impl Env {
             &self.goals.achieved,
             &self.goals.desired,
             &self.goals.terms,
-            self.task.memory(),
+            memory,
             std::slice::from_ref(&self.episode.reward),
             &self.senses.pooled_values,
         ]);
@@ -38,7 +46,7 @@ impl Env {
     }
 
     /// Returns the vectors of [`Env::numbers`], to write to.
-    fn numbers_mut(&mut self) -> Vec<&mut [f64]> {
+    fn numbers_mut<'a>(&'a mut self, memory: &'a mut [f64]) -> Vec<&'a mut [f64]> {
         let mut out = Vec::with_capacity(VECTORS);
         self.physics.state.numbers_mut(&mut out);
         out.extend([
@@ -48,7 +56,7 @@ impl Env {
             &mut self.goals.achieved,
             &mut self.goals.desired,
             &mut self.goals.terms,
-            self.task.memory_mut(),
+            memory,
             std::slice::from_mut(&mut self.episode.reward),
             &mut self.senses.pooled_values,
         ]);
@@ -98,7 +106,8 @@ impl Env {
             BehaviorInfo::HandRegard { counts } => (counts.to_array(), [&[], &[]]),
             BehaviorInfo::Task(info) => ([info.episode_return.to_bits(), 0, 0, 0], [&[], &[]]),
         };
-        let numbers = self.numbers();
+        let memory = self.task_memory();
+        let numbers = self.numbers(&memory);
         let length = HEADER + 8 * WHOLE + 8 * numbers.iter().map(|n| n.len()).sum::<usize>();
         let mut bytes = Vec::with_capacity(length + 3 * self.model().neq() + 4 * self.model().ngeom());
         bytes.extend_from_slice(&MAGIC);
@@ -150,7 +159,11 @@ impl Env {
         let [step, steps, info_steps, ready, seed, drawn, counts @ ..] = whole;
         // room to count on
         // what tasks have in the place of counters is a number
-        let counts_checked = if self.task.reports_outcome() { &[][..] } else { &counts };
+        let counts_checked = if self.info.behavior.task().is_some() {
+            &[][..]
+        } else {
+            &counts
+        };
         if [step, steps, info_steps]
             .iter()
             .chain(counts_checked)
@@ -167,9 +180,11 @@ impl Env {
         let (behavior, memory) = self.parse(&r, counts)?;
         self.load_memory(memory)?;
 
-        for numbers in self.numbers_mut() {
+        let mut memory = self.task_memory();
+        for numbers in self.numbers_mut(&mut memory) {
             r.fill(numbers);
         }
+        self.task.load(&memory);
         for flags in self.flags_mut() {
             r.fill_flags(flags);
         }
@@ -178,7 +193,7 @@ impl Env {
         self.info.steps = info_steps;
         self.info.behavior = behavior;
         self.info.details.clear();
-        self.task.describe(None, &mut self.info);
+        self.task.inform(TaskEvent::Restored, &mut self.info);
         let reward = self.episode.reward;
         self.conclude();
         (self.episode.reward, self.episode.terminated) = (reward, self.episode.terminated && steps > 0);
@@ -192,7 +207,7 @@ impl Env {
     /// behavior. Returns the memory, too.
     fn parse<'b>(&self, r: &Reader<'b>, counts: [u64; 4]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
         let mut r = Reader(r.0);
-        let numbers: usize = self.numbers().iter().map(|n| n.len()).sum();
+        let numbers: usize = self.numbers(&self.task_memory()).iter().map(|n| n.len()).sum();
         let flags: usize = self.flags().iter().map(|f| f.len()).sum();
         let (words, _) = r.take(8 * numbers).ok_or(CUT)?.as_chunks::<8>();
         if !words.iter().all(|w| f64::from_le_bytes(*w).is_finite()) {

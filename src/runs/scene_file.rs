@@ -147,7 +147,7 @@ pub fn write_scene_from(config: &Config, assets: &dyn AssetSource, save_dir: &Pa
 /// Writes the scene of a blueprint, whatever its task, into the folder of its run.
 pub(super) fn write_scene_of(blueprint: &Blueprint) -> Result<PathBuf, SceneFileError> {
     let config = blueprint.config();
-    let scene = complete_document(&blueprint.task().document(config), config, blueprint.assets())?;
+    let scene = complete_document(&blueprint.task().document(config).xml, config, blueprint.assets())?;
     write_scene_file(&scene, Path::new(&config.save_dir))
 }
 

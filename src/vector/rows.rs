@@ -45,7 +45,7 @@ impl Layout {
             layout.vestibular = observation.vestibular.map(<[f64]>::len);
             layout.regards |= env.info().behavior.regards().is_some();
             layout.goal = observation.desired_goal.map(<[f64]>::len);
-            layout.terms = env.task().reports_outcome().then(|| env.goal().terms.len());
+            layout.terms = env.info().behavior.task().is_some().then(|| env.goal().terms.len());
             if env.info().behavior.touches().is_some() {
                 layout.geoms = layout.geoms.max(Some(env.model().ngeom()));
             }

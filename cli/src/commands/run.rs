@@ -163,7 +163,7 @@ impl Run {
 fn description(env: &Env) -> String {
     let config = env.config();
     let spaces = env.observation_space();
-    let scene = if env.task().reports_outcome() {
+    let scene = if env.info().behavior.task().is_some() {
         String::new() // a task has a scene of its own
     } else {
         format!(" in {}", config.scene)

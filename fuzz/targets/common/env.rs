@@ -2,9 +2,10 @@
 #![allow(dead_code)]
 
 use babybench::config::{ActuationModel, DelayUnit};
-use babybench::env::task::{TaskScene, TaskSizes, TaskView};
-use babybench::env::{BlueprintOptions, Goal, Task};
-use babybench::{Blueprint, Config, Env};
+use babybench::env::{
+    BlueprintOptions, EnvError, Goal, Task, TaskDocument, TaskScene, TaskSizes, TaskView, Verdict,
+};
+use babybench::{Blueprint, Config, Env, Model};
 
 /// A step of MIMo costs as much as hundreds of the small scene: he goes on after one input in so many.
 const RARE: usize = 64;
@@ -35,16 +36,16 @@ impl Task for Small {
         "small"
     }
 
-    fn document(&self, _config: &Config) -> String {
-        include_str!("small.xml").to_string()
+    fn document(&self, config: &Config) -> TaskDocument {
+        TaskDocument {
+            xml: include_str!("small.xml").to_string(),
+            touch_spacing: &[("hand", 0.04), ("target", 0.05)],
+            ..TaskDocument::of(config)
+        }
     }
 
-    fn touch_spacing(&self) -> &[(&'static str, f64)] {
-        &[("hand", 0.04), ("target", 0.05)]
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes { goal: 2, terms: 1, observation: 1 }
+    fn bind(&mut self, _config: &Config, _model: &Model) -> Result<TaskSizes, EnvError> {
+        Ok(TaskSizes { goal: 2, terms: 1, observation: 1 })
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
@@ -56,25 +57,22 @@ impl Task for Small {
         self.steps[0] += 1.0;
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         achieved.copy_from_slice(&view.state.qpos[..2]);
         terms.fill(view.state.qvel[0]);
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
-        goal.achieved[0] >= goal.desired[0]
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
+        let distance = goal.desired[0] - goal.achieved[0];
+        Verdict { reward: distance, is_success: distance <= 0.0, is_failure: false }
     }
 
-    fn reward(&self, goal: Goal<'_>) -> f64 {
-        goal.desired[0] - goal.achieved[0]
+    fn save(&self, out: &mut Vec<f64>) {
+        out.extend_from_slice(&self.steps);
     }
 
-    fn memory(&self) -> &[f64] {
-        &self.steps
-    }
-
-    fn memory_mut(&mut self) -> &mut [f64] {
-        &mut self.steps
+    fn load(&mut self, numbers: &[f64]) {
+        self.steps.copy_from_slice(numbers);
     }
 }
 

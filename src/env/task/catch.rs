@@ -3,7 +3,7 @@
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::tracking::HeadTracking;
-use super::{Goal, Task, TaskSizes, body};
+use super::{Goal, Task, TaskDocument, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, add, norm, sub};
@@ -79,23 +79,72 @@ pub(super) struct Catch {
     inaccurate: bool,
     penalty: bool,
     reference: bool,
-    memory: Vec<f64>,
+    memory: Memory,
 }
 
-/// Places in the memory: number of steps; error of the point that the eyes follow; steps until factors change; whether there was
-/// contact in each of the last steps; factors on actions.
-const STEPS: usize = 0;
-const OFFSET: usize = 1;
-const PERIOD: usize = 4;
-const PAST: usize = 5;
-const FACTORS: usize = PAST + HELD;
+/// What the task remembers from step to step.
+#[derive(Clone, Debug)]
+struct Memory {
+    /// Steps of the episode.
+    steps: u64,
+    /// Error of the point that the eyes follow, m.
+    error: Vec3,
+    /// Steps until the factors change.
+    period: u64,
+    /// Whether there was contact in each of the last steps; step k is at `k % HELD`.
+    past: [bool; HELD],
+    /// Factors on actions, if there is jitter.
+    factors: Vec<f64>,
+}
 
-impl Catch {
-    /// Returns where in the memory the contact of the present step stands.
+impl Default for Memory {
+    fn default() -> Self {
+        Self {
+            steps: 0,
+            error: [0.0; 3],
+            period: 0,
+            past: [false; HELD],
+            factors: Vec::new(),
+        }
+    }
+}
+
+impl Memory {
+    /// Returns where the contact of the present step stands.
     fn now(&self) -> usize {
-        PAST + self.memory[STEPS].max(0.0) as usize % HELD
+        (self.steps % HELD as u64) as usize
     }
 
+    fn save(&self, out: &mut Vec<f64>) {
+        out.push(self.steps as f64);
+        out.extend_from_slice(&self.error);
+        out.push(self.period as f64);
+        out.extend(self.past.map(flag));
+        out.extend_from_slice(&self.factors);
+    }
+
+    /// Takes over numbers that were saved; of others whatever fits.
+    fn load(&mut self, numbers: &[f64]) {
+        let Some((&[steps, x, y, z, period], rest)) = numbers.split_first_chunk() else {
+            return;
+        };
+        let Some((past, factors)) = rest.split_first_chunk::<HELD>() else {
+            return;
+        };
+        // a cast of a float to an integer stays within its range
+        (self.steps, self.error, self.period) = (steps as u64, [x, y, z], period as u64);
+        self.past = past.map(|contact| contact > 0.0);
+        for (own, factor) in self.factors.iter_mut().zip(factors) {
+            *own = *factor;
+        }
+    }
+}
+
+fn flag(on: bool) -> f64 {
+    f64::from(u8::from(on))
+}
+
+impl Catch {
     fn in_contact(&self, state: &State) -> bool {
         state.contact.iter().any(|c| {
             let [a, b] = c.geom;
@@ -105,12 +154,12 @@ impl Catch {
     }
 
     fn change_factors(&mut self, scene: &mut TaskScene<'_>) {
-        if self.memory[PERIOD] > 0.0 {
-            self.memory[PERIOD] -= 1.0;
+        if self.memory.period > 0 {
+            self.memory.period -= 1;
             return;
         }
-        self.memory[PERIOD] = scene.rng.uniform_in(JITTER_PERIOD[0], JITTER_PERIOD[1]).floor();
-        for factor in &mut self.memory[FACTORS..] {
+        self.memory.period = scene.rng.uniform_in(JITTER_PERIOD[0], JITTER_PERIOD[1]) as u64;
+        for factor in &mut self.memory.factors {
             *factor = scene.rng.uniform_in(JITTER[0], JITTER[1]);
         }
     }
@@ -130,9 +179,7 @@ impl Catch {
             }
         }
         if self.inaccurate {
-            for k in 0..3 {
-                self.memory[OFFSET + k] = scene.rng.uniform_in(-ERROR, ERROR);
-            }
+            self.memory.error = [(); 3].map(|()| scene.rng.uniform_in(-ERROR, ERROR));
         }
         Ok(())
     }
@@ -143,11 +190,14 @@ impl Task for Catch {
         "catch"
     }
 
-    fn touch_spacing(&self) -> &[(&'static str, f64)] {
-        TOUCH
+    fn document(&self, config: &Config) -> TaskDocument {
+        TaskDocument {
+            touch_spacing: TOUCH,
+            ..TaskDocument::of(config)
+        }
     }
 
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.target = body(model, "target", PURPOSE)?;
         self.hand = body(model, "right_hand", PURPOSE)?;
         self.ball = free_address(model, self.target, PURPOSE)?;
@@ -161,17 +211,12 @@ impl Task for Catch {
         self.head = HeadTracking::new(model, false, PURPOSE)?;
         (self.jitter, self.inaccurate) = (config.jitter, config.position_inaccurate);
         self.penalty = config.action_penalty;
-        self.memory = vec![0.0; FACTORS + if self.jitter { 2 * model.nu() } else { 0 }];
-        self.memory[FACTORS..].fill(1.0);
-        Ok(())
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes {
+        self.memory.factors = vec![1.0; if self.jitter { 2 * model.nu() } else { 0 }];
+        Ok(TaskSizes {
             goal: 0,
             terms: 4,
             observation: 1,
-        }
+        })
     }
 
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -190,31 +235,30 @@ impl Task for Catch {
         scene.state.params.gravity = gravity;
         settled?;
         if !self.reference {
-            self.memory[PERIOD] = 0.0;
+            self.memory.period = 0;
         }
         self.after_step(scene)?;
         scene.forward()
     }
 
     fn begin(&mut self, _scene: &mut TaskScene<'_>, _desired: &mut [f64]) {
-        self.memory[STEPS] = 0.0;
+        self.memory.steps = 0;
         if !self.reference {
-            self.memory[PAST..FACTORS].fill(0.0);
+            self.memory.past = [false; HELD];
         }
     }
 
     fn before_step(&mut self, action: &mut [f32]) {
-        for (a, factor) in action.iter_mut().zip(&self.memory[FACTORS..]) {
+        for (a, factor) in action.iter_mut().zip(&self.memory.factors) {
             *a = ((f64::from(*a) * factor) as f32).clamp(0.0, 1.0);
         }
     }
 
     fn after_step(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
-        self.memory[STEPS] += 1.0;
-        let now = self.now();
-        self.memory[now] = f64::from(u8::from(self.in_contact(scene.state)));
-        let error = std::array::from_fn(|k| self.memory[OFFSET + k]);
-        let point = add(scene.state.xpos[self.target], error);
+        self.memory.steps = self.memory.steps.saturating_add(1);
+        let now = self.memory.now();
+        self.memory.past[now] = self.in_contact(scene.state);
+        let point = add(scene.state.xpos[self.target], self.memory.error);
         self.head.look_at(scene, point);
         if self.jitter {
             self.change_factors(scene);
@@ -226,8 +270,8 @@ impl Task for Catch {
         out.fill(state.params.geom_size[self.geom][0]);
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], _achieved: &mut [f64], terms: &mut [f64]) {
-        let held = self.memory[PAST..FACTORS].iter().all(|contact| *contact > 0.0);
+    fn achieve(&self, view: &TaskView<'_>, _desired: &[f64], _achieved: &mut [f64], terms: &mut [f64]) {
+        let held = self.memory.past.iter().all(|contact| *contact);
         let cost = if self.penalty {
             view.actuation.cost(view.model, view.state)
         } else {
@@ -235,30 +279,26 @@ impl Task for Catch {
         };
         let (ball, hand) = (view.state.xpos[self.target], view.state.xpos[self.hand]);
         let lost = ball[2] < hand[2] - LOST[0] || norm(sub(ball, hand)) > LOST[1];
-        let flag = |on: bool| f64::from(u8::from(on));
-        terms.copy_from_slice(&[self.memory[self.now()], cost, flag(held), flag(lost)]);
+        let contact = self.memory.past[self.memory.now()];
+        terms.copy_from_slice(&[flag(contact), cost, flag(held), flag(lost)]);
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
-        goal.terms.get(2).is_some_and(|held| *held > 0.0)
-    }
-
-    fn failure(&self, goal: Goal<'_>) -> bool {
-        goal.terms.get(3).is_some_and(|lost| *lost > 0.0)
-    }
-
-    fn reward(&self, goal: Goal<'_>) -> f64 {
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
         let &[contact, cost, held, lost] = goal.terms else {
-            return 0.0;
+            return Verdict::default();
         };
-        contact - COST * cost - BONUS * lost + BONUS * held
+        Verdict {
+            reward: contact - COST * cost - BONUS * lost + BONUS * held,
+            is_success: held > 0.0,
+            is_failure: lost > 0.0,
+        }
     }
 
-    fn memory(&self) -> &[f64] {
-        &self.memory
+    fn save(&self, out: &mut Vec<f64>) {
+        self.memory.save(out);
     }
 
-    fn memory_mut(&mut self) -> &mut [f64] {
-        &mut self.memory
+    fn load(&mut self, numbers: &[f64]) {
+        self.memory.load(numbers);
     }
 }

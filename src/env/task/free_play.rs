@@ -1,5 +1,6 @@
 //! No task at all.
 
+use super::TaskEvent;
 use crate::env::{BehaviorInfo, Info, Task};
 
 /// MIMo does what the actions say, and nothing is counted.
@@ -11,11 +12,7 @@ impl Task for FreePlay {
         "none"
     }
 
-    fn reports_outcome(&self) -> bool {
-        false
-    }
-
-    fn clear(&self, info: &mut Info) {
+    fn inform(&self, _event: TaskEvent<'_>, info: &mut Info) {
         info.behavior = BehaviorInfo::None;
     }
 }

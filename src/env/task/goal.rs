@@ -67,8 +67,13 @@ impl Goals {
 }
 
 /// Computes the reward of each row of goals: see [`Env::compute_reward`](crate::Env::compute_reward).
-pub(in crate::env) fn rewards(task: &dyn Task, all: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
-    let (sizes, rows) = (task.sizes(), out.len());
+pub(in crate::env) fn rewards(
+    task: &dyn Task,
+    sizes: TaskSizes,
+    all: Goal<'_>,
+    out: &mut [f64],
+) -> Result<(), GoalError> {
+    let rows = out.len();
     let check = |what, values: &[f64], expected: usize| {
         let found = values.len();
         match found == rows * expected {
@@ -87,11 +92,12 @@ pub(in crate::env) fn rewards(task: &dyn Task, all: Goal<'_>, out: &mut [f64]) -
     check("terms", all.terms, sizes.terms)?;
     for (row, out) in out.iter_mut().enumerate() {
         let of = |len: usize| row * len..(row + 1) * len;
-        *out = task.reward(Goal {
+        let goal = Goal {
             achieved: &all.achieved[of(sizes.goal)],
             desired: &all.desired[of(sizes.goal)],
             terms: &all.terms[of(sizes.terms)],
-        });
+        };
+        *out = task.judge(goal).reward;
     }
     Ok(())
 }

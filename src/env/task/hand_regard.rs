@@ -1,7 +1,7 @@
 //! Whether the hands are in the central field of view of the eyes.
 
 use super::scene::TaskScene;
-use super::{START_ACTIONS, Task, body};
+use super::{START_ACTIONS, Task, TaskEvent, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, missing_camera};
 use crate::math::*;
@@ -59,7 +59,7 @@ impl Task for HandRegard {
         "hand_regard"
     }
 
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         let purpose = "behavior hand_regard";
         let camera = |name: &str| model.camera(name).ok_or_else(|| missing_camera(name, purpose));
         *self = Self {
@@ -69,7 +69,7 @@ impl Task for HandRegard {
             compat: config.compat,
             cos_half_angle: pxfm::f_cos(FIELD_OF_VIEW.to_radians()),
         };
-        Ok(())
+        Ok(TaskSizes::default())
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -77,25 +77,21 @@ impl Task for HandRegard {
         (0..START_ACTIONS).try_for_each(|_| scene.random_step())
     }
 
-    fn reports_outcome(&self) -> bool {
-        false
-    }
-
-    fn count(&self, state: &State, info: &mut Info) {
-        if let BehaviorInfo::HandRegard { counts } = &mut info.behavior {
-            let seen = PerEyeAndHand::from_fn(|eye, hand| u64::from(self.sees(state, eye, hand))).to_array();
-            let sums = counts.to_array();
-            *counts = std::array::from_fn(|k| sums[k] + seen[k]).into();
+    fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {
+        info.details.gaze_angles = None;
+        match (event, &mut info.behavior) {
+            (TaskEvent::Step(state), BehaviorInfo::HandRegard { counts }) => {
+                let seen = PerEyeAndHand::from_fn(|eye, hand| u64::from(self.sees(state, eye, hand))).to_array();
+                let sums = counts.to_array();
+                *counts = std::array::from_fn(|k| sums[k] + seen[k]).into();
+                info.details.gaze_angles = Some(self.angles(state));
+            }
+            (TaskEvent::Start, behavior) => {
+                let counts = PerEyeAndHand::default();
+                *behavior = BehaviorInfo::HandRegard { counts };
+            }
+            _ => {}
         }
-    }
-
-    fn clear(&self, info: &mut Info) {
-        let counts = PerEyeAndHand::default();
-        info.behavior = BehaviorInfo::HandRegard { counts };
-    }
-
-    fn describe(&self, state: Option<&State>, info: &mut Info) {
-        info.details.gaze_angles = state.map(|state| self.angles(state));
     }
 }
 

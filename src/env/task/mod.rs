@@ -36,18 +36,63 @@ const START_ACTIONS: usize = 10;
 pub struct TaskSizes {
     /// Length of the achieved and of the desired goal.
     pub goal: usize,
-    /// Length of what the reward depends on beside goals.
+    /// Length of what the reward depends on besides goals.
     pub terms: usize,
     /// Length of what is appended to proprioception.
     pub observation: usize,
 }
 
-/// The task of an environment: its scene, the start of its episodes, goals, reward, success and failure.
+/// What the scene of a task is compiled from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TaskDocument {
+    /// The MJCF document. It lies in the folder `babybench` of the assets, and includes files from there.
+    pub xml: String,
+    /// The version of MIMo in it.
+    pub version: Version,
+    /// The bodies with touch sensors and the distances between those, m, at `touch_scale: 1`; none for MIMo's own table with the keys
+    /// `touch_...`. Observations are ordered by body id regardless of this order.
+    pub touch_spacing: &'static [(&'static str, f64)],
+}
+
+impl TaskDocument {
+    /// Returns the document that a configuration asks for.
+    pub fn of(config: &Config) -> Self {
+        Self {
+            xml: scene_xml(config),
+            version: Version::of(config.behavior),
+            touch_spacing: &[],
+        }
+    }
+}
+
+/// What a step was worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Verdict {
+    /// The reward.
+    pub reward: f64,
+    /// Whether the goal is reached.
+    pub is_success: bool,
+    /// Whether it is out of reach.
+    pub is_failure: bool,
+}
+
+/// When a task brings the information up to date.
+#[derive(Clone, Copy, Debug)]
+pub enum TaskEvent<'a> {
+    /// An episode starts: what is counted is as if nothing had happened, with room for all that may come.
+    Start,
+    /// A step was made, which led to this state.
+    Step(&'a State),
+    /// A snapshot was restored: what was counted is there, poses are not known.
+    Restored,
+}
+
+/// What an environment is for: its scene, the start of its episodes, goals, reward, success and failure.
 ///
-/// An environment holds one, made by cloning that of its blueprint, and calls it in this order: [`Task::bind`] and [`Task::settle`] once,
-/// while the blueprint is made; [`Task::reset`] and [`Task::begin`] at the start of an episode; in each step [`Task::before_step`],
-/// the physics, [`Task::after_step`], the senses, [`Task::achieve`], and then [`Task::success`], [`Task::failure`] and
-/// [`Task::reward`], which are functions of goals and terms alone.
+/// An environment holds one, made by cloning that of its blueprint, and calls it in this order: [`Task::document`], [`Task::bind`] and
+/// [`Task::settle`] once, while the blueprint is made; [`Task::reset`] and [`Task::begin`] at the start of an episode; in each step
+/// [`Task::before_step`], the physics, [`Task::after_step`], the senses, [`Task::achieve`], and then [`Task::judge`], which is a function of
+/// goals and terms alone. Every method but the name has a default.
 ///
 /// A user-defined task, `examples/own_task.rs`:
 ///
@@ -59,34 +104,19 @@ pub trait Task: CloneTask + Debug + Send + Sync {
     /// Returns the name, for errors and reports.
     fn name(&self) -> &str;
 
-    /// Returns the version of MIMo in the document.
-    fn version(&self, config: &Config) -> Version {
-        Version::of(config.behavior)
+    /// Returns what its scene is compiled from; by default, what the keys of the configuration ask for.
+    fn document(&self, config: &Config) -> TaskDocument {
+        TaskDocument::of(config)
     }
 
-    /// Returns the MJCF document of the scene. It lies in the folder `babybench` of the assets, and includes files from there.
-    fn document(&self, config: &Config) -> String {
-        scene_xml(config)
-    }
-
-    /// Returns the bodies with touch sensors and the distances between those, m, at `touch_scale: 1`; nothing for MIMo's own table
-    /// with the keys `touch_...`. Observations are ordered by body id regardless of this order.
-    fn touch_spacing(&self) -> &[(&'static str, f64)] {
-        &[]
-    }
-
-    /// Finds what it needs in the compiled scene.
+    /// Finds what it needs in the compiled scene, takes its options from the configuration, and returns how many numbers it will
+    /// hand out in each step.
     ///
     /// # Errors
     /// [`EnvError::Missing`].
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         let _ = (config, model);
-        Ok(())
-    }
-
-    /// Returns how many numbers it hands out.
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes::default()
+        Ok(TaskSizes::default())
     }
 
     /// Brings a new scene to the state from which episodes start. What [`TaskScene::lock`] locks stays so at every reset.
@@ -132,56 +162,31 @@ pub trait Task: CloneTask + Debug + Send + Sync {
     }
 
     /// Writes the achieved goal, and what else the reward depends on.
-    fn achieve(&mut self, view: &TaskView<'_>, desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         let _ = (view, desired, achieved, terms);
     }
 
-    /// Returns whether the goal is reached.
-    fn success(&self, goal: Goal<'_>) -> bool {
+    /// Returns reward, success and failure: a function of goals and terms, so that a program can ask what another goal would have
+    /// earned. By default there is no reward, and no end.
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
         let _ = goal;
-        false
+        Verdict::default()
     }
 
-    /// Returns whether the goal is out of reach.
-    fn failure(&self, goal: Goal<'_>) -> bool {
-        let _ = goal;
-        false
+    /// Brings the information up to date. Success, failure and return ([`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task)) are
+    /// there at the start, and follow from [`Task::judge`]; a task that counts something else puts that in their place.
+    fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {
+        let _ = (event, info);
     }
 
-    /// Returns the reward: a function of goals and terms, so that a program can ask what another goal would have earned.
-    fn reward(&self, goal: Goal<'_>) -> f64 {
-        let _ = goal;
-        0.0
+    /// Appends what it remembers from step to step, besides goals, as numbers: snapshots hold them. Their count never changes.
+    fn save(&self, out: &mut Vec<f64>) {
+        let _ = out;
     }
 
-    /// Returns whether success, failure and return are part of the information: [`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task).
-    fn reports_outcome(&self) -> bool {
-        true
-    }
-
-    /// Counts what a step brought, in the information.
-    fn count(&self, state: &State, info: &mut Info) {
-        let _ = (state, info);
-    }
-
-    /// Resets the counters for a new episode and reserves their capacity.
-    fn clear(&self, info: &mut Info) {
-        let _ = info;
-    }
-
-    /// Brings the details of the information up to date; without a state, poses are not known.
-    fn describe(&self, state: Option<&State>, info: &mut Info) {
-        let _ = (state, info);
-    }
-
-    /// Returns what it remembers from step to step, beside goals, as numbers: snapshots hold them. The length never changes.
-    fn memory(&self) -> &[f64] {
-        &[]
-    }
-
-    /// Returns what it remembers, to be overwritten with numbers that [`Task::memory`] once had, or that someone made up.
-    fn memory_mut(&mut self) -> &mut [f64] {
-        &mut []
+    /// Takes over numbers that [`Task::save`] once wrote, or as many that someone made up.
+    fn load(&mut self, numbers: &[f64]) {
+        let _ = numbers;
     }
 }
 

@@ -3,7 +3,7 @@
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::tracking::HeadTracking;
-use super::{Goal, Task, TaskSizes, body};
+use super::{Goal, Task, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{Vec3, norm, sub};
@@ -43,21 +43,17 @@ impl Task for Reach {
         "reach"
     }
 
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.fingers = body(model, "right_fingers", PURPOSE)?;
         self.target = body(model, "target", PURPOSE)?;
         self.ball = free_address(model, self.target, PURPOSE)?;
         self.has_goals = config.compat == Compat::Api;
         self.head = HeadTracking::new(model, !self.has_goals, PURPOSE)?;
-        Ok(())
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes {
+        Ok(TaskSizes {
             goal: if self.has_goals { 3 } else { 0 },
             terms: 2,
             observation: 0,
-        }
+        })
     }
 
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -93,7 +89,7 @@ impl Task for Reach {
         Ok(())
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         let (fingers, ball) = (view.state.xpos[self.fingers], view.state.xpos[self.target]);
         if self.has_goals {
             achieved.copy_from_slice(&fingers);
@@ -103,23 +99,26 @@ impl Task for Reach {
         terms.copy_from_slice(&found);
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
-        goal.terms.get(1).is_some_and(|moved| *moved > 0.0)
-    }
-
-    fn reward(&self, goal: Goal<'_>) -> f64 {
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
+        let is_success = goal.terms.get(1).is_some_and(|moved| *moved > 0.0);
         let distance = match (goal.achieved, goal.desired) {
             (&[x, y, z], &[u, v, w]) => norm(sub([x, y, z], [u, v, w])),
             _ => goal.terms.first().copied().unwrap_or_default(),
         };
-        -distance + if self.success(goal) { BONUS } else { 0.0 }
+        Verdict {
+            reward: -distance + if is_success { BONUS } else { 0.0 },
+            is_success,
+            is_failure: false,
+        }
     }
 
-    fn memory(&self) -> &[f64] {
-        &self.first
+    fn save(&self, out: &mut Vec<f64>) {
+        out.extend_from_slice(&self.first);
     }
 
-    fn memory_mut(&mut self) -> &mut [f64] {
-        &mut self.first
+    fn load(&mut self, numbers: &[f64]) {
+        if let &[x, y, z] = numbers {
+            self.first = [x, y, z];
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::standup::{REST, control_cost, first, reached, shaken_start};
-use super::{Goal, Task, TaskSizes, body};
+use super::{Goal, Task, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config, StartingPosition};
 use crate::env::EnvError;
 use crate::model::Model;
@@ -49,7 +49,7 @@ impl Task for RollOver {
         "roll_over"
     }
 
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.base = free_address(model, body(model, "mimo_location", PURPOSE)?, PURPOSE)?;
         self.reference = config.compat == Compat::Reference;
         let trunk: &[&str] = if self.reference {
@@ -62,15 +62,11 @@ impl Task for RollOver {
             .map(|name| body(model, name, PURPOSE))
             .collect::<Result<_, _>>()?;
         self.supine = config.starting_position == StartingPosition::Supine;
-        Ok(())
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes {
+        Ok(TaskSizes {
             goal: 1,
             terms: 1,
             observation: 0,
-        }
+        })
     }
 
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -92,16 +88,16 @@ impl Task for RollOver {
         desired.fill(ROLLED);
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         achieved.fill(self.rolled(view.state));
         terms.fill(control_cost(view, self.reference));
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
-        reached(goal)
-    }
-
-    fn reward(&self, goal: Goal<'_>) -> f64 {
-        first(goal.achieved) - first(goal.terms)
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
+        Verdict {
+            reward: first(goal.achieved) - first(goal.terms),
+            is_success: reached(goal),
+            is_failure: false,
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};
-use super::{Goal, Task, TaskSizes, body};
+use super::{Goal, Task, TaskDocument, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::math::{norm, sub};
@@ -148,11 +148,14 @@ impl Task for SelfBody {
         "selfbody"
     }
 
-    fn touch_spacing(&self) -> &[(&'static str, f64)] {
-        TOUCH
+    fn document(&self, config: &Config) -> TaskDocument {
+        TaskDocument {
+            touch_spacing: TOUCH,
+            ..TaskDocument::of(config)
+        }
     }
 
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.base = free_address(model, body(model, "mimo_location", PURPOSE)?, PURPOSE)?;
         self.fingers = body(model, "right_fingers", PURPOSE)?;
         self.hand = body(model, "right_hand", PURPOSE)?;
@@ -166,15 +169,11 @@ impl Task for SelfBody {
             false => body,
         };
         self.aims = self.targets().iter().map(aim).collect();
-        Ok(())
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes {
+        Ok(TaskSizes {
             goal: GOAL,
             terms: 2 + self.aims.len(),
             observation: 0,
-        }
+        })
     }
 
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -198,7 +197,7 @@ impl Task for SelfBody {
         }
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         let Some(touch) = view.touch else { return };
         let xpos = &view.state.xpos;
         for (term, &aim) in terms[2..].iter_mut().zip(&self.aims) {
@@ -217,25 +216,26 @@ impl Task for SelfBody {
         (terms[0], terms[1]) = (0.0, f64::from(u8::from(felt)));
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
         let both = goal
             .achieved
             .iter()
             .zip(goal.desired)
             .any(|(a, d)| *a > 0.0 && *d > 0.0);
-        both || goal.terms.first().is_some_and(|touched| *touched > 0.0)
-    }
-
-    fn reward(&self, goal: Goal<'_>) -> f64 {
-        if self.success(goal) {
-            return BONUS;
-        }
+        let is_success = both || goal.terms.first().is_some_and(|touched| *touched > 0.0);
         let felt = goal.terms.get(1).is_some_and(|felt| *felt > 0.0);
         let distances = self.targets().iter().zip(goal.terms.iter().skip(2));
         let wanted = distances.filter(|(body, _)| goal.desired.get(**body).is_some_and(|d| *d > 0.0));
-        match wanted.map(|(_, distance)| *distance).reduce(f64::min) {
+        let nearest = wanted.map(|(_, distance)| *distance).reduce(f64::min);
+        let reward = match nearest {
+            _ if is_success => BONUS,
             Some(nearest) if felt => -nearest,
             _ => NOTHING,
+        };
+        Verdict {
+            reward,
+            is_success,
+            is_failure: false,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Which parts of the body the palms touch.
 
 use super::scene::TaskScene;
-use super::{START_ACTIONS, Task, body};
+use super::{START_ACTIONS, Task, TaskEvent, TaskSizes, body};
 use crate::config::Config;
 use crate::env::{BehaviorInfo, EnvError, Info, PartNames, PerHand};
 use crate::model::Model;
@@ -45,7 +45,7 @@ impl Task for SelfTouch {
         "self_touch"
     }
 
-    fn bind(&mut self, _config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, _config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         let purpose = "behavior self_touch";
         let (right, left) = (body(model, "right_hand", purpose)?, body(model, "left_hand", purpose)?);
         let hip = body(model, "hip", purpose)?;
@@ -56,7 +56,7 @@ impl Task for SelfTouch {
             own: of(&|b| model.in_subtree(b, hip)),
             names: PartNames::new(model),
         };
-        Ok(())
+        Ok(TaskSizes::default())
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -64,30 +64,21 @@ impl Task for SelfTouch {
         (0..START_ACTIONS).try_for_each(|_| scene.random_step())
     }
 
-    fn reports_outcome(&self) -> bool {
-        false
-    }
-
-    fn count(&self, state: &State, info: &mut Info) {
-        if let BehaviorInfo::SelfTouch { touches } = &mut info.behavior {
-            self.update(state, touches);
-        }
-    }
-
-    fn clear(&self, info: &mut Info) {
-        match &mut info.behavior {
-            BehaviorInfo::SelfTouch { touches } => touches.each_mut().into_iter().for_each(Vec::clear),
-            behavior => {
+    fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {
+        match (event, &mut info.behavior) {
+            (TaskEvent::Step(state), BehaviorInfo::SelfTouch { touches }) => self.update(state, touches),
+            (TaskEvent::Start, BehaviorInfo::SelfTouch { touches }) => {
+                touches.each_mut().into_iter().for_each(Vec::clear);
+            }
+            (TaskEvent::Start, behavior) => {
                 let touches = PerHand::from_fn(|_| Vec::with_capacity(self.own.len()));
                 *behavior = BehaviorInfo::SelfTouch { touches };
             }
+            _ => {}
         }
         if info.details.touched_parts.is_none() {
             info.details.reserve(&info.behavior, &self.names);
         }
-    }
-
-    fn describe(&self, _state: Option<&State>, info: &mut Info) {
         info.details.name_parts(&info.behavior, &self.names);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::pose::{Angles, free_address, set_angles};
 use super::scene::{TaskScene, TaskView};
-use super::{Goal, Task, TaskSizes, body};
+use super::{Goal, Task, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
 use crate::model::Model;
@@ -87,19 +87,15 @@ impl Task for Standup {
         "standup"
     }
 
-    fn bind(&mut self, config: &Config, model: &Model) -> Result<(), EnvError> {
+    fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.head = body(model, "head", PURPOSE)?;
         self.base = free_address(model, body(model, "mimo_location", PURPOSE)?, PURPOSE)?;
         self.reference = config.compat == Compat::Reference;
-        Ok(())
-    }
-
-    fn sizes(&self) -> TaskSizes {
-        TaskSizes {
+        Ok(TaskSizes {
             goal: 1,
             terms: 1,
             observation: 0,
-        }
+        })
     }
 
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
@@ -120,17 +116,17 @@ impl Task for Standup {
         desired.fill(STANDING);
     }
 
-    fn achieve(&mut self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
+    fn achieve(&self, view: &TaskView<'_>, _desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         achieved.fill(view.state.xpos[self.head][2]);
         terms.fill(control_cost(view, self.reference));
     }
 
-    fn success(&self, goal: Goal<'_>) -> bool {
-        reached(goal)
-    }
-
-    fn reward(&self, goal: Goal<'_>) -> f64 {
-        first(goal.achieved) - SITTING - first(goal.terms)
+    fn judge(&self, goal: Goal<'_>) -> Verdict {
+        Verdict {
+            reward: first(goal.achieved) - SITTING - first(goal.terms),
+            is_success: reached(goal),
+            is_failure: false,
+        }
     }
 }
 

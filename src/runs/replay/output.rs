@@ -175,7 +175,7 @@ impl Replay {
             pain: env.senses().pain().map(|_| Vec::new()),
             vestibular: env.senses().vestibular().map(|_| Vec::new()),
             contact_ptr: vec![0],
-            task: env.task().reports_outcome().then(TaskRows::default),
+            task: env.info().behavior.task().is_some().then(TaskRows::default),
             ..Self::default()
         }
     }
