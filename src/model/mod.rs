@@ -362,6 +362,16 @@ sizes! {
 }
 
 impl Arrays {
+    /// Returns the length of `qpos`, as the field of that name.
+    pub fn nq(&self) -> usize {
+        self.nq
+    }
+
+    /// Returns the length of `qvel`, the number of degrees of freedom, as the field of that name.
+    pub fn nv(&self) -> usize {
+        self.nv
+    }
+
     /// Returns the length of `sensordata`: three per sensor.
     pub fn nsensordata(&self) -> usize {
         3 * self.nsensor()
