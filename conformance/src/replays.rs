@@ -1,6 +1,7 @@
 //! Distances of replays to their recordings.
 
 use babybench::runs::{Recording, Replay};
+use babybench::spaces::Values;
 
 use crate::measure::{Summary, identical, max_abs, pick, relative, relative_to_change, rms, row};
 use crate::recordings::Golden;
@@ -59,7 +60,7 @@ pub fn one_step(g: &Golden) -> OneStep {
         let part_errors = (0..t).map(|k| relative(&part(&ours.observation, k), &part(&observation, k)));
         outputs.push((component.name(), Summary::new(part_errors)));
     }
-    if let Some(v) = &ours.vestibular {
+    if let Some(Values::F64(v)) = ours.sense("vestibular") {
         outputs.push(("vestibular", errors(v, &table("vestibular"))));
     }
     outputs.push(("sensordata", errors(&ours.sensordata, &table("sensordata"))));

@@ -40,10 +40,10 @@ impl Hash {
         let pain = seen.pain.unwrap_or_default().iter();
         pain.for_each(|v| self.fold(u64::from(v.to_bits())));
         let eyes = [seen.eye_left, seen.eye_right].map(Option::unwrap_or_default);
-        let gray = seen.eye_gray.unwrap_or_default();
+        let gray = [seen.eye_left_gray, seen.eye_right_gray].map(Option::unwrap_or_default);
         eyes.into_iter().chain(gray).for_each(|image| self.bytes(image));
-        self.depth(&seen.eye_depth.unwrap_or_default());
-        self.segmentation(&seen.eye_segmentation.unwrap_or_default());
+        self.depth(&[seen.eye_left_depth, seen.eye_right_depth].map(Option::unwrap_or_default));
+        self.segmentation(&[seen.eye_left_segmentation, seen.eye_right_segmentation].map(Option::unwrap_or_default));
         let goals = [seen.achieved_goal, seen.desired_goal].map(Option::unwrap_or_default);
         goals.concat().iter().for_each(|v| self.fold(v.to_bits()));
     }

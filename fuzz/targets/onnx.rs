@@ -47,7 +47,8 @@ fuzz_target!(
             vestibular: Some(&numbers[..2]),
             eye_left: Some(&image),
             eye_right: Some(&image),
-            eye_depth: Some([&depth, &depth]),
+            eye_left_depth: Some(&depth),
+            eye_right_depth: Some(&depth),
             achieved_goal: Some(&numbers[1..]),
             ..Observation::default()
         };

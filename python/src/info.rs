@@ -3,7 +3,6 @@
 use babybench::config::Part;
 use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, Info};
 use babybench::mimo::{LockReport, LockTarget};
-use babybench::spaces::Dtype;
 use pyo3::exceptions::PyTypeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -14,13 +13,7 @@ pub type Space = (&'static str, Vec<usize>, &'static str, f64, f64);
 
 /// Describes observation spaces.
 pub fn spaces(spaces: &[babybench::spaces::ObservationSpace]) -> Vec<Space> {
-    let dtype = |dtype| match dtype {
-        Dtype::F64 => "float64",
-        Dtype::F32 => "float32",
-        Dtype::U8 => "uint8",
-        Dtype::I32 => "int32",
-    };
-    let describe = |s: &babybench::spaces::ObservationSpace| (s.key, s.shape.clone(), dtype(s.dtype), s.low, s.high);
+    let describe = |s: &babybench::spaces::ObservationSpace| (s.key, s.shape.clone(), s.dtype.name(), s.low, s.high);
     spaces.iter().map(describe).collect()
 }
 

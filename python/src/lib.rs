@@ -17,6 +17,7 @@ mod pictures;
 mod recycled;
 mod rows;
 mod scene;
+mod slab;
 mod state;
 mod task;
 mod touch;

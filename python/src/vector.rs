@@ -24,7 +24,6 @@ use crate::task;
 /// What a vector of Python's holds.
 struct Inner {
     envs: babybench::VectorEnv,
-    spaces: Vec<Space>,
     touch_width: usize,
     /// Rows of all environments, for steps.
     all: Arrays,
@@ -109,18 +108,16 @@ impl VectorEnv {
         };
         let blueprints: Vec<_> = blueprints.iter().map(|b| b.get().inner.clone()).collect();
         let envs = detached(py, || babybench::VectorEnv::from_blueprints(&blueprints, options))?;
-        let spaces = spaces(envs.single_observation_space());
         let touch_width = envs
             .env(0)
             .ok()
             .and_then(|env| env.senses().touch())
             .map_or(0, |touch| touch.width());
         let inner = Box::new(Inner {
-            all: Arrays::new(py, envs.len(), &spaces, touch_width)?,
+            all: Arrays::new(py, envs.len(), envs.single_observation_space(), touch_width)?,
             touch_width,
             some: None,
             actions: Vec::new(),
-            spaces,
             envs,
         });
         Ok(Self {
@@ -199,14 +196,18 @@ impl VectorEnv {
         let Inner {
             envs,
             some,
-            spaces,
             touch_width,
             ..
         } = guard.open()?;
         let arrays = match some {
             Some(arrays) if arrays.rows == n => arrays,
             // more than there are is refused below, without room for them
-            _ => some.insert(Arrays::new(py, n.min(envs.len()), spaces, *touch_width)?),
+            _ => some.insert(Arrays::new(
+                py,
+                n.min(envs.len()),
+                envs.single_observation_space(),
+                *touch_width,
+            )?),
         };
         let ids = arrays.fill(py, |buffers| {
             detached(py, || envs.recv_into(n, buffers).map(<[usize]>::to_vec))
@@ -274,7 +275,8 @@ impl VectorEnv {
 
     fn final_observations<'py>(&self, py: Python<'py>) -> PyResult<Vec<(usize, Bound<'py, PyDict>)>> {
         let mut guard = self.guard()?;
-        let Inner { envs, spaces, .. } = guard.open()?;
+        let envs = &guard.open()?.envs;
+        let spaces = envs.single_observation_space();
         let (finals, ids) = (envs.finals(), envs.batch().ids);
         let ends = finals
             .iter()
@@ -360,7 +362,7 @@ impl VectorEnv {
 
     #[getter]
     fn observation_spaces(&self) -> PyResult<Vec<Space>> {
-        Ok(self.guard()?.open()?.spaces.clone())
+        Ok(spaces(self.guard()?.open()?.envs.single_observation_space()))
     }
 
     fn seed_action_spaces(&self, seed: u64) -> PyResult<()> {

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::config::Config;
-use crate::env::senses::vector;
 use crate::env::task::rewards;
 use crate::env::{Blueprint, Env, EnvError, Goal, GoalError, Info, Senses, SensesMut, Task, check_vector};
 use crate::model::Model;
 use crate::physics::{Engine, State};
-use crate::spaces::{BoxSpace, ObservationSpace};
+use crate::sensors::ObservationEntry;
+use crate::spaces::{BoxSpace, ObservationSpace, Values};
 
 impl Env {
     /// Returns the bounds of actions.
@@ -19,13 +19,14 @@ impl Env {
 
     /// Returns keys, shapes, types and bounds of the observation.
     pub fn observation_space(&self) -> Vec<ObservationSpace> {
-        let mut spaces = self.senses.spaces();
-        for key in ["achieved_goal", "desired_goal"] {
-            if !self.goals.desired.is_empty() {
-                spaces.push(vector(key, self.goals.desired.len()));
-            }
-        }
-        spaces
+        let space = |(entry, values): (&'static ObservationEntry, Values<'_>)| ObservationSpace {
+            key: entry.key,
+            shape: self.senses.shape(entry, values.len()),
+            dtype: entry.dtype,
+            low: entry.low,
+            high: entry.high,
+        };
+        self.observation().entries().map(space).collect()
     }
 
     /// Returns the information of the last step.

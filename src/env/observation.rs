@@ -1,54 +1,72 @@
 //! The results of a step: the observation, and the rest in Gymnasium's order.
 
 use crate::env::Info;
-use crate::sensors::EyeImages;
+use crate::sensors::{ObservationEntry, observation_entries};
+use crate::spaces::{Number, Values};
 
-/// The observation: what MIMo senses. The vectors belong to the environment and change with the next step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Observation<'a> {
-    /// Proprioception, Gymnasium's key `observation`; [`Senses::proprioception`](crate::env::Senses::proprioception) tells what stands where. A task may append to it: the
-    /// last number of `catch` is the radius of the ball, m.
-    pub proprioception: &'a [f64],
-    /// What the skin feels, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) tells what stands where.
-    pub touch: Option<&'a [f32]>,
-    /// What each body with skin feels, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
-    pub touch_pooled: Option<&'a [f64]>,
-    /// What hurts, a number for each touch sensor, if `pain_active`: see [`Pain`](crate::sensors::Pain).
-    pub pain: Option<&'a [f32]>,
-    /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active` and `vision_outputs` has `rgb`.
-    pub eye_left: Option<&'a [u8]>,
-    /// What the right eye sees.
-    pub eye_right: Option<&'a [u8]>,
-    /// What both eyes see in grey, left and right, (H, W) bytes, if `vision_outputs` has `gray`: see [`SensesMut::eye_gray`](crate::env::SensesMut::eye_gray).
-    pub eye_gray: Option<[&'a [u8]; 2]>,
-    /// How far away it is, left and right, (H, W), m, if `vision_outputs` has `depth`: see [`SensesMut::eye_depth`](crate::env::SensesMut::eye_depth).
-    pub eye_depth: Option<[&'a [f32]; 2]>,
-    /// Which geoms they are, left and right, (H, W), if `vision_outputs` has `segmentation`: see
-    /// [`SensesMut::eye_segmentation`](crate::env::SensesMut::eye_segmentation).
-    pub eye_segmentation: Option<[&'a [i32]; 2]>,
-    /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
-    pub vestibular: Option<&'a [f64]>,
-    /// The goal that is achieved, of tasks whose goals have numbers.
-    pub achieved_goal: Option<&'a [f64]>,
-    /// The goal that is desired, as long.
-    pub desired_goal: Option<&'a [f64]>,
+macro_rules! observation {
+    (
+        { $(#[$first_doc:meta])* $first:ident: $first_type:ty, $first_bounds:expr, $first_source:expr; }
+        $($(#[$doc:meta])* $field:ident: $type:ty, $bounds:expr, $source:expr;)*
+    ) => {
+        /// The observation: what MIMo senses. The vectors belong to the environment and change with the next step.
+        ///
+        /// Every entry is a field. [`Observation::entries`] iterates over those that are there, for programs that treat them alike:
+        ///
+        /// ```
+        /// use babybench::{Config, Env};
+        ///
+        /// let mut env = Env::new(Config { vision_active: false, ..Config::default() })?;
+        /// let keys: Vec<&str> = env.reset(Some(0))?.entries().map(|(entry, _)| entry.key).collect();
+        /// assert_eq!(keys, ["observation", "touch", "vestibular"]);
+        /// # Ok::<(), babybench::EnvError>(())
+        /// ```
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Observation<'a> {
+            $(#[$first_doc])*
+            pub $first: &'a [$first_type],
+            $($(#[$doc])* pub $field: Option<&'a [$type]>,)*
+        }
+
+        impl<'a> Observation<'a> {
+            /// Makes an observation of what `values` returns for each entry, in the order of [`ObservationEntry::ALL`]. Numbers of
+            /// another type than the entry's are left out.
+            pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<Values<'a>>) -> Self {
+                let mut entries = ObservationEntry::ALL.iter();
+                let mut next = || entries.next().and_then(&mut values);
+                Self {
+                    $first: next().and_then(<$first_type>::of).unwrap_or_default(),
+                    $($field: next().and_then(<$type>::of),)*
+                }
+            }
+
+            /// Returns the numbers of each entry, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
+            pub fn values(&self) -> [Option<Values<'a>>; ObservationEntry::ALL.len()] {
+                [Some(self.$first.into()), $(self.$field.map(Values::from)),*]
+            }
+        }
+    };
 }
+observation_entries!(observation);
 
 impl<'a> Observation<'a> {
-    /// Returns what the eyes see, left and right, and nothing else.
-    pub(crate) fn of_eyes([left, right]: &'a [EyeImages; 2]) -> Self {
-        fn pair<'a, T>(left: &'a [T], right: &'a [T]) -> Option<[&'a [T]; 2]> {
-            (!left.is_empty()).then_some([left, right])
-        }
-        let [eye_left, eye_right] = [left, right].map(|eye| (!eye.rgb.is_empty()).then_some(&eye.rgb[..]));
-        Self {
-            eye_left,
-            eye_right,
-            eye_gray: pair(&left.gray, &right.gray),
-            eye_depth: pair(&left.depth, &right.depth),
-            eye_segmentation: pair(&left.segmentation, &right.segmentation),
-            ..Self::default()
-        }
+    /// Iterates over the entries that are there, with their numbers.
+    pub fn entries(&self) -> impl Iterator<Item = (&'static ObservationEntry, Values<'a>)> {
+        let all = ObservationEntry::ALL.iter().zip(self.values());
+        all.filter_map(|(entry, values)| Some((entry, values?)))
+    }
+
+    /// Returns the numbers under a key, if they are there.
+    pub fn get(&self, key: &str) -> Option<Values<'a>> {
+        self.entries()
+            .find(|(entry, _)| entry.key == key)
+            .map(|(_, values)| values)
+    }
+
+    /// Returns row `row` of observations that are arrays of `rows` rows.
+    pub(crate) fn row(&self, row: usize, rows: usize) -> Self {
+        let mut values = self.values().into_iter();
+        Self::from_fn(|_| Some(values.next()??.row(row, rows)))
     }
 }
 
@@ -65,4 +83,58 @@ pub struct Step<'a> {
     pub truncated: bool,
     /// The information.
     pub info: &'a Info,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spaces::Array;
+
+    #[test]
+    fn every_entry_is_a_field_of_its_type() {
+        let arrays: Vec<Array> = ObservationEntry::ALL
+            .iter()
+            .enumerate()
+            .map(|(k, entry)| Array::zeros(entry.dtype, 2 * (k + 1)))
+            .collect();
+        let mut all = arrays.iter();
+        let observation = Observation::from_fn(|_| all.next().map(Array::values));
+        assert_eq!(observation.entries().count(), ObservationEntry::ALL.len());
+        for (k, entry) in ObservationEntry::ALL.iter().enumerate() {
+            assert_eq!(ObservationEntry::of_key(entry.key), Some(entry));
+            let values = observation.get(entry.key).expect(entry.key);
+            assert_eq!(
+                (values.len(), values.dtype()),
+                (2 * (k + 1), entry.dtype),
+                "{}",
+                entry.key
+            );
+            let row = observation.row(1, 2).get(entry.key).expect(entry.key);
+            assert_eq!(row, arrays[k].first(k + 1), "{}", entry.key);
+        }
+        let fields = [
+            observation.vestibular.map(<[f64]>::len),
+            observation.desired_goal.map(<[f64]>::len),
+        ];
+        let at = |key| ObservationEntry::ALL.iter().position(|entry| entry.key == key);
+        assert_eq!(
+            fields,
+            ["vestibular", "desired_goal"].map(|key| Some(2 * (at(key)? + 1)))
+        );
+    }
+
+    #[test]
+    fn numbers_of_another_type_are_left_out() {
+        let numbers = [1.5];
+        let observation = Observation::from_fn(|_| Some(Values::F64(&numbers)));
+        assert_eq!(
+            (observation.touch, observation.eye_left, observation.vestibular),
+            (None, None, Some(&numbers[..]))
+        );
+        assert_eq!(
+            Observation::default().entries().count(),
+            1,
+            "proprioception is always there"
+        );
+    }
 }

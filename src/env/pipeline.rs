@@ -34,14 +34,7 @@ impl Pipeline {
                 .into_iter()
                 .for_each(&mut add);
         }
-        let (noise, delay) = (&config.noise, &config.delays);
-        let (deviation, delay) = match sense {
-            Sense::Proprioception => (noise.proprioception, delay.proprioception),
-            Sense::Touch => (noise.touch, delay.touch),
-            Sense::TouchPooled | Sense::Pain => (0.0, delay.touch),
-            Sense::Vestibular => (noise.vestibular, delay.vestibular),
-            Sense::EyeLeft | Sense::EyeRight => (noise.vision, delay.vision),
-        };
+        let (deviation, delay) = sense.noise_and_delay(config);
         if deviation > 0.0 {
             let noise = Noise::new(deviation);
             let magnitudes = matches!(like, Signal::Skin(values) if values.width() == 1);

@@ -1,7 +1,7 @@
 //! The senses of an environment and what they observe.
 
 use crate::actuation::Actuation;
-use crate::config::{VisionOutput, VisionOutputs};
+use crate::config::VisionOutput;
 use crate::env::pipeline::Pipeline;
 use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
@@ -10,10 +10,9 @@ use crate::physics::State;
 use crate::sensors::touch::POOLED;
 use crate::sensors::transform::{Sense, Signal, Transform};
 use crate::sensors::{
-    EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Pain, Proprioception, SkinValues, Touch, TouchPool,
-    Vestibular, Vision,
+    EYES, EyeImages, ObservationEntry, Pain, Proprioception, SkinValues, Touch, TouchPool, Vestibular, Vision,
 };
-use crate::spaces::{Dtype, NumpyRng, ObservationSpace};
+use crate::spaces::{NumpyRng, Values};
 
 /// The images of eyes of which nothing is known.
 static NO_IMAGES: [EyeImages; 2] = [EyeImages::NONE, EyeImages::NONE];
@@ -27,15 +26,13 @@ pub struct Senses {
     pub(super) vestibular: Option<Vestibular>,
     pub(super) pool: Option<TouchPool>,
     pub(super) pain: Option<Pain>,
-    pub(super) proprioception_values: Vec<f64>,
-    pub(super) pooled_values: Vec<f64>,
-    pub(super) vestibular_values: Vec<f64>,
+    /// What a sense reports in numbers, by sense; `None` for those that are off, and for skins and eyes.
+    numbers: [Option<Vec<f64>>; Sense::ALL.len()],
     pub(super) eyes: [EyeImages; 2],
     pub(super) pipeline: Pipeline,
     /// Touch and pain after their transforms, where they have any.
     touch_values: SkinValues,
     pain_values: SkinValues,
-    outputs: VisionOutputs,
     /// Whether [`super::draw_eyes`] draws what the eyes see, instead of each step.
     pub(super) vision_deferred: bool,
     /// Whether touch, pain and images belong to the same moment as the rest: a restored snapshot does not hold them.
@@ -71,12 +68,15 @@ impl Senses {
         let touch = skin.map(|skin| Touch::configured(skin.clone(), config));
         let empty =
             |felt: Option<&SkinValues>| felt.map_or(SkinValues::new(0, 1), |v| SkinValues::new(v.sensors(), v.width()));
+        let numbers = Sense::ALL.map(|sense| match sense {
+            Sense::Proprioception => Some(proprioception.len() + sizes.observation),
+            Sense::TouchPooled => pool.as_ref().map(TouchPool::len),
+            Sense::Vestibular => vestibular.as_ref().map(Vestibular::len),
+            Sense::Touch | Sense::Pain | Sense::EyeLeft | Sense::EyeRight => None,
+        });
         let mut senses = Self {
-            proprioception_values: vec![0.0; proprioception.len() + sizes.observation],
-            pooled_values: vec![0.0; pool.as_ref().map_or(0, TouchPool::len)],
-            vestibular_values: vec![0.0; vestibular.as_ref().map_or(0, Vestibular::len)],
+            numbers: numbers.map(|len| len.map(|len| vec![0.0; len])),
             eyes: [images(), images()],
-            outputs: config.vision_outputs,
             vision_deferred: false,
             known: true,
             pipeline: Pipeline::default(),
@@ -104,13 +104,22 @@ impl Senses {
     /// Returns whether a sense is observed.
     pub(super) fn is_on(&self, sense: Sense) -> bool {
         match sense {
-            Sense::Proprioception => true,
             Sense::Touch => self.touch.is_some(),
-            Sense::TouchPooled => self.pool.is_some(),
             Sense::Pain => self.pain.is_some(),
-            Sense::Vestibular => self.vestibular.is_some(),
             Sense::EyeLeft | Sense::EyeRight => self.vision.is_some(),
+            sense => self.numbers[sense as usize].is_some(),
         }
+    }
+
+    /// Returns what a sense reports in numbers; nothing, if it is off or reports something else.
+    pub(super) fn numbers(&self, sense: Sense) -> &[f64] {
+        self.numbers[sense as usize].as_deref().unwrap_or_default()
+    }
+
+    /// Iterates over what every sense reports in numbers, to be written.
+    pub(super) fn numbers_mut(&mut self) -> impl Iterator<Item = (Sense, &mut [f64])> {
+        let all = Sense::ALL.into_iter().zip(&mut self.numbers);
+        all.filter_map(|(sense, numbers)| Some((sense, numbers.as_deref_mut()?)))
     }
 
     /// Adds a transform to a sense that is on.
@@ -146,13 +155,11 @@ impl Senses {
         let [left, right] = &mut self.eyes;
         let eye = |images| Signal::Eye { images, height, width };
         match sense {
-            Sense::Proprioception => Signal::Numbers(&mut self.proprioception_values),
             Sense::Touch => Signal::Skin(&mut self.touch_values),
-            Sense::TouchPooled => Signal::Numbers(&mut self.pooled_values),
             Sense::Pain => Signal::Skin(&mut self.pain_values),
-            Sense::Vestibular => Signal::Numbers(&mut self.vestibular_values),
             Sense::EyeLeft => eye(left),
             Sense::EyeRight => eye(right),
+            sense => Signal::Numbers(numbers_of(&mut self.numbers, sense)),
         }
     }
 
@@ -182,13 +189,14 @@ impl Senses {
         append: impl FnOnce(&mut [f64]),
         rng: &mut NumpyRng,
     ) -> Result<(), EnvError> {
-        let (own, appended) = self.proprioception_values.split_at_mut(self.proprioception.len());
+        let proprioception = numbers_of(&mut self.numbers, Sense::Proprioception);
+        let (own, appended) = proprioception.split_at_mut(self.proprioception.len());
         self.proprioception.observe(model, state, actuation, own);
         append(appended);
         self.transform(Sense::Proprioception, rng);
         self.observe_skin(model, state, rng);
         if let Some(v) = &self.vestibular {
-            v.observe(state, &mut self.vestibular_values);
+            v.observe(state, numbers_of(&mut self.numbers, Sense::Vestibular));
             self.transform(Sense::Vestibular, rng);
         }
         if let (Some(v), false) = (&mut self.vision, self.vision_deferred) {
@@ -207,7 +215,7 @@ impl Senses {
             self.touch_values.copy_from(touch.felt());
         }
         if let Some(pool) = &self.pool {
-            pool.observe(touch, &mut self.pooled_values);
+            pool.observe(touch, numbers_of(&mut self.numbers, Sense::TouchPooled));
         }
         if let Some(pain) = &mut self.pain {
             pain.observe(model, touch);
@@ -253,77 +261,27 @@ impl Senses {
     /// Returns what was observed last.
     pub(super) fn observation(&self) -> Observation<'_> {
         let eyes = if self.known { &self.eyes } else { &NO_IMAGES };
-        Observation {
-            proprioception: &self.proprioception_values,
-            touch: self.touch_observed().map(SkinValues::values),
-            touch_pooled: self.pool.as_ref().map(|_| &self.pooled_values[..]),
-            pain: self.pain_observed().map(SkinValues::values),
-            vestibular: self.vestibular.as_ref().map(|_| &self.vestibular_values[..]),
-            ..Observation::of_eyes(eyes)
-        }
+        Observation::from_fn(|entry| match (entry.sense?, entry.image) {
+            (eye, Some(image)) => eyes[usize::from(eye == Sense::EyeRight)].image(image),
+            (Sense::Touch, None) => self.touch_observed().map(|felt| felt.values().into()),
+            (Sense::Pain, None) => self.pain_observed().map(|felt| felt.values().into()),
+            (sense, None) => self.numbers[sense as usize].as_deref().map(Values::from),
+        })
     }
 
-    /// Returns keys, shapes, types and bounds of the observation.
-    pub(super) fn spaces(&self) -> Vec<ObservationSpace> {
-        let mut spaces = vec![vector("observation", self.proprioception_values.len())];
-        if let Some(t) = &self.touch {
-            let dtype = Dtype::F32;
-            spaces.push(ObservationSpace {
-                dtype,
-                ..vector("touch", t.len())
-            });
+    /// Returns the shape of an entry of `len` numbers.
+    pub(super) fn shape(&self, entry: &ObservationEntry, len: usize) -> Vec<usize> {
+        let [height, width, colours] = self.vision.as_ref().map_or([0; 3], Vision::shape);
+        match (entry.sense, entry.image) {
+            (_, Some(VisionOutput::Rgb)) => vec![height, width, colours],
+            (_, Some(_)) => vec![height, width],
+            (Some(Sense::TouchPooled), _) => vec![len / POOLED, POOLED],
+            _ => vec![len],
         }
-        if let Some(pool) = &self.pool {
-            let shape = vec![pool.bodies().len(), POOLED];
-            spaces.push(ObservationSpace {
-                shape,
-                ..vector("touch_pooled", 0)
-            });
-        }
-        if let Some(pain) = &self.pain {
-            spaces.push(ObservationSpace {
-                dtype: Dtype::F32,
-                low: 0.0,
-                ..vector("pain", pain.felt().values().len())
-            });
-        }
-        if let Some(v) = &self.vision {
-            for output in self.outputs.iter() {
-                spaces.extend((0..EYES.len()).map(|eye| image(output, eye, v.shape())));
-            }
-        }
-        if let Some(v) = &self.vestibular {
-            spaces.push(vector("vestibular", v.len()));
-        }
-        spaces
     }
 }
 
-/// Returns the space of a vector of numbers.
-pub(super) fn vector(key: &'static str, len: usize) -> ObservationSpace {
-    ObservationSpace {
-        key,
-        shape: vec![len],
-        dtype: Dtype::F64,
-        low: f64::NEG_INFINITY,
-        high: f64::INFINITY,
-    }
-}
-
-/// Returns the space of an image of an eye.
-fn image(output: VisionOutput, eye: usize, [height, width, colours]: [usize; 3]) -> ObservationSpace {
-    let shape = vec![height, width];
-    let (keys, shape, dtype, low, high) = match output {
-        VisionOutput::Rgb => (EYES, vec![height, width, colours], Dtype::U8, 0.0, 255.0),
-        VisionOutput::Gray => (EYES_GRAY, shape, Dtype::U8, 0.0, 255.0),
-        VisionOutput::Depth => (EYES_DEPTH, shape, Dtype::F32, 0.0, f64::INFINITY),
-        VisionOutput::Segmentation => (EYES_SEGMENTATION, shape, Dtype::I32, -1.0, f64::from(i32::MAX)),
-    };
-    ObservationSpace {
-        key: keys[eye],
-        shape,
-        dtype,
-        low,
-        high,
-    }
+/// Returns the room for the numbers of a sense, which is empty if it has none.
+fn numbers_of(numbers: &mut [Option<Vec<f64>>], sense: Sense) -> &mut [f64] {
+    numbers[sense as usize].as_deref_mut().unwrap_or_default()
 }

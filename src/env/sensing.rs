@@ -7,7 +7,7 @@ use crate::env::{EnvError, Senses};
 use crate::physics::State;
 use crate::render::ImageBuffers;
 use crate::sensors::transform::{Sense, Transform};
-use crate::sensors::{EyeImages, Pain, Proprioception, SkinValues, Touch, TouchPool, Vestibular, Vision};
+use crate::sensors::{Pain, Proprioception, SkinValues, Touch, TouchPool, Vestibular, Vision};
 
 impl Senses {
     /// Returns the proprioceptive sense: names and ranges of its values.
@@ -51,11 +51,6 @@ impl Senses {
     /// renderer.
     pub fn vision(&self) -> Option<&Vision> {
         self.vision.as_ref()
-    }
-
-    /// Returns the images of both eyes, left and right.
-    pub(crate) fn eye_images(&self) -> &[EyeImages; 2] {
-        &self.eyes
     }
 
     /// Returns by how many threads the eyes are drawn: 1 or 2.

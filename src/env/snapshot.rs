@@ -9,6 +9,7 @@ pub use format::{Snapshot, SnapshotError, SnapshotInfo};
 use crate::env::task::TaskEvent;
 use crate::env::{BehaviorInfo, Env, PerHand, TaskInfo};
 use crate::physics::Row as _;
+use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
 use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
 
@@ -18,6 +19,12 @@ const VECTORS: usize = 40;
 const WHOLE: usize = 10;
 /// The largest counter: no run gets there, and counting on from it does not overflow.
 const MAX_COUNT: u64 = 1 << 62;
+
+/// Iterates over the senses whose numbers stand at the end of the numbers: all but the two of the first layout.
+fn later_senses() -> impl Iterator<Item = Sense> {
+    let first = [Sense::Proprioception, Sense::Vestibular];
+    Sense::ALL.into_iter().filter(move |sense| !first.contains(sense))
+}
 
 impl Env {
     /// Returns what the task remembers.
@@ -33,33 +40,42 @@ impl Env {
         self.physics.state.numbers(&mut out);
         out.extend([
             &self.physics.base.eq_offset[..],
-            &self.senses.proprioception_values,
-            &self.senses.vestibular_values,
+            self.senses.numbers(Sense::Proprioception),
+            self.senses.numbers(Sense::Vestibular),
             &self.goals.achieved,
             &self.goals.desired,
             &self.goals.terms,
             memory,
             std::slice::from_ref(&self.episode.reward),
-            &self.senses.pooled_values,
         ]);
+        out.extend(later_senses().map(|sense| self.senses.numbers(sense)));
         out
     }
 
     /// Returns the vectors of [`Env::numbers`], to write to.
     fn numbers_mut<'a>(&'a mut self, memory: &'a mut [f64]) -> Vec<&'a mut [f64]> {
+        let [mut proprioception, mut vestibular]: [&mut [f64]; 2] = Default::default();
+        let mut later = Vec::new();
+        for (sense, numbers) in self.senses.numbers_mut() {
+            match sense {
+                Sense::Proprioception => proprioception = numbers,
+                Sense::Vestibular => vestibular = numbers,
+                _ => later.push(numbers),
+            }
+        }
         let mut out = Vec::with_capacity(VECTORS);
         self.physics.state.numbers_mut(&mut out);
         out.extend([
             &mut self.physics.base.eq_offset[..],
-            &mut self.senses.proprioception_values,
-            &mut self.senses.vestibular_values,
+            proprioception,
+            vestibular,
             &mut self.goals.achieved,
             &mut self.goals.desired,
             &mut self.goals.terms,
             memory,
             std::slice::from_mut(&mut self.episode.reward),
-            &mut self.senses.pooled_values,
         ]);
+        out.extend(later);
         out
     }
 

@@ -16,8 +16,7 @@ use super::{Policy, PolicyError};
 use crate::env::{Env, Observation};
 use crate::files;
 use crate::limits::Limits;
-use crate::sensors::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION};
-use crate::spaces::{BoxSpace, Dtype, ObservationSpace};
+use crate::spaces::{BoxSpace, Dtype, ObservationSpace, Values};
 use crate::text::quoted;
 
 /// Names of outputs that hold the action; without one of them, the first output does.
@@ -91,8 +90,8 @@ pub enum OnnxError {
 
 /// A policy that is an ONNX model, such as one exported from Stable-Baselines3 or PyTorch.
 ///
-/// Inputs: one for each sense that the model uses, named after its key (`observation`, `touch`, `touch_pooled`, `pain`, `vestibular`,
-/// `eye_left`, `eye_right`, and those with `_gray`, `_depth` or `_segmentation` behind), or a single one of any other name for all active senses, flattened and in the
+/// Inputs: one for each entry of the observation that the model uses, named after its key
+/// ([`ObservationEntry`](crate::sensors::ObservationEntry): `observation`, `touch`, `eye_left`, ...), or a single one of any other name for all active senses, flattened and in the
 /// alphabetical order of their keys, as Gymnasium's `FlattenObservation` makes it. Vectors have shape `[n]` or `[1,
 /// n]`; images `[height, width, 3]` or `[3, height, width]`, with or without a 1 in front, and values of 0 to 255
 /// (Stable-Baselines3 scales them in the model). The size of the batch, or of anything else, may be left open. Numbers
@@ -370,28 +369,18 @@ impl OnnxPolicy {
 impl Input {
     /// Returns an image in bytes of an eye.
     fn pixels(&self, o: &Observation) -> Vec<u8> {
-        let key = self.senses.first().copied().unwrap_or_default();
-        self.ordered(bytes_of(o, key))
+        match self.senses.first().and_then(|key| o.get(key)) {
+            Some(Values::U8(image)) => self.ordered(image),
+            _ => Vec::new(),
+        }
     }
 
     /// Returns all senses as numbers.
     fn numbers(&self, o: &Observation) -> Vec<f32> {
-        let single = |v: &[f64]| v.iter().map(|&x| x as f32).collect::<Vec<f32>>();
-        let eye = |key: &str| usize::from(key.starts_with(EYES[1]));
-        let values = |sense: &&str| match *sense {
-            "observation" => single(o.proprioception),
-            "touch" => o.touch.unwrap_or_default().to_vec(),
-            "touch_pooled" => single(o.touch_pooled.unwrap_or_default()),
-            "pain" => o.pain.unwrap_or_default().to_vec(),
-            "vestibular" => single(o.vestibular.unwrap_or_default()),
-            "achieved_goal" => single(o.achieved_goal.unwrap_or_default()),
-            "desired_goal" => single(o.desired_goal.unwrap_or_default()),
-            key if EYES_DEPTH.contains(&key) => o.eye_depth.unwrap_or_default()[eye(key)].to_vec(),
-            key if EYES_SEGMENTATION.contains(&key) => {
-                let ids = o.eye_segmentation.unwrap_or_default()[eye(key)];
-                ids.iter().map(|&id| id as f32).collect()
-            }
-            key => self.ordered(bytes_of(o, key)).into_iter().map(f32::from).collect(),
+        let values = |key: &&str| match o.get(key) {
+            Some(Values::U8(image)) => Values::U8(&self.ordered(image)).to_f32(),
+            Some(values) => values.to_f32(),
+            None => Vec::new(),
         };
         self.senses.iter().flat_map(values).collect()
     }
@@ -403,17 +392,6 @@ impl Input {
         } else {
             image.to_vec()
         }
-    }
-}
-
-/// Returns an image in bytes by its key.
-fn bytes_of<'o>(o: &Observation<'o>, key: &str) -> &'o [u8] {
-    let [left, right] = o.eye_gray.unwrap_or_default();
-    match key {
-        key if key == EYES[0] => o.eye_left.unwrap_or_default(),
-        key if key == EYES[1] => o.eye_right.unwrap_or_default(),
-        key if key == EYES_GRAY[0] => left,
-        _ => right,
     }
 }
 

@@ -5,101 +5,96 @@ use std::fmt;
 
 use base64::display::Base64Display;
 use base64::engine::general_purpose::STANDARD;
-use serde::Serializer;
 use serde::de::{DeserializeSeed, SeqAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 use super::Moment;
+use crate::config::VisionOutput;
 use crate::env::{Env, Observation};
+use crate::spaces::{BoxSpace, ObservationSpace, Values};
 
-/// The message to a policy before each action. Senses that are not active are left out.
-#[derive(serde::Serialize)]
+/// What a policy is told before each action. Senses that are not active are left out.
 pub(super) struct Line<'a> {
-    episode: u64,
-    step: u64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    action_space: Option<Bounds<'a>>,
-    observation: &'a [f64],
-    #[serde(skip_serializing_if = "Option::is_none")]
-    touch: Option<&'a [f32]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    touch_pooled: Option<&'a [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pain: Option<&'a [f32]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_left: Option<Image<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_right: Option<Image<'a>>,
-    #[serde(flatten)]
-    eyes: Eyes<'a>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    vestibular: Option<&'a [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    achieved_goal: Option<&'a [f64]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    desired_goal: Option<&'a [f64]>,
+    moment: Moment,
+    /// At the start of an episode.
+    action_space: Option<&'a BoxSpace>,
+    observation: Observation<'a>,
+    /// The spaces of the entries of the observation, in their order.
+    spaces: Vec<ObservationSpace>,
+}
+
+impl<'a> Line<'a> {
+    /// Takes the present observation of an environment, and the action space at the start of an episode.
+    pub fn new(env: &'a Env, moment: Moment) -> Self {
+        Self {
+            action_space: (moment.step == 0).then(|| env.action_space()),
+            observation: env.observation(),
+            spaces: env.observation_space(),
+            moment,
+        }
+    }
+}
+
+impl Serialize for Line<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("episode", &self.moment.episode)?;
+        map.serialize_entry("step", &self.moment.step)?;
+        if let Some(space) = self.action_space {
+            let (low, high) = (space.low(), space.high());
+            map.serialize_entry("action_space", &Bounds { low, high })?;
+        }
+        for ((entry, values), space) in self.observation.entries().zip(&self.spaces) {
+            match entry.image {
+                Some(output) => map.serialize_entry(entry.key, &Image::new(output, &space.shape, values))?,
+                None => map.serialize_entry(entry.key, &List(values))?,
+            }
+        }
+        map.end()
+    }
 }
 
 /// The limits of each number of an action.
-#[derive(serde::Serialize)]
+#[derive(Serialize)]
 struct Bounds<'a> {
     low: &'a [f32],
     high: &'a [f32],
 }
 
-/// An image in bytes: its shape, and its data in base64.
-#[derive(serde::Serialize)]
+/// Numbers as a list.
+struct List<'a>(Values<'a>);
+
+impl Serialize for List<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            Values::F64(values) => values.serialize(serializer),
+            Values::F32(values) => values.serialize(serializer),
+            Values::U8(values) => values.serialize(serializer),
+            Values::I32(values) => values.serialize(serializer),
+        }
+    }
+}
+
+/// An image: its shape, NumPy's name of its type, where it is not in colours, and its data, the lowest byte of a number first, in base64.
+#[derive(Serialize)]
 struct Image<'a> {
-    shape: [usize; 3],
-    #[serde(serialize_with = "base64")]
-    data: &'a [u8],
-}
-
-/// The eyes' outputs other than colours.
-#[derive(Default, serde::Serialize)]
-struct Eyes<'a> {
+    shape: &'a [usize],
     #[serde(skip_serializing_if = "Option::is_none")]
-    eye_left_gray: Option<Map<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_right_gray: Option<Map<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_left_depth: Option<Map<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_right_depth: Option<Map<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_left_segmentation: Option<Map<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    eye_right_segmentation: Option<Map<'a>>,
-}
-
-/// An image of one number for each pixel: its shape, NumPy's name of its type, and its data, the lowest byte first, in
-/// base64.
-#[derive(serde::Serialize)]
-struct Map<'a> {
-    shape: [usize; 2],
-    dtype: &'static str,
+    dtype: Option<&'static str>,
     #[serde(serialize_with = "base64")]
     data: Cow<'a, [u8]>,
 }
 
-impl<'a> Eyes<'a> {
-    fn new(observation: &Observation<'a>, shape: [usize; 2]) -> Self {
-        fn pair<'a, T>(values: Option<[&'a [T]; 2]>, map: impl Fn(&'a [T]) -> Map<'a>) -> [Option<Map<'a>>; 2] {
-            values.map_or([None, None], |pair| pair.map(|v| Some(map(v))))
-        }
-        let map = |dtype, data| Map { shape, dtype, data };
-        let bytes = |v| map("uint8", Cow::Borrowed(v));
-        let floats = |v: &'a [f32]| map("float32", v.iter().flat_map(|x| x.to_le_bytes()).collect());
-        let ids = |v: &'a [i32]| map("int32", v.iter().flat_map(|x| x.to_le_bytes()).collect());
-        let [eye_left_gray, eye_right_gray] = pair(observation.eye_gray, bytes);
-        let [eye_left_depth, eye_right_depth] = pair(observation.eye_depth, floats);
-        let [eye_left_segmentation, eye_right_segmentation] = pair(observation.eye_segmentation, ids);
+impl<'a> Image<'a> {
+    fn new(output: VisionOutput, shape: &'a [usize], values: Values<'a>) -> Self {
         Self {
-            eye_left_gray,
-            eye_right_gray,
-            eye_left_depth,
-            eye_right_depth,
-            eye_left_segmentation,
-            eye_right_segmentation,
+            shape,
+            dtype: (output != VisionOutput::Rgb).then(|| values.dtype().name()),
+            data: match values {
+                Values::U8(bytes) => Cow::Borrowed(bytes),
+                numbers => Cow::Owned(numbers.to_le_bytes()),
+            },
         }
     }
 }
@@ -109,34 +104,7 @@ fn base64<S: Serializer>(data: &impl AsRef<[u8]>, serializer: S) -> Result<S::Ok
     serializer.collect_str(&Base64Display::new(data, &STANDARD))
 }
 
-impl<'a> Line<'a> {
-    /// Takes the present observation of an environment, and the action space at the start of an episode.
-    pub fn new(env: &'a Env, Moment { episode, step }: Moment) -> Self {
-        let (observation, space) = (env.observation(), env.action_space());
-        let shape = env.senses().vision().map_or([0; 3], |v| v.shape());
-        let image = |data| Image { shape, data };
-        Self {
-            episode,
-            step,
-            action_space: (step == 0).then(|| Bounds {
-                low: space.low(),
-                high: space.high(),
-            }),
-            observation: observation.proprioception,
-            touch: observation.touch,
-            touch_pooled: observation.touch_pooled,
-            pain: observation.pain,
-            eye_left: observation.eye_left.map(image),
-            eye_right: observation.eye_right.map(image),
-            eyes: Eyes::new(&observation, [shape[0], shape[1]]),
-            vestibular: observation.vestibular,
-            achieved_goal: observation.achieved_goal,
-            desired_goal: observation.desired_goal,
-        }
-    }
-}
-
-/// Reads an answer, a JSON list of `expected` numbers, into `action`; the error describes the fault.
+/// Reads an answer, a JSON list of `expected` numbers, into `action`, or says what is wrong with it.
 pub(super) fn parse(answer: &str, expected: usize, action: &mut Vec<f32>) -> Result<(), String> {
     action.clear();
     if !answer.starts_with('[') {
@@ -199,6 +167,7 @@ impl<'de> Visitor<'de> for Numbers<'_> {
 mod tests {
     use super::*;
     use crate::json;
+    use crate::spaces::Dtype;
 
     #[test]
     fn answers_are_lists_of_finite_numbers() {
@@ -245,33 +214,31 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_is_null() {
+        let space = |key, shape: &[usize], dtype| ObservationSpace {
+            key,
+            shape: shape.to_vec(),
+            dtype,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        };
         let line = Line {
-            episode: 0,
-            step: 0,
-            action_space: Some(Bounds {
-                low: &[f32::NEG_INFINITY],
-                high: &[1.5],
-            }),
-            observation: &[f64::NAN, 1e-300, -0.0],
-            touch: Some(&[]),
-            touch_pooled: Some(&[0.5]),
-            pain: None,
-            eye_left: Some(Image {
-                shape: [1, 1, 3],
-                data: &[255, 254, 0],
-            }),
-            eye_right: None,
-            eyes: Eyes {
-                eye_right_depth: Some(Map {
-                    shape: [1, 1],
-                    dtype: "float32",
-                    data: 1.5f32.to_le_bytes().to_vec().into(),
-                }),
-                ..Eyes::default()
+            moment: Moment { episode: 0, step: 0 },
+            action_space: Some(&BoxSpace::new(vec![f32::NEG_INFINITY], vec![1.5])),
+            observation: Observation {
+                proprioception: &[f64::NAN, 1e-300, -0.0],
+                touch: Some(&[]),
+                touch_pooled: Some(&[0.5]),
+                eye_left: Some(&[255, 254, 0]),
+                eye_right_depth: Some(&[1.5]),
+                ..Observation::default()
             },
-            vestibular: None,
-            achieved_goal: None,
-            desired_goal: None,
+            spaces: vec![
+                space("observation", &[3], Dtype::F64),
+                space("touch", &[0], Dtype::F32),
+                space("touch_pooled", &[1], Dtype::F64),
+                space("eye_left", &[1, 1, 3], Dtype::U8),
+                space("eye_right_depth", &[1, 1], Dtype::F32),
+            ],
         };
         assert_eq!(
             json::text(&line),

@@ -10,7 +10,6 @@ use thiserror::Error;
 use crate::env::{Env, EnvError, Viewer};
 use crate::formats::npz::NpzError;
 use crate::physics::FreeBody;
-use crate::sensors::EYES;
 
 /// An error in reading or replaying a recording.
 #[derive(Debug, Error)]
@@ -113,19 +112,7 @@ pub fn replay_with_images(
         {
             out.eye_size = env.config().vision_resolution as usize;
             out.eye_steps.push(t as i64);
-            let seen = env.observation();
-            let observed = [seen.eye_left, seen.eye_right];
-            for ((key, observed), all) in EYES
-                .into_iter()
-                .zip(observed)
-                .zip([&mut out.eye_left, &mut out.eye_right])
-            {
-                all.extend_from_slice(match observed {
-                    Some(image) => image,
-                    None => viewer.draw(env, key, out.eye_size, out.eye_size).map_err(at(t))?,
-                });
-            }
-            out.push_eyes(&seen);
+            out.push_eyes(env, viewer).map_err(at(t))?;
         }
     }
     Ok(out)

@@ -5,6 +5,7 @@
 
 mod pain;
 mod proprioception;
+mod sense;
 pub mod touch;
 pub mod transform;
 mod vestibular;
@@ -12,6 +13,8 @@ mod vision;
 
 pub use pain::Pain;
 pub use proprioception::{Component, Entry, Proprioception, limit_activation};
+pub use sense::ObservationEntry;
+pub(crate) use sense::observation_entries;
 pub use touch::{SkinLayout, SkinValues, Touch, TouchPool};
 pub use vestibular::Vestibular;
-pub use vision::{EYES, EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages, Vision};
+pub use vision::{EYES, EyeImages, Vision};

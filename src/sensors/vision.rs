@@ -6,15 +6,10 @@ use crate::config::{VisionOutput, VisionOutputs};
 use crate::model::Model;
 use crate::physics::State;
 use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, View, Visual};
+use crate::spaces::Values;
 
 /// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
 pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
-/// Keys of the gray images, left and right.
-pub const EYES_GRAY: [&str; 2] = ["eye_left_gray", "eye_right_gray"];
-/// Keys of depth, left and right.
-pub const EYES_DEPTH: [&str; 2] = ["eye_left_depth", "eye_right_depth"];
-/// Keys of geom ids, left and right.
-pub const EYES_SEGMENTATION: [&str; 2] = ["eye_left_segmentation", "eye_right_segmentation"];
 
 impl<'a> From<&'a State> for Poses<'a> {
     /// Returns the poses at the start of the last physics step.
@@ -67,6 +62,17 @@ impl EyeImages {
             depth: vec![0.0; len(VisionOutput::Depth)],
             segmentation: vec![0; len(VisionOutput::Segmentation)],
         }
+    }
+
+    /// Returns one of the images, if it is observed.
+    pub fn image(&self, output: VisionOutput) -> Option<Values<'_>> {
+        let pixels: Values<'_> = match output {
+            VisionOutput::Rgb => self.rgb[..].into(),
+            VisionOutput::Gray => self.gray[..].into(),
+            VisionOutput::Depth => self.depth[..].into(),
+            VisionOutput::Segmentation => self.segmentation[..].into(),
+        };
+        (!pixels.is_empty()).then_some(pixels)
     }
 
     /// Returns the memory of the images that are observed, for a renderer.

@@ -2,8 +2,11 @@
 
 mod normal;
 mod rng;
+mod values;
 
 pub use rng::NumpyRng;
+pub(crate) use values::Number;
+pub use values::{Array, Values, ValuesMut};
 
 /// Largest width and height of an image, pixels.
 pub const MAX_IMAGE_SIZE: usize = 4096;
@@ -84,11 +87,31 @@ pub enum Dtype {
     I32,
 }
 
+impl Dtype {
+    /// Returns NumPy's name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "float64",
+            Self::F32 => "float32",
+            Self::U8 => "uint8",
+            Self::I32 => "int32",
+        }
+    }
+
+    /// Returns the size of a number, bytes.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::F64 => 8,
+            Self::F32 | Self::I32 => 4,
+            Self::U8 => 1,
+        }
+    }
+}
+
 /// The shape and bounds of one entry of the observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservationSpace {
-    /// Key in the observation: `observation`, `vestibular`, `touch`, `touch_pooled`, `pain`, `eye_left`, `eye_right` (each
-    /// with `_gray`, `_depth` or `_segmentation` for other outputs), `achieved_goal` or `desired_goal`.
+    /// Key in the observation: one of those of [`ObservationEntry`](crate::sensors::ObservationEntry).
     pub key: &'static str,
     /// Shape.
     pub shape: Vec<usize>,

@@ -2,7 +2,6 @@
 
 use crate::env::{EnvError, Observation};
 use crate::vector::Infos;
-use crate::vector::rows::row_of;
 
 /// The results of a step, a reset or [`VectorEnv::recv`](super::VectorEnv::recv): arrays with a row for each environment.
 /// They belong to the vector and change with the next call.
@@ -40,7 +39,7 @@ impl<'a> Batch<'a> {
 
     /// Returns the observation of a row, if there is one.
     pub fn row(&self, row: usize) -> Option<Observation<'a>> {
-        (row < self.len()).then(|| row_of(&self.observation, row, self.len()))
+        (row < self.len()).then(|| self.observation.row(row, self.len()))
     }
 }
 
@@ -59,7 +58,7 @@ impl<'a> Finals<'a> {
     /// Returns the last observation of a row's episode, if there is such a row and it has ended.
     pub fn row(&self, row: usize) -> Option<Observation<'a>> {
         let ended = self.ended.get(row).copied().unwrap_or(false);
-        ended.then(|| row_of(&self.observation, row, self.ended.len()))
+        ended.then(|| self.observation.row(row, self.ended.len()))
     }
 }
 

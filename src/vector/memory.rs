@@ -21,8 +21,9 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     // the array of the vector and the vector of the sense; with the ends of episodes, another of each
     let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
     let rows = copies * layout.row_bytes();
-    let renderer = layout.pixels.map_or(0, |pixels| {
-        let has = |output| layout.outputs.contains(output);
+    let renderer = env.senses().vision().map_or(0, |vision| {
+        let (pixels, outputs) = (vision.shape()[0] * vision.shape()[1], env.config().vision_outputs);
+        let has = |output| outputs.contains(output);
         let colour = has(VisionOutput::Rgb) || has(VisionOutput::Gray);
         let centre = has(VisionOutput::Depth) || has(VisionOutput::Segmentation);
         // with both, what each pixel shows is kept twice

@@ -20,8 +20,10 @@
 //! threads and the batch. With the feature `parallel`, threads step them; without, the caller does.
 
 mod batch;
+mod buffers;
 mod error;
 mod exchange;
+mod infos;
 mod memory;
 mod options;
 mod rows;
@@ -30,16 +32,18 @@ mod single;
 mod slot;
 
 pub use batch::{Batch, Failure, Finals};
+pub use buffers::Buffers;
 pub use error::VectorError;
+pub use infos::Infos;
 pub use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions};
-pub use rows::{Buffers, Infos};
 pub use seeds::Seeds;
 
 use crate::config::RendererKind;
 use crate::env::{Blueprint, Env, EnvError};
 use crate::spaces::{BoxSpace, ObservationSpace};
 use crate::threads::Pool;
-use rows::{InfoRows, Layout, Rows};
+use infos::InfoRows;
+use rows::{Layout, Rows};
 use slot::Slot;
 
 /// Many environments, stepped together or as they come.

@@ -4,9 +4,9 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, draw_eyes};
-use crate::sensors::EyeImages;
 use crate::threads::Job;
 use crate::vector::AutoresetMode;
+use crate::vector::rows::{Layout, Rows};
 
 /// The next order of an environment.
 #[derive(Clone, Copy, Debug)]
@@ -147,30 +147,16 @@ impl Slot {
 /// The end of an episode.
 pub(super) struct Last {
     pub info: Info,
-    proprioception: Vec<f64>,
-    touch: Vec<f32>,
-    pooled: Vec<f64>,
-    pain: Vec<f32>,
-    eyes: [EyeImages; 2],
-    vestibular: Vec<f64>,
-    achieved_goal: Vec<f64>,
-    desired_goal: Vec<f64>,
+    /// The observation, in a row.
+    rows: Rows,
     pub terms: Vec<f64>,
 }
 
 impl Last {
     fn new(env: &Env) -> Self {
-        let observation = env.observation();
         let mut last = Self {
             info: Info::default(),
-            proprioception: vec![0.0; observation.proprioception.len()],
-            touch: vec![0.0; observation.touch.map_or(0, <[f32]>::len)],
-            pooled: vec![0.0; observation.touch_pooled.map_or(0, <[f64]>::len)],
-            pain: vec![0.0; observation.pain.map_or(0, <[f32]>::len)],
-            eyes: env.senses().eye_images().clone(),
-            vestibular: vec![0.0; observation.vestibular.map_or(0, <[f64]>::len)],
-            achieved_goal: vec![0.0; env.goal().achieved.len()],
-            desired_goal: vec![0.0; env.goal().desired.len()],
+            rows: Rows::new(1, Layout::new([env])),
             terms: vec![0.0; env.goal().terms.len()],
         };
         last.keep(env);
@@ -178,36 +164,14 @@ impl Last {
     }
 
     fn keep(&mut self, env: &Env) {
-        let observation = env.observation();
-        self.proprioception.copy_from_slice(observation.proprioception);
-        self.touch.copy_from_slice(observation.touch.unwrap_or_default());
-        self.pooled
-            .copy_from_slice(observation.touch_pooled.unwrap_or_default());
-        self.pain.copy_from_slice(observation.pain.unwrap_or_default());
-        for (own, eye) in self.eyes.iter_mut().zip(env.senses().eye_images()) {
-            own.copy_from(eye);
-        }
-        self.vestibular
-            .copy_from_slice(observation.vestibular.unwrap_or_default());
-        let goal = env.goal();
-        self.achieved_goal.copy_from_slice(goal.achieved);
-        self.desired_goal.copy_from_slice(goal.desired);
-        self.terms.copy_from_slice(goal.terms);
+        self.rows.buffers().write(0, env);
+        self.terms.copy_from_slice(env.goal().terms);
         copy_info(env.info(), &mut self.info);
     }
 
-    /// Returns the last observation; of senses that are off, empty slices or none.
+    /// Returns the last observation.
     pub fn observation(&self) -> Observation<'_> {
-        Observation {
-            proprioception: &self.proprioception,
-            touch: Some(&self.touch),
-            touch_pooled: Some(&self.pooled),
-            pain: Some(&self.pain),
-            vestibular: Some(&self.vestibular),
-            achieved_goal: Some(&self.achieved_goal),
-            desired_goal: Some(&self.desired_goal),
-            ..Observation::of_eyes(&self.eyes)
-        }
+        self.rows.observation(1)
     }
 }
 

@@ -318,9 +318,11 @@ fn the_observation_has_the_images_that_the_configuration_asks_for() {
         .unwrap();
     let o = e.observation();
     assert_eq!([o.eye_left, o.eye_right], eyes.each_ref().map(|i| Some(&i.rgb[..])));
-    assert_eq!(o.eye_gray, Some(eyes.each_ref().map(|i| &i.gray[..])));
-    assert_eq!(o.eye_depth, Some(eyes.each_ref().map(|i| &i.depth[..])));
-    assert_eq!(o.eye_segmentation, Some(eyes.each_ref().map(|i| &i.segmentation[..])));
+    let eyes = eyes.each_ref();
+    assert_eq!([o.eye_left_gray, o.eye_right_gray], eyes.map(|i| Some(&i.gray[..])));
+    assert_eq!([o.eye_left_depth, o.eye_right_depth], eyes.map(|i| Some(&i.depth[..])));
+    let geoms = [o.eye_left_segmentation, o.eye_right_segmentation];
+    assert_eq!(geoms, eyes.map(|i| Some(&i.segmentation[..])));
     let spaces = e.observation_space();
     let space = |key: &str| {
         spaces
@@ -347,8 +349,9 @@ fn the_observation_has_the_images_that_the_configuration_asks_for() {
     })
     .unwrap();
     let o = far.reset(Some(0)).unwrap();
-    assert!(o.eye_left.is_none() && o.eye_gray.is_none() && o.eye_segmentation.is_none());
-    assert_eq!(o.eye_depth.map(|eyes| eyes.map(<[f32]>::len)), Some([64 * 64; 2]));
+    assert!(o.eye_left.is_none() && o.eye_left_gray.is_none() && o.eye_right_segmentation.is_none());
+    let depth = [o.eye_left_depth, o.eye_right_depth];
+    assert_eq!(depth.map(|image| image.map(<[f32]>::len)), [Some(64 * 64); 2]);
     assert!(far.observation_space().iter().all(|s| s.key != "eye_left"));
 }
 

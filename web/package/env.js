@@ -9,11 +9,6 @@ import { guarded, memory } from "./module.js";
 /** @typedef {Float32Array | Float64Array | Int32Array | Uint8Array} Numbers */
 
 const KINDS = /** @type {const} */ ({ 1: Uint8Array, 4: Float32Array, 5: Int32Array, 8: Float64Array });
-/** The observation, by the names of its views. */
-const SENSES = [
-  "proprioception", "touch", "touch_pooled", "pain", "vestibular", "achieved_goal", "desired_goal",
-  ...["", "_gray", "_depth", "_segmentation"].flatMap((kind) => [`eye_left${kind}`, `eye_right${kind}`]),
-];
 
 /**
  * An environment. Numbers are views on the module's memory, without copies: they change with the next step, and one that is kept has
@@ -57,7 +52,8 @@ export class Env {
     // after a trap nothing can be freed; what was refused is freed when nobody holds it
     if (!shared) blueprint.free();
     const env = this;
-    const getters = SENSES.map((name) => [name, { enumerable: true, get: () => env.view(name) }]);
+    const names = guarded(() => this.#core.observationNames());
+    const getters = names.map((name) => [name, { enumerable: true, get: () => env.view(name) }]);
     this.#observation = Object.defineProperties(/** @type {any} */ ({}), Object.fromEntries(getters));
   }
 

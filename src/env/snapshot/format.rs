@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::config::{Config, Delays, Key};
 use crate::model::Model;
+use crate::sensors::transform::Sense;
 
 /// First bytes of a snapshot.
 pub(super) const MAGIC: [u8; 8] = *b"BBSNAP\r\n";
@@ -16,7 +17,7 @@ pub(super) const HEADER: usize = 32;
 ///
 /// It holds positions, velocities, controls, muscles, applied forces, the start of the solver, all parameters with the
 /// locks, the random generator, the goals and the memory of the task, the information and counters of the episode, the vectors
-/// `observation`, `touch_pooled` and `vestibular`, and what delays, pain and other transforms remember. A continuation from it has the
+/// of the senses that report plain numbers, such as `observation` and `vestibular`, and what delays, pain and other transforms remember. A continuation from it has the
 /// same bits as the original, in the same environment or
 /// in another of the same configuration and scene.
 ///
@@ -159,6 +160,15 @@ pub(super) fn checksum(bytes: &[u8]) -> u64 {
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
 }
 
+/// The keys of senses whose state the fingerprint of the first layouts tells or leaves out.
+const EARLY: [&str; 5] = [
+    "touch_active",
+    "touch_pooled",
+    "pain_active",
+    "vestibular_active",
+    "vision_active",
+];
+
 /// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, and the keys that shape an
 /// environment's memory.
 pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
@@ -188,10 +198,14 @@ pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
         bytes.extend_from_slice(name.as_bytes());
         bytes.push(0);
     }
+    let defaults = Config::default();
+    // senses that came after the first snapshots tell themselves apart where they are on, so that older snapshots stay readable
+    let is_added = |key| !EARLY.contains(&key) && Sense::ALL.iter().any(|sense| sense.switch() == key);
     let remembers = config.delays != Delays::default() || config.pain_active;
     let shapes = |key: &&Key| {
         ["Delays", "Pain"].contains(&key.section)
             || key.name == "touch_pooled"
+            || is_added(key.name) && key.value(config) != key.value(&defaults)
             || remembers && ["Vision", "Touch"].contains(&key.section)
     };
     for key in Config::keys().iter().filter(shapes) {

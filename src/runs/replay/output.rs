@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use super::{EpisodeStart, Recording, ReplayError};
-use crate::env::{Env, Info, Observation};
+use crate::config::VisionOutput;
+use crate::env::{Env, EnvError, Info, Viewer};
 use crate::files::replace_file;
-use crate::formats::npz::NpzWriter;
+use crate::formats::npz::{NpzError, NpzWriter};
 use crate::json;
-use crate::sensors::{EYES_DEPTH, EYES_GRAY, EYES_SEGMENTATION, EyeImages};
+use crate::sensors::ObservationEntry;
+use crate::sensors::transform::Sense;
+use crate::spaces::{Array, Values};
 
 /// Touch values that are not zero, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,12 +56,8 @@ pub struct Replay {
     pub observation: Vec<f64>,
     /// Touch, if active.
     pub touch: Option<TouchRows>,
-    /// Touch pooled over bodies (T, bodies 5), if active.
-    pub touch_pooled: Option<Vec<f64>>,
-    /// Pain (T, sensors), if active.
-    pub pain: Option<Vec<f32>>,
-    /// Vestibular sense (T, 6), if active.
-    pub vestibular: Option<Vec<f64>>,
+    /// The other senses that are active (T, len); what the eyes saw, in the steps whose pictures were taken (K, H, W, ...).
+    pub senses: Vec<(&'static ObservationEntry, Array)>,
     /// First contact of each step (T + 1).
     pub contact_ptr: Vec<i64>,
     /// Geoms of each contact (C, 2).
@@ -73,12 +72,6 @@ pub struct Replay {
     pub contact_force: Vec<f64>,
     /// Steps whose pictures were taken (K).
     pub eye_steps: Vec<i64>,
-    /// Images of the left eye in them, (K, H, W, 3).
-    pub eye_left: Vec<u8>,
-    /// Images of the right eye in them.
-    pub eye_right: Vec<u8>,
-    /// The eyes' other outputs in them, left and right, (K, H, W) each.
-    pub eyes: [EyeImages; 2],
     /// Width and height of those pictures, pixels.
     pub eye_size: usize,
     /// Information of each step.
@@ -161,9 +154,32 @@ fn write_starts(npz: &mut NpzWriter, recording: &Recording) -> Result<(), Replay
     Ok(())
 }
 
+/// Returns whether an entry is among [`Replay::senses`]: goals, proprioception and touch have fields of their own.
+fn is_sense(entry: &ObservationEntry) -> bool {
+    entry
+        .sense
+        .is_some_and(|sense| !matches!(sense, Sense::Proprioception | Sense::Touch))
+}
+
+/// Adds numbers of any type to an archive.
+fn add(npz: &mut NpzWriter, name: &str, shape: &[usize], values: Values<'_>) -> Result<(), NpzError> {
+    match values {
+        Values::F64(values) => npz.add(name, shape, values),
+        Values::F32(values) => npz.add(name, shape, values),
+        Values::U8(values) => npz.add(name, shape, values),
+        Values::I32(values) => npz.add(name, shape, values),
+    }
+}
+
 impl Replay {
     /// Starts a replay of `len` steps with the senses of an environment.
     pub(super) fn begin(env: &Env, len: usize) -> Self {
+        let observation = env.observation();
+        // pictures are taken whether the eyes see or not
+        let kept = |entry: &&ObservationEntry| {
+            is_sense(entry) && (observation.get(entry.key).is_some() || entry.image == Some(VisionOutput::Rgb))
+        };
+        let senses = ObservationEntry::ALL.iter().filter(kept);
         Self {
             len,
             touch: env.senses().touch().map(|t| TouchRows {
@@ -171,13 +187,17 @@ impl Replay {
                 len: t.len() as i64,
                 ..TouchRows::default()
             }),
-            touch_pooled: env.senses().touch_pool().map(|_| Vec::new()),
-            pain: env.senses().pain().map(|_| Vec::new()),
-            vestibular: env.senses().vestibular().map(|_| Vec::new()),
+            senses: senses.map(|entry| (entry, Array::zeros(entry.dtype, 0))).collect(),
             contact_ptr: vec![0],
             task: env.info().behavior.task().is_some().then(TaskRows::default),
             ..Self::default()
         }
+    }
+
+    /// Returns the rows of a sense by its key in the observation, if it is among [`Replay::senses`].
+    pub fn sense(&self, key: &str) -> Option<Values<'_>> {
+        let found = self.senses.iter().find(|(entry, _)| entry.key == key);
+        found.map(|(_, rows)| rows.values())
     }
 
     /// Adds everything but pictures after a step.
@@ -193,14 +213,10 @@ impl Replay {
         if let (Some(all), Some(v)) = (&mut self.touch, observation.touch) {
             all.push(v);
         }
-        if let (Some(all), Some(v)) = (&mut self.touch_pooled, observation.touch_pooled) {
-            all.extend_from_slice(v);
-        }
-        if let (Some(all), Some(v)) = (&mut self.pain, observation.pain) {
-            all.extend_from_slice(v);
-        }
-        if let (Some(all), Some(v)) = (&mut self.vestibular, observation.vestibular) {
-            all.extend_from_slice(v);
+        for (entry, rows) in self.senses.iter_mut().filter(|(entry, _)| entry.image.is_none()) {
+            if let Some(values) = observation.get(entry.key) {
+                rows.extend(values);
+            }
         }
         for c in &s.contact {
             self.contact_geom.extend(c.geom.map(|g| g as i64));
@@ -216,38 +232,37 @@ impl Replay {
         }
     }
 
-    /// Adds the eyes' outputs other than colours.
-    pub(super) fn push_eyes(&mut self, observation: &Observation) {
-        let [left, right] = &mut self.eyes;
-        if let Some(gray) = observation.eye_gray {
-            left.gray.extend_from_slice(gray[0]);
-            right.gray.extend_from_slice(gray[1]);
-        }
-        if let Some(depth) = observation.eye_depth {
-            left.depth.extend_from_slice(depth[0]);
-            right.depth.extend_from_slice(depth[1]);
-        }
-        if let Some(ids) = observation.eye_segmentation {
-            left.segmentation.extend_from_slice(ids[0]);
-            right.segmentation.extend_from_slice(ids[1]);
-        }
-    }
-
-    /// Writes the eyes' outputs other than colours.
-    fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), ReplayError> {
-        let shape = [self.eye_steps.len(), self.eye_size, self.eye_size];
-        for (k, eye) in self.eyes.iter().enumerate() {
-            if !eye.gray.is_empty() {
-                npz.add(EYES_GRAY[k], &shape, &eye.gray)?;
-            }
-            if !eye.depth.is_empty() {
-                npz.add(EYES_DEPTH[k], &shape, &eye.depth)?;
-            }
-            if !eye.segmentation.is_empty() {
-                npz.add(EYES_SEGMENTATION[k], &shape, &eye.segmentation)?;
+    /// Adds what the eyes observe; a viewer draws the colours that they do not.
+    pub(super) fn push_eyes(&mut self, env: &Env, viewer: &mut Viewer) -> Result<(), EnvError> {
+        let (observation, side) = (env.observation(), self.eye_size);
+        for (entry, rows) in self.senses.iter_mut().filter(|(entry, _)| entry.image.is_some()) {
+            match observation.get(entry.key) {
+                Some(image) => rows.extend(image),
+                None => rows.extend(viewer.draw(env, entry.key, side, side)?.into()),
             }
         }
         Ok(())
+    }
+
+    /// Writes what the eyes saw: the colours, then what else each of them observed.
+    fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), NpzError> {
+        let (k, side) = (self.eye_steps.len(), self.eye_size);
+        let images = |chosen: &dyn Fn(Sense, VisionOutput) -> bool, npz: &mut NpzWriter| {
+            self.senses
+                .iter()
+                .try_for_each(|(entry, rows)| match (entry.sense, entry.image) {
+                    (Some(eye), Some(image)) if chosen(eye, image) => {
+                        let shape = [k, side, side, 3];
+                        let dimensions = if image == VisionOutput::Rgb { 4 } else { 3 };
+                        add(npz, entry.key, &shape[..dimensions], rows.values())
+                    }
+                    _ => Ok(()),
+                })
+        };
+        images(&|_, image| image == VisionOutput::Rgb, npz)?;
+        Sense::EYES
+            .into_iter()
+            .try_for_each(|own| images(&|eye, image| eye == own && image != VisionOutput::Rgb, npz))
     }
 
     /// Writes `replay.npz`, with the recording's own start and actions, and `info.jsonl` into a directory, which is
@@ -284,14 +299,9 @@ impl Replay {
             task.write(&mut npz)?;
         }
         write_starts(&mut npz, recording)?;
-        if let Some(v) = &self.touch_pooled {
-            npz.add("touch_pooled", &[t, columns(v.len())], v)?;
-        }
-        if let Some(v) = &self.pain {
-            npz.add("pain", &[t, columns(v.len())], v)?;
-        }
-        if let Some(v) = &self.vestibular {
-            npz.add("vestibular", &[t, columns(v.len())], v)?;
+        for (entry, rows) in self.senses.iter().filter(|(entry, _)| entry.image.is_none()) {
+            let values = rows.values();
+            add(&mut npz, entry.key, &[t, columns(values.len())], values)?;
         }
         if let Some(touch) = &self.touch {
             npz.add("touch_idx", &[touch.idx.len()], &touch.idx)?;
@@ -299,11 +309,8 @@ impl Replay {
             npz.add("touch_ptr", &[touch.ptr.len()], &touch.ptr)?;
             npz.add("touch_len", &[], &[touch.len])?;
         }
-        let (k, side) = (self.eye_steps.len(), self.eye_size);
-        if k > 0 {
-            npz.add("eye_steps", &[k], &self.eye_steps)?;
-            npz.add("eye_left", &[k, side, side, 3], &self.eye_left)?;
-            npz.add("eye_right", &[k, side, side, 3], &self.eye_right)?;
+        if !self.eye_steps.is_empty() {
+            npz.add("eye_steps", &[self.eye_steps.len()], &self.eye_steps)?;
             self.write_eyes(&mut npz)?;
         }
         let n = self.contact_dist.len();

@@ -42,69 +42,11 @@ pub use delay::{Delay, DelayLine};
 pub use foveation::Foveation;
 pub use noise::Noise;
 
-use crate::sensors::{EYES, EyeImages, SkinValues};
+pub use crate::sensors::sense::Sense;
+use crate::sensors::{EyeImages, SkinValues};
 use crate::spaces::NumpyRng;
 
-/// A sense whose values can be transformed, in the order in which the senses are transformed in each step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Sense {
-    /// Joints and actuators, the key `observation`.
-    Proprioception,
-    /// The skin, the key `touch`.
-    Touch,
-    /// The skin of whole parts, the key `touch_pooled`.
-    TouchPooled,
-    /// Pain, the key `pain`.
-    Pain,
-    /// Balance, the key `vestibular`.
-    Vestibular,
-    /// The left eye, the key `eye_left` and its other images.
-    EyeLeft,
-    /// The right eye, the key `eye_right` and its other images.
-    EyeRight,
-}
-
-impl Sense {
-    /// Every sense, in order.
-    pub const ALL: [Self; 7] = [
-        Self::Proprioception,
-        Self::Touch,
-        Self::TouchPooled,
-        Self::Pain,
-        Self::Vestibular,
-        Self::EyeLeft,
-        Self::EyeRight,
-    ];
-    /// The two eyes, left and right.
-    pub const EYES: [Self; 2] = [Self::EyeLeft, Self::EyeRight];
-
-    /// Returns its key in the observation.
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Proprioception => "observation",
-            Self::Touch => "touch",
-            Self::TouchPooled => "touch_pooled",
-            Self::Pain => "pain",
-            Self::Vestibular => "vestibular",
-            Self::EyeLeft => EYES[0],
-            Self::EyeRight => EYES[1],
-        }
-    }
-
-    /// Returns the key of the configuration that turns it on; proprioception is always on.
-    pub const fn switch(self) -> &'static str {
-        match self {
-            Self::Proprioception => "",
-            Self::Touch => "touch_active",
-            Self::TouchPooled => "touch_pooled",
-            Self::Pain => "pain_active",
-            Self::Vestibular => "vestibular_active",
-            Self::EyeLeft | Self::EyeRight => "vision_active",
-        }
-    }
-}
-
-/// The values of a sense in one step, to be changed in place.
+/// What a sense reports in one step, to be changed in place.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Signal<'a> {

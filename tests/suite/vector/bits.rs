@@ -319,10 +319,7 @@ fn images_of_every_kind_have_rows_of_their_own() {
         env.reset(Some(seed)).expect("no divergence");
     }
     let mut actions = Vec::new();
-    let (mut depth, mut geoms) = (
-        [vec![0.0; 3 * 256], vec![0.0; 3 * 256]],
-        [vec![0; 3 * 256], vec![0; 3 * 256]],
-    );
+    let (mut depth, mut geoms) = (vec![0.0; 3 * 256], vec![0; 3 * 256]);
     for step in 1..=3 {
         envs.sample_actions(&mut actions).expect("all are here");
         let batch = envs.step(&actions).expect("valid actions");
@@ -333,16 +330,14 @@ fn images_of_every_kind_have_rows_of_their_own() {
             let last = batch.finals.and_then(|finals| finals.row(k));
             assert_eq!(last.is_some(), step == 3);
             let found = last.unwrap_or(observed(&batch, k));
-            assert_eq!((found.eye_left, found.eye_gray), (expected.eye_left, expected.eye_gray));
-            assert_eq!(found.eye_depth, expected.eye_depth);
-            assert_eq!(found.eye_segmentation, expected.eye_segmentation);
-            assert!(found.eye_depth.is_some() && found.eye_segmentation.is_some());
+            assert!(found == expected);
+            assert!(found.eye_right_depth.is_some() && found.eye_right_segmentation.is_some());
         }
     }
     envs.sample_actions(&mut actions).expect("all are here");
     let buffers = Buffers {
-        eye_depth: Some(depth.each_mut().map(|v| &mut v[..])),
-        eye_segmentation: Some(geoms.each_mut().map(|v| &mut v[..])),
+        eye_right_depth: Some(&mut depth),
+        eye_right_segmentation: Some(&mut geoms),
         ..Buffers::default()
     };
     envs.step_into(&actions, buffers).expect("they fit");
@@ -351,13 +346,11 @@ fn images_of_every_kind_have_rows_of_their_own() {
         env.reset(None).expect("no divergence");
         let step = env.step(&actions[k * width..(k + 1) * width]).expect("no divergence");
         let row = k * 256..(k + 1) * 256;
-        let (depth, geoms) = (depth.each_ref(), geoms.each_ref());
-        assert_eq!(step.observation.eye_depth, Some(depth.map(|v| &v[row.clone()])));
-        assert_eq!(step.observation.eye_segmentation, Some(geoms.map(|v| &v[row.clone()])));
+        assert_eq!(step.observation.eye_right_depth, Some(&depth[row.clone()]));
+        assert_eq!(step.observation.eye_right_segmentation, Some(&geoms[row]));
     }
-    let [left, right] = &mut depth;
     let small = Buffers {
-        eye_depth: Some([left, &mut right[1..]]),
+        eye_right_depth: Some(&mut depth[1..]),
         ..Buffers::default()
     };
     let refused = envs

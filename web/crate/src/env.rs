@@ -8,13 +8,14 @@ use babybench::env::{Snapshot, ViewFrom, Viewer, draw_eyes};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
 use babybench::render::{FreeCamera, Visual};
-use babybench::sensors::Touch;
+use babybench::sensors::{ObservationEntry, Touch};
+use babybench::spaces::Values;
 use wasm_bindgen::prelude::*;
 
 use crate::fold;
 use crate::frame::Frame;
 use crate::js::{self, id, ids, list, object, optional};
-use crate::numbers::Numbers;
+use crate::numbers::{of_state, place};
 use crate::scene;
 
 /// An environment, with what a page draws of it.
@@ -97,31 +98,27 @@ impl Core {
     /// Returns where numbers stand: kind (1 for u8, 4 for f32, 5 for i32, 8 for f64), address, length. They stay there
     /// until a snapshot is restored; those of the frame move with `update`.
     pub fn view(&self, name: &str) -> Option<Vec<u32>> {
-        let (state, seen) = (self.env.state(), self.env.observation());
-        let numbers = match name {
-            "action" => Numbers::F32(&self.action),
-            "proprioception" => Numbers::F64(seen.proprioception),
-            "vestibular" => Numbers::F64(seen.vestibular?),
-            "achieved_goal" => Numbers::F64(seen.achieved_goal?),
-            "desired_goal" => Numbers::F64(seen.desired_goal?),
-            "touch" => Numbers::F32(seen.touch?),
-            "touch_pooled" => Numbers::F64(seen.touch_pooled?),
-            "pain" => Numbers::F32(seen.pain?),
-            "eye_left" => Numbers::U8(seen.eye_left?),
-            "eye_right" => Numbers::U8(seen.eye_right?),
-            "eye_left_gray" => Numbers::U8(seen.eye_gray?[0]),
-            "eye_right_gray" => Numbers::U8(seen.eye_gray?[1]),
-            "eye_left_depth" => Numbers::F32(seen.eye_depth?[0]),
-            "eye_right_depth" => Numbers::F32(seen.eye_depth?[1]),
-            "eye_left_segmentation" => Numbers::I32(seen.eye_segmentation?[0]),
-            "eye_right_segmentation" => Numbers::I32(seen.eye_segmentation?[1]),
-            "poses" => Numbers::F32(&self.frame.poses),
-            "bodies" => Numbers::F32(&self.frame.bodies),
-            "felt" => Numbers::F32(&self.frame.felt),
-            "contacts" => Numbers::F32(&self.frame.contacts),
-            _ => Numbers::of_state(state, name)?,
+        let seen = self.env.observation();
+        let entry = seen.entries().find(|(entry, _)| entry.field == name);
+        let values = match name {
+            "action" => Values::F32(&self.action),
+            "poses" => Values::F32(&self.frame.poses),
+            "bodies" => Values::F32(&self.frame.bodies),
+            "felt" => Values::F32(&self.frame.felt),
+            "contacts" => Values::F32(&self.frame.contacts),
+            _ => match entry {
+                Some((_, values)) => values,
+                None => of_state(self.env.state(), name)?,
+            },
         };
-        Some(numbers.place().to_vec())
+        Some(place(values).to_vec())
+    }
+
+    /// Names the views of every entry that an observation may have.
+    #[wasm_bindgen(js_name = observationNames)]
+    pub fn observation_names(&self) -> Vec<String> {
+        let entries = ObservationEntry::ALL.iter();
+        entries.map(|entry| entry.field.to_string()).collect()
     }
 
     /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`.
@@ -149,7 +146,7 @@ impl Core {
         let visual = self.visual()?;
         let faces = visual.textures.get(texture).map(scene::faces);
         let level = faces.and_then(|f| f.get(face)).and_then(|levels| levels.first());
-        Ok(level.map(|l| Numbers::U8(l.pixels.as_flattened()).place().to_vec()))
+        Ok(level.map(|l| place(Values::U8(l.pixels.as_flattened())).to_vec()))
     }
 
     /// Returns where each touch sensor is in the frame of its body, m.
@@ -290,7 +287,7 @@ impl Core {
         };
         let mut viewer = self.take_viewer()?;
         let pixels = viewer.draw_rgba(&self.env, from, width, height);
-        let place = pixels.map(|pixels| Numbers::U8(pixels).place()[1..].to_vec());
+        let place = pixels.map(|pixels| place(Values::U8(pixels))[1..].to_vec());
         self.viewer = Some(viewer);
         place.map_err(|e| js::env_error(&e))
     }
@@ -302,7 +299,7 @@ impl Core {
         let mut viewer = self.take_viewer()?;
         let place = viewer
             .eyes_rgba(&self.env)
-            .map(|pixels| Numbers::U8(pixels).place()[1..].to_vec());
+            .map(|pixels| place(Values::U8(pixels))[1..].to_vec());
         self.viewer = Some(viewer);
         place.map_err(|e| js::env_error(&e))
     }

@@ -1,0 +1,190 @@
+//! What an observation consists of: the senses, and the entries that they report. The types of observations, their arrays in vectors, their
+//! keys and types in files, in Python and in JavaScript follow from the two tables here.
+
+use crate::config::{Config, VisionOutput};
+use crate::spaces::{Dtype, Number};
+
+macro_rules! senses {
+    ($($(#[$doc:meta])* $sense:ident = $key:literal, $switch:literal;)*) => {
+        /// A sense whose values can be transformed, in the order in which the senses are transformed in each step.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Sense {
+            $($(#[$doc])* #[doc = concat!("The key `", $key, "`.")] $sense,)*
+        }
+
+        impl Sense {
+            /// Every sense, in order.
+            pub const ALL: [Self; [$($key),*].len()] = [$(Self::$sense),*];
+
+            /// Returns its key in the observation; that of the image in colours, for an eye.
+            pub const fn key(self) -> &'static str {
+                match self {
+                    $(Self::$sense => $key,)*
+                }
+            }
+
+            /// Returns the key of the configuration that turns it on; proprioception is always on.
+            pub const fn switch(self) -> &'static str {
+                match self {
+                    $(Self::$sense => $switch,)*
+                }
+            }
+        }
+    };
+}
+
+senses! {
+    /// Joints and actuators.
+    Proprioception = "observation", "";
+    /// The skin.
+    Touch = "touch", "touch_active";
+    /// The skin of whole parts.
+    TouchPooled = "touch_pooled", "touch_pooled";
+    /// Pain.
+    Pain = "pain", "pain_active";
+    /// Balance.
+    Vestibular = "vestibular", "vestibular_active";
+    /// The left eye.
+    EyeLeft = "eye_left", "vision_active";
+    /// The right eye.
+    EyeRight = "eye_right", "vision_active";
+}
+
+impl Sense {
+    /// The two eyes, left and right.
+    pub const EYES: [Self; 2] = [Self::EyeLeft, Self::EyeRight];
+
+    /// Returns the standard deviation of the noise that a configuration gives it, and its own delay, if it has one.
+    pub(crate) fn noise_and_delay(self, config: &Config) -> (f64, Option<f64>) {
+        let (noise, delay) = (&config.noise, &config.delays);
+        match self {
+            Self::Proprioception => (noise.proprioception, delay.proprioception),
+            Self::Touch => (noise.touch, delay.touch),
+            Self::TouchPooled | Self::Pain => (0.0, delay.touch),
+            Self::Vestibular => (noise.vestibular, delay.vestibular),
+            Self::EyeLeft | Self::EyeRight => (noise.vision, delay.vision),
+        }
+    }
+}
+
+/// Hands the entries of an observation to a macro, in their order: first proprioception, which every environment has, then the others,
+/// each a field with its documentation, its type, its bounds and what reports it. The name of a field is its key, but for
+/// proprioception.
+macro_rules! observation_entries {
+    ($apply:ident) => {
+        $apply! {
+            {
+                /// Proprioception, Gymnasium's key `observation`; [`Env::proprioception`](crate::Env::proprioception) tells what stands
+                /// where. A task may append to it: the last number of `catch` is the radius of the ball, m.
+                proprioception: f64, ANY, sense(Sense::Proprioception);
+            }
+            /// What the skin feels, N, if `touch_active`; [`Env::touch`](crate::Env::touch) tells what stands where.
+            touch: f32, ANY, sense(Sense::Touch);
+            /// What each body with skin feels, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
+            touch_pooled: f64, ANY, sense(Sense::TouchPooled);
+            /// What hurts, a number for each touch sensor, if `pain_active`: see [`Pain`](crate::sensors::Pain).
+            pain: f32, NOT_NEGATIVE, sense(Sense::Pain);
+            /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active` and `vision_outputs` has `rgb`.
+            eye_left: u8, BYTES, eye(Sense::EyeLeft, VisionOutput::Rgb);
+            /// What the right eye sees.
+            eye_right: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Rgb);
+            /// What the left eye sees in grey, (H, W) bytes, if `vision_outputs` has `gray`: see
+            /// [`Env::eye_gray`](crate::Env::eye_gray).
+            eye_left_gray: u8, BYTES, eye(Sense::EyeLeft, VisionOutput::Gray);
+            /// What the right eye sees in grey.
+            eye_right_gray: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Gray);
+            /// How far away is what the left eye sees, (H, W), m, if `vision_outputs` has `depth`: see
+            /// [`Env::eye_depth`](crate::Env::eye_depth).
+            eye_left_depth: f32, NOT_NEGATIVE, eye(Sense::EyeLeft, VisionOutput::Depth);
+            /// How far away is what the right eye sees.
+            eye_right_depth: f32, NOT_NEGATIVE, eye(Sense::EyeRight, VisionOutput::Depth);
+            /// Which geoms the left eye sees, (H, W) ids, -1 for none, if `vision_outputs` has `segmentation`: see
+            /// [`Env::eye_segmentation`](crate::Env::eye_segmentation).
+            eye_left_segmentation: i32, IDS, eye(Sense::EyeLeft, VisionOutput::Segmentation);
+            /// Which geoms the right eye sees.
+            eye_right_segmentation: i32, IDS, eye(Sense::EyeRight, VisionOutput::Segmentation);
+            /// Linear acceleration (m/s^2) and angular velocity (rad/s) of the head, if `vestibular_active`.
+            vestibular: f64, ANY, sense(Sense::Vestibular);
+            /// The achieved goal, if the goals of the task have numbers.
+            achieved_goal: f64, ANY, GOAL;
+            /// The desired goal, of the same length.
+            desired_goal: f64, ANY, GOAL;
+        }
+    };
+}
+pub(crate) use observation_entries;
+
+const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+const NOT_NEGATIVE: [f64; 2] = [0.0, f64::INFINITY];
+const BYTES: [f64; 2] = [0.0, u8::MAX as f64];
+const IDS: [f64; 2] = [-1.0, i32::MAX as f64];
+
+/// An entry of the observation: what stands under one key.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ObservationEntry {
+    /// Its key in Gymnasium's dictionary, in files and in Python.
+    pub key: &'static str,
+    /// The field of [`Observation`](crate::Observation) and [`Buffers`](crate::vector::Buffers), and the property in JavaScript: the
+    /// key, but for `proprioception`, whose key is `observation`.
+    pub field: &'static str,
+    /// The sense that reports it; `None` for goals.
+    pub sense: Option<Sense>,
+    /// Which image of an eye it is; `None` for everything else.
+    pub image: Option<VisionOutput>,
+    /// Number type.
+    pub dtype: Dtype,
+    /// Lower bound of every number.
+    pub low: f64,
+    /// Upper bound of every number.
+    pub high: f64,
+}
+
+/// What reports an entry: a sense, and which image, of an eye.
+type Source = (Option<Sense>, Option<VisionOutput>);
+
+const GOAL: Source = (None, None);
+
+const fn sense(sense: Sense) -> Source {
+    (Some(sense), None)
+}
+
+const fn eye(sense: Sense, image: VisionOutput) -> Source {
+    (Some(sense), Some(image))
+}
+
+impl ObservationEntry {
+    const fn new<T: Number>(key: &'static str, field: &'static str, [low, high]: [f64; 2], source: Source) -> Self {
+        let (sense, image) = source;
+        Self {
+            key,
+            field,
+            sense,
+            image,
+            dtype: T::DTYPE,
+            low,
+            high,
+        }
+    }
+
+    /// Returns the entry under a key.
+    pub fn of_key(key: &str) -> Option<&'static Self> {
+        Self::ALL.iter().find(|entry| entry.key == key)
+    }
+}
+
+macro_rules! table {
+    (
+        { $(#[$first_doc:meta])* $first:ident: $first_type:ty, $first_bounds:expr, $first_source:expr; }
+        $($(#[$doc:meta])* $field:ident: $type:ty, $bounds:expr, $source:expr;)*
+    ) => {
+        impl ObservationEntry {
+            /// Every entry, in order.
+            pub const ALL: &[Self] = &[
+                Self::new::<$first_type>(Sense::Proprioception.key(), stringify!($first), $first_bounds, $first_source),
+                $(Self::new::<$type>(stringify!($field), stringify!($field), $bounds, $source)),*
+            ];
+        }
+    };
+}
+observation_entries!(table);

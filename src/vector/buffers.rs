@@ -1,0 +1,135 @@
+//! Memory of the caller's for what a step of a vector returns.
+
+use crate::env::{Env, Observation};
+use crate::sensors::transform::Sense;
+use crate::sensors::{ObservationEntry, observation_entries};
+use crate::spaces::{Number, ValuesMut};
+use crate::vector::VectorError;
+use crate::vector::rows::Layout;
+
+macro_rules! buffers {
+    (
+        { $(#[$first_doc:meta])* $first:ident: $first_type:ty, $first_bounds:expr, $first_source:expr; }
+        $($(#[$doc:meta])* $field:ident: $type:ty, $bounds:expr, $source:expr;)*
+    ) => {
+        /// Memory of the caller's for what a step returns: arrays of N rows each, environment after environment.
+        ///
+        /// Entries that are `None` are left out.
+        #[derive(Debug, Default)]
+        pub struct Buffers<'a> {
+            #[doc = concat!("[`Observation::", stringify!($first), "`], (N, len).")]
+            pub $first: Option<&'a mut [$first_type]>,
+            $(
+                #[doc = concat!("[`Observation::", stringify!($field), "`], (N, len).")]
+                pub $field: Option<&'a mut [$type]>,
+            )*
+            /// Rewards (N).
+            pub rewards: Option<&'a mut [f64]>,
+            /// Whether episodes have ended in themselves (N).
+            pub terminated: Option<&'a mut [bool]>,
+            /// Whether episodes were cut off (N).
+            pub truncated: Option<&'a mut [bool]>,
+            /// For each row of `touch` (N) the sensors that are not zero there, if you keep both from call to call: then only
+            /// what feels something is written, instead of thousands of zeros. Start with zeros and empty lists.
+            pub touched: Option<&'a mut [Vec<u32>]>,
+        }
+
+        impl<'a> Buffers<'a> {
+            /// Makes buffers of the memory that `values` returns for each entry of the observation, in the order of
+            /// [`ObservationEntry::ALL`]. Memory for another type than the entry's is left out.
+            pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<ValuesMut<'a>>) -> Self {
+                let mut entries = ObservationEntry::ALL.iter();
+                let mut next = || entries.next().and_then(&mut values);
+                Self {
+                    $first: next().and_then(<$first_type>::of_mut),
+                    $($field: next().and_then(<$type>::of_mut),)*
+                    ..Self::default()
+                }
+            }
+
+            /// Returns the memory for each entry, in the order of [`ObservationEntry::ALL`].
+            fn values(&mut self) -> [Option<ValuesMut<'_>>; ObservationEntry::ALL.len()] {
+                [self.$first.as_deref_mut().map(ValuesMut::from), $(self.$field.as_deref_mut().map(ValuesMut::from)),*]
+            }
+        }
+    };
+}
+observation_entries!(buffers);
+
+impl Buffers<'_> {
+    /// Checks that there is room for exactly `n` rows.
+    pub(super) fn check(&mut self, n: usize, layout: &Layout) -> Result<(), VectorError> {
+        fn length<T>(buffer: &Option<&mut [T]>) -> Option<usize> {
+            buffer.as_ref().map(|b| b.len())
+        }
+        let others = [
+            ("rewards", length(&self.rewards), Some(1)),
+            ("terminated", length(&self.terminated), Some(1)),
+            ("truncated", length(&self.truncated), Some(1)),
+            ("touched", length(&self.touched), layout.touch().map(|_| 1)),
+        ];
+        let entries = ObservationEntry::ALL.iter().zip(self.values()).zip(layout.entries);
+        let entries = entries.map(|((entry, values), len)| (entry.field, values.map(|v| v.len()), len));
+        for (what, found, len) in entries.chain(others) {
+            let Some(found) = found else { continue };
+            let Some(len) = len else {
+                return Err(VectorError::NoSense { what });
+            };
+            if found != n * len {
+                let expected = [n, len];
+                return Err(VectorError::Shape { what, expected, found });
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes what an environment observes. Of thousands of touch sensors only those that feel something are copied, where
+    /// that is enough. There is room, which was checked before.
+    pub(super) fn write(&mut self, row: usize, env: &Env) {
+        let observation = env.observation();
+        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.touch, env.senses().touch_observed()) else {
+            return self.write_whole(row, &observation);
+        };
+        let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());
+        let out = &mut out[row * values.len()..(row + 1) * values.len()];
+        let of = |sensor: u32| width * sensor as usize..width * (sensor as usize + 1);
+        for &sensor in &*touched {
+            // lists of the caller's may say anything
+            if let Some(out) = out.get_mut(of(sensor)) {
+                out.fill(0.0);
+            }
+        }
+        touched.clear();
+        touched.extend_from_slice(touch.touched());
+        for &sensor in &*touched {
+            out[of(sensor)].copy_from_slice(&values[of(sensor)]);
+        }
+        self.write_entries(row, &observation, |entry| entry.sense != Some(Sense::Touch));
+    }
+
+    /// Writes a row from an observation that no environment holds any more. Do not mix it with [`Buffers::write`].
+    pub(super) fn write_whole(&mut self, row: usize, observation: &Observation<'_>) {
+        self.write_entries(row, observation, |_| true);
+    }
+
+    pub(super) fn write_flags(&mut self, row: usize, reward: f64, terminated: bool, truncated: bool) {
+        if let Some(rewards) = &mut self.rewards {
+            rewards[row] = reward;
+        }
+        for (flags, flag) in [(&mut self.terminated, terminated), (&mut self.truncated, truncated)] {
+            if let Some(flags) = flags {
+                flags[row] = flag;
+            }
+        }
+    }
+
+    /// Writes a row of the entries that are chosen, if they are there and wanted.
+    fn write_entries(&mut self, row: usize, observation: &Observation<'_>, chosen: impl Fn(&ObservationEntry) -> bool) {
+        let observed = ObservationEntry::ALL.iter().zip(observation.values());
+        for (out, (entry, values)) in self.values().into_iter().zip(observed) {
+            if let (Some(out), Some(values)) = (out, values.filter(|_| chosen(entry))) {
+                out.write_row(row, values);
+            }
+        }
+    }
+}

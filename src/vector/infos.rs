@@ -1,0 +1,77 @@
+//! Information of all environments as arrays.
+
+use crate::env::{BehaviorInfo, Info, Outcome};
+use crate::vector::rows::Layout;
+
+/// Information of all environments, as arrays of rows. The lists in the order of first touch, and names, are in
+/// [`VectorEnv::env`](super::VectorEnv::env)`(i)?.info()`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Infos<'a> {
+    /// Number of steps of each episode (N): see [`Info::steps`].
+    pub steps: &'a [u64],
+    /// Which geoms the right and the left palm have touched, (N, 2, geoms), 1 or 0, if the behavior is `self_touch`.
+    pub touches: Option<&'a [u8]>,
+    /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
+    /// behavior is `hand_regard`.
+    pub regards: Option<&'a [u64]>,
+    /// Success and failure (N) of tasks that report them.
+    pub outcomes: Option<&'a [Outcome]>,
+    /// What the rewards of such tasks depend on beside goals, (N, len): [`Goal::terms`](crate::env::Goal::terms).
+    pub reward_terms: Option<&'a [f64]>,
+}
+
+/// Information as arrays.
+#[derive(Debug)]
+pub(super) struct InfoRows {
+    layout: Layout,
+    steps: Vec<u64>,
+    touches: Vec<u8>,
+    regards: Vec<u64>,
+    outcomes: Vec<Outcome>,
+    terms: Vec<f64>,
+}
+
+impl InfoRows {
+    pub fn new(n: usize, layout: Layout) -> Self {
+        Self {
+            layout,
+            steps: vec![0; n],
+            touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
+            regards: vec![0; 4 * n * usize::from(layout.regards)],
+            outcomes: vec![Outcome::default(); n * usize::from(layout.terms.is_some())],
+            terms: vec![0.0; n * layout.terms.unwrap_or_default()],
+        }
+    }
+
+    pub fn write(&mut self, row: usize, info: &Info, terms: &[f64]) {
+        self.steps[row] = info.steps;
+        if let Some(len) = self.layout.terms {
+            self.outcomes[row] = info.behavior.task().map(|info| info.outcome).unwrap_or_default();
+            self.terms[row * len..(row + 1) * len].copy_from_slice(terms);
+        }
+        if let Some(geoms) = self.layout.geoms {
+            let out = &mut self.touches[2 * geoms * row..2 * geoms * (row + 1)];
+            out.fill(0);
+            if let BehaviorInfo::SelfTouch { touches } = &info.behavior {
+                for (out, touched) in out.chunks_exact_mut(geoms).zip(touches.each_ref()) {
+                    touched.iter().for_each(|&geom| out[geom] = 1);
+                }
+            }
+        }
+        if self.layout.regards {
+            let counts = info.behavior.regards().unwrap_or_default();
+            self.regards[4 * row..4 * (row + 1)].copy_from_slice(&counts);
+        }
+    }
+
+    /// Returns the first `n` rows.
+    pub fn infos(&self, n: usize) -> Infos<'_> {
+        Infos {
+            steps: &self.steps[..n],
+            touches: self.layout.geoms.map(|geoms| &self.touches[..2 * geoms * n]),
+            regards: self.layout.regards.then(|| &self.regards[..4 * n]),
+            outcomes: self.layout.terms.map(|_| &self.outcomes[..n]),
+            reward_terms: self.layout.terms.map(|len| &self.terms[..n * len]),
+        }
+    }
+}
