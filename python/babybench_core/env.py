@@ -46,8 +46,8 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     The information has ``steps`` and, by behavior, ``right_hand_touches`` and ``left_hand_touches`` (ids of the geoms that
     the palm has touched in this episode) with their names in ``right_hand_parts`` and ``left_hand_parts``; or how many
     steps each hand was in the view of each eye (``right_eye_left_hand``, ...), and ``gaze_angles`` (rad). That of a task has
-    ``is_success``, ``is_failure``, the ``return`` of the episode so far and ``reward_terms``, what the reward depends on
-    beside goals: :meth:`compute_reward` takes them.
+    its name (``task``), ``is_success``, ``is_failure``, the ``return`` of the episode so far and ``reward_terms``, what the
+    reward depends on beside goals: :meth:`compute_reward` takes them.
 
     Example:
         >>> import babybench

@@ -1,12 +1,11 @@
 //! Spaces and step information as Python objects.
 
 use babybench::config::Part;
-use babybench::env::{BehaviorInfo, EYE_HAND_PAIRS, Info};
+use babybench::env::{EYE_HAND_PAIRS, Info, InfoValue};
 use babybench::mimo::{LockReport, LockTarget};
 use pyo3::exceptions::PyTypeError;
-use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyString};
 
 /// Key, shape, number type, lower and upper bound.
 pub type Space = (&'static str, Vec<usize>, &'static str, f64, f64);
@@ -50,37 +49,24 @@ pub fn report_dict<'py>(py: Python<'py>, env: &babybench::Env, report: &LockRepo
 /// Returns information under the keys of the reference, in its order, and the details, if wanted.
 pub fn info_dict<'py>(py: Python<'py>, info: &Info, details: bool) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    match &info.behavior {
-        BehaviorInfo::None => {}
-        BehaviorInfo::SelfTouch { touches } => {
-            dict.set_item(intern!(py, "right_hand_touches"), &touches.right_hand)?;
-            dict.set_item(intern!(py, "left_hand_touches"), &touches.left_hand)?;
-        }
-        BehaviorInfo::HandRegard { counts } => {
-            for (name, count) in EYE_HAND_PAIRS.iter().zip(counts.to_array()) {
-                dict.set_item(*name, count)?;
+    for (key, value) in info.fields(details.then_some(&info.details)) {
+        let key = PyString::intern(py, key);
+        match value {
+            InfoValue::Count(count) => dict.set_item(key, count)?,
+            InfoValue::Geoms(geoms) => dict.set_item(key, geoms)?,
+            InfoValue::Name(name) => dict.set_item(key, name)?,
+            InfoValue::Flag(flag) => dict.set_item(key, flag)?,
+            InfoValue::Number(number) => dict.set_item(key, number)?,
+            InfoValue::Parts(names) => dict.set_item(key, PyList::new(py, names.iter().map(|name| &**name))?)?,
+            InfoValue::Angles(angles) => {
+                let gaze = PyDict::new(py);
+                for (name, angle) in EYE_HAND_PAIRS.iter().zip(angles.to_array()) {
+                    gaze.set_item(*name, angle)?;
+                }
+                dict.set_item(key, gaze)?;
             }
-        }
-        BehaviorInfo::Task(task) => {
-            dict.set_item(intern!(py, "is_success"), task.outcome.is_success)?;
-            dict.set_item(intern!(py, "is_failure"), task.outcome.is_failure)?;
-            dict.set_item(intern!(py, "return"), task.episode_return)?;
+            _ => {}
         }
     }
-    if details {
-        if let Some(parts) = &info.details.touched_parts {
-            let names = |parts: &[std::sync::Arc<str>]| parts.iter().map(|p| p.to_string()).collect::<Vec<_>>();
-            dict.set_item(intern!(py, "right_hand_parts"), names(&parts.right_hand))?;
-            dict.set_item(intern!(py, "left_hand_parts"), names(&parts.left_hand))?;
-        }
-        if let Some(angles) = info.details.gaze_angles {
-            let gaze = PyDict::new(py);
-            for (name, angle) in EYE_HAND_PAIRS.iter().zip(angles.to_array()) {
-                gaze.set_item(*name, angle)?;
-            }
-            dict.set_item(intern!(py, "gaze_angles"), gaze)?;
-        }
-    }
-    dict.set_item(intern!(py, "steps"), info.steps)?;
     Ok(dict)
 }

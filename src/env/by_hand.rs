@@ -183,6 +183,6 @@ impl<'a> Parts<'a> {
     /// Clears what the behavior has counted.
     pub fn clear_info(&mut self) {
         let env = &mut *self.env;
-        clear(&*env.task, env.blueprint.config(), &mut env.info);
+        clear(&*env.task, &mut env.info);
     }
 }

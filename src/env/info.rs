@@ -1,6 +1,7 @@
 //! The info that an environment returns with each step.
 
-use crate::config::Behavior;
+use std::sync::Arc;
+
 use crate::env::{InfoDetails, Outcome};
 
 /// One value for each hand.
@@ -125,10 +126,10 @@ pub enum BehaviorInfo {
 }
 
 /// What a task with a goal reports.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TaskInfo {
-    /// Which task it is; `none` for one of a program's own.
-    pub task: Behavior,
+    /// The name of the task: [`Task::name`](crate::env::Task::name).
+    pub task: Arc<str>,
     /// Success and failure in the last step.
     pub outcome: Outcome,
     /// Sum of the rewards in this episode.
@@ -136,13 +137,13 @@ pub struct TaskInfo {
 }
 
 impl BehaviorInfo {
-    /// Returns the name of the behavior.
-    pub fn name(&self) -> &'static str {
+    /// Returns the name of the behavior or of the task.
+    pub fn name(&self) -> &str {
         match self {
             Self::None => "none",
             Self::SelfTouch { .. } => "self_touch",
             Self::HandRegard { .. } => "hand_regard",
-            Self::Task(info) => info.task.name(),
+            Self::Task(info) => &info.task,
         }
     }
 

@@ -8,6 +8,7 @@ mod by_hand;
 mod details;
 mod error;
 mod eyes;
+mod fields;
 mod info;
 mod observation;
 mod outcome;
@@ -29,10 +30,15 @@ pub use by_hand::Parts;
 pub use details::{InfoDetails, PartNames};
 pub use error::EnvError;
 pub use eyes::draw_eyes;
+pub use fields::{InfoField, InfoValue};
+#[cfg(feature = "eval")]
+pub(crate) use fields::{InfoSource, PARTS, STEPS};
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
 pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand, TaskInfo};
 pub use observation::{Observation, Step};
+#[cfg(feature = "eval")]
+pub(crate) use outcome::reports_outcome;
 pub use senses::Senses;
 pub use sensing::SensesMut;
 #[cfg(feature = "serde")]
@@ -168,7 +174,7 @@ impl Env {
         let actuation: Arc<dyn Actuation> = actuation::build(model, config)?.into();
         let task = blueprint.task().clone_task();
         let mut info = Info::default();
-        clear(&*task, config, &mut info);
+        clear(&*task, &mut info);
         Ok(Self {
             physics: Physics::new(blueprint, &*actuation),
             action_delay: ActionDelay::new(blueprint, &*actuation),
@@ -366,7 +372,7 @@ impl Env {
         self.episode.steps = 0;
         self.info.steps = 0;
         if !self.episode.accumulate || self.info.behavior.task().is_some() {
-            clear(&*self.task, self.blueprint.config(), &mut self.info);
+            clear(&*self.task, &mut self.info);
         }
         let Play {
             mut scene, task, goals, ..

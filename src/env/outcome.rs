@@ -2,7 +2,6 @@
 
 use super::task::{Goals, Task, TaskEvent, TaskView};
 use super::{BehaviorInfo, Env, Info, Outcome, TaskInfo};
-use crate::config::Config;
 
 impl Env {
     /// Returns the reward of the last step.
@@ -52,11 +51,24 @@ impl Env {
     }
 }
 
+/// Tells whether a task reports success and failure, and not the counters of one of BabyBench's behaviors.
+#[cfg(feature = "eval")]
+pub(crate) fn reports_outcome(task: &dyn Task) -> bool {
+    let mut info = Info::default();
+    clear(task, &mut info);
+    info.behavior.task().is_some()
+}
+
 /// Sets what is counted as it is at the start of an episode.
-pub(super) fn clear(task: &dyn Task, config: &Config, info: &mut Info) {
+pub(super) fn clear(task: &dyn Task, info: &mut Info) {
     if matches!(info.behavior, BehaviorInfo::None | BehaviorInfo::Task(_)) {
+        let name = match &info.behavior {
+            // a reset allocates nothing where the name is there already
+            BehaviorInfo::Task(last) if *last.task == *task.name() => last.task.clone(),
+            _ => task.name().into(),
+        };
         info.behavior = BehaviorInfo::Task(TaskInfo {
-            task: config.behavior,
+            task: name,
             ..TaskInfo::default()
         });
     }

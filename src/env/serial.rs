@@ -1,13 +1,14 @@
 //! The info of an environment, in the formats of serde.
 
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
-use serde::de::Error as _;
-use serde::ser::SerializeMap;
+use serde::de::{Error as _, IgnoredAny};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Outcome, PerEyeAndHand, PerHand, TaskInfo};
-use crate::config::Behavior;
+use super::fields::{InfoSource, InfoValue};
+use super::{BehaviorInfo, Info, InfoDetails};
 
 impl Serialize for Info {
     /// Serializes the keys of the reference, in its order; the details are a value of their own
@@ -44,9 +45,7 @@ impl Info {
 impl Serialize for BehaviorInfo {
     /// Serializes the keys of the reference without `steps`; nothing but an empty map for behavior `none`.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        behavior(&mut map, self)?;
-        map.end()
+        serializer.collect_map(self.fields())
     }
 }
 
@@ -54,9 +53,21 @@ impl Serialize for InfoDetails {
     /// Serializes `right_hand_parts` and `left_hand_parts` (names) or `gaze_angles` (rad, by pair of eye and hand),
     /// whichever there are. A hand at the very place of an eye has no angle, which is `null` in JSON.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        details(&mut map, self)?;
-        map.end()
+        serializer.collect_map(self.fields())
+    }
+}
+
+impl Serialize for InfoValue<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Count(count) => count.serialize(serializer),
+            Self::Geoms(geoms) => geoms.serialize(serializer),
+            Self::Name(name) => name.serialize(serializer),
+            Self::Flag(flag) => flag.serialize(serializer),
+            Self::Number(number) => number.serialize(serializer),
+            Self::Parts(names) => serializer.collect_seq(names.iter().map(|name| &**name)),
+            Self::Angles(angles) => angles.serialize(serializer),
+        }
     }
 }
 
@@ -88,73 +99,80 @@ impl<'a> From<&'a Info> for Detailed<'a> {
 impl Serialize for Detailed<'_> {
     /// Serializes one flat map.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        behavior(&mut map, &self.info.behavior)?;
-        if let Some(more) = self.details {
-            details(&mut map, more)?;
-        }
-        map.serialize_entry("steps", &self.info.steps)?;
-        map.end()
+        serializer.collect_map(self.info.fields(self.details))
     }
 }
 
-fn behavior<M: SerializeMap>(map: &mut M, behavior: &BehaviorInfo) -> Result<(), M::Error> {
-    match behavior {
-        BehaviorInfo::None => {}
-        BehaviorInfo::SelfTouch { touches } => {
-            map.serialize_entry("right_hand_touches", &touches.right_hand)?;
-            map.serialize_entry("left_hand_touches", &touches.left_hand)?;
-        }
-        BehaviorInfo::HandRegard { counts } => {
-            for (name, count) in EYE_HAND_PAIRS.iter().zip(counts.to_array()) {
-                map.serialize_entry(name, &count)?;
-            }
-        }
-        BehaviorInfo::Task(info) => {
-            map.serialize_entry("task", &info.task)?;
-            map.serialize_entry("is_success", &info.outcome.is_success)?;
-            map.serialize_entry("is_failure", &info.outcome.is_failure)?;
-            map.serialize_entry("return", &info.episode_return)?;
-        }
-    }
-    Ok(())
-}
-
-fn details<M: SerializeMap>(map: &mut M, details: &InfoDetails) -> Result<(), M::Error> {
-    if let Some(parts) = &details.touched_parts {
-        map.serialize_entry("right_hand_parts", &Names(&parts.right_hand))?;
-        map.serialize_entry("left_hand_parts", &Names(&parts.left_hand))?;
-    }
-    if let Some(angles) = &details.gaze_angles {
-        map.serialize_entry("gaze_angles", angles)?;
-    }
-    Ok(())
-}
-
-/// The names of parts.
-struct Names<'a>(&'a [Arc<str>]);
-
-impl Serialize for Names<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter().map(|name| &**name))
-    }
-}
-
-/// The keys of the reference as a file may hold them.
+/// A value as a file may hold it.
 #[derive(Deserialize)]
-struct Keys {
-    steps: u64,
-    right_hand_touches: Option<Vec<usize>>,
-    left_hand_touches: Option<Vec<usize>>,
-    right_eye_right_hand: Option<u64>,
-    right_eye_left_hand: Option<u64>,
-    left_eye_right_hand: Option<u64>,
-    left_eye_left_hand: Option<u64>,
-    task: Option<Behavior>,
-    is_success: Option<bool>,
-    is_failure: Option<bool>,
-    #[serde(rename = "return")]
-    episode_return: Option<f64>,
+#[serde(untagged)]
+enum Found {
+    Flag(bool),
+    Count(u64),
+    Number(f64),
+    Name(String),
+    Geoms(Vec<usize>),
+    Other(IgnoredAny),
+}
+
+/// The values of a file by key.
+struct Keys<E> {
+    values: BTreeMap<String, Found>,
+    error: PhantomData<E>,
+}
+
+impl<E: serde::de::Error> Keys<E> {
+    /// Takes a value out.
+    fn take<T>(&mut self, key: &str, expected: &str, read: impl FnOnce(Found) -> Option<T>) -> Result<T, E> {
+        let found = self.values.remove(key);
+        let found =
+            found.ok_or_else(|| E::custom(format!("missing `{key}`; expected all keys of one behavior, or none")))?;
+        read(found).ok_or_else(|| E::custom(format!("`{key}` is not {expected}")))
+    }
+}
+
+impl<E: serde::de::Error> InfoSource for Keys<E> {
+    type Error = E;
+
+    fn has(&self, key: &'static str) -> bool {
+        self.values.contains_key(key)
+    }
+
+    fn count(&mut self, key: &'static str) -> Result<u64, E> {
+        self.take(key, "a whole number", |found| match found {
+            Found::Count(count) => Some(count),
+            _ => None,
+        })
+    }
+
+    fn geoms(&mut self, key: &'static str) -> Result<Vec<usize>, E> {
+        self.take(key, "a list of geom ids", |found| match found {
+            Found::Geoms(geoms) => Some(geoms),
+            _ => None,
+        })
+    }
+
+    fn name(&mut self, key: &'static str) -> Result<Arc<str>, E> {
+        self.take(key, "a text", |found| match found {
+            Found::Name(name) => Some(name.into()),
+            _ => None,
+        })
+    }
+
+    fn flag(&mut self, key: &'static str) -> Result<bool, E> {
+        self.take(key, "true or false", |found| match found {
+            Found::Flag(flag) => Some(flag),
+            _ => None,
+        })
+    }
+
+    fn number(&mut self, key: &'static str) -> Result<f64, E> {
+        self.take(key, "a number", |found| match found {
+            Found::Count(count) => Some(count as f64),
+            Found::Number(number) => Some(number),
+            _ => None,
+        })
+    }
 }
 
 impl<'de> Deserialize<'de> for Info {
@@ -163,37 +181,21 @@ impl<'de> Deserialize<'de> for Info {
     /// # Errors
     /// No `steps`, or some but not all keys of a behavior.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let keys = Keys::deserialize(deserializer)?;
-        let touches = (keys.right_hand_touches, keys.left_hand_touches);
-        let counts = [
-            keys.right_eye_right_hand,
-            keys.right_eye_left_hand,
-            keys.left_eye_right_hand,
-            keys.left_eye_left_hand,
-        ];
-        let behavior = match (touches, counts) {
-            ((None, None), [None, None, None, None]) => BehaviorInfo::None,
-            ((Some(right_hand), Some(left_hand)), [None, None, None, None]) => BehaviorInfo::SelfTouch {
-                touches: PerHand { right_hand, left_hand },
-            },
-            ((None, None), [Some(a), Some(b), Some(c), Some(d)]) => BehaviorInfo::HandRegard {
-                counts: PerEyeAndHand::from([a, b, c, d]),
-            },
-            _ => return Err(D::Error::custom("expected all keys of one behavior, or none")),
+        let values = BTreeMap::<String, Option<Found>>::deserialize(deserializer)?;
+        let mut keys = Keys {
+            values: values
+                .into_iter()
+                .filter_map(|(key, found)| Some((key, found?)))
+                .collect(),
+            error: PhantomData,
         };
-        let behavior = match (keys.task, keys.is_success, keys.is_failure, keys.episode_return) {
-            (Some(task), Some(is_success), Some(is_failure), Some(episode_return)) => BehaviorInfo::Task(TaskInfo {
-                task,
-                outcome: Outcome { is_success, is_failure },
-                episode_return,
-            }),
-            (None, None, None, None) => behavior,
-            _ => return Err(D::Error::custom("expected all keys of one task, or none")),
-        };
-        Ok(Self {
-            steps: keys.steps,
-            behavior,
-            details: InfoDetails::default(),
-        })
+        let info = Self::read(&mut keys)?;
+        match keys.values.keys().find(|key| BehaviorInfo::is_key(key)) {
+            Some(key) => Err(D::Error::custom(format!(
+                "`{key}` is not of behavior {}; expected all keys of one behavior, or none",
+                info.behavior.name()
+            ))),
+            None => Ok(info),
+        }
     }
 }

@@ -6,8 +6,11 @@ mod memory;
 pub(super) use format::fingerprint;
 pub use format::{Snapshot, SnapshotError, SnapshotInfo};
 
+use std::sync::Arc;
+
+use crate::env::fields::InfoSource;
 use crate::env::task::TaskEvent;
-use crate::env::{BehaviorInfo, Env, PerHand, TaskInfo};
+use crate::env::{BehaviorInfo, Env, InfoValue};
 use crate::physics::Row as _;
 use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
@@ -15,8 +18,10 @@ use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
 
 /// Room for so many vectors of numbers.
 const VECTORS: usize = 40;
+/// Whole numbers that stand for the values of the information.
+const COUNTS: usize = 4;
 /// Whole numbers at the front of the payload.
-const WHOLE: usize = 10;
+const WHOLE: usize = 6 + COUNTS;
 /// The largest counter: no run gets there, and counting on from it does not overflow.
 const MAX_COUNT: u64 = 1 << 62;
 
@@ -113,15 +118,17 @@ impl Env {
     /// ```
     #[doc(alias = "mj_getState")]
     pub fn snapshot(&self) -> Snapshot {
-        let (counts, lists): ([u64; 4], [&[usize]; 2]) = match &self.info.behavior {
-            BehaviorInfo::None => ([0; 4], [&[], &[]]),
-            BehaviorInfo::SelfTouch { touches } => {
-                let [r, l] = touches.each_ref();
-                ([r.len() as u64, l.len() as u64, 0, 0], [r, l])
-            }
-            BehaviorInfo::HandRegard { counts } => (counts.to_array(), [&[], &[]]),
-            BehaviorInfo::Task(info) => ([info.episode_return.to_bits(), 0, 0, 0], [&[], &[]]),
-        };
+        let (mut counts, mut lists) = ([0; COUNTS], [&[][..]; COUNTS]);
+        let counted = self.info.behavior.fields().filter_map(|(_, value)| match value {
+            InfoValue::Geoms(geoms) => Some((geoms.len() as u64, geoms)),
+            InfoValue::Count(count) => Some((count, &[][..])),
+            InfoValue::Number(number) => Some((number.to_bits(), &[][..])),
+            // the task and its goals tell the rest
+            _ => None,
+        });
+        for (k, (count, geoms)) in counted.take(COUNTS).enumerate() {
+            (counts[k], lists[k]) = (count, geoms);
+        }
         let memory = self.task_memory();
         let numbers = self.numbers(&memory);
         let length = HEADER + 8 * WHOLE + 8 * numbers.iter().map(|n| n.len()).sum::<usize>();
@@ -221,7 +228,7 @@ impl Env {
 
     /// Checks everything that follows the whole numbers but for the memory of senses, and reads the information of the
     /// behavior. Returns the memory, too.
-    fn parse<'b>(&self, r: &Reader<'b>, counts: [u64; 4]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
+    fn parse<'b>(&self, r: &Reader<'b>, counts: [u64; COUNTS]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
         let mut r = Reader(r.0);
         let numbers: usize = self.numbers(&self.task_memory()).iter().map(|n| n.len()).sum();
         let flags: usize = self.flags().iter().map(|f| f.len()).sum();
@@ -232,40 +239,74 @@ impl Env {
         if r.take(flags).ok_or(CUT)?.iter().any(|b| *b > 1) {
             return Err(damaged("a flag is neither 0 nor 1"));
         }
-        let ngeom = self.model().ngeom();
-        let mut list = |n: u64| {
-            if n > ngeom as u64 {
-                return Err(damaged("more parts are touched than there are"));
-            }
-            // room for all parts, as after a reset, so that later steps need not allocate
-            let mut geoms = Vec::with_capacity(ngeom);
-            for _ in 0..n {
-                let geom = r.u32().ok_or(CUT)? as usize;
-                if geom >= ngeom {
-                    return Err(damaged("a touched part does not exist"));
-                }
-                geoms.push(geom);
-            }
-            Ok(geoms)
+        let mut counted = Counted {
+            now: &self.info.behavior,
+            counts: counts.into_iter(),
+            ngeom: self.model().ngeom(),
+            lists: r,
         };
-        let [right, left, ..] = counts;
-        let behavior = match self.info.behavior {
-            BehaviorInfo::None => BehaviorInfo::None,
-            BehaviorInfo::SelfTouch { .. } => BehaviorInfo::SelfTouch {
-                touches: PerHand {
-                    right_hand: list(right)?,
-                    left_hand: list(left)?,
-                },
-            },
-            BehaviorInfo::HandRegard { .. } => BehaviorInfo::HandRegard { counts: counts.into() },
-            BehaviorInfo::Task(info) => {
-                let episode_return = f64::from_bits(counts[0]);
-                if !episode_return.is_finite() {
-                    return Err(damaged("a number is not finite"));
-                }
-                BehaviorInfo::Task(TaskInfo { episode_return, ..info })
+        let behavior = BehaviorInfo::read(&mut counted)?;
+        Ok((behavior, counted.lists.0))
+    }
+}
+
+/// The information in a snapshot, of the behavior that an environment has now.
+struct Counted<'n, 'b> {
+    now: &'n BehaviorInfo,
+    counts: std::array::IntoIter<u64, COUNTS>,
+    /// Number of geoms of the scene.
+    ngeom: usize,
+    lists: Reader<'b>,
+}
+
+impl Counted<'_, '_> {
+    /// Returns what the environment has under a key now.
+    fn now(&self, key: &str) -> Option<InfoValue<'_>> {
+        self.now.fields().find(|field| field.0 == key).map(|field| field.1)
+    }
+}
+
+impl InfoSource for Counted<'_, '_> {
+    type Error = SnapshotError;
+
+    fn has(&self, key: &'static str) -> bool {
+        self.now(key).is_some()
+    }
+
+    fn count(&mut self, _: &'static str) -> Result<u64, SnapshotError> {
+        self.counts.next().ok_or(CUT)
+    }
+
+    fn geoms(&mut self, key: &'static str) -> Result<Vec<usize>, SnapshotError> {
+        let (n, ngeom) = (self.count(key)?, self.ngeom);
+        if n > ngeom as u64 {
+            return Err(damaged("more parts are touched than there are"));
+        }
+        // room for all parts, as after a reset, so that later steps need not allocate
+        let mut geoms = Vec::with_capacity(ngeom);
+        for _ in 0..n {
+            let geom = self.lists.u32().ok_or(CUT)? as usize;
+            if geom >= ngeom {
+                return Err(damaged("a touched part does not exist"));
             }
-        };
-        Ok((behavior, r.0))
+            geoms.push(geom);
+        }
+        Ok(geoms)
+    }
+
+    fn name(&mut self, _: &'static str) -> Result<Arc<str>, SnapshotError> {
+        Ok(self.now.task().map_or_else(Arc::default, |task| task.task.clone()))
+    }
+
+    fn flag(&mut self, key: &'static str) -> Result<bool, SnapshotError> {
+        Ok(self.now(key) == Some(InfoValue::Flag(true)))
+    }
+
+    fn number(&mut self, key: &'static str) -> Result<f64, SnapshotError> {
+        let number = f64::from_bits(self.count(key)?);
+        match number.is_finite() {
+            true => Ok(number),
+            false => Err(damaged("a number is not finite")),
+        }
     }
 }

@@ -6,7 +6,6 @@ use thiserror::Error;
 
 use super::film::{Film, FilmError, RoomFilm};
 use super::scores::{MAX_EPISODES, Score, ScoreError};
-use crate::config::Behavior;
 use crate::env::Env;
 use crate::formats::avi::DEFAULT_FPS;
 use crate::runs::logs::{EvaluationLog, LogError, read_recent, training_path};
@@ -35,9 +34,9 @@ pub enum EvaluationError {
         /// The log.
         path: PathBuf,
         /// Its behavior.
-        found: &'static str,
+        found: String,
         /// The environment's.
-        expected: Behavior,
+        expected: String,
     },
     /// An episode ends without steps.
     #[error("evaluation episode {episode} has no steps: call eval_step after every step of the environment")]
@@ -64,12 +63,13 @@ pub fn eval_logs(save_dir: impl AsRef<Path>) -> Result<Score, EvaluationError> {
 }
 
 /// Returns the score of a training log, which must be of a behavior, if one is given.
-fn score(path: PathBuf, behavior: Option<Behavior>) -> Result<Score, EvaluationError> {
+fn score(path: PathBuf, behavior: Option<&str>) -> Result<Score, EvaluationError> {
     // the oldest never counts
     let records = read_recent(&path, MAX_EPISODES + 1)?.records;
     let found = records.first().map(|r| r.behavior.name());
     match (found, behavior) {
-        (Some(found), Some(expected)) if found != expected.name() => {
+        (Some(found), Some(expected)) if found != expected => {
+            let [found, expected] = [found, expected].map(str::to_string);
             Err(EvaluationError::Behavior { path, found, expected })
         }
         _ => Score::new(&records).map_err(|source| EvaluationError::Score { path, source }),
@@ -104,7 +104,8 @@ fn score(path: PathBuf, behavior: Option<Behavior>) -> Result<Score, EvaluationE
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Evaluation<'f> {
-    behavior: Behavior,
+    /// The name of the behavior or the task.
+    behavior: String,
     save_dir: PathBuf,
     log: EvaluationLog,
     film: Option<Box<dyn Film + 'f>>,
@@ -123,7 +124,7 @@ impl<'f> Evaluation<'f> {
     /// Starts an evaluation without video, into the `save_dir` of the environment's configuration.
     pub fn new(env: &Env) -> Self {
         Self {
-            behavior: env.config().behavior,
+            behavior: env.info().behavior.name().to_string(),
             save_dir: PathBuf::from(&env.config().save_dir),
             log: EvaluationLog::default(),
             film: None,
@@ -174,7 +175,7 @@ impl<'f> Evaluation<'f> {
     /// # Errors
     /// No log, a damaged one, one of another behavior, one without score.
     pub fn eval_logs(&self) -> Result<Score, EvaluationError> {
-        score(training_path(&self.save_dir), Some(self.behavior))
+        score(training_path(&self.save_dir), Some(&self.behavior))
     }
 
     /// Discards the steps since the last end.

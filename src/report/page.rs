@@ -57,6 +57,9 @@ fn grouped(n: u64) -> String {
 }
 
 fn title(run: &Run) -> String {
+    if let Some(task) = &run.task {
+        return format!("Task {task}");
+    }
     let behavior = match run.behavior {
         Behavior::SelfTouch => "Self-touch",
         Behavior::HandRegard => "Hand regard",

@@ -35,6 +35,8 @@ pub(super) struct Baseline {
 pub(super) struct Run {
     pub dir: PathBuf,
     pub behavior: Behavior,
+    /// The name of a task of a program's own.
+    pub task: Option<String>,
     pub config: Option<Config>,
     /// The scene of the run, or, if that does not load here, one with the same MIMo.
     pub model: Option<Model>,
@@ -74,7 +76,7 @@ impl Run {
                 .iter()
                 .chain(evaluations.iter().filter_map(|e| e.log.info.last()))
         };
-        let found = records().next().map(|r| r.behavior.name());
+        let found = records().next().map(|r| r.behavior.name().to_string());
         if found.is_none() && !failures.is_empty() {
             let reasons = failures.join("; ");
             return Err(ReportError::Unreadable { path: path(), reasons });
@@ -82,7 +84,9 @@ impl Run {
         notices.splice(0..0, failures);
         let config = scene_config(dir);
         let of_config = config.as_ref().map(|c| c.behavior);
-        let behavior = found.and_then(Behavior::from_name).or(of_config).unwrap_or_default();
+        let known = found.as_deref().and_then(Behavior::from_name);
+        let task = found.filter(|_| known.is_none());
+        let behavior = known.or(of_config).unwrap_or_default();
         let nq = evaluations.first().map(|e| e.log.nq);
         let (model, own) = scene(dir, behavior, nq, &mut notices);
         let touchables = model.as_ref().and_then(Touchables::new);
@@ -98,6 +102,7 @@ impl Run {
         Ok(Self {
             dir: dir.to_path_buf(),
             behavior,
+            task,
             touchables,
             config,
             model,
@@ -117,7 +122,8 @@ impl Run {
         };
         let records = read_training(dir).map_err(|e| refused(e.to_string()))?;
         let other = records.first().map(|r| r.behavior.name());
-        if let Some(other) = other.filter(|&other| other != self.behavior.name()) {
+        let own = self.task.as_deref().unwrap_or(self.behavior.name());
+        if let Some(other) = other.filter(|&other| other != own) {
             return Err(refused(format!("its behavior is {other}")));
         }
         let records = Score::counted(&records).to_vec();

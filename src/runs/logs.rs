@@ -19,7 +19,7 @@ pub use read::{RecentRecords, read_recent, read_records, read_records_with, read
 use thiserror::Error;
 pub use training::{TrainingLog, TrainingTotals};
 
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info};
+use crate::env::{BehaviorInfo, Info, InfoValue};
 use crate::files::{self, Owner, replace_file, sweep};
 use crate::formats::pickle::{self, PickleError, Value};
 use crate::limits::Limits;
@@ -130,30 +130,26 @@ fn read_pickle(path: &Path, limits: &Limits) -> Result<Value, LogError> {
     })
 }
 
+/// Returns a whole number as Python's.
+fn whole(n: u64) -> i64 {
+    i64::try_from(n).unwrap_or(i64::MAX)
+}
+
 /// Converts a record to a dictionary with the keys of the kit, in its order.
 fn to_value(info: &Info) -> Value {
-    let count = |n: u64| Value::Int(i64::try_from(n).unwrap_or(i64::MAX));
-    let steps = ("steps", count(info.steps));
-    let geoms = |list: &[usize]| Value::list(list.iter().map(|&g| count(g as u64)));
-    match &info.behavior {
-        BehaviorInfo::None => Value::dict([steps]),
-        BehaviorInfo::SelfTouch { touches } => Value::dict([
-            ("right_hand_touches", geoms(&touches.right_hand)),
-            ("left_hand_touches", geoms(&touches.left_hand)),
-            steps,
-        ]),
-        BehaviorInfo::HandRegard { counts } => {
-            let counts = EYE_HAND_PAIRS.into_iter().zip(counts.to_array().map(count));
-            Value::dict(counts.chain([steps]))
-        }
-        BehaviorInfo::Task(info) => Value::dict([
-            ("task", Value::Text(info.task.name().into())),
-            ("is_success", Value::Bool(info.outcome.is_success)),
-            ("is_failure", Value::Bool(info.outcome.is_failure)),
-            ("return", Value::Float(info.episode_return)),
-            steps,
-        ]),
-    }
+    let number = |n: u64| Value::Int(whole(n));
+    Value::dict(info.fields(None).filter_map(|(key, value)| {
+        let value = match value {
+            InfoValue::Count(count) => number(count),
+            InfoValue::Geoms(geoms) => Value::list(geoms.iter().map(|&geom| number(geom as u64))),
+            InfoValue::Name(name) => Value::Text(name.into()),
+            InfoValue::Flag(flag) => Value::Bool(flag),
+            InfoValue::Number(sum) => Value::Float(sum),
+            // details, which pickles leave out
+            InfoValue::Parts(_) | InfoValue::Angles(_) => return None,
+        };
+        Some((key, value))
+    }))
 }
 
 /// Returns the kit's record of an episode.

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::logs::{LogError, TrainingLog};
 use super::scene_file::{SceneFileError, keep_scene, write_scene_of};
 use crate::config::{Behavior, Compat, Config};
-use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step};
+use crate::env::{Blueprint, Env, EnvError, Observation, PartNames, Step, reports_outcome};
 use crate::vector::VectorError;
 
 /// An error that keeps a run from starting or continuing.
@@ -184,6 +184,10 @@ pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<T
         TrainingLog::create(config)?.with_names(names)
     };
     if resume {
+        let task = blueprint.task();
+        if reports_outcome(task) {
+            log.check_task(task.name())?;
+        }
         keep_scene(blueprint)?;
     }
     write_scene_of(blueprint)?;

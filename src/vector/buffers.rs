@@ -87,7 +87,9 @@ impl Buffers<'_> {
     /// that is enough. There is room, which was checked before.
     pub(super) fn write(&mut self, row: usize, env: &Env) {
         let observation = env.observation();
-        let (Some(touched), Some(out), Some(touch)) = (&mut self.touched, &mut self.touch, env.senses().touch_observed()) else {
+        let (Some(touched), Some(out), Some(touch)) =
+            (&mut self.touched, &mut self.touch, env.senses().touch_observed())
+        else {
             return self.write_whole(row, &observation);
         };
         let (touched, width, values) = (&mut touched[row], touch.width(), touch.values());

@@ -153,7 +153,7 @@ fn lines_that_are_not_those_of_the_log_are_made_again() {
 #[test]
 fn logs_are_pickles_of_the_records_keys() {
     let task = TaskInfo {
-        task: Behavior::Reach,
+        task: "reach".into(),
         outcome: Outcome {
             is_success: true,
             is_failure: false,

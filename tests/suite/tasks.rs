@@ -308,7 +308,7 @@ fn success_terminates_and_the_return_adds_up() {
     let step = env.step(&still).expect("no divergence");
     let (reward, terminated) = (step.reward, step.terminated);
     assert!(terminated && reward > 90.0);
-    let info = env.info().behavior.task().copied().expect("a task");
+    let info = env.info().behavior.task().cloned().expect("a task");
     assert_eq!(
         info.outcome,
         Outcome {

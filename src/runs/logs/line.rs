@@ -3,7 +3,7 @@
 
 use std::io;
 
-use crate::env::{BehaviorInfo, Detailed, EYE_HAND_PAIRS, Info, PartNames, PerHand};
+use crate::env::{Info, InfoValue, PARTS, PartNames, STEPS};
 use crate::json;
 
 /// Makes lines.
@@ -25,34 +25,33 @@ impl<'n> LineMaker<'n> {
     /// # Errors
     /// As [`json::line`].
     pub fn line(&mut self, out: &mut Vec<u8>, info: &Info) -> io::Result<()> {
-        match &info.behavior {
-            BehaviorInfo::SelfTouch { touches } => self.touches(out, touches),
-            BehaviorInfo::HandRegard { counts } => {
-                for (k, (key, count)) in EYE_HAND_PAIRS.iter().zip(counts.to_array()).enumerate() {
-                    out.extend_from_slice(if k == 0 { b"{\"" } else { b", \"" });
-                    out.extend_from_slice(key.as_bytes());
-                    out.extend_from_slice(b"\": ");
-                    number(out, count);
+        let (names, mut before) = (self.names, "{\"");
+        let mut begin = |out: &mut Vec<u8>, key: &str| {
+            out.extend_from_slice(std::mem::replace(&mut before, ", \"").as_bytes());
+            out.extend_from_slice(key.as_bytes());
+            out.extend_from_slice(b"\": ");
+        };
+        for (key, value) in info.behavior.fields() {
+            begin(out, key);
+            match value {
+                InfoValue::Count(count) => number(out, count),
+                InfoValue::Geoms(geoms) => list(out, geoms, |out, geom| number(out, geom as u64)),
+                other => {
+                    json::line(out, &other)?;
+                    out.pop();
                 }
             }
-            BehaviorInfo::None | BehaviorInfo::Task(_) => return json::line(out, &Detailed { info, details: None }),
         }
-        out.extend_from_slice(b", \"steps\": ");
+        if let (Some(names), Some(touches)) = (names, info.behavior.touches()) {
+            for (key, geoms) in PARTS.into_iter().zip(touches) {
+                begin(out, key);
+                list(out, geoms, |out, geom| self.name(out, geom, names));
+            }
+        }
+        begin(out, STEPS);
         number(out, info.steps);
         out.extend_from_slice(b"}\n");
         Ok(())
-    }
-
-    fn touches(&mut self, out: &mut Vec<u8>, touches: &PerHand<Vec<usize>>) {
-        out.extend_from_slice(b"{\"right_hand_touches\": ");
-        list(out, &touches.right_hand, |out, geom| number(out, geom as u64));
-        out.extend_from_slice(b", \"left_hand_touches\": ");
-        list(out, &touches.left_hand, |out, geom| number(out, geom as u64));
-        let Some(names) = self.names else { return };
-        out.extend_from_slice(b", \"right_hand_parts\": ");
-        list(out, &touches.right_hand, |out, geom| self.name(out, geom, names));
-        out.extend_from_slice(b", \"left_hand_parts\": ");
-        list(out, &touches.left_hand, |out, geom| self.name(out, geom, names));
     }
 
     fn name(&mut self, out: &mut Vec<u8>, geom: usize, names: &PartNames) {
@@ -101,7 +100,7 @@ fn number(out: &mut Vec<u8>, mut n: u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::env::{InfoDetails, Outcome, TaskInfo};
+    use crate::env::{BehaviorInfo, Detailed, InfoDetails, Outcome, PerHand, TaskInfo};
 
     #[test]
     fn lines_are_those_of_serde() {
@@ -123,7 +122,7 @@ mod tests {
                 is_failure: false,
             },
             episode_return: -0.1,
-            ..TaskInfo::default()
+            task: "a \"task\"\u{7} of one's own".into(),
         };
         let behaviors = [
             BehaviorInfo::None,

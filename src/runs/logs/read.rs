@@ -3,12 +3,13 @@
 use std::collections::VecDeque;
 use std::mem::{Discriminant, discriminant};
 use std::path::Path;
+use std::sync::Arc;
 
-use super::{LogError, record, training_path};
-use crate::config::Behavior;
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PerHand, TaskInfo};
+use super::{LogError, training_path};
+use crate::env::{BehaviorInfo, Info, InfoSource};
 use crate::formats::pickle::{self, Node, PickleError, Root, Value};
 use crate::limits::Limits;
+use crate::text::quoted;
 
 /// A value of a pickle, in any form.
 trait Field: Copy {
@@ -18,8 +19,8 @@ trait Field: Copy {
     fn count(self) -> Option<u64>;
     /// Returns a number; 0 or 1 for false and true.
     fn number(self) -> Option<f64>;
-    /// Returns the value among some names that a text has.
-    fn task(self) -> Option<Behavior>;
+    /// Returns a text.
+    fn text(&self) -> Option<&str>;
     /// Returns a list of such numbers, within a limit.
     fn counts(self, most: usize) -> Option<Vec<usize>>;
 }
@@ -46,9 +47,9 @@ impl Field for &Value {
         }
     }
 
-    fn task(self) -> Option<Behavior> {
+    fn text(&self) -> Option<&str> {
         match self {
-            Value::Text(text) => Behavior::from_name(text),
+            Value::Text(text) => Some(text),
             _ => None,
         }
     }
@@ -76,8 +77,8 @@ impl Field for Node<'_, '_> {
         self.number()
     }
 
-    fn task(self) -> Option<Behavior> {
-        self.text().and_then(Behavior::from_name)
+    fn text(&self) -> Option<&str> {
+        Node::text(*self)
     }
 
     fn counts(self, most: usize) -> Option<Vec<usize>> {
@@ -86,51 +87,52 @@ impl Field for Node<'_, '_> {
     }
 }
 
-/// Converts a dictionary to a record; unknown keys are ignored.
-fn from_dict(value: impl Field, limits: &Limits) -> Result<Info, String> {
-    if !value.is_dict() {
-        return Err("it is not a dictionary".to_string());
+/// A dictionary that is read as a record; unknown keys are ignored.
+struct Dict<'l, F> {
+    value: F,
+    limits: &'l Limits,
+    /// The name of the last task that was read, which one allocation serves for all records.
+    task: &'l mut Option<Arc<str>>,
+}
+
+impl<F: Field> InfoSource for Dict<'_, F> {
+    type Error = String;
+
+    fn has(&self, key: &'static str) -> bool {
+        self.value.get(key).is_some()
     }
-    let count = |key: &str| {
-        let number = value.get(key).and_then(Field::count);
+
+    fn count(&mut self, key: &'static str) -> Result<u64, String> {
+        let number = self.value.get(key).and_then(Field::count);
         number.ok_or_else(|| format!("`{key}` is not a whole number"))
-    };
-    let geoms = |key: &str| {
-        let (most, beyond) = (limits.record_touches, limits.geoms);
-        let numbers = value.get(key).and_then(|list| list.counts(most));
+    }
+
+    fn geoms(&mut self, key: &'static str) -> Result<Vec<usize>, String> {
+        let (most, beyond) = (self.limits.record_touches, self.limits.geoms);
+        let numbers = self.value.get(key).and_then(|list| list.counts(most));
         let numbers = numbers.filter(|ids| ids.iter().all(|&id| id < beyond));
         numbers.ok_or_else(|| format!("`{key}` is not a list of at most {most} geom ids below {beyond}"))
-    };
-    let behavior = if value.get("right_hand_touches").is_some() {
-        BehaviorInfo::SelfTouch {
-            touches: PerHand {
-                right_hand: geoms("right_hand_touches")?,
-                left_hand: geoms("left_hand_touches")?,
-            },
-        }
-    } else if value.get("right_eye_right_hand").is_some() {
-        let [a, b, c, d] = EYE_HAND_PAIRS.map(count);
-        BehaviorInfo::HandRegard {
-            counts: [a?, b?, c?, d?].into(),
-        }
-    } else if let Some(task) = value.get("task") {
-        let number = |key: &str| {
-            let number = value.get(key).and_then(Field::number).filter(|v| v.is_finite());
-            number.ok_or_else(|| format!("`{key}` is not a number"))
-        };
-        BehaviorInfo::Task(TaskInfo {
-            task: task.task().ok_or("`task` is not the name of a task")?,
-            outcome: Outcome {
-                is_success: number("is_success")? != 0.0,
-                is_failure: number("is_failure")? != 0.0,
-            },
-            episode_return: number("return")?,
-        })
-    } else {
-        BehaviorInfo::None
-    };
-    let steps = count("steps")?;
-    Ok(record(steps, behavior))
+    }
+
+    fn name(&mut self, key: &'static str) -> Result<Arc<str>, String> {
+        let value = self.value.get(key);
+        let name = value.as_ref().and_then(Field::text);
+        // messages and pages show it as it is
+        let name = name.filter(|name| quoted(name) == **name);
+        let name =
+            name.ok_or_else(|| format!("`{key}` is not the name of a task, a line of at most 200 characters"))?;
+        let last = self.task.take().filter(|last| **last == *name);
+        Ok(self.task.insert(last.unwrap_or_else(|| name.into())).clone())
+    }
+
+    fn flag(&mut self, key: &'static str) -> Result<bool, String> {
+        Ok(self.number(key)? != 0.0)
+    }
+
+    fn number(&mut self, key: &'static str) -> Result<f64, String> {
+        let number = self.value.get(key).and_then(Field::number).filter(|v| v.is_finite());
+        number.ok_or_else(|| format!("`{key}` is not a number"))
+    }
 }
 
 /// Converts records one after the other, which must be of one behavior and not too many.
@@ -139,6 +141,7 @@ struct Records<'a> {
     number: usize,
     touches: usize,
     behavior: Option<Discriminant<BehaviorInfo>>,
+    task: Option<Arc<str>>,
 }
 
 impl<'a> Records<'a> {
@@ -148,6 +151,7 @@ impl<'a> Records<'a> {
             number: 0,
             touches: 0,
             behavior: None,
+            task: None,
         }
     }
 
@@ -156,9 +160,14 @@ impl<'a> Records<'a> {
         if k >= limits.records {
             return Err(format!("it has more than {} records", limits.records));
         }
-        let info = from_dict(value, limits).map_err(|e| format!("record {k}: {e}"))?;
+        if !value.is_dict() {
+            return Err(format!("record {k}: it is not a dictionary"));
+        }
+        let first = self.task.clone();
+        let task = &mut self.task;
+        let info = Info::read(&mut Dict { value, limits, task }).map_err(|e| format!("record {k}: {e}"))?;
         let behavior = discriminant(&info.behavior);
-        if *self.behavior.get_or_insert(behavior) != behavior {
+        if *self.behavior.get_or_insert(behavior) != behavior || first.is_some() && first != self.task {
             return Err(format!("record {k} has another behavior than record 0"));
         }
         self.touches += info.behavior.touches().map_or(0, |t| t[0].len() + t[1].len());

@@ -6,9 +6,9 @@ use std::sync::{Arc, OnceLock};
 
 use super::lines::Lines;
 use super::read::{RecentRecords, visit, visit_bytes};
-use super::{LogError, own_folder, record, training_path, write};
-use crate::config::{Compat, Config};
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames};
+use super::{LogError, own_folder, record, training_path, whole, write};
+use crate::config::{Behavior, Compat, Config};
+use crate::env::{BehaviorInfo, Info, InfoValue, PartNames};
 use crate::files::Owner;
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
@@ -153,11 +153,26 @@ impl TrainingLog {
         })?;
         self.resumed = first.is_some();
         let found = first.as_ref().map(|r| r.behavior.name());
-        match found.filter(|b| *b != config.behavior.name()) {
+        // a name that is no behavior's is that of a task of a program's own, of which a configuration says nothing
+        let other = |name: &&str| Behavior::from_name(name).is_some_and(|behavior| behavior != config.behavior);
+        match found.filter(other) {
             Some(found) => Err(LogError::Foreign {
                 path: path.to_path_buf(),
                 kind: "training",
                 reason: format!("its behavior is {found}, not {}; use another save_dir", config.behavior),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses to go on with the records of another task.
+    pub(in crate::runs) fn check_task(&self, task: &str) -> Result<(), LogError> {
+        let last = self.recent.back().and_then(|info| info.behavior.task());
+        match last.filter(|last| *last.task != *task) {
+            Some(last) => Err(LogError::Foreign {
+                path: training_path(&self.save_dir),
+                kind: "training",
+                reason: format!("its task is {}, not {task}; use another save_dir", last.task),
             }),
             None => Ok(()),
         }
@@ -264,25 +279,15 @@ impl TrainingLog {
 
 /// Writes a record with the keys of the kit, in its order.
 fn fill(dict: &mut DictWriter, info: &Info) {
-    let count = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
-    match &info.behavior {
-        BehaviorInfo::None => {}
-        BehaviorInfo::SelfTouch { touches } => {
-            let geom = |geom: &usize| count(*geom as u64);
-            dict.ints("right_hand_touches", touches.right_hand.iter().map(geom));
-            dict.ints("left_hand_touches", touches.left_hand.iter().map(geom));
-        }
-        BehaviorInfo::HandRegard { counts } => {
-            for (key, number) in EYE_HAND_PAIRS.into_iter().zip(counts.to_array()) {
-                dict.int(key, count(number));
-            }
-        }
-        BehaviorInfo::Task(info) => {
-            dict.text("task", info.task.name());
-            dict.bool("is_success", info.outcome.is_success);
-            dict.bool("is_failure", info.outcome.is_failure);
-            dict.float("return", info.episode_return);
+    for (key, value) in info.fields(None) {
+        match value {
+            InfoValue::Count(count) => dict.int(key, whole(count)),
+            InfoValue::Geoms(geoms) => dict.ints(key, geoms.iter().map(|&geom| whole(geom as u64))),
+            InfoValue::Name(name) => dict.text(key, name),
+            InfoValue::Flag(flag) => dict.bool(key, flag),
+            InfoValue::Number(number) => dict.float(key, number),
+            // details, which pickles leave out
+            InfoValue::Parts(_) | InfoValue::Angles(_) => {}
         }
     }
-    dict.int("steps", count(info.steps));
 }
