@@ -36,6 +36,7 @@ int main(void) {
   printf("VERSION|%d\n", mjVERSION_HEADER);
   printf("CONTACT_SIZE|%zu\n", sizeof(mjContact));
   printf("mjNTEXROLE|%d\n", mjNTEXROLE);
+  printf("WARNINGS|%d\n", mjNWARNING);
 #define X(name) ROW("MODEL_SIZES", "int", #name, offsetof(mjModel, name), "1", "1")
   MJMODEL_INTS
 #undef X
@@ -58,6 +59,7 @@ NESTED
   ROW("PARTS", "int", "contact", offsetof(mjData, contact), "1", "1")
   ROW("PARTS", "int", "solver_niter", offsetof(mjData, solver_niter), "1", "1")
   ROW("PARTS", "int", "energy", offsetof(mjData, energy), "1", "1")
+  ROW("PARTS", "int", "warning", offsetof(mjData, warning), "1", "1")
 }
 """
 
@@ -114,6 +116,8 @@ def main():
         f.write(f"pub const VERSION: i32 = {numbers['VERSION']};\n")
         f.write("/// Bytes of an `mjContact`.\n")
         f.write(f"pub const CONTACT_SIZE: usize = {numbers['CONTACT_SIZE']};\n")
+        f.write("/// Kinds of warnings, of which `mjData.warning` has two `int`s each: what it concerns, and how often it came.\n")
+        f.write(f"pub const WARNINGS: usize = {numbers['WARNINGS']};\n")
         for table, fields in tables.items():
             f.write(f"\n#[rustfmt::skip]\npub const {table}: &[Field] = &[\n")
             for kind, name, at, nr, nc in fields:

@@ -2,6 +2,7 @@
 
 pub mod arrays;
 pub mod data;
+pub mod differential;
 pub mod example_runs;
 pub mod live;
 pub mod loading;
@@ -13,3 +14,4 @@ pub mod recordings;
 pub mod reference;
 pub mod replays;
 pub mod statics;
+pub mod worlds;

@@ -73,6 +73,68 @@ pub fn compare(api: &'static Mujoco, main: &str, files: &[(&str, &str)], assets:
     }
 }
 
+/// An array of our compiled model beside MuJoCo's.
+pub struct Distance {
+    /// Name in MuJoCo.
+    pub name: &'static str,
+    /// Largest difference, relative to MuJoCo's value where that is above 1; infinite where the lengths differ.
+    pub error: f64,
+    /// The error up to which the array counts as equal.
+    pub limit: f64,
+    /// Where the largest difference is, for people to read.
+    pub place: String,
+}
+
+/// Compares all arrays of the models.
+pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Distance> {
+    let compiled = physical(model)
+        .into_iter()
+        .chain(actuators(model))
+        .chain(looks(model))
+        .chain(options(model));
+    let compiled = compiled.map(|(name, values)| (name, values, TOLERANCE));
+    let derived = derived(model).into_iter().map(|(name, values)| (name, values, DERIVED));
+    let mut all = Vec::new();
+    for (name, ours, limit) in compiled.chain(derived) {
+        let theirs = simulation.model_array(name).or_else(|| simulation.model_value(name));
+        let Some(theirs) = theirs.or_else(|| simulation.known_size(name).map(|n| vec![n as f64])) else {
+            continue;
+        };
+        let theirs = narrowed(name, &theirs);
+        if ours.len() != theirs.len() {
+            let place = format!("{name} has {} values, MuJoCo {}", ours.len(), theirs.len());
+            let error = f64::INFINITY;
+            all.push(Distance {
+                name,
+                error,
+                limit,
+                place,
+            });
+            continue;
+        }
+        let error = |(a, b): (&f64, &f64)| match (a - b).abs() / b.abs().max(1.0) {
+            // an inertia that is singular has no inverse
+            _ if !b.is_finite() => 0.0,
+            error if error.is_nan() => f64::INFINITY,
+            error => error,
+        };
+        let errors = ours.iter().zip(&theirs).map(error).enumerate();
+        let worst = errors.fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
+        let place = match ours.get(worst.0) {
+            Some(value) => format!("{name}[{}] is {value:e}, MuJoCo's {:e}", worst.0, theirs[worst.0]),
+            None => String::new(),
+        };
+        let error = worst.1;
+        all.push(Distance {
+            name,
+            error,
+            limit,
+            place,
+        });
+    }
+    all
+}
+
 /// Describes the first difference between the models; `None` if they agree.
 pub fn difference(model: &babybench::Model, simulation: &Simulation) -> Option<String> {
     for (kind, ours) in names(model) {
@@ -81,27 +143,9 @@ pub fn difference(model: &babybench::Model, simulation: &Simulation) -> Option<S
             return Some(format!("names of {kind}: {ours:?} instead of {theirs:?}"));
         }
     }
-    let compiled = physical(model)
+    let far = |distance: &Distance| distance.error > distance.limit;
+    distances(model, simulation)
         .into_iter()
-        .chain(actuators(model))
-        .chain(looks(model))
-        .chain(options(model));
-    let compiled = compiled.map(|(name, values)| (name, values, TOLERANCE));
-    let derived = derived(model).into_iter().map(|(name, values)| (name, values, DERIVED));
-    for (name, ours, tolerance) in compiled.chain(derived) {
-        let theirs = simulation.model_array(name).or_else(|| simulation.model_value(name));
-        let Some(theirs) = theirs.or_else(|| simulation.known_size(name).map(|n| vec![n as f64])) else {
-            continue;
-        };
-        let theirs = narrowed(name, &theirs);
-        if ours.len() != theirs.len() {
-            return Some(format!("{name} has {} values, MuJoCo {}", ours.len(), theirs.len()));
-        }
-        // an inertia that is singular has no inverse
-        let far = |(a, b): (&f64, &f64)| b.is_finite() && (a.is_nan() || (a - b).abs() > tolerance * b.abs().max(1.0));
-        if let Some(k) = ours.iter().zip(&theirs).position(far) {
-            return Some(format!("{name}[{k}] is {:e}, MuJoCo's {:e}", ours[k], theirs[k]));
-        }
-    }
-    None
+        .find(far)
+        .map(|distance| distance.place)
 }

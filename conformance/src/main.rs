@@ -1,5 +1,6 @@
 //! Prints how far babybench is from MuJoCo 3.3.0.
 
+mod differences;
 mod kit_speed;
 mod picture_speed;
 mod plot;
@@ -16,8 +17,12 @@ const USAGE: &str = "usage: conformance report [--out FILE] [--plots FOLDER] [--
        conformance speed [--filter TEXT] [--batches N]
        conformance speed --pictures yes
        conformance speed --kit FOLDER [--pictures no] [--filter TEXT] [--batches N]
+       conformance differential [--count N] [--seed N] [--keep FOLDER]
+       conformance worlds FOLDER... [--json FILE]
 With --kit everything is measured: physics steps, pictures, and whole steps beside the Python kit in FOLDER; with a filter
-only the physics steps and whole steps whose name has that text.";
+only the physics steps and whole steps whose name has that text.
+`differential` puts N random documents beside MuJoCo; the smallest documents that differ go into FOLDER. Exits with 1 where some do.
+`worlds` puts every document under the folders beside MuJoCo. Exits with 1 where the sides mean something else by one.";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -59,6 +64,20 @@ fn run(args: &[String]) -> Result<(), String> {
                 pictures,
                 kit.as_ref().map(Path::new),
             )?;
+        }
+        "differential" => {
+            let [count, seed, keep] = values(options, ["--count", "--seed", "--keep"])?;
+            let (count, seed) = (number("--count", count, 1000)?, number("--seed", seed, 1)?);
+            differences::print(count as u64, seed as u64, keep.as_ref().map(Path::new))?;
+        }
+        "worlds" => {
+            let at = options
+                .iter()
+                .position(|option| option.starts_with("--"))
+                .unwrap_or(options.len());
+            let (folders, options) = options.split_at(at);
+            let [json] = values(options, ["--json"])?;
+            differences::print_worlds(folders, json.as_ref().map(Path::new))?;
         }
         "-h" | "--help" => println!("{USAGE}"),
         _ => return Err(USAGE.to_string()),

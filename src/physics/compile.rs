@@ -2,7 +2,7 @@
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
 use crate::model::{Arrays, Constants, JointType, Model};
-use crate::physics::dynamics::constants;
+use crate::physics::dynamics::{MAX_WEIGHT, constants};
 
 const NO_ACCELERATION: &str =
     "the inertia at qpos0 is singular or ill-conditioned: redundant joints, or masses of extreme size or ratio";
@@ -33,10 +33,6 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     check(&arrays, &constants, &places)?;
     Ok(Model::new(arrays, constants))
 }
-
-/// Largest inverse weight of a degree of freedom, times its inertia, of a model that is taken. It is 1 where the others hold
-/// still on their own, and grows with the condition of the inertia; beyond this it consists of rounding errors.
-const MAX_WEIGHT: f64 = 1e13;
 
 /// Refuses constants that are not finite, or that a singular inertia leaves to rounding errors.
 fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), LoadError> {

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use babybench::config::{Behavior, Compat, Config, Scene};
+use babybench::env::BlueprintOptions;
 use babybench::env::{BehaviorInfo, Info, InfoDetails, PartNames, Task};
 use babybench::eval::{Score, ScoreError, Touchables, eval_logs};
 use babybench::formats::pickle::{self, Value};
@@ -372,7 +373,13 @@ impl Task for Wait {
 #[test]
 fn a_task_of_ones_own_is_known_by_its_name() {
     let folder = Folder::new("own task");
-    let of = |name| Blueprint::with_task(config(&folder, Behavior::None, Compat::Api), Wait(name)).expect("a scene");
+    let of = |name| {
+        Blueprint::with(
+            config(&folder, Behavior::None, Compat::Api),
+            BlueprintOptions::default().with_task(Wait(name)),
+        )
+        .expect("a scene")
+    };
     let mut env = start_training(&of("wait"), false).expect("the folder can be made");
     for n in 1..=3 {
         episode(&mut env, n);

@@ -321,7 +321,7 @@ fn a_contact_that_is_no_number_is_an_error_that_names_its_geoms() {
     // A box of 1e23 m and more: MuJoCo's edges of boxes have no numbers for where it touches.
     let boxes = |size: &str| format!(r#"<freejoint/><geom type="box" size="{size}"/>"#);
     let xml = format!(
-        r#"<mujoco><worldbody><geom type="plane" size="0 1 1"/><body pos="0 0 .1">{}</body><body pos="0 0 .2"><freejoint/>
+        r#"<mujoco><option cone="elliptic"/><worldbody><geom type="plane" size="0 1 1"/><body pos="0 0 .1">{}</body><body pos="0 0 .2"><freejoint/>
         <geom type="sphere" size=".6"/></body><body pos="0 0 .3">{}</body></worldbody></mujoco>"#,
         boxes(".1 .2 .1"),
         boxes(".1 .1 .21e30")

@@ -32,8 +32,8 @@ pub struct Mujoco {
     pub(super) reset_data: unsafe extern "C" fn(Handle, Handle),
     pub(super) delete_model: unsafe extern "C" fn(Handle),
     pub(super) delete_data: unsafe extern "C" fn(Handle),
-    pub(super) step: unsafe extern "C" fn(Handle, Handle),
-    pub(super) forward: unsafe extern "C" fn(Handle, Handle),
+    pub(super) step: unsafe extern "C-unwind" fn(Handle, Handle),
+    pub(super) forward: unsafe extern "C-unwind" fn(Handle, Handle),
     pub(super) energy_pos: unsafe extern "C" fn(Handle, Handle),
     pub(super) energy_vel: unsafe extern "C" fn(Handle, Handle),
     pub(super) contact_force: unsafe extern "C" fn(Handle, Handle, c_int, *mut f64),
@@ -51,6 +51,14 @@ pub struct Mujoco {
 
 /// Swallows warnings, which MuJoCo would otherwise write to a file in the current directory.
 unsafe extern "C" fn ignore(_: *const c_char) {}
+
+/// Leaves MuJoCo where it gives up, which would otherwise end the process: its frames hold nothing that needs to be released but
+/// memory of the data, which a reset takes back.
+unsafe extern "C-unwind" fn give_up(message: *const c_char) {
+    // SAFETY: MuJoCo's messages end with 0.
+    let message = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
+    std::panic::resume_unwind(Box::new(message))
+}
 
 impl Mujoco {
     /// Loads a library.
@@ -70,9 +78,11 @@ impl Mujoco {
         }
         let version: unsafe extern "C" fn() -> c_int = symbol!(b"mj_version");
         let warning: *mut unsafe extern "C" fn(*const c_char) = symbol!(b"mju_user_warning");
-        // SAFETY: `mj_version` needs nothing; the handler is a global variable that is set before any other call.
+        let error: *mut unsafe extern "C-unwind" fn(*const c_char) = symbol!(b"mju_user_error");
+        // SAFETY: `mj_version` needs nothing; the handlers are global variables that are set before any other call.
         let version = unsafe {
             *warning = ignore;
+            *error = give_up;
             version()
         };
         Ok(Self {

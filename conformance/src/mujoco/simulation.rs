@@ -1,6 +1,7 @@
 //! A model and its data in MuJoCo 3.3.0, with all their arrays.
 
 use std::ffi::{CStr, c_int};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
 use babybench::model::EqualityKind;
@@ -8,7 +9,7 @@ use babybench::physics::State;
 
 use super::api::{Handle, Mujoco, NAMED};
 use super::layout::{Field, Kind, Size, field, position};
-use super::offsets::{CONTACT, CONTACT_SIZE, DATA, DATA_SIZES, MODEL, MODEL_SIZES, OPTION, PARTS, STATISTIC};
+use super::offsets::{CONTACT, CONTACT_SIZE, DATA, DATA_SIZES, MODEL, MODEL_SIZES, OPTION, PARTS, STATISTIC, WARNINGS};
 
 /// Bits of `mjtDisableBit`.
 const DISABLE_SENSOR: i32 = 1 << 12;
@@ -27,6 +28,12 @@ pub struct Contact {
     pub frame: [f64; 9],
     /// Dimension.
     pub dim: usize,
+    /// Two sliding, one torsional, two rolling friction coefficients.
+    pub friction: [f64; 5],
+    /// Distance at which it becomes a constraint: margin minus gap, m.
+    pub includemargin: f64,
+    /// First constraint row, when it is a constraint.
+    pub efc_address: Option<usize>,
     /// Force and torque in the contact frame, by `mj_contactForce`.
     pub force: [f64; 6],
 }
@@ -125,6 +132,12 @@ data! {
     qM,
     /// Constraint violations.
     efc_pos,
+    /// Margins of constraint rows.
+    efc_margin,
+    /// Regularisations of constraint rows.
+    efc_R,
+    /// Velocities of constraint rows.
+    efc_vel,
     /// Inverse regularisations of constraint rows.
     efc_D,
     /// Reference accelerations of constraint rows.
@@ -246,6 +259,18 @@ impl Simulation {
         })
     }
 
+    /// Returns all arrays, options and statistics of the model, as numbers, in the order of the tables.
+    pub fn all_model_values(&self) -> Vec<Vec<f64>> {
+        let known = |size: Size| match size {
+            Size::Fixed(_) => true,
+            Size::Named(name) => position(MODEL_SIZES, name).is_some(),
+        };
+        let whole = MODEL.iter().filter(|f| known(f.rows) && known(f.cols));
+        let arrays = whole.filter_map(|f| self.model_array(f.name));
+        let values = OPTION.iter().chain(STATISTIC).filter_map(|f| self.model_value(f.name));
+        arrays.chain(values).collect()
+    }
+
     /// Returns the names of the elements of a kind: `body`, `jnt`, `geom` and so on.
     pub fn names(&self, kind: &str) -> Vec<String> {
         let Some((_, object, size)) = NAMED.iter().find(|n| n.0 == kind) else {
@@ -302,6 +327,27 @@ impl Simulation {
     pub fn step(&mut self) {
         // SAFETY: model and data are valid.
         unsafe { (self.api.step)(self.model, self.data) }
+    }
+
+    /// Advances by one time step where MuJoCo may give up, as at an inertia that is singular.
+    ///
+    /// # Errors
+    /// MuJoCo's message. Only a reset makes the simulation usable again.
+    pub fn try_step(&mut self) -> Result<(), String> {
+        self.attempt(Self::step)
+    }
+
+    /// Computes what follows from the state where MuJoCo may give up.
+    ///
+    /// # Errors
+    /// As [`Simulation::try_step`].
+    pub fn try_forward(&mut self) -> Result<(), String> {
+        self.attempt(Self::forward)
+    }
+
+    fn attempt(&mut self, work: impl FnOnce(&mut Self)) -> Result<(), String> {
+        let done = catch_unwind(AssertUnwindSafe(|| work(self)));
+        done.map_err(|panic| panic.downcast_ref::<String>().cloned().unwrap_or_default())
     }
 
     /// Computes what follows from the state, without advancing.
@@ -425,6 +471,16 @@ impl Simulation {
         self.number(const { Count::OfData(field(DATA_SIZES, "nefc").at) })
     }
 
+    /// Returns how many warnings came since the last reset: numbers that are not finite, full buffers, a singular inertia.
+    pub fn warnings(&self) -> usize {
+        // SAFETY: `WARNINGS` pairs of `int`s lie at this offset in mjData, the second of each a number.
+        let pairs = unsafe {
+            let first = self.data.byte_add(const { field(PARTS, "warning").at });
+            slice::from_raw_parts(first.cast::<[c_int; 2]>(), WARNINGS)
+        };
+        pairs.iter().filter_map(|pair| usize::try_from(pair[1]).ok()).sum()
+    }
+
     /// Returns the simulated time, s.
     pub fn time(&self) -> f64 {
         // SAFETY: the time lies at this offset in mjData.
@@ -461,17 +517,20 @@ impl Simulation {
         };
         let integer = |name: &str, i: usize| {
             let at = field(CONTACT, name).at + 4 * i;
-            i32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize
+            i32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes"))
         };
         let mut force = [0.0; 6];
         // SAFETY: `k` is below the number of contacts, and there is room for six numbers.
         unsafe { (self.api.contact_force)(self.model, self.data, k as c_int, force.as_mut_ptr()) };
         Contact {
-            geom: [integer("geom", 0), integer("geom", 1)],
+            geom: [0, 1].map(|side| usize::try_from(integer("geom", side)).unwrap_or(usize::MAX)),
             dist: number("dist", 0),
             pos: std::array::from_fn(|i| number("pos", i)),
             frame: std::array::from_fn(|i| number("frame", i)),
-            dim: integer("dim", 0),
+            dim: usize::try_from(integer("dim", 0)).unwrap_or(0),
+            friction: std::array::from_fn(|i| number("friction", i)),
+            includemargin: number("includemargin", 0),
+            efc_address: usize::try_from(integer("efc_address", 0)).ok(),
             force,
         }
     }

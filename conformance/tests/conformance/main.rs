@@ -6,6 +6,7 @@ mod compiled_model;
 mod complete_models;
 mod contact_free;
 mod contact_geometry;
+mod differential;
 mod growth;
 mod kit;
 mod live_loader;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         complete_models::trials(),
         contact_free::trials(),
         contact_geometry::trials(),
+        differential::trials(),
         growth::trials(),
         kit::trials(),
         live_loader::trials(),

@@ -279,6 +279,13 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
                     rows.entry(d, -side * coef);
                     from = d + 1;
                 }
+                let block = *rows.block_mut();
+                let moves = rows.efc.jac[block.jac..].iter().flatten().any(|v| *v != 0.0);
+                // as with equalities without effect
+                if !moves && !model.opt.jacobian.is_sparse(model.nv) {
+                    rows.drop_block();
+                    continue;
+                }
                 rows.row(dist, margin, dist - margin, spec);
             }
         }

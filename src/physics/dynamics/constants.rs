@@ -68,6 +68,10 @@ fn weld_poses(model: &Arrays, s: &State) -> Vec<WeldPose> {
     poses
 }
 
+/// Largest inverse weight of a degree of freedom, times its inertia, of a model that is taken. It is 1 where the others hold
+/// still on their own, and grows with the condition of the inertia; beyond this it consists of rounding errors.
+pub(in crate::physics) const MAX_WEIGHT: f64 = 1e13;
+
 /// Computes inverse weights: the mean acceleration per unit force at `qpos0`, that is, the diagonal of `J M^-1 J'`, averaged
 /// over the three directions of translation and of rotation. The solver scales constraints by it.
 struct Weights<'a> {
@@ -126,11 +130,16 @@ impl<'a> Weights<'a> {
                     weights[d..d + 3].fill((w[0] + w[1] + w[2]) / 3.0);
                     weights[d + 3..d + 6].fill((w[3] + w[4] + w[5]) / 3.0);
                 }
-                // whatever the armature
-                _ if slides_alone(self.model, self.model.jnt_bodyid[j]) => {
-                    weights[d] = 1.0 / self.model.body_mass[self.model.jnt_bodyid[j]];
+                _ => {
+                    let (own, body) = (self.of(&[(d, 1.0)]), self.model.jnt_bodyid[j]);
+                    // MuJoCo's is whatever the armature; slides along one axis stay what a singular inertia makes of them
+                    let sound = own > 0.0 && own * self.model.body_mass[body] < MAX_WEIGHT;
+                    weights[d] = if sound && slides_alone(self.model, body) {
+                        1.0 / self.model.body_mass[body]
+                    } else {
+                        own
+                    };
                 }
-                _ => weights[d] = self.of(&[(d, 1.0)]),
             }
         }
         weights

@@ -18,7 +18,7 @@ pub use actuation::fwd_actuation;
 pub use articulated::Articulated;
 #[cfg(feature = "rapier")]
 pub use articulated::Damping;
-pub(in crate::physics) use constants::constants;
+pub(in crate::physics) use constants::{MAX_WEIGHT, constants};
 pub use inertia::crb;
 #[cfg(any(test, feature = "rapier"))]
 pub use inertia::mul_m;

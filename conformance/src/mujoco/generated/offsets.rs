@@ -6,6 +6,8 @@ use super::layout::{Field, Kind, Size};
 pub const VERSION: i32 = 330;
 /// Bytes of an `mjContact`.
 pub const CONTACT_SIZE: usize = 576;
+/// Kinds of warnings, of which `mjData.warning` has two `int`s each: what it concerns, and how often it came.
+pub const WARNINGS: usize = 8;
 
 #[rustfmt::skip]
 pub const MODEL_SIZES: &[Field] = &[
@@ -498,4 +500,5 @@ pub const PARTS: &[Field] = &[
     Field { name: "contact", at: 162464, kind: Kind::I32, rows: Size::Fixed(1), cols: Size::Fixed(1) },
     Field { name: "solver_niter", at: 161100, kind: Kind::I32, rows: Size::Fixed(1), cols: Size::Fixed(1) },
     Field { name: "energy", at: 161624, kind: Kind::I32, rows: Size::Fixed(1), cols: Size::Fixed(1) },
+    Field { name: "warning", at: 161280, kind: Kind::I32, rows: Size::Fixed(1), cols: Size::Fixed(1) },
 ];

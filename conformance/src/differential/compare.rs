@@ -1,0 +1,254 @@
+//! One document and its states on both sides.
+
+use std::sync::Arc;
+
+use babybench::Model;
+use babybench::assets::MemoryAssets;
+use babybench::mjcf_loader::{LoadError, load_str};
+use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
+
+use super::dice::numbers;
+use super::matrix::scaled_condition;
+use super::measured::{Measured, measure};
+use super::state::Recipe;
+use crate::loading::{deliberate, distances};
+use crate::measure::{max_abs, relative};
+use crate::mujoco::{Contact, Mujoco, Simulation};
+
+/// Scaled condition of the inertia above which MuJoCo's own accelerations are noise.
+const CONDITION: f64 = 1e8;
+
+/// Regularisation of a constraint row below which they are, too.
+const REGULARISATION: f64 = 1e-13;
+
+/// Times that MuJoCo is stepped from nearly the same state where the sides differ.
+const NUDGES: u64 = 8;
+
+/// What became of a document.
+pub enum Taken {
+    /// Neither side loads it, and why ours does not.
+    Refused(String),
+    /// Ours refuses what MuJoCo loads, for a reason that is meant.
+    Stricter(&'static str),
+    /// One side alone loads it.
+    ByOne(Measured),
+    /// Both load it.
+    Both(Box<Sides>),
+}
+
+/// What became of a state.
+pub enum Stepped {
+    /// MuJoCo gives up or warns, as where numbers are no longer finite.
+    Diverged,
+    /// MuJoCo's own numbers are noise there: an inertia that is nearly singular, hardly any regularisation.
+    Noise,
+    /// The quantities of both sides; whether MuJoCo jumps as far by itself, when the last bits of the positions change.
+    Compared {
+        /// All quantities.
+        measured: Vec<Measured>,
+        /// Whether what differs is a jump of MuJoCo's own.
+        jump: bool,
+        /// Contacts.
+        contacts: usize,
+        /// Constraint rows.
+        rows: usize,
+    },
+}
+
+/// A document that both sides have loaded.
+pub struct Sides {
+    /// Our model.
+    pub model: Arc<Model>,
+    engine: SoftEngine,
+    simulation: Simulation,
+    condition: f64,
+}
+
+impl Sides {
+    /// Gives a document to both sides.
+    pub fn load(api: &'static Mujoco, text: &str) -> Taken {
+        let ours = our_model(text);
+        let theirs = Simulation::new(api, "m.xml", &[("m.xml", text.as_bytes())]);
+        match (ours, theirs) {
+            (Err(e), Err(_)) => Taken::Refused(e.to_string()),
+            (Ok(_), Err(e)) => Taken::ByOne(Measured::new(
+                "taken",
+                1.0,
+                0.0,
+                format!("MuJoCo refuses: {}", e.trim()),
+            )),
+            (Err(e), Ok(_)) => match deliberate(&e) {
+                Some(reason) => Taken::Stricter(reason),
+                None => Taken::ByOne(Measured::new("taken", 1.0, 0.0, format!("ours refuses: {e}"))),
+            },
+            (Ok(model), Ok(simulation)) => Taken::Both(Box::new(Self::new(Arc::new(model), simulation))),
+        }
+    }
+
+    /// Puts both sides beside each other.
+    pub fn new(model: Arc<Model>, mut simulation: Simulation) -> Self {
+        let condition = match simulation.try_forward() {
+            Ok(()) => scaled_condition(&simulation.full_inertia(), model.nv),
+            Err(_) => f64::INFINITY,
+        };
+        let options = SoftOptions {
+            double_weld_torque: true,
+            ..SoftOptions::default()
+        };
+        let engine = SoftEngine::new(model.clone(), options);
+        Self {
+            model,
+            engine,
+            simulation,
+            condition,
+        }
+    }
+
+    /// Returns MuJoCo's side.
+    pub fn simulation(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    /// Returns our side.
+    pub fn engine(&mut self) -> &mut SoftEngine {
+        &mut self.engine
+    }
+
+    /// Returns a state of ours at `qpos0`.
+    pub fn new_state(&self) -> State {
+        self.engine.new_state()
+    }
+
+    /// Compares the compiled arrays. Those that need the inverse of the inertia may differ as far as that is ill-conditioned.
+    pub fn arrays(&self) -> Vec<Measured> {
+        let all = distances(&self.model, &self.simulation).into_iter();
+        let measured = all.filter_map(|distance| {
+            let mut limit = distance.limit;
+            if distance.name.ends_with("invweight0") {
+                if self.condition > CONDITION {
+                    return None;
+                }
+                limit = limit.max(1e-13 * self.condition);
+            }
+            Some(Measured::new(distance.name, distance.error, limit, distance.place))
+        });
+        measured.collect()
+    }
+
+    /// Steps both sides from a random state.
+    pub fn step(&mut self, recipe: &Recipe) -> Stepped {
+        let mut state = self.engine.new_state();
+        recipe.fill(&self.model, &mut state);
+        self.step_from(&state)
+    }
+
+    /// Steps both sides from a state.
+    pub fn step_from(&mut self, start: &State) -> Stepped {
+        let mut state = self.engine.new_state();
+        state.copy_dynamic_from(start);
+        let ours = self.engine.step(&mut state);
+        if !self.step_mujoco(start) {
+            return Stepped::Diverged;
+        }
+        let theirs = &self.simulation;
+        let condition = scaled_condition(&theirs.full_inertia(), self.model.nv);
+        if condition > CONDITION || self.condition > CONDITION {
+            return Stepped::Noise;
+        }
+        if let Err(e) = ours {
+            let measured = vec![Measured::new("steps", 1.0, 0.0, format!("ours fails: {e}"))];
+            let (jump, contacts, rows) = (false, theirs.ncon(), theirs.nefc());
+            return Stepped::Compared {
+                measured,
+                jump,
+                contacts,
+                rows,
+            };
+        }
+        if theirs.efc_R().iter().any(|&r| r < REGULARISATION) {
+            return Stepped::Noise;
+        }
+        let measured = measure(&state, theirs, self.model.opt.tolerance);
+        let (contacts, rows) = (theirs.ncon(), theirs.nefc());
+        let wrong: Vec<Measured> = measured.iter().filter(|m| !m.agrees()).cloned().collect();
+        let jump = !wrong.is_empty() && self.jumps(start, &wrong);
+        Stepped::Compared {
+            measured,
+            jump,
+            contacts,
+            rows,
+        }
+    }
+
+    /// Steps MuJoCo from a state of ours; returns whether it neither gave up nor warned.
+    pub fn step_mujoco(&mut self, start: &State) -> bool {
+        self.simulation.reset();
+        self.simulation.set_state(&self.model, start);
+        self.simulation.try_step().is_ok() && self.simulation.warnings() == 0
+    }
+
+    /// Tells whether MuJoCo is as far from itself, when the last bits of the positions change, as ours is from it: then the
+    /// geometry of a contact jumps there, or the solver stops elsewhere.
+    fn jumps(&mut self, start: &State, wrong: &[Measured]) -> bool {
+        let qacc = self.simulation.qacc().to_vec();
+        let contacts = self.simulation.contacts();
+        let (mut moved, mut other) = (0.0_f64, false);
+        let mut rng = fastrand::Rng::with_seed(1);
+        let mut nudged = self.engine.new_state();
+        for _ in 0..NUDGES {
+            nudged.copy_dynamic_from(start);
+            let bits = |v: &mut f64| *v *= 1.0 + f64::EPSILON * f64::from(rng.i8(-1..=1));
+            nudged.qpos.iter_mut().for_each(bits);
+            if !self.step_mujoco(&nudged) {
+                return true;
+            }
+            moved = moved.max(relative(self.simulation.qacc(), &qacc));
+            let now = self.simulation.contacts();
+            other |= now.len() != contacts.len() || contacts.iter().zip(&now).any(|(a, b)| differ(a, b));
+        }
+        wrong.iter().all(|m| {
+            if m.quantity == "qacc" {
+                m.error <= 3.0 * moved
+            } else {
+                other
+            }
+        })
+    }
+}
+
+/// Loads a document.
+///
+/// # Errors
+/// Why ours refuses it.
+pub fn our_model(text: &str) -> Result<Model, LoadError> {
+    load_str(text, "m.xml", &MemoryAssets::new()).and_then(compile)
+}
+
+/// Writes what a recipe makes of a model.
+pub fn describe_state(model: &Arc<Model>, recipe: &Recipe) -> String {
+    let mut state = SoftEngine::new(model.clone(), SoftOptions::default()).new_state();
+    recipe.fill(model, &mut state);
+    let parts = [
+        ("qpos", &state.qpos[..]),
+        ("qvel", &state.qvel),
+        ("ctrl", &state.ctrl),
+        ("qfrc_applied", &state.qfrc_applied),
+        ("xfrc_applied", state.xfrc_applied.as_flattened()),
+        ("qacc_warmstart", &state.qacc_warmstart),
+    ];
+    let given = parts
+        .into_iter()
+        .filter(|(name, values)| *name == "qpos" || values.iter().any(|&v| v != 0.0));
+    given
+        .map(|(name, values)| format!("{name} {}", numbers(values)))
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+/// Tells whether a contact moved.
+fn differ(a: &Contact, b: &Contact) -> bool {
+    a.geom != b.geom
+        || (a.dist - b.dist).abs() > 1e-9
+        || max_abs(&a.pos, &b.pos) > 1e-9
+        || max_abs(&a.frame, &b.frame) > 1e-9
+}

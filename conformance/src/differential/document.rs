@@ -1,0 +1,334 @@
+//! Random legal documents.
+
+mod sections;
+
+use super::dice::{Dice, numbers};
+use super::language::Language;
+use super::node::Node;
+
+/// Most bodies of a document.
+const BODIES: usize = 10;
+
+/// Deepest body below the world.
+const DEPTH: usize = 5;
+
+/// A joint that other elements may name.
+#[derive(Clone)]
+struct JointName {
+    name: String,
+    scalar: bool,
+}
+
+/// Writes one document.
+struct Writer<'a> {
+    language: &'a Language,
+    dice: Dice,
+    /// A radian in the unit of the document.
+    radian: f64,
+    autolimits: bool,
+    /// Whether there are default classes, whose poses are no places for `fromto`.
+    defaults: bool,
+    classes: Vec<String>,
+    bodies: Vec<String>,
+    joints: Vec<JointName>,
+    geoms: Vec<String>,
+    sites: Vec<String>,
+    named: usize,
+}
+
+/// Returns the document of a seed.
+pub fn document(language: &Language, seed: u64) -> Node {
+    let mut dice = Dice::new(seed);
+    let degree = dice.chance(0.5);
+    let mut writer = Writer {
+        language,
+        radian: if degree { 180.0 / std::f64::consts::PI } else { 1.0 },
+        autolimits: dice.chance(0.85),
+        dice,
+        defaults: false,
+        classes: Vec::new(),
+        bodies: Vec::new(),
+        joints: Vec::new(),
+        geoms: Vec::new(),
+        sites: Vec::new(),
+        named: 0,
+    };
+    writer.root(degree)
+}
+
+impl Writer<'_> {
+    fn root(&mut self, degree: bool) -> Node {
+        self.dice.angle = self.radian;
+        let mut compiler = Node::new("compiler").with("angle", if degree { "degree" } else { "radian" });
+        if !self.autolimits {
+            compiler.set("autolimits", "false");
+        }
+        self.language.dress(&mut compiler, "compiler", false, &mut self.dice);
+        let mut root = Node::new("mujoco");
+        root.children.push(compiler);
+        let option = self.option();
+        root.children.push(option);
+        if self.dice.chance(0.1) {
+            let mut statistic = Node::new("statistic");
+            self.language.dress(&mut statistic, "statistic", false, &mut self.dice);
+            root.children.push(statistic);
+        }
+        if self.dice.chance(0.4) {
+            self.defaults = true;
+            let defaults = self.defaults(0);
+            root.push_section(defaults);
+        }
+        let world = self.world();
+        root.children.push(world);
+        for section in [
+            Self::contact,
+            Self::equality,
+            Self::tendon,
+            Self::actuator,
+            Self::sensor,
+        ] {
+            let section = section(self);
+            root.push_section(section);
+        }
+        root
+    }
+
+    /// Makes up a name.
+    fn name(&mut self, kind: &str) -> String {
+        self.named += 1;
+        format!("{kind}{}", self.named)
+    }
+
+    fn option(&mut self) -> Node {
+        // Where the solvers are cut off, their steps are compared; elsewhere, where they end.
+        let cut_off = self.dice.chance(0.1);
+        let option = Node::new("option").with("tolerance", if cut_off { "1e-8" } else { "1e-14" });
+        let (iterations, searches) = match cut_off {
+            true => (
+                self.dice.pick(&["1", "2", "3", "100"]),
+                self.dice.pick(&["0", "1", "2", "3", "5", "50"]),
+            ),
+            false => ("300", "200"),
+        };
+        let mut option = option.with("iterations", iterations).with("ls_iterations", searches);
+        option.set(
+            "ls_tolerance",
+            if cut_off {
+                self.dice.pick(&["0.01", "0.5"])
+            } else {
+                "1e-8"
+            },
+        );
+        self.language.dress(&mut option, "option", false, &mut self.dice);
+        option
+    }
+
+    fn defaults(&mut self, depth: usize) -> Node {
+        let mut class = Node::new("default");
+        if depth > 0 {
+            let name = self.name("c");
+            class.set("class", name.as_str());
+            self.classes.push(name);
+        }
+        const HOLDS: [(&str, &str); 8] = [
+            ("joint", "worldbody/body/joint"),
+            ("geom", "worldbody/body/geom"),
+            ("site", "worldbody/body/site"),
+            ("pair", "contact/pair"),
+            ("equality", "equality/joint"),
+            ("tendon", "tendon/fixed"),
+            ("motor", "actuator/motor"),
+            ("position", "actuator/position"),
+        ];
+        for (name, path) in HOLDS {
+            if self
+                .dice
+                .chance(if ["joint", "geom"].contains(&name) { 0.6 } else { 0.2 })
+            {
+                let mut node = Node::new(name);
+                self.language.dress(&mut node, path, true, &mut self.dice);
+                if !self.autolimits {
+                    self.decide_limits(&mut node);
+                }
+                class.children.push(node);
+            }
+        }
+        let nested = if depth < 3 { self.dice.rng.usize(..3 - depth) } else { 0 };
+        for _ in 0..nested {
+            let inner = self.defaults(depth + 1);
+            class.children.push(inner);
+        }
+        class
+    }
+
+    /// Says of each range whether it limits, where MuJoCo asks for that.
+    fn decide_limits(&mut self, node: &mut Node) {
+        const RANGES: [(&str, &str); 3] = [
+            ("range", "limited"),
+            ("ctrlrange", "ctrllimited"),
+            ("forcerange", "forcelimited"),
+        ];
+        for (range, limited) in RANGES {
+            if node.get(range).is_some() && (!self.autolimits || self.dice.chance(0.2)) {
+                let word = self.dice.pick(&["true", "true", "false"]);
+                node.set(limited, word);
+            }
+        }
+    }
+
+    /// Names a default class, at times.
+    fn class(&mut self, node: &mut Node, attribute: &str) {
+        if !self.classes.is_empty() && self.dice.chance(0.2) {
+            let k = self.dice.rng.usize(..self.classes.len());
+            node.set(attribute, self.classes[k].as_str());
+        }
+    }
+
+    fn world(&mut self) -> Node {
+        let mut world = Node::new("worldbody");
+        if self.dice.chance(0.6) {
+            let height = self.dice.uniform(-0.5, 0.2);
+            let name = self.name("g");
+            let plane = Node::new("geom")
+                .with("name", name.as_str())
+                .with("type", "plane")
+                .with("size", "1 1 1");
+            let mut plane = plane.with("pos", numbers(&[0.0, 0.0, height]));
+            if self.dice.chance(0.8) {
+                plane.set("quat", "1 0 0 0");
+            }
+            self.language
+                .dress(&mut plane, "worldbody/body/geom", false, &mut self.dice);
+            self.geoms.push(name);
+            world.children.push(plane);
+        }
+        for _ in 0..self.dice.pick(&[0, 0, 1, 2]) {
+            let geom = self.geom();
+            world.children.push(geom);
+        }
+        for _ in 0..self.dice.pick(&[1, 1, 2, 3]) {
+            let body = self.body(0, false);
+            world.children.push(body);
+        }
+        world
+    }
+
+    fn body(&mut self, depth: usize, moves: bool) -> Node {
+        let name = self.name("b");
+        self.bodies.push(name.clone());
+        let mut body = Node::new("body")
+            .with("name", name)
+            .with("pos", self.dice.reals(3, 0.5));
+        self.class(&mut body, "childclass");
+        self.language.dress(&mut body, "worldbody/body", false, &mut self.dice);
+        let joints = self.joints(&mut body, depth);
+        if joints && self.dice.chance(0.3) {
+            let mut inertial = Node::new("inertial").with("pos", self.dice.reals(3, 0.1));
+            self.language
+                .dress(&mut inertial, "worldbody/body/inertial", false, &mut self.dice);
+            if ["diaginertia", "fullinertia"]
+                .iter()
+                .all(|kind| inertial.get(kind).is_none())
+            {
+                inertial.set("diaginertia", self.dice.diagonal_inertia());
+            }
+            if inertial.get("fullinertia").is_some() {
+                ["quat", "axisangle", "xyaxes", "zaxis", "euler"]
+                    .iter()
+                    .for_each(|turn| inertial.unset(turn));
+            }
+            body.children.push(inertial);
+        }
+        let fewest = usize::from(joints || depth == 0);
+        for _ in 0..self.dice.pick(&[0, 1, 1, 1, 2, 3, 4]).max(fewest) {
+            let geom = self.geom();
+            body.children.push(geom);
+        }
+        if self.dice.chance(0.4) {
+            let site = self.site();
+            body.children.push(site);
+        }
+        let moves = moves || joints;
+        while depth < DEPTH && self.bodies.len() < BODIES && self.dice.chance(0.5) {
+            let child = self.body(depth + 1, moves);
+            body.children.push(child);
+        }
+        body
+    }
+
+    /// Adds joints; returns whether there are any.
+    fn joints(&mut self, body: &mut Node, depth: usize) -> bool {
+        if depth == 0 && self.dice.chance(0.35) {
+            let name = self.name("j");
+            let mut joint = match self.dice.chance(0.5) {
+                true => Node::new("freejoint").with("name", name.as_str()),
+                false => Node::new("joint").with("name", name.as_str()).with("type", "free"),
+            };
+            if joint.name == "joint" {
+                self.class(&mut joint, "class");
+                self.language
+                    .dress(&mut joint, "worldbody/body/joint", false, &mut self.dice);
+                self.decide_limits(&mut joint);
+            }
+            self.joints.push(JointName { name, scalar: false });
+            body.children.push(joint);
+            return true;
+        }
+        let n = self.dice.pick(&[0, 1, 1, 1, 1, 2, 2, 3, 4, 6]);
+        for _ in 0..n {
+            let (name, kind) = (self.name("j"), self.dice.pick(&["hinge", "hinge", "slide"]));
+            let mut joint = Node::new("joint").with("name", name.as_str()).with("type", kind);
+            self.class(&mut joint, "class");
+            self.dice.angle = if kind == "slide" { 1.0 } else { self.radian };
+            self.language
+                .dress(&mut joint, "worldbody/body/joint", false, &mut self.dice);
+            self.dice.angle = self.radian;
+            self.decide_limits(&mut joint);
+            self.joints.push(JointName { name, scalar: true });
+            body.children.push(joint);
+        }
+        n > 0
+    }
+
+    fn geom(&mut self) -> Node {
+        let name = self.name("g");
+        let shape = self
+            .dice
+            .pick(&["sphere", "capsule", "box", "cylinder", "ellipsoid", "box", "capsule"]);
+        let mut geom = Node::new("geom").with("name", name.as_str()).with("type", shape);
+        self.geoms.push(name);
+        self.class(&mut geom, "class");
+        let mut size = [0; 3].map(|_| self.dice.magnitude(0.03, 0.15));
+        if self.dice.chance(0.1) {
+            size = [size[0]; 3];
+        }
+        let entries = match shape {
+            "sphere" => 1,
+            "capsule" | "cylinder" => 2,
+            _ => 3,
+        };
+        if shape != "sphere" && !self.defaults && self.dice.chance(0.3) {
+            geom.set("fromto", self.dice.reals(6, 0.2));
+            geom.set("size", numbers(&size[..entries - 1]));
+        } else {
+            geom.set("size", numbers(&size[..entries]));
+        }
+        self.language
+            .dress(&mut geom, "worldbody/body/geom", false, &mut self.dice);
+        geom
+    }
+
+    fn site(&mut self) -> Node {
+        let name = self.name("s");
+        let mut site = Node::new("site").with("name", name.as_str());
+        if !self.defaults && self.dice.chance(0.2) {
+            site.set("type", "capsule");
+            site.set("fromto", self.dice.reals(6, 0.1));
+        }
+        self.class(&mut site, "class");
+        self.language
+            .dress(&mut site, "worldbody/body/site", false, &mut self.dice);
+        self.sites.push(name);
+        site
+    }
+}

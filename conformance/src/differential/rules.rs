@@ -1,0 +1,300 @@
+//! How the values of every attribute are drawn. A line for each attribute of the loader's tables: a test fails where one is
+//! missing, and where one changes physics and is never drawn.
+
+use super::dice::{Dice, numbers};
+
+/// How an attribute gets its values.
+#[derive(Clone, Copy)]
+pub enum How {
+    /// It changes no physics: names, colours, sizes of what is only drawn.
+    Nothing,
+    /// By the place of the element in the document, as with references. Here are values that fit the document of
+    /// [`super::single`]; where there are none, all words of the attribute do.
+    Placed(&'static [&'static str]),
+    /// Any of its words, with a probability.
+    Word(f64),
+    /// Drawn, with a probability.
+    Drawn(f64, fn(&mut Dice) -> String),
+}
+
+use How::{Drawn, Nothing, Placed, Word};
+
+/// How one attribute gets its values.
+pub type Rule = (&'static str, How);
+
+/// Attributes of which an element may have one at most.
+pub const RIVALS: [&[&str]; 3] = [
+    &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
+    &["pos", "fromto"],
+    &["diaginertia", "fullinertia"],
+];
+
+const CLASS: &[Rule] = &[("class", Placed(&["stiff"]))];
+
+const FRAME: &[Rule] = &[
+    ("quat", Drawn(0.15, Dice::quat)),
+    (
+        "axisangle",
+        Drawn(0.1, |d| format!("{} {}", numbers(&d.vector(3, 1.0)), d.coordinate(3.0))),
+    ),
+    ("xyaxes", Drawn(0.1, |d| numbers(&d.vector(6, 1.0)))),
+    ("zaxis", Drawn(0.1, |d| numbers(&d.vector(3, 1.0)))),
+    (
+        "euler",
+        Drawn(0.1, |d| {
+            [d.coordinate(3.0), d.coordinate(3.0), d.coordinate(3.0)].join(" ")
+        }),
+    ),
+    ("pos", Drawn(0.6, |d| d.reals(3, 0.3))),
+];
+
+const LOOKS: &[Rule] = &[("group", Nothing), ("rgba", Nothing), ("material", Nothing)];
+
+const COMPILER: &[Rule] = &[
+    ("angle", Placed(&[])),
+    (
+        "eulerseq",
+        Drawn(0.3, |d| {
+            (0..3).map(|_| d.pick(&['x', 'y', 'z', 'X', 'Y', 'Z'])).collect()
+        }),
+    ),
+    ("inertiafromgeom", Drawn(0.2, |d| d.pick(&["true", "auto"]).to_owned())),
+    ("autolimits", Placed(&[])),
+    ("texturedir", Nothing),
+    ("coordinate", Nothing),
+];
+
+const OPTION: &[Rule] = &[
+    ("timestep", Drawn(1.0, |d| d.log(0.0005, 0.02))),
+    ("gravity", Drawn(0.5, |d| d.reals(3, 10.0))),
+    ("iterations", Placed(&["0", "1", "2", "7"])),
+    ("tolerance", Placed(&["0", "1e-3", "1e-13"])),
+    ("ls_iterations", Placed(&["0", "1", "2", "3", "5", "13"])),
+    ("ls_tolerance", Placed(&["0", "1e-6", "0.5"])),
+    ("impratio", Drawn(0.4, |d| d.log(0.1, 20.0))),
+    (
+        "ccd_iterations",
+        Drawn(0.05, |d| d.pick(&["1", "4", "20", "200"]).to_owned()),
+    ),
+    ("ccd_tolerance", Drawn(0.1, |d| d.log(1e-10, 1e-4))),
+    ("integrator", Word(0.2)),
+    ("cone", Word(0.7)),
+    ("jacobian", Word(0.3)),
+    ("solver", Word(0.2)),
+];
+
+const STATISTIC: &[Rule] = &[
+    ("meaninertia", Drawn(0.3, |d| d.log(0.1, 10.0))),
+    ("meanmass", Drawn(0.3, |d| d.log(0.1, 10.0))),
+    ("meansize", Drawn(0.3, |d| d.log(0.1, 1.0))),
+    ("extent", Drawn(0.3, |d| d.log(0.1, 10.0))),
+    ("center", Drawn(0.3, |d| d.reals(3, 1.0))),
+];
+
+const JOINT: &[Rule] = &[
+    ("name", Placed(&[])),
+    ("type", Placed(&[])),
+    ("group", Nothing),
+    ("pos", Drawn(0.5, |d| d.reals(3, 0.1))),
+    ("axis", Drawn(0.9, Dice::axis)),
+    ("limited", Placed(&[])),
+    ("range", Drawn(0.4, Dice::limits)),
+    ("margin", Drawn(0.2, |d| d.log(0.001, 0.3))),
+    ("stiffness", Drawn(0.3, |d| d.log(0.01, 50.0))),
+    ("damping", Drawn(0.3, |d| d.log(0.001, 5.0))),
+    ("armature", Drawn(0.3, |d| d.log(0.0001, 0.5))),
+    ("frictionloss", Drawn(0.25, |d| d.log(0.001, 5.0))),
+    ("ref", Drawn(0.3, |d| d.coordinate(1.0))),
+    ("springref", Drawn(0.3, |d| d.coordinate(1.0))),
+    ("solreflimit", Drawn(0.15, Dice::solref)),
+    ("solimplimit", Drawn(0.15, Dice::solimp)),
+    ("solreffriction", Drawn(0.15, Dice::solref)),
+    ("solimpfriction", Drawn(0.15, Dice::solimp)),
+];
+
+const GEOM: &[Rule] = &[
+    ("name", Placed(&[])),
+    ("type", Placed(&[])),
+    ("size", Placed(&["0.06", "0.08 0.11", "0.07 0.09 0.12"])),
+    ("fromto", Placed(&["0 0 -0.1 0.1 0 0.2"])),
+    (
+        "contype",
+        Drawn(0.05, |d| d.pick(&["0", "1", "2", "3", "2147483647"]).to_owned()),
+    ),
+    ("conaffinity", Drawn(0.05, |d| d.pick(&["0", "1", "2", "3"]).to_owned())),
+    ("condim", Drawn(0.3, |d| d.pick(&["1", "3", "4", "6"]).to_owned())),
+    ("priority", Drawn(0.15, |d| d.rng.i32(-2..=2).to_string())),
+    ("friction", Drawn(0.3, |d| d.friction(1))),
+    ("solmix", Drawn(0.15, |d| d.pick(&["0", "1", "0.3", "2.5"]).to_owned())),
+    ("solref", Drawn(0.15, Dice::solref)),
+    ("solimp", Drawn(0.15, Dice::solimp)),
+    ("margin", Drawn(0.2, |d| d.log(0.001, 0.1))),
+    ("gap", Drawn(0.1, |d| d.log(0.001, 0.05))),
+    ("mass", Drawn(0.12, |d| d.log(0.01, 5.0))),
+    ("density", Drawn(0.12, |d| d.log(100.0, 5000.0))),
+];
+
+const SITE: &[Rule] = &[
+    ("name", Placed(&[])),
+    ("type", Nothing),
+    ("size", Nothing),
+    ("fromto", Placed(&[])),
+];
+
+const INERTIAL: &[Rule] = &[
+    ("mass", Drawn(1.0, |d| d.log(0.05, 5.0))),
+    ("fullinertia", Drawn(0.5, Dice::full_inertia)),
+    ("diaginertia", Drawn(0.5, Dice::diagonal_inertia)),
+];
+
+const PAIR: &[Rule] = &[
+    ("name", Nothing),
+    ("geom1", Placed(&["ball"])),
+    ("geom2", Placed(&["ball"])),
+    ("condim", Drawn(0.5, |d| d.pick(&["1", "3", "4", "6"]).to_owned())),
+    ("friction", Drawn(0.5, |d| d.friction(2))),
+    ("solref", Drawn(0.3, Dice::solref)),
+    ("solreffriction", Drawn(0.3, Dice::solref)),
+    ("solimp", Drawn(0.3, Dice::solimp)),
+    ("margin", Drawn(0.4, |d| d.log(0.001, 0.2))),
+    ("gap", Drawn(0.2, |d| d.log(0.001, 0.05))),
+];
+
+const EXCLUDE: &[Rule] = &[
+    ("name", Nothing),
+    ("body1", Placed(&["ball"])),
+    ("body2", Placed(&["ball"])),
+];
+
+const EQUALITY: &[Rule] = &[
+    ("name", Nothing),
+    ("active", Word(0.15)),
+    ("solref", Drawn(0.3, Dice::solref)),
+    ("solimp", Drawn(0.3, Dice::solimp)),
+];
+
+const JOINT_EQUALITY: &[Rule] = &[
+    ("joint1", Placed(&["slider", "upper"])),
+    ("joint2", Placed(&["slider", "lower"])),
+    (
+        "polycoef",
+        Drawn(0.7, |d| {
+            let n = d.rng.usize(1..=5);
+            d.reals(n, 1.0)
+        }),
+    ),
+];
+
+const WELD: &[Rule] = &[
+    ("body1", Placed(&["ball"])),
+    ("body2", Placed(&["ball"])),
+    ("relpose", Drawn(0.3, |d| format!("{} {}", d.reals(3, 0.3), d.quat()))),
+    ("anchor", Drawn(0.3, |d| d.reals(3, 0.2))),
+    ("torquescale", Drawn(0.3, |d| d.log(0.05, 5.0))),
+];
+
+const TENDON: &[Rule] = &[
+    ("name", Placed(&[])),
+    ("limited", Placed(&[])),
+    ("range", Drawn(0.5, |d| d.range(0.5))),
+    ("margin", Drawn(0.3, |d| d.log(0.001, 0.3))),
+    ("solreflimit", Drawn(0.3, Dice::solref)),
+    ("solimplimit", Drawn(0.3, Dice::solimp)),
+    (
+        "springlength",
+        Drawn(0.3, |d| {
+            let mut ends = [d.uniform(0.0, 0.3), d.uniform(0.0, 0.3)];
+            ends.sort_by(f64::total_cmp);
+            let n = d.rng.usize(1..=2);
+            numbers(&ends[..n])
+        }),
+    ),
+    ("stiffness", Drawn(0.5, |d| d.log(0.1, 50.0))),
+    ("damping", Drawn(0.4, |d| d.log(0.01, 5.0))),
+];
+
+const WRAP: &[Rule] = &[
+    ("joint", Placed(&["slider", "lower"])),
+    ("coef", Drawn(1.0, |d| d.reals(1, 2.0))),
+];
+
+const ACTUATOR: &[Rule] = &[
+    ("name", Placed(&[])),
+    ("joint", Placed(&["slider", "lower"])),
+    ("ctrllimited", Placed(&[])),
+    ("forcelimited", Placed(&[])),
+    ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
+    ("forcerange", Drawn(0.4, |d| d.range(2.0))),
+    ("gear", Drawn(0.5, |d| d.reals(1, 5.0))),
+    ("user", Nothing),
+];
+
+const SERVO: &[Rule] = &[
+    ("kp", Drawn(0.7, |d| d.log(0.1, 100.0))),
+    ("kv", Drawn(0.5, |d| d.log(0.01, 5.0))),
+];
+
+const SENSOR: &[Rule] = &[("name", Nothing), ("site", Placed(&["tip"]))];
+
+/// Elements none of whose attributes changes physics.
+pub const WITHOUT_PHYSICS: &[&str] = &[
+    "mujoco",
+    "size",
+    "visual",
+    "asset",
+    "worldbody/body/camera",
+    "worldbody/body/light",
+];
+
+/// The attributes of each element that changes physics, by its path.
+pub const RULES: &[(&str, &[&[Rule]])] = &[
+    ("compiler", &[COMPILER]),
+    ("option", &[OPTION]),
+    ("statistic", &[STATISTIC]),
+    ("default", &[&[("class", Nothing)]]),
+    ("worldbody", &[]),
+    (
+        "worldbody/body",
+        &[
+            &[("name", Placed(&["named"])), ("childclass", Placed(&["stiff"]))],
+            FRAME,
+        ],
+    ),
+    ("worldbody/body/inertial", &[INERTIAL, FRAME]),
+    ("worldbody/body/joint", &[CLASS, JOINT]),
+    (
+        "worldbody/body/freejoint",
+        &[&[("name", Placed(&[])), ("group", Nothing)]],
+    ),
+    ("worldbody/body/geom", &[CLASS, GEOM, FRAME, LOOKS]),
+    ("worldbody/body/site", &[CLASS, SITE, FRAME, LOOKS]),
+    ("contact", &[]),
+    ("contact/pair", &[CLASS, PAIR]),
+    ("contact/exclude", &[EXCLUDE]),
+    ("equality", &[]),
+    ("equality/joint", &[CLASS, JOINT_EQUALITY, EQUALITY]),
+    ("equality/weld", &[CLASS, WELD, EQUALITY]),
+    ("tendon", &[]),
+    ("tendon/fixed", &[CLASS, TENDON]),
+    ("tendon/fixed/joint", &[WRAP]),
+    ("actuator", &[]),
+    ("actuator/motor", &[CLASS, ACTUATOR]),
+    ("actuator/position", &[CLASS, ACTUATOR, SERVO]),
+    ("sensor", &[]),
+    ("sensor/accelerometer", &[SENSOR]),
+    ("sensor/gyro", &[SENSOR]),
+    ("sensor/torque", &[SENSOR]),
+];
+
+/// Tells whether an element, or the section that it stands in, is said to change no physics.
+pub fn is_without_physics(path: &str) -> bool {
+    let section = path.split('/').next().unwrap_or(path);
+    WITHOUT_PHYSICS.contains(&path) || WITHOUT_PHYSICS.contains(&section)
+}
+
+/// Returns how an attribute gets its values; `None` where no line says so.
+pub fn how(path: &str, attribute: &str) -> Option<How> {
+    let (_, groups) = RULES.iter().find(|(other, _)| *other == path)?;
+    let mut rules = groups.iter().flat_map(|group| group.iter());
+    rules.find(|(name, _)| *name == attribute).map(|(_, how)| *how)
+}
