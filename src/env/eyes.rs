@@ -1,13 +1,10 @@
 //! The eyes of many environments, drawn together.
 
-use crate::env::{Env, EnvError};
-use crate::sensors::EyeImages;
+use std::sync::Arc;
 
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
-use {
-    crate::render::{ImageBuffers, RenderRequest, SharedGpu, draw_on},
-    std::sync::Arc,
-};
+use crate::env::{Env, EnvError};
+use crate::render::{ImageBuffers, RenderRequest, SharedGpu, draw_on};
+use crate::sensors::EyeImages;
 
 /// Draws what the eyes of many environments see into their observations, and transforms it. With `renderer: wgpu`, all environments of a
 /// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other.
@@ -33,13 +30,11 @@ use {
 /// # Errors
 /// As the renderers.
 pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Result<(), EnvError> {
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     let mut on_gpus: Vec<&mut Env> = Vec::new();
     for env in environments {
         let state = &env.physics.state;
         let Some(vision) = &mut env.senses.vision else { continue };
         env.physics.check_shape()?;
-        #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
         if vision.renderer().shared_gpu().is_some() {
             on_gpus.push(env);
             continue;
@@ -47,13 +42,11 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
         vision.draw(state, env.senses.eyes.each_mut().map(EyeImages::buffers))?;
         env.senses.transform_eyes(&mut env.rng);
     }
-    #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
     draw_on_gpus(&mut on_gpus)?;
     Ok(())
 }
 
 /// Draws what the eyes of environments see that GPUs draw, in one submission for each.
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
     let mut batches: Vec<Batch> = Vec::new();
     for env in &mut *environments {
@@ -81,14 +74,12 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
 }
 
 /// The pictures that one GPU draws.
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 struct Batch<'e> {
     gpu: SharedGpu,
     requests: Vec<RenderRequest<'e>>,
     images: Vec<ImageBuffers<'e>>,
 }
 
-#[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
 impl Batch<'_> {
     fn new(gpu: SharedGpu) -> Self {
         Self {

@@ -31,7 +31,6 @@ impl Clone for Renderer {
                 renderer: Box::default(),
                 pair: pair.as_ref().map(|_| Pair::default()),
             },
-            #[cfg(all(feature = "wgpu", not(target_arch = "wasm32")))]
             Backend::Gpu(gpu) => Backend::Gpu(gpu.clone()),
         };
         Self {
