@@ -63,9 +63,8 @@ pub(crate) fn reports_outcome(task: &dyn Task) -> bool {
 pub(super) fn clear(task: &dyn Task, info: &mut Info) {
     if matches!(info.behavior, BehaviorInfo::None | BehaviorInfo::Task(_)) {
         let name = match &info.behavior {
-            // a reset allocates nothing where the name is there already
             BehaviorInfo::Task(last) if *last.task == *task.name() => last.task.clone(),
-            _ => task.name().into(),
+            _ => Default::default(),
         };
         info.behavior = BehaviorInfo::Task(TaskInfo {
             task: name,
@@ -73,4 +72,10 @@ pub(super) fn clear(task: &dyn Task, info: &mut Info) {
         });
     }
     task.inform(TaskEvent::Start, info);
+    // only where it is needed and not there already: a reset allocates nothing
+    if let BehaviorInfo::Task(named) = &mut info.behavior
+        && *named.task != *task.name()
+    {
+        named.task = task.name().into();
+    }
 }
