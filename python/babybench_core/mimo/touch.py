@@ -149,7 +149,7 @@ class TrimeshTouch(Touch):
         self._sensed = np.isin(env._core.body_of_geom, list(self.sensor_positions))
         # a subclass that changes a step computes all of them in Python
         kept = all(getattr(type(self), step) is getattr(TrimeshTouch, step) for step in self._steps)
-        self.share = Share.NOTHING if kept else Share.SENSES
+        self._share = Share.NOTHING if kept else Share.SENSES
 
     # --- sensors ---
 
@@ -233,7 +233,7 @@ class TrimeshTouch(Touch):
         return contacts["frame"]
 
     def _felt_by_engine(self) -> bool:
-        return self._core.course.moment.felt and self.share is Share.NOTHING
+        return self._core.course.moment.felt and self._share is Share.NOTHING
 
     def _invert(self, contacts: dict[str, NDArray[Any]]) -> None:
         """Inverts the normals that are inverted when everything is felt once."""
@@ -310,7 +310,7 @@ class TrimeshTouch(Touch):
         core.observe()
         first = not core.course.moment.felt
         core.course.change("feel")
-        if first and self.share is Share.NOTHING:
+        if first and self._share is Share.NOTHING:
             return core.touch().reshape(self._shape)
         sides = self.get_contacts()
         self.sensor_outputs = self.get_empty_sensor_dict(self.touch_size)
