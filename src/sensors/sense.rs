@@ -74,11 +74,11 @@ macro_rules! observation_entries {
     ($apply:ident) => {
         $apply! {
             {
-                /// Proprioception, Gymnasium's key `observation`; [`Env::proprioception`](crate::Env::proprioception) tells what stands
+                /// Proprioception, Gymnasium's key `observation`; [`Senses::proprioception`](crate::env::Senses::proprioception) tells what stands
                 /// where. A task may append to it: the last number of `catch` is the radius of the ball, m.
                 proprioception: f64, ANY, sense(Sense::Proprioception);
             }
-            /// What the skin feels, N, if `touch_active`; [`Env::touch`](crate::Env::touch) tells what stands where.
+            /// What the skin feels, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) tells what stands where.
             touch: f32, ANY, sense(Sense::Touch);
             /// What each body with skin feels, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
             touch_pooled: f64, ANY, sense(Sense::TouchPooled);
@@ -89,17 +89,17 @@ macro_rules! observation_entries {
             /// What the right eye sees.
             eye_right: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Rgb);
             /// What the left eye sees in grey, (H, W) bytes, if `vision_outputs` has `gray`: see
-            /// [`Env::eye_gray`](crate::Env::eye_gray).
+            /// [`SensesMut::eye_gray`](crate::env::SensesMut::eye_gray).
             eye_left_gray: u8, BYTES, eye(Sense::EyeLeft, VisionOutput::Gray);
             /// What the right eye sees in grey.
             eye_right_gray: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Gray);
             /// How far away is what the left eye sees, (H, W), m, if `vision_outputs` has `depth`: see
-            /// [`Env::eye_depth`](crate::Env::eye_depth).
+            /// [`SensesMut::eye_depth`](crate::env::SensesMut::eye_depth).
             eye_left_depth: f32, NOT_NEGATIVE, eye(Sense::EyeLeft, VisionOutput::Depth);
             /// How far away is what the right eye sees.
             eye_right_depth: f32, NOT_NEGATIVE, eye(Sense::EyeRight, VisionOutput::Depth);
             /// Which geoms the left eye sees, (H, W) ids, -1 for none, if `vision_outputs` has `segmentation`: see
-            /// [`Env::eye_segmentation`](crate::Env::eye_segmentation).
+            /// [`SensesMut::eye_segmentation`](crate::env::SensesMut::eye_segmentation).
             eye_left_segmentation: i32, IDS, eye(Sense::EyeLeft, VisionOutput::Segmentation);
             /// Which geoms the right eye sees.
             eye_right_segmentation: i32, IDS, eye(Sense::EyeRight, VisionOutput::Segmentation);

@@ -201,7 +201,7 @@ impl VectorEnv {
     }
 
     /// Seeds the generators of [`VectorEnv::sample_actions`] and of start actions: environment i gets `seed + i`. Under
-    /// `compat: reference` no reset does, as with [`Env::reset`].
+    /// `compat: reference` no reset does, as with [`Env::reset`](crate::Env::reset).
     ///
     /// # Errors
     /// Environments in flight.
