@@ -89,7 +89,7 @@
 //! # How far from MuJoCo
 //!
 //! Contacts are MuJoCo 3.3.0's in number, order and bits of their geometry; accelerations agree to the solver's tolerance; the
-//! eyes' images differ from MuJoCo's by 2 of 255 at most. The README has the tables and how they are measured. `compat: reference`
+//! eyes' images differ from MuJoCo's by 2 of 255 at most. The guide has the tables and how they are measured. `compat: reference`
 //! follows the starter kit's Python code, bug for bug, where it disagrees with its documentation.
 //!
 //! # Errors and limits
@@ -144,3 +144,8 @@ pub use vector::{AutoresetMode, VectorEnv, VectorOptions};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// So are those in the guide.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/guide/rust.md")]
+struct Guide;
