@@ -46,13 +46,14 @@ export class Env {
   constructor(config = {}, name) {
     const shared = config instanceof Blueprint;
     const blueprint = shared ? config : new Blueprint(config, name);
-    this.#core = guarded(() => blueprint.core.env());
+    const core = guarded(() => blueprint.core.env());
+    this.#core = core;
     this.#config = blueprint.config;
     this.#yaml = blueprint.yaml;
     // after a trap nothing can be freed; what was refused is freed when nobody holds it
     if (!shared) blueprint.free();
     const env = this;
-    const names = guarded(() => this.#core.observationNames());
+    const names = guarded(() => core.observationNames());
     const getters = names.map((name) => [name, { enumerable: true, get: () => env.view(name) }]);
     this.#observation = Object.defineProperties(/** @type {any} */ ({}), Object.fromEntries(getters));
   }
