@@ -76,6 +76,8 @@ limits! {
         picture_side: u32 = 8192,
         /// Pictures: bytes of memory for decoding one.
         picture_bytes: u64 = 160 * MIB,
+        /// Pictures: pixels of all textures of a scene, in files and in patterns, as they are before they are reduced.
+        texture_pixels: usize = 268_435_456,
         /// Policies: bytes of an answer of a program.
         answer_bytes: usize = MIB,
         /// Policies: bytes of an ONNX model.

@@ -109,6 +109,8 @@ impl Level {
 pub struct Loader<'a> {
     assets: &'a dyn AssetSource,
     faces: BTreeMap<String, Face>,
+    /// Pixels that may still be made.
+    left: usize,
 }
 
 impl<'a> Loader<'a> {
@@ -117,13 +119,14 @@ impl<'a> Loader<'a> {
         Self {
             assets,
             faces: BTreeMap::new(),
+            left: Limits::DEFAULT.texture_pixels,
         }
     }
 
     /// Creates a texture.
     ///
     /// # Errors
-    /// Fails if an image is missing, broken, too large or of a shape that does not fit.
+    /// Fails if an image is missing, broken, too large or of a shape that does not fit, or if all textures together are too large.
     pub fn texture(&mut self, recipe: &Recipe) -> Result<Texture, RenderError> {
         let wrong = |message: String| RenderError::Texture {
             name: recipe.name.clone(),
@@ -139,8 +142,10 @@ impl<'a> Loader<'a> {
         let flat = recipe.kind == TextureType::Flat2d;
         if recipe.builtin != Builtin::None {
             let width = size(recipe.width)?;
+            let height = if flat { size(recipe.height)? } else { 6 * width };
+            self.take(width * height).map_err(wrong)?;
             return Ok(if flat {
-                Texture::Flat(flat_builtin(recipe, width, size(recipe.height)?).face())
+                Texture::Flat(flat_builtin(recipe, width, height).face())
             } else {
                 let mut dice = Mt19937::new(MARK_SEED);
                 Texture::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side, &mut dice).face()))
@@ -184,13 +189,30 @@ impl<'a> Loader<'a> {
         Ok(Texture::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
     }
 
+    /// Counts pixels of a texture, before time and memory are spent on them; the error says that they are too many.
+    fn take(&mut self, pixels: usize) -> Result<(), String> {
+        let Some(left) = self.left.checked_sub(pixels) else {
+            let most = Limits::DEFAULT.texture_pixels;
+            return Err(format!(
+                "with it the textures have more than {most} pixels; make them smaller, or fewer"
+            ));
+        };
+        self.left = left;
+        Ok(())
+    }
+
     /// Decodes an image with its mip levels.
     fn image(&mut self, path: &str) -> Result<Face, RenderError> {
         if let Some(face) = self.faces.get(path) {
             return Ok(face.clone());
         }
         let bytes = self.assets.read(path)?;
-        let face = decode(path, &bytes)?.face();
+        let level = decode(path, &bytes)?;
+        self.take(level.pixels.len()).map_err(|message| RenderError::Image {
+            path: path.to_string(),
+            message,
+        })?;
+        let face = level.face();
         self.faces.insert(path.to_string(), face.clone());
         Ok(face)
     }
@@ -334,6 +356,36 @@ fn cube_builtin(recipe: &Recipe, w: usize, side: usize, dice: &mut Mt19937) -> L
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A pattern with a side of `width` pixels.
+    fn pattern(kind: TextureType, width: usize) -> Recipe {
+        let text = format!(
+            "<mujoco><asset><texture name='t' type='2d' builtin='flat' width='{width}' height='{width}'/></asset></mujoco>"
+        );
+        let spec = crate::mjcf_loader::load_str(&text, "t.xml", &crate::assets::MemoryAssets::new());
+        let recipe = spec.expect("it is valid").into_parts().0.textures.remove(0);
+        Recipe { kind, ..recipe }
+    }
+
+    #[test]
+    fn all_textures_together_have_a_limit() {
+        let none = crate::assets::MemoryAssets::new();
+        let mut loader = Loader::new(&none);
+        let before = loader.left;
+        let small = loader.texture(&pattern(TextureType::Flat2d, 16));
+        assert!(small.is_ok());
+        let small = loader.texture(&pattern(TextureType::Cube, 16));
+        assert!(small.is_ok());
+        assert_eq!(loader.left, before - 7 * 256);
+        let large = loader.texture(&pattern(TextureType::Cube, 8192));
+        let error = large.expect_err("400 million pixels").to_string();
+        assert_eq!(
+            error,
+            "texture \"t\": with it the textures have more than 268435456 pixels; make them smaller, or fewer"
+        );
+        // what is left is there for smaller ones
+        assert!(loader.texture(&pattern(TextureType::Flat2d, 16)).is_ok());
+    }
 
     #[test]
     fn the_twister_is_the_standard_one() {

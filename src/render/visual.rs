@@ -113,7 +113,8 @@ impl Visual {
     /// Decodes the textures that visible geoms use, from `assets`.
     ///
     /// # Errors
-    /// Fails if an image is missing, broken or of a shape that does not fit.
+    /// Fails if an image is missing, broken or of a shape that does not fit, or if the textures together have more pixels than
+    /// [`Limits::texture_pixels`](crate::Limits::texture_pixels).
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Result<Self, RenderError> {
         Self::build(model, Some(Loader::new(assets)))
     }
