@@ -62,6 +62,12 @@ pub enum LogError {
         /// Description of the fault.
         reason: String,
     },
+    /// A link leads out of the folder of the run.
+    #[error("{}: a link leads out of the folder of the run; put the file itself there", path.display())]
+    Outside {
+        /// The file or folder of logs.
+        path: PathBuf,
+    },
     /// The log cannot be expressed.
     #[error("cannot write the log: {0}")]
     Write(String),
@@ -85,6 +91,7 @@ pub fn evaluation_path(save_dir: impl AsRef<Path>, episode: u64) -> PathBuf {
 /// Creates the folder of the logs, or removes the unfinished files of killed processes from it.
 fn make_folder(save_dir: &Path) -> Result<(), LogError> {
     let path = folder(save_dir);
+    check_inside(&path)?;
     std::fs::create_dir_all(&path).map_err(|source| LogError::Io {
         path: path.clone(),
         source,
@@ -102,6 +109,29 @@ fn own_folder(save_dir: &Path) -> Result<Arc<Owner>, LogError> {
         .map_err(|source| LogError::Io { path, source })
 }
 
+/// Refuses a file in the folder of logs, or that folder itself, if a link leads out of the folder of the run.
+fn check_inside(path: &Path) -> Result<(), LogError> {
+    let logs = path.ancestors().take(2).find(|at| at.ends_with("logs"));
+    let run = match logs.and_then(Path::parent) {
+        // of a relative path: the current folder
+        Some(run) if run.as_os_str().is_empty() => Path::new("."),
+        Some(run) => run,
+        // a log by itself belongs to no run
+        None => return Ok(()),
+    };
+    // what is not there yet leads nowhere
+    let (Ok(run), Ok(target)) = (run.canonicalize(), path.canonicalize()) else {
+        return Ok(());
+    };
+    if target.starts_with(&run) {
+        Ok(())
+    } else {
+        Err(LogError::Outside {
+            path: path.to_path_buf(),
+        })
+    }
+}
+
 fn write(path: PathBuf, bytes: &[u8]) -> Result<(), LogError> {
     replace_file(&path, bytes).map_err(|source| LogError::Io { path, source })
 }
@@ -112,6 +142,7 @@ fn write_pickle(path: PathBuf, value: &Value) -> Result<(), LogError> {
 }
 
 fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, LogError> {
+    check_inside(path)?;
     let io = |source: io::Error| {
         let path = path.to_path_buf();
         match source.kind() {

@@ -360,6 +360,73 @@ fn limits_of_logs_are_the_callers() {
     assert_eq!(read_records_with(&path, &Limits::default()).expect("a log").len(), 1);
 }
 
+#[cfg(unix)]
+#[test]
+fn links_do_not_lead_out_of_the_folder_of_a_run() {
+    use std::os::unix::fs::symlink;
+    let (ours, theirs) = (Folder::new("links_ours"), Folder::new("links_theirs"));
+    let train = |folder: &Folder| {
+        let config = config(folder, Behavior::SelfTouch, Compat::Api);
+        let mut log = TrainingLog::create(&config).expect("a log");
+        log.end_episode(3, &BehaviorInfo::default()).expect("a record");
+        log.save().expect("the log can be written");
+        config
+    };
+    let config = train(&ours);
+    train(&theirs);
+    let (mine, others) = (training_path(ours.path()), training_path(theirs.path()));
+    let out = |result: Result<(), LogError>| matches!(result, Err(LogError::Outside { .. }));
+    // within the folder a link may lead where it wants
+    let moved = ours.path().join("moved.pkl");
+    std::fs::rename(&mine, &moved).expect("it can be moved");
+    symlink(&moved, &mine).expect("a link");
+    assert_eq!(read_training(ours.path()).expect("a log").len(), 1);
+    // a file of another folder
+    std::fs::remove_file(&mine).expect("a link");
+    symlink(&others, &mine).expect("a link");
+    assert!(out(read_training(ours.path()).map(drop)));
+    assert!(out(TrainingLog::resume(&config).map(drop)));
+    std::fs::remove_file(&mine).expect("a link");
+    std::fs::rename(&moved, &mine).expect("it can be moved");
+    // the lines beside it
+    let (lines, their_lines) = (mine.with_extension("jsonl"), others.with_extension("jsonl"));
+    std::fs::remove_file(&lines).expect("the lines");
+    symlink(&their_lines, &lines).expect("a link");
+    assert!(out(TrainingLog::resume(&config).map(drop)));
+    // the whole folder: nothing is written there either
+    std::fs::remove_dir_all(ours.path().join("logs")).expect("the logs");
+    symlink(theirs.path().join("logs"), ours.path().join("logs")).expect("a link");
+    assert!(out(read_training(ours.path()).map(drop)));
+    assert!(out(TrainingLog::create(&config).map(drop)));
+    assert_eq!(read_training(theirs.path()).expect("a log").len(), 1);
+}
+
+#[test]
+fn a_log_of_which_only_the_lines_are_left_is_not_replaced_in_silence() {
+    let folder = Folder::new("lost");
+    let config = config(&folder, Behavior::SelfTouch, Compat::Api);
+    let mut log = TrainingLog::create(&config).expect("a log");
+    let path = training_path(folder.path());
+    // without records there is nothing to lose
+    drop(log.clone());
+    std::fs::remove_file(&path).expect("the log");
+    log.end_episode(3, &BehaviorInfo::default()).expect("a record");
+    log.save().expect("the log can be written");
+    drop(log);
+    std::fs::remove_file(&path).expect("the log");
+    let error = TrainingLog::resume(&config)
+        .expect_err("records would be lost")
+        .to_string();
+    assert!(
+        error.contains(
+            "training.pkl: no training log of BabyBench: it is missing, but training.jsonl beside it has records"
+        ),
+        "{error}"
+    );
+    std::fs::remove_file(path.with_extension("jsonl")).expect("the lines");
+    assert_eq!(TrainingLog::resume(&config).expect("a new log").totals().records, 0);
+}
+
 /// A task of a program's own that does nothing.
 #[derive(Clone, Debug)]
 struct Wait(&'static str);

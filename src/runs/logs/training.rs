@@ -6,12 +6,16 @@ use std::sync::{Arc, OnceLock};
 
 use super::lines::Lines;
 use super::read::{RecentRecords, visit, visit_bytes};
-use super::{LogError, own_folder, record, training_path, whole, write};
+use super::{LogError, check_inside, own_folder, record, training_path, whole, write};
 use crate::config::{Behavior, Compat, Config};
 use crate::env::{BehaviorInfo, Info, InfoValue, PartNames};
 use crate::files::Owner;
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
+
+/// What is said where only the lines of a log are left.
+const LOST: &str = "it is missing, but training.jsonl beside it has records: bring it back to go on with them, or train anew, \
+                    which replaces both";
 
 /// The totals over the records of a training log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,12 +105,24 @@ impl TrainingLog {
     /// Resumes the log in the configuration's `save_dir`, or creates one if there is none. No empty record is added.
     ///
     /// # Errors
-    /// A log that cannot be read, or is of another behavior; a folder into which another process trains.
+    /// A log that cannot be read, or is of another behavior; `training.jsonl` with records, but no `training.pkl`; a folder
+    /// into which another process trains.
     pub fn resume(config: &Config) -> Result<Self, LogError> {
         let path = training_path(&config.save_dir);
         if !path.exists() {
+            // a new log would replace the lines
+            let lines = std::fs::metadata(path.with_extension("jsonl"));
+            if lines.is_ok_and(|meta| meta.len() > 0) {
+                return Err(LogError::Foreign {
+                    path,
+                    kind: "training",
+                    reason: LOST.to_string(),
+                });
+            }
             return Self::create(config);
         }
+        // its lines are copied into the new ones
+        check_inside(&path.with_extension("jsonl"))?;
         let mut log = Self::before(config, &path)?;
         let mut first = None;
         log.read(config, &path, &mut first, &mut |_| ())?;
