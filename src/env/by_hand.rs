@@ -2,7 +2,7 @@
 
 use super::check_vector;
 use super::outcome::clear;
-use crate::env::{Env, EnvError, Observation};
+use crate::env::{Env, EnvError, Observation, Snapshot};
 
 /// The parts of resets and steps of an environment, one by one: [`Env::by_hand`].
 ///
@@ -81,6 +81,22 @@ impl<'a> Parts<'a> {
             scene.act(action, 1)?;
         }
         env.begin_episode()?;
+        Ok(env.observation())
+    }
+
+    /// Goes back to a snapshot, as [`Env::restore`] does, with what it does not hold as [`Env::refresh`] computes it: poses, contacts,
+    /// touch, pain and images. The rest of the observation stays the original's, so that a policy that looks at it goes on with
+    /// the same bits; after [`Env::refresh`] alone it is that of the present state, with another acceleration of the head.
+    ///
+    /// # Errors
+    /// As [`Env::restore`], which change nothing; as [`Env::refresh`].
+    pub fn resume(self, snapshot: &Snapshot) -> Result<Observation<'a>, EnvError> {
+        let env = self.env;
+        env.restore(snapshot)?;
+        env.refresh()?;
+        // what was sensed just now takes the place of what the snapshot holds
+        env.restore(snapshot)?;
+        env.senses.known = true;
         Ok(env.observation())
     }
 

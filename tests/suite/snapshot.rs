@@ -200,6 +200,47 @@ fn a_restored_moment_can_be_observed_and_goes_on_with_the_same_bits() {
 }
 
 #[test]
+fn a_policy_that_is_resumed_sees_what_it_saw() {
+    for config in [
+        Config {
+            touch_active: true,
+            ..of(ActuationModel::Muscle, Behavior::SelfTouch, Scene::Crib, Compat::Api)
+        },
+        infant(),
+        Config::of(Behavior::Catch),
+    ] {
+        let mut env = started(config);
+        random_steps(&mut env, 7);
+        let snapshot = env.snapshot();
+        let mut other = env.blueprint().env().expect("it is valid");
+        let seen = env.observation();
+        let resumed = other.by_hand().resume(&snapshot).expect("its own snapshot");
+        assert_eq!(
+            (
+                resumed.proprioception,
+                resumed.vestibular,
+                resumed.achieved_goal,
+                resumed.desired_goal
+            ),
+            (
+                seen.proprioception,
+                seen.vestibular,
+                seen.achieved_goal,
+                seen.desired_goal
+            )
+        );
+        let mut third = env.blueprint().env().expect("it is valid");
+        third.restore(&snapshot).expect("its own snapshot");
+        let computed = third.refresh().expect("no divergence");
+        let resumed = other.observation();
+        assert_eq!((resumed.touch, resumed.pain), (computed.touch, computed.pain));
+        assert_eq!(other.state().xpos, third.state().xpos);
+        let expect = course(&mut env, 5);
+        assert!(course(&mut other, 5) == expect, "the next steps");
+    }
+}
+
+#[test]
 fn the_observation_is_of_one_moment() {
     let mut env = started(Config {
         touch_active: true,

@@ -245,11 +245,11 @@ impl Core {
         self.env.snapshot().as_bytes().to_vec()
     }
 
-    /// Goes back to a snapshot, with poses, contacts, forces and senses brought up to date, so that they can be drawn at once.
+    /// Goes back to a snapshot, with poses, contacts, forces and touch brought up to date, so that they can be drawn at once, and the
+    /// rest of the observation as it was, so that a network that looks at it goes on with the same bits.
     pub fn restore(&mut self, bytes: Vec<u8>) -> Result<(), JsValue> {
         let snapshot = Snapshot::from_bytes(bytes).map_err(js::error)?;
-        self.env.restore(&snapshot).map_err(js::error)?;
-        done(self.env.refresh())
+        done(self.env.by_hand().resume(&snapshot))
     }
 
     /// Adds a force and a torque at a point, in the world, to what acts on a body.
