@@ -22,8 +22,8 @@
 //!
 //! // env.proprioception.joint_names, env.proprioception.sensors
 //! let model = env.model();
-//! let joints: Vec<&str> = env.proprioception().joint_names(model).collect();
-//! let sensors: Vec<&str> = env.proprioception().sensor_names(model).collect();
+//! let joints: Vec<&str> = env.senses().proprioception().joint_names(model).collect();
+//! let sensors: Vec<&str> = env.senses().proprioception().sensor_names(model).collect();
 //! assert_eq!((joints.len(), sensors.len()), (47, 21));
 //! assert!(joints.contains(&"robot:right_elbow"));
 //!
@@ -32,7 +32,7 @@
 //! assert_eq!(actuators.len(), env.action_space().len());
 //!
 //! // env.touch.sensor_positions[body_id], in the frame of the body
-//! let touch = env.touch().expect("touch is active");
+//! let touch = env.senses().touch().expect("touch is active");
 //! for body in touch.layout().bodies() {
 //!     let (name, positions) = (&model.body_name[body.body], body.positions());
 //!     assert!(!positions.is_empty(), "{name}");
