@@ -78,13 +78,15 @@ test("1,000 resets and 50 changes of scene do not grow the memory", async () => 
     for (let i = 0; i < 1000; i++) await mimo.world.ask("reset", i);
     await mimo.world.ask("look");
   });
-  assert.equal(await memory(), first, "after 1,000 resets");
+  // How much is free when more is asked for depends on what the worker was doing; what is lost adds up: a kilobyte at each
+  // reset, or a tenth of a scene at each change, would be more.
+  assert.ok((await memory()) - first < 2 ** 20, `${await memory()} bytes after 1,000 resets, ${first} before`);
   for (let i = 0; i < 50; i++) await change(i);
   await page.evaluate(() => mimo.world.ask("look"));
   const last = await memory();
   const textures = await page.evaluate(() => mimo.stage.renderer.info.memory);
   console.log(`memory of the module: ${(first / 2 ** 20).toFixed(1)} MiB, then ${(last / 2 ** 20).toFixed(1)} MiB; ${textures.geometries} geometries, ${textures.textures} textures`);
-  assert.equal(last, first, "after 50 changes of scene");
+  assert.ok(last - first < 5 * 2 ** 20, `${last} bytes after 50 changes of scene, ${first} before`);
   assert.ok(last <= 64 * 2 ** 20, "at most 64 MiB");
   assert.ok(textures.geometries < 80 && textures.textures < 40, "nothing is left on the graphics card");
   await page.context().close();
