@@ -373,6 +373,36 @@ fn a_model_that_does_not_fit_is_an_error_that_names_the_element() {
     }
 }
 
+#[test]
+fn geoms_that_start_deep_in_each_other_have_finite_forces() {
+    let body =
+        |z: f64, geom: &str| format!("<body pos='0 0 {z}'><freejoint/><geom type='{geom}' size='.1 .1 .1'/></body>");
+    let tower = [
+        body(0.1, "box"),
+        body(0.2, "sphere"),
+        body(0.3, "capsule"),
+        body(0.4, "cylinder"),
+        body(0.5, "box"),
+    ];
+    for cone in ["pyramidal", "elliptic"] {
+        let text = format!(
+            "<mujoco><option cone='{cone}'/><worldbody><geom type='plane' size='1 1 1'/>{}</worldbody></mujoco>",
+            tower.concat()
+        );
+        let spec = load_str(&text, "tower.xml", &MemoryAssets::new()).expect("it is valid");
+        let model = Arc::new(compile(spec).expect("it is valid"));
+        let mut engine = RapierModel::new(model, RapierOptions::default())
+            .expect("all are supported")
+            .engine();
+        let mut state = engine.new_state();
+        for step in 0..20 {
+            engine.step(&mut state).expect("no divergence");
+            let forces: Vec<f64> = state.efc_rows().map(|row| row.force).collect();
+            assert!(forces.iter().all(|f| f.is_finite()), "{cone}, step {step}: {forces:?}");
+        }
+    }
+}
+
 fn endure(behavior: Behavior, scene: Scene, steps: usize) {
     let long = std::env::var_os("BABYBENCH_LONG").is_some_and(|v| v == "1");
     let steps = if long {

@@ -212,9 +212,10 @@ fn read_own(model: &Model, manifold: &ContactManifold, first: usize, c: &mut Con
     c.force[..3].copy_from_slice(&f);
     if let Some(row) = c.efc_address {
         if model.opt.cone == ConeType::Pyramidal && c.dim > 1 {
-            // as evenly as it goes (MuJoCo's `mju_encodePyramid`)
+            // As evenly as it goes (MuJoCo's `mju_encodePyramid`). Where geoms are deep in each other Rapier's normal may be the other
+            // one: its force is a pull then, for which the edges have no numbers.
             let edges = &mut rows[row..row + 2 * (c.dim - 1)];
-            let share = c.force[0] / (c.dim - 1) as f64;
+            let share = (c.force[0] / (c.dim - 1) as f64).max(0.0);
             for (k, edge) in edges.chunks_exact_mut(2).enumerate() {
                 let along = (c.force[k + 1] / c.friction[k]).clamp(-share, share);
                 edge.copy_from_slice(&[0.5 * (share + along), 0.5 * (share - along)]);
