@@ -89,7 +89,7 @@ impl<'a> Parts<'a> {
     /// the same bits; after [`Env::refresh`] alone it is that of the present state, with another acceleration of the head.
     ///
     /// # Errors
-    /// As [`Env::restore`], which change nothing; as [`Env::refresh`].
+    /// Those of [`Env::restore`], which change nothing; those of [`Env::refresh`].
     pub fn resume(self, snapshot: &Snapshot) -> Result<Observation<'a>, EnvError> {
         let env = self.env;
         env.restore(snapshot)?;
