@@ -10,7 +10,7 @@ use babybench::config::Scene;
 use babybench::eval::FilmError;
 use babybench::eval::film::{FRAME_HEIGHT, FRAME_WIDTH, FrameComposer, Panel};
 use babybench::formats::avi::{AviWriter, DEFAULT_FPS};
-use babybench::render::{CpuRenderer, Poses, View, Visual};
+use babybench::render::{CpuRenderer, Poses, Scenery, View};
 use babybench::{Config, Env};
 use common::seen;
 
@@ -29,7 +29,7 @@ fn median(repeat: usize, mut work: impl FnMut()) -> f64 {
 }
 
 /// Returns the median time (ms) to draw a square image from each of some cameras.
-fn draw(env: &Env, visual: &Visual, cameras: &[&str], size: usize, repeat: usize) -> Result<f64, String> {
+fn draw(env: &Env, scenery: &Scenery, cameras: &[&str], size: usize, repeat: usize) -> Result<f64, String> {
     let mut renderer = CpuRenderer::new();
     let mut out = vec![0; 3 * size * size];
     let mut failed = None;
@@ -41,7 +41,7 @@ fn draw(env: &Env, visual: &Visual, cameras: &[&str], size: usize, repeat: usize
                     width: size,
                     height: size,
                 };
-                renderer.rgb(visual, &Poses::from(env.state()), &view, &mut out)
+                renderer.rgb(scenery, &Poses::from(env.state()), &view, &mut out)
             });
             if let Some(Err(e)) = result {
                 failed = Some(e.to_string());
@@ -52,7 +52,7 @@ fn draw(env: &Env, visual: &Visual, cameras: &[&str], size: usize, repeat: usize
 }
 
 /// Returns the median times (ms) to draw and to encode a frame of an evaluation video.
-fn film(env: &Env, visual: &Visual) -> Result<[f64; 2], Box<dyn std::error::Error>> {
+fn film(env: &Env, scenery: &Scenery) -> Result<[f64; 2], Box<dyn std::error::Error>> {
     let mut composer = FrameComposer::new(env.model())?;
     let mut frame = vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT];
     let file = std::io::Cursor::new(Vec::new());
@@ -60,7 +60,7 @@ fn film(env: &Env, visual: &Visual) -> Result<[f64; 2], Box<dyn std::error::Erro
     let mut failed: Option<FilmError> = None;
     let drawing = median(10, || {
         let poses = Poses::from(env.state());
-        let result = composer.compose(visual, &poses, Panel::Binocular, &mut frame);
+        let result = composer.compose(scenery, &poses, Panel::Binocular, &mut frame);
         failed = failed.take().or(result.err().map(Into::into));
     });
     let encoding = median(10, || {
@@ -73,23 +73,23 @@ fn film(env: &Env, visual: &Visual) -> Result<[f64; 2], Box<dyn std::error::Erro
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for &scene in Scene::ALL {
+    for scene in Scene::ALL {
         let mut env = Env::new(Config {
             vision_active: false,
-            ..seen(scene)
+            ..seen(scene.clone())
         })?;
         let (qpos, qvel) = (
             env.blueprint().init_qpos().to_vec(),
             env.blueprint().init_qvel().to_vec(),
         );
         env.reset_to(&qpos, &qvel)?;
-        let visual = env.blueprint().visual()?;
+        let scenery = env.blueprint().scenery()?;
         println!(
             "{scene}: both eyes 64 x 64, settled: {:.3} ms; corner 480 x 480: {:.2} ms",
-            draw(&env, &visual, &["eye_left", "eye_right"], 64, 100)?,
-            draw(&env, &visual, &["corner"], 480, 20)?
+            draw(&env, &scenery, &["eye_left", "eye_right"], 64, 100)?,
+            draw(&env, &scenery, &["corner"], 480, 20)?
         );
-        let [drawing, encoding] = film(&env, &visual)?;
+        let [drawing, encoding] = film(&env, &scenery)?;
         println!("{scene}: evaluation frame with both eyes: {drawing:.1} ms to draw, {encoding:.1} ms to encode");
     }
     Ok(())

@@ -67,10 +67,10 @@ fn environments(blueprint: &Blueprint) -> Result<Vec<Env>, Box<dyn std::error::E
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for &scene in Scene::ALL {
-        let blueprint = Blueprint::new(seen(scene))?;
-        let visual = blueprint.visual()?;
-        let mut gpu = GpuRenderer::new(visual.clone())?;
+    for scene in Scene::ALL {
+        let blueprint = Blueprint::new(seen(scene.clone()))?;
+        let scenery = blueprint.scenery()?;
+        let mut gpu = GpuRenderer::new(scenery.clone())?;
         let environments = environments(&blueprint)?;
         let requests: Vec<RenderRequest> = environments
             .iter()
@@ -92,7 +92,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let mut outs = array.chunks_exact_mut(piece);
                 requests.iter().try_for_each(|s| {
                     let out = outs.next().unwrap_or_default();
-                    renderer.rgb(&visual, &s.poses, &s.view, out)
+                    renderer.rgb(&scenery, &s.poses, &s.view, out)
                 })
             })?);
             one.push(timed(|| {

@@ -9,12 +9,12 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use babybench::config::{Config, Scene};
-use babybench::env::{Info, PartNames};
+use babybench::config::Scene;
+use babybench::env::PartNames;
 use babybench::eval::{Evaluation, Score};
 use babybench::runs::{TrainingLog, write_scene};
 use babybench::spaces::NumpyRng;
-use babybench::{Blueprint, Env, EnvError};
+use babybench::{Blueprint, Config, Env, EnvError, Info};
 
 /// Steps of an episode.
 const STEPS: usize = 1000;

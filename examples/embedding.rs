@@ -6,8 +6,9 @@
 
 use std::sync::Arc;
 
+use babybench::Config;
 use babybench::actuation;
-use babybench::config::{Behavior, Config, Scene};
+use babybench::config::{Behavior, Scene};
 use babybench::mimo::{build_model, embedded};
 use babybench::physics::{Engine, SoftEngine, SoftOptions};
 use babybench::sensors::Vestibular;

@@ -53,11 +53,11 @@ fn configurations() -> Vec<Config> {
         (EngineKind::Soft, true),
         (EngineKind::Rapier, false),
     ] {
-        for &scene in Scene::ALL {
+        for scene in Scene::ALL {
             for behavior in [Behavior::SelfTouch, Behavior::HandRegard] {
                 for &actuation_model in ActuationModel::ALL {
                     out.push(Config {
-                        scene,
+                        scene: scene.clone(),
                         behavior,
                         actuation_model,
                         engine,

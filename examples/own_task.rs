@@ -1,7 +1,7 @@
 //! A task of one's own: MIMo lies on the floor and lifts his right hand to a height of 30 cm or more, another one each time.
 
-use babybench::env::{BlueprintOptions, EnvError, Goal, Task, TaskScene, TaskSizes, TaskView, Verdict};
-use babybench::{Blueprint, Config, Model};
+use babybench::env::{BlueprintOptions, Goal, Task, TaskScene, TaskSizes, TaskView, Verdict};
+use babybench::{Blueprint, Config, EnvError, Model};
 
 #[derive(Clone, Debug, Default)]
 struct Lift {

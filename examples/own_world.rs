@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
-use babybench::config::{Behavior, Config, Scene};
+use babybench::Config;
+use babybench::config::{Behavior, Scene};
 use babybench::mimo::{build_model, embedded};
-use babybench::physics::RapierOptions;
 use babybench::physics::rapier::rapier3d_f64::prelude::*; // the version of Rapier that the library is built with
-use babybench::physics::rapier::{Bridge, Sets};
+use babybench::physics::rapier::{Bridge, RapierOptions, Sets};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let config = Config {

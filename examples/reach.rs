@@ -5,10 +5,10 @@
 //! cargo run --release --features parallel --example reach
 //! ```
 
-use babybench::config::{Behavior, Config};
+use babybench::config::Behavior;
 use babybench::spaces::NumpyRng;
 use babybench::vector::VectorError;
-use babybench::{AutoresetMode, Blueprint, VectorEnv, VectorOptions};
+use babybench::{AutoresetMode, Blueprint, Config, VectorEnv, VectorOptions};
 
 /// Steps of an episode, of 10 ms each.
 const STEPS: usize = 200;

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Compares the public interface of the library, with all features, with its listing in docs/public-api.txt, and prints what differs.
+# Compares the public interface of the library, with all features but `internals`, with its listing in docs/public-api.txt, and prints what
+# differs.
 #   scripts/public_api.sh             # fails when something differs
 #   scripts/public_api.sh --write     # renews the listing
 # A listing that changes is a change that users of the library see: it belongs in CHANGELOG.md. Implementations that are derived, automatic
@@ -13,6 +14,7 @@ esac
 target=${CARGO_TARGET_DIR:-$PWD/target}
 version=0.52.0 # reads what rustdoc of Rust 1.95 writes
 listing=docs/public-api.txt
+features=$(scripts/public_features.sh)
 tool=target/tools/bin/cargo-public-api
 if [ "$("$tool" --version 2>/dev/null)" != "cargo-public-api $version" ]; then
   cargo install --quiet --locked --debug --version "$version" --root target/tools cargo-public-api # as it runs for a moment
@@ -24,7 +26,7 @@ if ! [ -x "$wrapper" ]; then # a newer one would compile anew
   printf '#!/bin/sh\nRUSTC_BOOTSTRAP=1 exec rustdoc "$@"\n' >"$wrapper"
   chmod +x "$wrapper"
 fi
-RUSTDOC=$wrapper cargo rustdoc --quiet --locked -p babybench --lib --all-features --target-dir "$target" -- \
+RUSTDOC=$wrapper cargo rustdoc --quiet --locked -p babybench --lib --features "$features" --target-dir "$target" -- \
   -Z unstable-options --output-format json --cap-lints allow
 
 found=$target/public-api.txt

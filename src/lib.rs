@@ -72,13 +72,15 @@
 //! | `rapier` (default) | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
 //! | `serde` (in `eval`) | configurations, information and scores are serialised |
 //! | `parallel` | threads in vectors of environments, and for the second eye |
-//! | `npz` | NumPy archives: recordings in, replays out |
+//! | `npz` | NumPy archives, for recordings and replays (with `internals`) |
 //! | `report` | [`report`]: a page about a run |
 //! | `onnx` | policies that are ONNX models, run in pure Rust |
-//! | `wgpu` | [`render::gpu`]: images on a GPU |
+//! | `wgpu` | images on a GPU: `renderer: wgpu`, [`env::draw_eyes`] |
+//! | `internals` | unstable: what only the project's own packages use |
 //!
-//! `default-features = false` leaves the environments alone. In the dev profile a step takes thirty times as long; games want
-//! `[profile.dev.package.babybench] opt-level = 3`.
+//! What needs `internals` changes in any release and has no semantic version: file formats, contact routines, meshes, parts of
+//! the senses and of the command line. `default-features = false` leaves the environments alone. In the dev profile a step takes
+//! thirty times as long; games want `[profile.dev.package.babybench] opt-level = 3`.
 //!
 //! # Platforms
 //!
@@ -102,6 +104,21 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
+// Without `internals`, what only the other packages of the project use is private, and has no use here.
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(dead_code, unused_imports, rustdoc::private_intra_doc_links)
+)]
+
+/// Re-exports what only the other packages of the project use: for all with the feature `internals`, for this crate alone without.
+macro_rules! internals {
+    (use $($path:tt)+) => {
+        #[cfg(feature = "internals")]
+        pub use $($path)+;
+        #[cfg(not(feature = "internals"))]
+        pub(crate) use $($path)+;
+    };
+}
 
 pub mod actuation;
 pub mod assets;
@@ -110,7 +127,10 @@ pub mod env;
 #[cfg(feature = "eval")]
 pub mod eval;
 mod files;
+#[cfg(feature = "internals")]
 pub mod formats;
+#[cfg(not(feature = "internals"))]
+mod formats;
 #[cfg(feature = "eval")]
 mod json;
 mod limits;
@@ -132,13 +152,17 @@ mod text;
 mod threads;
 pub mod vector;
 
-pub use config::Config;
-pub use env::{Blueprint, Env, EnvError, Info, Observation, Step};
+pub use config::table::Config;
+pub use env::error::EnvError;
+pub use env::info::Info;
+pub use env::observation::{Observation, Step};
+pub use env::{Blueprint, Env};
 pub use limits::Limits;
 pub use model::Model;
 #[cfg(feature = "eval")]
 pub use runs::make_env;
-pub use vector::{AutoresetMode, VectorEnv, VectorOptions};
+pub use vector::VectorEnv;
+pub use vector::options::{AutoresetMode, VectorOptions};
 
 /// The programs in the README are compiled and run with the tests.
 #[cfg(doctest)]

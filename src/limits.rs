@@ -54,7 +54,7 @@ limits! {
         text_bytes: usize = 256,
         /// MJCF: default classes.
         classes: usize = 1000,
-        /// MJCF: user values of an actuator or a camera. Default classes copy them.
+        /// MJCF: user values of an element. Default classes copy them.
         user: usize = 64,
         /// MJCF: bodies, the world among them.
         bodies: usize = 20_000,
@@ -64,6 +64,8 @@ limits! {
         dofs: usize = 20_000,
         /// MJCF: explicit contact pairs.
         pairs: usize = 20_000,
+        /// MJCF: numbers in all keyframes together.
+        key_numbers: usize = 4_194_304,
         /// MJCF: the largest magnitude of a number. Products of a few such numbers stay finite.
         real: f64 = 1e30,
         /// Physics: pairs of geoms in large scenes whose boxes overlap.
@@ -106,6 +108,13 @@ limits! {
         records: usize = 2_000_000,
         /// Logs: touched parts in one list of a record.
         record_touches: usize = 4096,
+    }
+}
+
+impl Limits {
+    /// Returns how many numbers the coordinates of a model within these limits may have: four for three degrees of freedom.
+    pub(crate) fn state(&self) -> usize {
+        2 * self.dofs
     }
 }
 

@@ -22,7 +22,7 @@ fn endure(behavior: Behavior, scene: Scene, unoptimised_steps: usize) {
     } else {
         unoptimised_steps
     };
-    let mut env = env(free(behavior, scene));
+    let mut env = env(free(behavior, scene.clone()));
     env.reset(Some(0)).expect("no divergence");
     let limit = env.config().max_episode_steps as usize;
     let mut action = Vec::new();

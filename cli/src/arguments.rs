@@ -49,10 +49,12 @@ pub fn word(path: impl Display) -> String {
     }
     let plain = |c: char| c.is_alphanumeric() || "/\\.:_-+,~@%=".contains(c);
     // a shell would put a home folder for ~
-    match path.chars().all(plain) && !path.is_empty() && !path.starts_with('~') {
-        true => path,
-        false if cfg!(windows) => format!("\"{path}\""),
-        false => shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into),
+    if path.chars().all(plain) && !path.is_empty() && !path.starts_with('~') {
+        path
+    } else if cfg!(windows) {
+        format!("\"{path}\"")
+    } else {
+        shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into)
     }
 }
 

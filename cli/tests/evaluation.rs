@@ -30,7 +30,7 @@ fn a_written_scene_loads_to_the_same_model() {
             let config = Config {
                 actuation_model,
                 save_dir: "results/--odd -- \"name\"/é--->".to_string(),
-                ..free(behavior, scene)
+                ..free(behavior, scene.clone())
             };
             let path = write_scene(&config, folder.path()).expect("the folder can be made");
             let model = read_scene(folder.path()).expect("the scene loads");

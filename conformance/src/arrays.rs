@@ -1,7 +1,9 @@
 //! Arrays of our compiled model under MuJoCo's names and in its layout.
 
 use babybench::Model;
-use babybench::model::{BiasType, CameraMode, EqualityKind, GeomType, JointType, LightMode, SensorType, TextureType};
+use babybench::model::{
+    BiasType, CamLight, DynType, EqualityKind, GainType, GeomType, JointType, ObjType, TextureType,
+};
 
 fn ids(values: &[usize]) -> Vec<f64> {
     values.iter().map(|&v| v as f64).collect()
@@ -29,6 +31,22 @@ fn shapes(values: &[GeomType]) -> Vec<f64> {
         GeomType::Box => 6,
     };
     values.iter().map(|shape| f64::from(code(shape))).collect()
+}
+
+/// Returns user data, one row after another.
+fn users(values: &[Vec<f64>]) -> Vec<f64> {
+    values.iter().flatten().copied().collect()
+}
+
+/// Returns MuJoCo's number of a mode.
+fn cam_light_code(mode: CamLight) -> f64 {
+    match mode {
+        CamLight::Fixed => 0.0,
+        CamLight::Track => 1.0,
+        CamLight::TrackCom => 2.0,
+        CamLight::TargetBody => 3.0,
+        CamLight::TargetBodyCom => 4.0,
+    }
 }
 
 /// Returns the addresses of ranges as MuJoCo stores them: -1 for an empty range.
@@ -154,22 +172,53 @@ fn of_geoms(m: &Model) -> Named {
 }
 
 fn of_sites_and_cameras(m: &Model) -> Named {
-    let targets = m.cam_mode.iter().map(|mode| match mode {
-        CameraMode::Fixed => -1.0,
-        CameraMode::TargetBody(body) => *body as f64,
-    });
     vec![
         ("site_type", shapes(&m.site_type)),
         ("site_bodyid", ids(&m.site_bodyid)),
         ("site_size", flat(&m.site_size)),
         ("site_pos", flat(&m.site_pos)),
         ("site_quat", flat(&m.site_quat)),
-        ("cam_targetbodyid", targets.collect()),
+        (
+            "cam_mode",
+            m.cam_mode.iter().map(|&mode| cam_light_code(mode)).collect(),
+        ),
+        ("cam_targetbodyid", optional(&m.cam_targetbodyid)),
         ("cam_bodyid", ids(&m.cam_bodyid)),
         ("cam_pos", flat(&m.cam_pos)),
         ("cam_quat", flat(&m.cam_quat)),
         ("cam_fovy", m.cam_fovy.clone()),
-        ("cam_user", m.cam_user.iter().flatten().copied().collect()),
+        ("cam_user", users(&m.cam_user)),
+    ]
+}
+
+/// Returns the arrays that recordings do not have: those are compared with MuJoCo alone where it runs.
+pub fn unrecorded(m: &Model) -> Named {
+    let kinds = |all: &[ObjType]| all.iter().map(|kind| f64::from(kind.code())).collect();
+    let keys = |of: fn(&babybench::model::Keyframe) -> &[f64]| m.keys.iter().flat_map(of).copied().collect();
+    vec![
+        ("body_user", users(&m.body_user)),
+        ("jnt_user", users(&m.jnt_user)),
+        ("geom_user", users(&m.geom_user)),
+        ("site_user", users(&m.site_user)),
+        ("cam_pos0", flat(&m.cam_pos0)),
+        ("cam_poscom0", flat(&m.cam_poscom0)),
+        ("cam_mat0", flat(&m.cam_mat0)),
+        (
+            "sensor_dim",
+            m.sensor_type.iter().map(|kind| kind.dim() as f64).collect(),
+        ),
+        ("sensor_objtype", kinds(&m.sensor_objtype)),
+        ("sensor_reftype", kinds(&m.sensor_reftype)),
+        ("sensor_refid", optional(&m.sensor_refid)),
+        ("sensor_cutoff", m.sensor_cutoff.clone()),
+        ("sensor_noise", m.sensor_noise.clone()),
+        ("sensor_user", users(&m.sensor_user)),
+        ("numeric_data", users(&m.numeric_data)),
+        ("key_time", m.keys.iter().map(|key| key.time).collect()),
+        ("key_qpos", keys(|key| &key.qpos)),
+        ("key_qvel", keys(|key| &key.qvel)),
+        ("key_act", keys(|key| &key.act)),
+        ("key_ctrl", keys(|key| &key.ctrl)),
     ]
 }
 
@@ -206,6 +255,17 @@ fn of_equalities(m: &Model) -> Named {
                 eq_obj2.push(joint2.map_or(-1.0, |joint| joint as f64));
                 // The last entry is the unused torque scale.
                 eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+            }
+            EqualityKind::Connect {
+                body1,
+                body2,
+                anchor1,
+                anchor2,
+            } => {
+                eq_type.push(0.0);
+                eq_obj1.push(*body1 as f64);
+                eq_obj2.push(*body2 as f64);
+                eq_data.extend(anchor1.iter().chain(anchor2).chain(&[0.0, 0.0, 0.0, 0.0, 1.0]));
             }
             EqualityKind::Weld {
                 body1,
@@ -259,14 +319,12 @@ fn of_tendons(m: &Model) -> Named {
 }
 
 fn of_sensors(m: &Model) -> Named {
-    let sensor_code = |kind: &SensorType| match kind {
-        SensorType::Accelerometer => 1.0,
-        SensorType::Gyro => 3.0,
-        SensorType::Torque => 5.0,
-    };
     vec![
-        ("sensor_type", m.sensor_type.iter().map(sensor_code).collect()),
-        ("sensor_objid", ids(&m.sensor_objid)),
+        (
+            "sensor_type",
+            m.sensor_type.iter().map(|kind| f64::from(kind.code())).collect(),
+        ),
+        ("sensor_objid", optional(&m.sensor_objid)),
         ("sensor_adr", ids(&m.sensor_adr)),
     ]
 }
@@ -288,6 +346,30 @@ pub fn actuators(m: &Model) -> Named {
     ]
 }
 
+/// Returns the arrays of activations and gains, which recordings of scenes without them leave out.
+pub fn activations(m: &Model) -> Named {
+    let dynamics = |kind: &DynType| match kind {
+        DynType::None => 0.0,
+        DynType::Integrator => 1.0,
+        DynType::Filter => 2.0,
+        DynType::FilterExact => 3.0,
+    };
+    let gain = |kind: &GainType| if *kind == GainType::Fixed { 0.0 } else { 1.0 };
+    let numbers = m.actuator_actadr.iter().map(|adr| f64::from(u8::from(adr.is_some())));
+    vec![
+        ("na", vec![m.na as f64]),
+        ("actuator_dyntype", m.actuator_dyntype.iter().map(dynamics).collect()),
+        ("actuator_dynprm", flat(&m.actuator_dynprm)),
+        ("actuator_actadr", optional(&m.actuator_actadr)),
+        ("actuator_actnum", numbers.collect()),
+        ("actuator_actlimited", flags(&m.actuator_actlimited)),
+        ("actuator_actrange", flat(&m.actuator_actrange)),
+        ("actuator_actearly", flags(&m.actuator_actearly)),
+        ("actuator_gaintype", m.actuator_gaintype.iter().map(gain).collect()),
+        ("actuator_lengthrange", flat(&m.actuator_lengthrange)),
+    ]
+}
+
 /// Returns the arrays that only change what is drawn.
 pub fn looks(m: &Model) -> Named {
     [of_colours(m), of_lights(m), of_materials(m), of_views(m)].concat()
@@ -305,16 +387,9 @@ fn of_colours(m: &Model) -> Named {
 }
 
 fn of_lights(m: &Model) -> Named {
-    let light_code = |mode: LightMode| match mode {
-        LightMode::Fixed => 0.0,
-        LightMode::Track => 1.0,
-        LightMode::TrackCom => 2.0,
-        LightMode::TargetBody => 3.0,
-        LightMode::TargetBodyCom => 4.0,
-    };
     vec![
         ("light_bodyid", m.lights.iter().map(|l| l.bodyid as f64).collect()),
-        ("light_mode", m.lights.iter().map(|l| light_code(l.mode)).collect()),
+        ("light_mode", m.lights.iter().map(|l| cam_light_code(l.mode)).collect()),
         (
             "light_targetbodyid",
             optional(&m.lights.iter().map(|l| l.targetbodyid).collect::<Vec<_>>()),
@@ -396,14 +471,17 @@ fn of_views(m: &Model) -> Named {
     ]
 }
 
-/// Cuts the rows of MuJoCo's arrays to the width of ours, after checking that the rest is unused (0 or -1).
+/// Cuts the rows of MuJoCo's arrays to the width of ours, after checking that the rest is unused (0 or -1). Parameters of actuators
+/// beyond the third are not looked at: muscles alone use them.
 ///
 /// `mat_texid` holds one texture per role, of which the models use the second (colour).
 pub fn narrowed(name: &str, recorded: &[f64]) -> Vec<f64> {
     let (wide, first, keep) = match name {
         "actuator_trnid" => (2, 0, 1),
         "actuator_gear" => (6, 0, 1),
-        "actuator_gainprm" | "actuator_biasprm" => (10, 0, 3),
+        "actuator_dynprm" | "actuator_gainprm" | "actuator_biasprm" => {
+            return recorded.chunks(10).flat_map(|row| &row[..3]).copied().collect();
+        }
         "mat_texid" => (10, 1, 1),
         _ => return recorded.to_vec(),
     };

@@ -4,7 +4,7 @@ use babybench::assets::AssetSource;
 use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
 use babybench::physics::compile;
 
-use crate::arrays::{actuators, derived, looks, names, narrowed, options, physical};
+use crate::arrays::{activations, actuators, derived, looks, names, narrowed, options, physical, unrecorded};
 use crate::mujoco::{Mujoco, Simulation};
 
 /// Relative tolerance of compiled numbers; absolute below 1.
@@ -46,7 +46,14 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::Invalid(r#"only a camera with mode="targetbody" has a target"#) => {
             Some("cameras with a target that their mode does not use")
         }
+        ErrorKind::Invalid(message) if message.starts_with("a damping ratio needs a gain") => {
+            Some("damping ratios of servos with a negative gain")
+        }
         ErrorKind::Invalid("the tendon names this joint twice") => Some("tendons that name a joint twice"),
+        ErrorKind::Invalid(message) if message.starts_with("two joints of one kind along one axis") => {
+            Some("joints that move a body alike")
+        }
+        ErrorKind::Invalid(message) if message.starts_with("solver=\"PGS\"") => Some("PGS with elliptic cones"),
         ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => {
             Some("inertias that are singular")
         }
@@ -89,7 +96,9 @@ pub struct Distance {
 pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Distance> {
     let compiled = physical(model)
         .into_iter()
+        .chain(unrecorded(model))
         .chain(actuators(model))
+        .chain(activations(model))
         .chain(looks(model))
         .chain(options(model));
     let compiled = compiled.map(|(name, values)| (name, values, TOLERANCE));

@@ -41,7 +41,7 @@ pub fn print(python: &Path) -> Result<(), String> {
             .and_then(|npz| npz.get_f64("qpos"))
             .map_err(|e| e.to_string())?;
         let config = Config {
-            scene: *scene,
+            scene: scene.clone(),
             behavior: if *scene == Scene::Cubes {
                 Behavior::HandRegard
             } else {
@@ -76,9 +76,12 @@ pub fn print(python: &Path) -> Result<(), String> {
             } else {
                 "corner, 480 x 480"
             };
-            let [one, two] = clock.map(|v| match eyes {
-                true => format!("{:.3}", quartiles(v)[1]),
-                false => String::new(),
+            let [one, two] = clock.map(|v| {
+                if eyes {
+                    format!("{:.3}", quartiles(v)[1])
+                } else {
+                    String::new()
+                }
             });
             println!(
                 "| {name} | {what} | {theirs:.2} | {ours:.3} | {dearest:.3} | {least:.1} | {ratio:.1} | {one} | {two} |"
@@ -131,7 +134,7 @@ struct Spent {
 fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<Spent, String> {
     let qvel = vec![0.0; env.state().qvel.len()];
     env.reset_to(qpos, &qvel).map_err(|e| e.to_string())?;
-    let visual = env.blueprint().visual().map_err(|e| e.to_string())?;
+    let scenery = env.blueprint().scenery().map_err(|e| e.to_string())?;
     let (names, size, repeat): (&[&str], _, _) = if eyes {
         (&["eye_left", "eye_right"], 64, 60)
     } else {
@@ -150,7 +153,7 @@ fn spent(env: &mut Env, qpos: &[f64], eyes: bool) -> Result<Spent, String> {
     let requests = names.iter().map(request).collect::<Result<Vec<_>, String>>()?;
     let mut pictures = vec![vec![0; 3 * size * size]; requests.len()];
     let mut renderers = [1, 2].map(|threads| {
-        let mut renderer = Renderer::cpu(visual.clone());
+        let mut renderer = Renderer::cpu(scenery.clone());
         renderer.set_threads(threads);
         renderer
     });

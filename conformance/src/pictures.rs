@@ -101,12 +101,12 @@ fn ssim(a: &[u8], b: &[u8], width: usize) -> f64 {
 /// Returns the configuration that the pictures show: MIMo v2 among the cubes, v1 elsewhere.
 pub fn config(scene: Scene) -> Config {
     Config {
-        scene,
         behavior: if scene == Scene::Cubes {
             Behavior::HandRegard
         } else {
             Behavior::None
         },
+        scene,
         ..Config::default()
     }
 }

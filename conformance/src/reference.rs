@@ -27,10 +27,10 @@ impl Reference {
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for behavior in [Behavior::None, Behavior::HandRegard] {
-            for &scene in Scene::ALL {
+            for scene in Scene::ALL.iter().cloned() {
                 let config = Config {
                     behavior,
-                    scene,
+                    scene: scene.clone(),
                     ..Config::default()
                 };
                 let name = format!("{}_{scene}", Version::of(behavior).name());

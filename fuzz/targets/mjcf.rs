@@ -3,7 +3,7 @@
 #![no_main]
 
 use babybench::assets::MemoryAssets;
-use babybench::render::Visual;
+use babybench::render::Scenery;
 use babybench::{mjcf_loader, physics};
 use libfuzzer_sys::fuzz_target;
 
@@ -38,5 +38,5 @@ fuzz_target!(|data: &[u8]| {
     let more = [&model.body_mass, &model.geom_rbound, &model.qpos0, &model.dof_invweight0];
     let mut numbers = numbers.chain(more.into_iter().flatten());
     assert!(numbers.all(|v| v.is_finite()), "a number is not finite");
-    let _ = Visual::new(&model, &assets);
+    let _ = Scenery::new(&model, &assets);
 });

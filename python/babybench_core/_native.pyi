@@ -46,8 +46,11 @@ def config_examples() -> dict[str, dict[str, Any]]:
 def config_from_mapping(mapping: Mapping[str, object]) -> dict[str, Any]:
     """Checks a configuration and returns all its keys; those left out have their default."""
 
-def config_from_yaml(text: str, file: str = "configuration") -> dict[str, Any]:
-    """Reads a configuration from YAML and returns all its keys; ``file`` names the text in errors."""
+def config_from_yaml(text: str, file: str = "configuration", folder: str | os.PathLike[str] = ...) -> dict[str, Any]:
+    """Reads a configuration from YAML and returns all its keys.
+
+    ``file`` names the text in errors; ``folder`` is where the path of a scene starts, by default the working directory.
+    """
 
 @final
 class Blueprint:

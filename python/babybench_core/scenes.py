@@ -31,8 +31,9 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
 
     Args:
         config: A mapping, the name of an example (``self_touch``, ``hand_regard``, ``test_installation``, or a task: ``reach``,
-            ``standup``, ``selfbody``, ``catch``, ``roll_over``), the path of a YAML file, or nothing for the defaults.
-        **keys: Keys that replace those of ``config``.
+            ``standup``, ``selfbody``, ``catch``, ``roll_over``), the path of a YAML file, or nothing for the defaults. The
+            path of a scene starts at the folder of that file.
+        **keys: Keys that replace those of ``config``; a path starts at the working directory.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -66,11 +67,13 @@ def _read_file(path: Path, examples: list[str]) -> dict[str, Any]:
         raise FileNotFoundError(text) from None
     except UnicodeDecodeError as error:
         raise ValueError(f"{path}: {error}; save the file as UTF-8") from None
-    return config_from_yaml(text, str(path))
+    return config_from_yaml(text, str(path), path.parent)
 
 
 def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathLike[str]]] = None) -> Blueprint:
     """Compiles a scene, or returns the one that environments of the same configuration use already.
+
+    A scene of one's own is compiled each time, as its files may have changed.
 
     Args:
         config: A configuration; keys left out have their default.
@@ -79,6 +82,8 @@ def blueprint(config: Mapping[str, object], assets: Optional[Union[str, os.PathL
     full = config_from_mapping(config)
     where = None if assets is None else os.path.realpath(assets)
     key = (repr(full), where)
+    if str(full["scene"]).endswith(".xml"):
+        return Blueprint(full, where)
     found = _shared.get(key)
     if found is None:
         found = _shared[key] = Blueprint(full, where)

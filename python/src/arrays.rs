@@ -1,6 +1,6 @@
 //! Numbers of the library as arrays of NumPy, and back.
 
-use babybench::model::{BiasType, GeomType, JointType, SensorType};
+use babybench::model::{BiasType, DynType, GainType, GeomType, JointType, ObjType, SensorType};
 use numpy::{Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
@@ -58,10 +58,17 @@ numbers! {
         BiasType::None => 0,
         BiasType::Affine => 1,
     };
-    SensorType => i32, |v| match v {
-        SensorType::Accelerometer => 1,
-        SensorType::Gyro => 3,
-        SensorType::Torque => 5,
+    SensorType => i32, |v| v.code();
+    ObjType => i32, |v| v.code();
+    DynType => i32, |v| match v {
+        DynType::None => 0,
+        DynType::Integrator => 1,
+        DynType::Filter => 2,
+        DynType::FilterExact => 3,
+    };
+    GainType => i32, |v| match v {
+        GainType::Fixed => 0,
+        GainType::Affine => 1,
     };
 }
 

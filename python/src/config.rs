@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use babybench::Config;
 use babybench::config::{Example, KeyKind, KeyValue};
+use babybench::{Config, Limits};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
@@ -151,9 +151,10 @@ pub fn config_from_mapping<'py>(py: Python<'py>, mapping: &Bound<'py, PyMapping>
 }
 
 #[pyfunction]
-#[pyo3(signature = (text, file="configuration"))]
-pub fn config_from_yaml<'py>(py: Python<'py>, text: &str, file: &str) -> PyResult<Bound<'py, PyDict>> {
-    let config = Config::from_yaml(text, file).map_err(IntoException::into_exception)?;
+#[pyo3(signature = (text, file="configuration", folder=PathBuf::new()))]
+pub fn config_from_yaml<'py>(py: Python<'py>, text: &str, file: &str, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+    let config = Config::default().overlay_yaml_in(text, file, &folder, &Limits::default());
+    let config = config.map_err(IntoException::into_exception)?;
     to_dict(py, &config)
 }
 
@@ -176,7 +177,7 @@ pub fn config_keys(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         entry.set_item("section", key.section)?;
         entry.set_item("expected", key.kind.expected())?;
         entry.set_item("doc", key.doc)?;
-        if let KeyKind::Choice(names) | KeyKind::List(names) = key.kind {
+        if let KeyKind::Choice(names) | KeyKind::ChoiceOrFile { names, .. } | KeyKind::List(names) = key.kind {
             entry.set_item("choices", names)?;
         }
         keys.set_item(key.name, entry)?;

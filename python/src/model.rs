@@ -42,8 +42,9 @@ table! { ARRAYS, array, Arrays,
     eq_active0 eq_solref eq_solimp
     tendon_limited tendon_range tendon_margin tendon_solref_lim tendon_solimp_lim tendon_invweight0
     actuator_trnid actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange
-    actuator_gainprm actuator_biastype actuator_biasprm actuator_user
-    sensor_type sensor_objid sensor_adr
+    actuator_lengthrange actuator_dyntype actuator_dynprm actuator_actadr actuator_actlimited actuator_actrange actuator_actearly
+    actuator_gaintype actuator_gainprm actuator_biastype actuator_biasprm actuator_user
+    sensor_type sensor_objtype sensor_objid sensor_reftype sensor_refid sensor_adr sensor_cutoff sensor_noise
 }
 
 /// Returns the names of all elements, by kind.
@@ -72,6 +73,7 @@ pub fn options<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDic
         ("nq", model.nq),
         ("nv", model.nv),
         ("nu", model.nu()),
+        ("na", model.na),
         ("nbody", model.nbody()),
         ("njnt", model.njnt()),
         ("ngeom", model.ngeom()),

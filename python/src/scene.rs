@@ -91,6 +91,17 @@ pub fn model_extras<'py>(py: Python<'py>, blueprint: &Bound<'py, Blueprint>) -> 
                 row[10] = torquescale;
                 [1, body1 as i32, body2 as i32]
             }
+            EqualityKind::Connect {
+                body1,
+                body2,
+                anchor1,
+                anchor2,
+            } => {
+                row[..3].copy_from_slice(&anchor1);
+                row[3..6].copy_from_slice(&anchor2);
+                row[10] = 1.0;
+                [0, body1 as i32, body2 as i32]
+            }
             EqualityKind::Joint {
                 joint1,
                 joint2,

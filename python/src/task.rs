@@ -13,9 +13,10 @@ use crate::errors::IntoException;
 
 /// Puts what the reward of a task depends on beside goals into its information.
 pub fn add_terms(dict: &Bound<'_, PyDict>, env: &Env, details: bool) -> PyResult<()> {
-    match details && env.info().behavior.task().is_some() {
-        true => put_terms(dict, env.goal().terms),
-        false => Ok(()),
+    if details && env.info().behavior.task().is_some() {
+        put_terms(dict, env.goal().terms)
+    } else {
+        Ok(())
     }
 }
 

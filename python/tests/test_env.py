@@ -257,3 +257,40 @@ def test_muscles_and_servos_have_their_own_actions():
     for env in (muscles, servos):
         env.reset(seed=0)
         assert env.observation_space.contains(env.step(env.action_space.sample())[0])
+
+
+ROOM = """<mujoco>
+  <include file="mimo_settings.xml"/>
+  <include file="mimo_actuators.xml"/>
+  <worldbody>
+    <geom type="plane" size="2 2 0.1"/>
+    <body name="mimo_location" pos="0 0 0.1" euler="0 -90 0">
+      <freejoint/>
+      <include file="mimo.xml"/>
+    </body>
+    <body name="left_ffdistal" pos="0.5 0.5 0.1"><freejoint/><geom name="toy" size="0.05"/></body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_a_scene_may_be_a_room_of_ones_own(tmp_path, monkeypatch):
+    (tmp_path / "nursery").mkdir()
+    (tmp_path / "nursery" / "room.xml").write_text(ROOM)
+    config = tmp_path / "room.yml"
+    config.write_text("scene: nursery/room.xml\nvision_active: false\ntouch_scale: 3\n")
+    in_file = babybench.make(config)
+    monkeypatch.chdir(tmp_path)
+    by_key = babybench.make(SMALL, scene="nursery/room.xml")
+    bare = babybench.make(SMALL)
+    assert by_key.action_space == bare.action_space
+    assert by_key.observation_space == bare.observation_space
+    assert by_key.config["scene"] == "nursery/room.xml"
+    assert in_file.config["scene"] == str(tmp_path / "nursery" / "room.xml")
+    for env in (in_file, by_key):
+        observation, _ = env.reset(seed=0)
+        assert env.observation_space.contains(observation)
+        env.step(env.action_space.sample())
+    (tmp_path / "nursery" / "room.xml").write_text(ROOM.replace("mimo_settings", "mimo_setup"))
+    with pytest.raises(ValueError, match=r"room\.xml:2:3: .*mimo_setup\.xml.* does not exist"):
+        babybench.make(config)

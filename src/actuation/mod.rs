@@ -6,11 +6,16 @@
 //! | [`Muscle`] | 2: excitations in [0, 1] | 2 activities, 2 forces | the same motors, joints without springs |
 //! | [`Positional`] | 1: angle, rad | angle | position servos |
 //!
+//! Actions drive the actuators on MIMo's joints; those of other bodies in a scene are left at the control 0.
+//!
 //! Models work without an environment: [`Actuation::prepare`] a state once, then [`Actuation::set_action`] before the
 //! first physics step of an action and [`Actuation::substep`] before each further one. A model remembers nothing:
 //! activations, targets and forces are in the [`State`].
 
+#[cfg(feature = "internals")]
 pub mod curves;
+#[cfg(not(feature = "internals"))]
+pub(crate) mod curves;
 mod error;
 mod muscle;
 mod positional;
@@ -22,14 +27,18 @@ use crate::physics::State;
 use crate::spaces::BoxSpace;
 
 pub use error::ActuationError;
-pub use muscle::{Muscle, MuscleParams};
-pub use positional::Positional;
-pub use spring_damper::SpringDamper;
+internals!(use muscle::{Muscle, MuscleParams});
+internals!(use positional::Positional);
+internals!(use spring_damper::SpringDamper);
 
 /// Turns actions into controls of a scene's actuators. The functions depend on model and state alone.
 pub trait Actuation: Send + Sync {
     /// Returns the bounds of an action.
     fn action_space(&self) -> &BoxSpace;
+
+    /// Returns the actuators that an action drives, by id: those on MIMo's joints. An action has a number for each, or a block of
+    /// such numbers after another. The control of other actuators stays 0.
+    fn actuators(&self) -> &[usize];
 
     /// Returns the names of the components of an action: actuator and quantity.
     fn action_names(&self, model: &Model) -> Vec<String>;
@@ -72,15 +81,16 @@ pub fn build(model: &Model, config: &Config) -> Result<Box<dyn Actuation>, Actua
     })
 }
 
-/// Returns the name of each actuator with an ending.
-fn named(model: &Model, ending: &str) -> Vec<String> {
-    let names = model.actuator_name.iter();
+/// Returns the name of each of some actuators with an ending.
+fn named(model: &Model, actuators: &[usize], ending: &str) -> Vec<String> {
+    let names = actuators.iter().map(|&i| &model.actuator_name[i]);
     names.map(|n| format!("{n}{ending}")).collect()
 }
 
-/// Removes the values that muscles keep in a state.
-fn clear_muscles(state: &mut State) {
+/// Removes the values that muscles keep in a state, and lets the activations of the actuators rest.
+fn clear_muscles(model: &Model, state: &mut State) {
     for values in [&mut state.act, &mut state.muscle_force, &mut state.muscle_torque] {
         values.clear();
     }
+    state.act.resize(model.na, 0.0);
 }

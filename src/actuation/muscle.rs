@@ -4,7 +4,7 @@ mod params;
 
 use crate::actuation::{Actuation, ActuationError, named};
 use crate::config::Compat;
-use crate::mimo::MimoJoints;
+use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::Model;
 use crate::physics::State;
 use crate::spaces::BoxSpace;
@@ -37,6 +37,7 @@ fn activate(act: f64, target: f64, h: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct Muscle {
     space: BoxSpace,
+    actuators: Vec<usize>,
     params: Vec<MuscleParams>,
     joints: Vec<Joint>,
     compat: Compat,
@@ -50,23 +51,29 @@ struct Joint {
 }
 
 impl Muscle {
-    /// Builds the actuation for the motors of `model`, whose user data are the muscles' parameters.
+    /// Builds the actuation for the motors of MIMo in `model`, whose user data are the muscles' parameters.
     ///
     /// # Errors
     /// As [`MuscleParams::of_actuator`].
     pub fn new(model: &Model, compat: Compat) -> Result<Self, ActuationError> {
-        let n = model.nu();
-        let params: Vec<MuscleParams> = (0..n)
-            .map(|i| MuscleParams::of_actuator(model, i))
+        let actuators = MimoBodies::of(model).actuators();
+        let n = actuators.len();
+        let params: Vec<MuscleParams> = actuators
+            .iter()
+            .map(|&i| MuscleParams::of_actuator(model, i))
             .collect::<Result<_, _>>()?;
-        let joint = |&j: &usize| Joint {
-            qposadr: model.jnt_qposadr[j],
-            dofadr: model.jnt_dofadr[j],
+        let joint = |&i: &usize| {
+            let j = model.actuator_trnid[i];
+            Joint {
+                qposadr: model.jnt_qposadr[j],
+                dofadr: model.jnt_dofadr[j],
+            }
         };
         Ok(Self {
             space: BoxSpace::new(vec![0.0; 2 * n], vec![1.0; 2 * n]),
             params,
-            joints: model.actuator_trnid.iter().map(joint).collect(),
+            joints: actuators.iter().map(joint).collect(),
+            actuators,
             compat,
         })
     }
@@ -82,7 +89,9 @@ impl Muscle {
         for values in [&mut state.act, &mut state.actuator_target, &mut state.muscle_force] {
             values.resize(2 * n, 0.0);
         }
-        state.muscle_torque.resize(n, 0.0);
+        // one for each actuator of the scene; those that are not MIMo's have no muscles, and the control 0
+        let all = state.ctrl.len();
+        state.muscle_torque.resize(all, 0.0);
     }
 
     /// Computes `muscle_force` from `qpos, qvel, act`.
@@ -99,8 +108,8 @@ impl Muscle {
     /// Computes `muscle_torque` from `muscle_force`.
     fn update_torques(&self, state: &mut State) {
         let (force1, force2) = state.muscle_force.split_at(self.params.len());
-        for (i, (t, p)) in state.muscle_torque.iter_mut().zip(&self.params).enumerate() {
-            *t = p.torque([force1[i], force2[i]]);
+        for (k, (&i, p)) in self.actuators.iter().zip(&self.params).enumerate() {
+            state.muscle_torque[i] = p.torque([force1[k], force2[k]]);
         }
     }
 
@@ -113,7 +122,14 @@ impl Muscle {
         self.update_forces(state);
         self.update_torques(state);
         // controls scale the muscles' torques: the muscles pull in full
-        state.ctrl.fill(1.0);
+        self.set_controls(state, 1.0);
+    }
+
+    /// Sets the controls of MIMo's actuators.
+    fn set_controls(&self, state: &mut State, ctrl: f64) {
+        for &i in &self.actuators {
+            state.ctrl[i] = ctrl;
+        }
     }
 }
 
@@ -122,8 +138,13 @@ impl Actuation for Muscle {
         &self.space
     }
 
+    fn actuators(&self) -> &[usize] {
+        &self.actuators
+    }
+
     fn action_names(&self, model: &Model) -> Vec<String> {
-        [named(model, " muscle 1"), named(model, " muscle 2")].concat()
+        let block = |ending| named(model, &self.actuators, ending);
+        [" muscle 1", " muscle 2"].map(block).concat()
     }
 
     fn prepare(&self, model: &Model, state: &mut State) {
@@ -134,7 +155,9 @@ impl Actuation for Muscle {
             params.dof_damping[d] /= DAMPING_DIVISOR;
         }
         // motors' limits are not muscles'; theirs are in the isometric maxima
-        params.actuator_forcelimited.fill(false);
+        for &i in &self.actuators {
+            params.actuator_forcelimited[i] = false;
+        }
         self.make_room(state);
         state.act.fill(0.0);
         state.actuator_target.fill(0.0);
@@ -164,7 +187,10 @@ impl Actuation for Muscle {
         if pulls {
             self.update_torques(state);
         }
-        state.ctrl.fill(if pulls { 1.0 } else { 0.0 });
+        state.ctrl.fill(0.0);
+        if pulls {
+            self.set_controls(state, 1.0);
+        }
     }
 
     fn observation_len(&self) -> usize {
@@ -178,7 +204,7 @@ impl Actuation for Muscle {
             " muscle 1 force",
             " muscle 2 force",
         ];
-        endings.map(|ending| named(model, ending)).concat()
+        endings.map(|ending| named(model, &self.actuators, ending)).concat()
     }
 
     /// Writes activations, 0..1, then forces of muscle 1 of every actuator and of muscle 2, each in single precision

@@ -2,7 +2,8 @@
 
 use crate::actuation::{Actuation, ActuationError, clear_muscles, named};
 use crate::config::Compat;
-use crate::model::{BiasType, EqualityKind, Model};
+use crate::mimo::MimoBodies;
+use crate::model::{BiasType, DynType, EqualityKind, GainType, Model};
 use crate::physics::State;
 use crate::spaces::BoxSpace;
 
@@ -17,6 +18,7 @@ use crate::spaces::BoxSpace;
 #[derive(Clone, Debug)]
 pub struct Positional {
     space: BoxSpace,
+    actuators: Vec<usize>,
     holds: Vec<Hold>,
     compat: Compat,
 }
@@ -25,19 +27,26 @@ pub struct Positional {
 #[derive(Clone, Copy, Debug)]
 struct Hold {
     equality: usize,
+    /// By id.
     actuator: usize,
 }
 
 impl Positional {
-    /// Builds the actuation for the servos of `model`.
+    /// Builds the actuation for the servos of MIMo in `model`.
     ///
     /// # Errors
     /// An actuator that is not a servo, or whose joint has no range.
     pub fn new(model: &Model, compat: Compat) -> Result<Self, ActuationError> {
         let (mut low, mut high) = (Vec::new(), Vec::new());
-        for (i, &j) in model.actuator_trnid.iter().enumerate() {
+        let actuators = MimoBodies::of(model).actuators();
+        for &i in &actuators {
+            let j = model.actuator_trnid[i];
             let actuator = || model.actuator_name[i].clone();
-            if model.actuator_biastype[i] != BiasType::Affine {
+            let follows = model.actuator_biastype[i] == BiasType::Affine
+                && model.actuator_gaintype[i] == GainType::Fixed
+                && model.actuator_dyntype[i] == DynType::None
+                && model.actuator_gainprm[i][0] == -model.actuator_biasprm[i][1];
+            if !follows {
                 return Err(ActuationError::Kind {
                     actuator: actuator(),
                     model: "positional",
@@ -61,12 +70,13 @@ impl Positional {
         for (equality, kind) in model.eq_kind.iter().enumerate() {
             if let EqualityKind::Joint { joint1, joint2, .. } = kind {
                 let on = |j: usize| *joint1 == j || *joint2 == Some(j);
-                let of = |i: &usize| on(model.actuator_trnid[*i]);
-                holds.extend((0..model.nu()).filter(of).map(|actuator| Hold { equality, actuator }));
+                let held = actuators.iter().filter(|&&i| on(model.actuator_trnid[i]));
+                holds.extend(held.map(|&actuator| Hold { equality, actuator }));
             }
         }
         Ok(Self {
             space: BoxSpace::new(low, high),
+            actuators,
             holds,
             compat,
         })
@@ -74,7 +84,9 @@ impl Positional {
 
     /// Passes the targets to the servos, and 0 to those of held joints.
     fn update_ctrl(&self, state: &mut State) {
-        state.ctrl.clone_from(&state.actuator_target);
+        for (&i, &target) in self.actuators.iter().zip(&state.actuator_target) {
+            state.ctrl[i] = target;
+        }
         for hold in &self.holds {
             if state.params.eq_active[hold.equality] {
                 state.ctrl[hold.actuator] = 0.0;
@@ -97,12 +109,16 @@ impl Actuation for Positional {
         &self.space
     }
 
-    fn action_names(&self, model: &Model) -> Vec<String> {
-        named(model, " angle")
+    fn actuators(&self) -> &[usize] {
+        &self.actuators
     }
 
-    fn prepare(&self, _model: &Model, state: &mut State) {
-        clear_muscles(state);
+    fn action_names(&self, model: &Model) -> Vec<String> {
+        named(model, &self.actuators, " angle")
+    }
+
+    fn prepare(&self, model: &Model, state: &mut State) {
+        clear_muscles(model, state);
         state.actuator_target.clear();
         state.actuator_target.resize(self.space.len(), 0.0);
     }
@@ -123,6 +139,8 @@ impl Actuation for Positional {
     }
 
     fn reset(&self, _model: &Model, state: &mut State) {
+        state.act.fill(0.0);
+        state.ctrl.fill(0.0);
         self.target_zero(state);
     }
 
@@ -131,7 +149,7 @@ impl Actuation for Positional {
     }
 
     fn observation_names(&self, model: &Model) -> Vec<String> {
-        named(model, " angle")
+        named(model, &self.actuators, " angle")
     }
 
     /// Writes the clipped action, rad.

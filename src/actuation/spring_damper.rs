@@ -2,6 +2,7 @@
 
 use crate::actuation::{Actuation, clear_muscles, named};
 use crate::config::Compat;
+use crate::mimo::MimoBodies;
 use crate::model::Model;
 use crate::physics::State;
 use crate::spaces::BoxSpace;
@@ -13,20 +14,23 @@ use crate::spaces::BoxSpace;
 #[derive(Clone, Debug)]
 pub struct SpringDamper {
     space: BoxSpace,
+    actuators: Vec<usize>,
     compat: Compat,
 }
 
 impl SpringDamper {
-    /// Builds the actuation for the motors of `model`.
+    /// Builds the actuation for the motors of MIMo in `model`.
     pub fn new(model: &Model, compat: Compat) -> Self {
         let bounds = |i: usize| match compat {
             Compat::Api => [-1.0, 1.0],
             Compat::Reference => model.actuator_forcerange[i],
         };
-        let low = (0..model.nu()).map(|i| bounds(i)[0] as f32).collect();
-        let high = (0..model.nu()).map(|i| bounds(i)[1] as f32).collect();
+        let actuators = MimoBodies::of(model).actuators();
+        let low = actuators.iter().map(|&i| bounds(i)[0] as f32).collect();
+        let high = actuators.iter().map(|&i| bounds(i)[1] as f32).collect();
         Self {
             space: BoxSpace::new(low, high),
+            actuators,
             compat,
         }
     }
@@ -49,26 +53,32 @@ impl Actuation for SpringDamper {
         &self.space
     }
 
-    fn action_names(&self, model: &Model) -> Vec<String> {
-        named(model, " control")
+    fn actuators(&self) -> &[usize] {
+        &self.actuators
     }
 
-    fn prepare(&self, _model: &Model, state: &mut State) {
-        clear_muscles(state);
+    fn action_names(&self, model: &Model) -> Vec<String> {
+        named(model, &self.actuators, " control")
+    }
+
+    fn prepare(&self, model: &Model, state: &mut State) {
+        clear_muscles(model, state);
         state.actuator_target.clear();
     }
 
     fn set_action(&self, _model: &Model, state: &mut State, action: &[f32]) {
-        for (i, (ctrl, &a)) in state.ctrl.iter_mut().zip(action).enumerate() {
-            *ctrl = f64::from(self.space.clip(i, a));
+        for (k, (&i, &a)) in self.actuators.iter().zip(action).enumerate() {
+            state.ctrl[i] = f64::from(self.space.clip(k, a));
         }
     }
 
     fn substep(&self, _model: &Model, _state: &mut State) {}
 
     fn reset(&self, _model: &Model, state: &mut State) {
-        for (i, ctrl) in state.ctrl.iter_mut().enumerate() {
-            *ctrl = f64::from(self.space.clip(i, 0.0));
+        state.act.fill(0.0);
+        state.ctrl.fill(0.0);
+        for (k, &i) in self.actuators.iter().enumerate() {
+            state.ctrl[i] = f64::from(self.space.clip(k, 0.0));
         }
     }
 
@@ -77,14 +87,16 @@ impl Actuation for SpringDamper {
     }
 
     fn observation_names(&self, model: &Model) -> Vec<String> {
-        [named(model, " control"), named(model, " torque")].concat()
+        [" control", " torque"]
+            .map(|ending| named(model, &self.actuators, ending))
+            .concat()
     }
 
     /// Writes controls, then torques (N m): gear times the control within the motor's limits.
     fn observe(&self, model: &Model, state: &State, out: &mut [f64]) {
-        let (controls, torques) = out.split_at_mut(model.nu());
-        controls.copy_from_slice(&state.ctrl);
-        for (i, t) in torques.iter_mut().enumerate() {
+        let (controls, torques) = out.split_at_mut(self.actuators.len());
+        for ((control, t), &i) in controls.iter_mut().zip(torques).zip(&self.actuators) {
+            *control = state.ctrl[i];
             *t = state.params.actuator_gear[i] * self.effective(model, state, i);
         }
     }
@@ -92,14 +104,16 @@ impl Actuation for SpringDamper {
     /// Returns `sum |u^2 T| / (n sum T)` over the controls `u` within the motors' limits and the gears `T`.
     fn cost(&self, model: &Model, state: &State) -> f64 {
         let gears = &state.params.actuator_gear;
-        let total: f64 = gears.iter().sum();
-        let spent: f64 = (0..model.nu())
-            .map(|i| (self.effective(model, state, i).powi(2) * gears[i]).abs())
+        let total: f64 = self.actuators.iter().map(|&i| gears[i]).sum();
+        let spent: f64 = self
+            .actuators
+            .iter()
+            .map(|&i| (self.effective(model, state, i).powi(2) * gears[i]).abs())
             .sum();
         if total == 0.0 {
             0.0
         } else {
-            spent / (model.nu() as f64 * total)
+            spent / (self.actuators.len() as f64 * total)
         }
     }
 }

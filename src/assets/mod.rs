@@ -42,6 +42,17 @@ pub enum AssetError {
         /// The limit, bytes.
         limit: u64,
     },
+    /// The file lies outside of the folder whose files a document may name.
+    #[error("file \"{}\" lies outside of the folder of the document, \"{}\"; move it there", quoted(.path), quoted(.folder))]
+    Outside {
+        /// The path.
+        path: String,
+        /// The folder.
+        folder: String,
+    },
+    /// A file of one's own has the name of one of the library's, so that the name means both.
+    #[error("file \"{}\" has the name of a file of the library; rename yours", quoted(.0))]
+    Shadowed(String),
     /// The file system failed.
     #[error("file \"{}\": {message}", quoted(.path))]
     Io {
@@ -189,6 +200,16 @@ impl AssetSource for Overlay {
 
     fn contains(&self, path: &str) -> bool {
         self.layers.iter().any(|layer| layer.contains(path))
+    }
+}
+
+impl<A: AssetSource + ?Sized> AssetSource for &A {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        (**self).read(path)
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        (**self).contains(path)
     }
 }
 

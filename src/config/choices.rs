@@ -11,6 +11,7 @@ macro_rules! choices {
             /// Every value, in the order of the documentation.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
             /// The names of [`Self::ALL`] in a configuration file.
+            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub const NAMES: &'static [&'static str] = &[$($text),*];
 
             /// Returns the name in a configuration file.
@@ -25,6 +26,7 @@ macro_rules! choices {
         }
 
         #[cfg(feature = "serde")]
+        #[automatically_derived]
         impl serde::Serialize for $name {
             /// Serializes the name.
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -33,6 +35,7 @@ macro_rules! choices {
         }
 
         #[cfg(feature = "serde")]
+        #[automatically_derived]
         impl<'de> serde::Deserialize<'de> for $name {
             /// Deserializes a value from its name.
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -41,6 +44,7 @@ macro_rules! choices {
             }
         }
 
+        #[automatically_derived]
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.write_str(self.name())
@@ -80,19 +84,6 @@ choices! {
         Supine = "supine",
         /// On his belly.
         Prone = "prone",
-    }
-}
-
-choices! {
-    /// The surroundings of MIMo (`scene`).
-    Scene {
-        /// The bare floor; MIMo is free.
-        #[default]
-        Base = "base",
-        /// The mattress of a crib, with MIMo lying on it, the lower body fixed.
-        Crib = "crib",
-        /// Loose cubes and balls, with MIMo sitting among them.
-        Cubes = "cubes",
     }
 }
 

@@ -1,11 +1,12 @@
 //! Keys, and how the table of them is read.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, Scene, StartingPosition, TouchFunction,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, StartingPosition, TouchFunction,
     TouchResponse, VisionOutput,
 };
 use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
+use super::scene::Scene;
 use super::table::{Config, KEYS};
 
 /// A field of [`Config`] that converts to and from a [`KeyValue`].
@@ -38,7 +39,6 @@ field! {
     f64, Number, v => Some(*v), |f| *f;
     String, Text, v => Some(v.clone()), |f| f.clone();
     Behavior, Choice, v => Self::from_name(v), |f| f.name();
-    Scene, Choice, v => Self::from_name(v), |f| f.name();
     StartingPosition, Choice, v => Self::from_name(v), |f| f.name();
     ActuationModel, Choice, v => Self::from_name(v), |f| f.name();
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();
@@ -48,6 +48,25 @@ field! {
     RendererKind, Choice, v => Self::from_name(v), |f| f.name();
     DelayUnit, Choice, v => Self::from_name(v), |f| f.name();
     VisionOutputs, List, v => Self::from_names(v), |f| f.iter().map(VisionOutput::name).collect();
+}
+
+impl Field for Scene {
+    fn to_value(&self) -> KeyValue {
+        match self {
+            Self::File(path) => KeyValue::Text(path.clone()),
+            known => Self::NAMES
+                .iter()
+                .find(|name| **name == known.name())
+                .map_or(KeyValue::None, |name| KeyValue::Choice(name)),
+        }
+    }
+    fn from_value(value: &KeyValue) -> Option<Self> {
+        match value {
+            KeyValue::Choice(name) => Self::from_name(name),
+            KeyValue::Text(path) => Some(Self::File(path.clone())),
+            _ => None,
+        }
+    }
 }
 
 impl Field for Option<f64> {
@@ -126,6 +145,7 @@ macro_rules! config {
             )*
         }
 
+        #[automatically_derived]
         impl Default for Config {
             fn default() -> Self {
                 Self {
@@ -145,6 +165,7 @@ macro_rules! config {
                 $(#[doc = $field_doc] pub $field: $field_type,)*
             }
 
+            #[automatically_derived]
             impl Default for $Group {
                 fn default() -> Self {
                     Self { $($field: $field_default,)* }

@@ -71,6 +71,13 @@ pub enum KeyKind {
     },
     /// One of the given names.
     Choice(&'static [&'static str]),
+    /// One of the given names, or the path of a file.
+    ChoiceOrFile {
+        /// The names.
+        names: &'static [&'static str],
+        /// How the path ends.
+        ending: &'static str,
+    },
     /// A list of one or more of the given names, each once.
     List(&'static [&'static str]),
     /// Text of at least one character, without control characters.
@@ -97,6 +104,12 @@ impl KeyKind {
             Self::Number { min, max } => format!("a number from {min} to {max}"),
             Self::NoneOr { min, max } => format!("none or a number from {min} to {max}"),
             Self::Choice(names) => format!("one of {}", names.join(", ")),
+            Self::ChoiceOrFile { names, ending } => {
+                format!(
+                    "one of {}, or the path of a file that ends in {ending}",
+                    names.join(", ")
+                )
+            }
             Self::List(names) => format!("a list in brackets of one or more of {}, each once", names.join(", ")),
             Self::Text => {
                 "text, at least one character and no control characters (in quotes if it looks like a number, a \
@@ -123,6 +136,8 @@ impl KeyKind {
             Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) | Self::List(_) => return Err(Misfit::WrongType),
             Self::Number { .. } | Self::NoneOr { .. } => return Err(Misfit::WrongType),
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
+            Self::ChoiceOrFile { ending, .. } if text.ends_with(ending) => KeyValue::Text(text.to_string()),
+            Self::ChoiceOrFile { names, .. } => KeyValue::Choice(named(text, names)?),
             Self::Text if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) => {
                 return Err(Misfit::WrongType);
             }
@@ -160,6 +175,10 @@ impl KeyKind {
             (Self::List(names), KeyValue::List(list)) => {
                 let once = |(at, name): (usize, &&str)| names.contains(name) && !list[..at].contains(name);
                 !list.is_empty() && list.iter().enumerate().all(once)
+            }
+            (Self::ChoiceOrFile { names, .. }, KeyValue::Choice(name)) => names.contains(name),
+            (Self::ChoiceOrFile { ending, .. }, KeyValue::Text(path)) => {
+                path.ends_with(ending) && !path.chars().any(char::is_control)
             }
             (Self::Text, KeyValue::Text(text)) => !text.is_empty() && !text.chars().any(char::is_control),
             _ => return Err(Misfit::WrongType),

@@ -5,7 +5,8 @@
 //! YAML 1.1's booleans (`True`, `yes`, `on` ...) are accepted as PyYAML accepts them; anchors, aliases and tags are not.
 //!
 //! ```
-//! use babybench::config::{Behavior, Config, Scene};
+//! use babybench::config::{Behavior, Scene};
+//! use babybench::Config;
 //!
 //! let config = Config::from_yaml("behavior: self_touch\nscene: crib\ntouch_eyes: True\n", "example.yml")?;
 //! assert_eq!((config.behavior, config.scene), (Behavior::SelfTouch, Scene::Crib));
@@ -28,26 +29,29 @@ mod keys;
 mod kinds;
 mod outputs;
 mod parts;
+mod scene;
 mod senses;
 #[cfg(feature = "serde")]
 mod serial;
-mod table;
+pub(crate) mod table;
 mod yaml;
 
 #[cfg(test)]
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, Scene, StartingPosition, TouchFunction,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, StartingPosition, TouchFunction,
     TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
-pub use examples::Example;
-pub use keys::Key;
-pub use kinds::{KeyKind, KeyValue};
+internals!(use examples::Example);
+internals!(use keys::Key);
+internals!(use kinds::{KeyKind, KeyValue});
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
-pub use table::{Config, Delays, EyeOptions, MAX_AGE, Measurements, NoiseLevels, PainOptions};
+pub use scene::Scene;
+internals!(use table::Config);
+pub use table::{Delays, EyeOptions, MAX_AGE, Measurements, NoiseLevels, PainOptions};
 
 use std::path::Path;
 
@@ -55,7 +59,7 @@ use crate::files;
 use crate::limits::Limits;
 
 impl Config {
-    /// Reads a configuration; `file_name` only names the file in errors.
+    /// Reads a configuration; `file_name` only names the file in errors, and the path of a scene starts at the working directory.
     ///
     /// # Errors
     /// Returns the first fault of the text, see [`ConfigError`].
@@ -66,7 +70,8 @@ impl Config {
     /// Reads a configuration whose missing keys have the values of `self` instead of the documented defaults.
     ///
     /// ```
-    /// use babybench::config::{Compat, Config};
+    /// use babybench::config::Compat;
+    /// use babybench::Config;
     ///
     /// let base = Config { compat: Compat::Reference, ..Config::default() };
     /// let config = base.overlay_yaml("touch_function: normal_force\n", "recorded.yml")?;
@@ -84,7 +89,22 @@ impl Config {
     ///
     /// # Errors
     /// Fails like [`Config::from_yaml`].
-    pub fn overlay_yaml_with(mut self, text: &str, file_name: &str, limits: &Limits) -> Result<Self, ConfigError> {
+    pub fn overlay_yaml_with(self, text: &str, file_name: &str, limits: &Limits) -> Result<Self, ConfigError> {
+        self.overlay_yaml_in(text, file_name, Path::new(""), limits)
+    }
+
+    /// Reads a configuration as [`Config::overlay_yaml_with`] does; the path of a scene in it starts at `folder`, as if the text were a
+    /// file there.
+    ///
+    /// # Errors
+    /// Fails like [`Config::from_yaml`], and if the name of the folder is needed and is not UTF-8.
+    pub fn overlay_yaml_in(
+        mut self,
+        text: &str,
+        file_name: &str,
+        folder: &Path,
+        limits: &Limits,
+    ) -> Result<Self, ConfigError> {
         let limit = limits.config_bytes;
         if text.len() > limit {
             let location = Location {
@@ -102,11 +122,26 @@ impl Config {
             let index = table::KEYS.iter().position(|key| key.name == name)?;
             positions[index]
         };
+        if let Some(given) = position("scene") {
+            let Some(scene) = self.scene.starting_at(folder) else {
+                return Err(ConfigError::Conflict {
+                    location: Location {
+                        file: file_name.to_string(),
+                        position: Some(given),
+                    },
+                    key: "scene",
+                    value: self.scene.to_string(),
+                    reason: "the folder of the configuration, where it starts, has a name that is not UTF-8; rename the folder"
+                        .to_string(),
+                });
+            };
+            self.scene = scene;
+        }
         self.check(file_name, position)?;
         Ok(self)
     }
 
-    /// Reads a configuration file.
+    /// Reads a configuration file. The path of a scene in it starts at the file's folder.
     ///
     /// # Errors
     /// Fails like [`Config::from_yaml`], and if the file cannot be read or is not UTF-8.
@@ -138,7 +173,10 @@ impl Config {
             Err(source) => return Err(ConfigError::Read { file, source }),
         };
         match std::str::from_utf8(&bytes) {
-            Ok(text) => self.overlay_yaml_with(text, &file, limits),
+            Ok(text) => {
+                let folder = path.as_ref().parent().unwrap_or(Path::new(""));
+                self.overlay_yaml_in(text, &file, folder, limits)
+            }
             Err(error) => {
                 let good = &bytes[..error.valid_up_to()];
                 let line = 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32;
@@ -168,6 +206,7 @@ impl Config {
             }
             let options = match key.kind {
                 KeyKind::Choice(names) | KeyKind::List(names) => format!(" Options: {}.", names.join(", ")),
+                KeyKind::ChoiceOrFile { .. } => format!(" Options: {}.", key.kind.expected()),
                 _ => String::new(),
             };
             let (doc, default) = (key.doc, key.default_value().to_yaml());
@@ -178,6 +217,7 @@ impl Config {
     }
 
     /// Returns every key with what it accepts and means, in the order of [`Config::to_yaml`].
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn keys() -> &'static [Key] {
         table::KEYS
     }
@@ -185,7 +225,8 @@ impl Config {
     /// Returns the configuration that a file with this behavior alone has: a task has defaults of its own.
     ///
     /// ```
-    /// use babybench::config::{Behavior, Config};
+    /// use babybench::config::Behavior;
+    /// use babybench::Config;
     ///
     /// let reach = Config::of(Behavior::Reach);
     /// assert_eq!((reach.frame_skip, reach.vision_active), (2, false));

@@ -5,7 +5,8 @@ use super::choices::VisionOutput;
 /// A set of images of each eye (`vision_outputs`); a list in a file.
 ///
 /// ```
-/// use babybench::config::{Config, VisionOutput, VisionOutputs};
+/// use babybench::config::{VisionOutput, VisionOutputs};
+/// use babybench::Config;
 ///
 /// let config = Config::from_yaml("vision_outputs: [rgb, depth]", "example.yml")?;
 /// assert_eq!(config.vision_outputs, VisionOutputs::new([VisionOutput::Depth, VisionOutput::Rgb]));

@@ -2,13 +2,14 @@
 //! reading, writing, ranges and documentation all follow from it.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, Scene, StartingPosition, TouchFunction,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, StartingPosition, TouchFunction,
     TouchResponse, VisionOutput,
 };
 use super::keys::{Field, Key, config};
 use super::kinds::KeyKind;
 use super::outputs::VisionOutputs;
 use super::parts::BodyParts;
+use super::scene::Scene;
 use crate::spaces::MAX_IMAGE_SIZE;
 
 /// Greatest age that MIMo can have, months.
@@ -18,6 +19,10 @@ const fn whole_from_1_to(max: u64) -> KeyKind {
     KeyKind::Whole { min: 1, max }
 }
 
+const SCENE: KeyKind = KeyKind::ChoiceOrFile {
+    names: Scene::NAMES,
+    ending: Scene::ENDING,
+};
 const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
 const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
 const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
@@ -54,7 +59,7 @@ config! {
     "General" {
         save_dir: String = "results/test_installation".to_string(), Text, "The folder of logs, videos and results.";
         behavior: Behavior = Behavior::None, Choice(Behavior::NAMES), "The behavior that is trained and scored, or a task with a goal and a reward, whose other keys have defaults of their own." + "It also decides MIMo's version.";
-        scene: Scene = Scene::Base, Choice(Scene::NAMES), "MIMo's surroundings.";
+        scene: Scene = Scene::Base, SCENE, "MIMo's surroundings: a scene of the library, or an MJCF document of one's own that includes him, by its path from the configuration file's folder.";
         max_episode_steps: u64 = 1000, COUNT, "Number of steps after which an episode is truncated.";
         frame_skip: u32 = 1, FRAMES, "Physics steps of 5 ms per action.";
         render_size: u32 = 480, PIXELS, "Width and height of rendered images, pixels.";

@@ -61,8 +61,9 @@ impl Env {
     /// the goals of a step it is the reward of the step, to the bit.
     ///
     /// ```
-    /// use babybench::config::{Behavior, Config};
+    /// use babybench::config::Behavior;
     /// use babybench::{Env, env::Goal};
+    /// use babybench::Config;
     ///
     /// let mut env = Env::new(Config::of(Behavior::Standup))?;
     /// env.reset(Some(0))?;

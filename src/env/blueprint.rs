@@ -9,12 +9,12 @@ use crate::env::pipeline::effective;
 use crate::env::snapshot::fingerprint;
 use crate::env::task::{TaskScene, TaskSizes, of_config};
 use crate::env::{Env, EnvError, Task};
-use crate::mimo::{build_scene, embedded, lock};
+use crate::mimo::{build_scene, embedded, lock, scene_assets};
 use crate::model::Model;
 use crate::physics::{Engine, Params, SoftModel, SoftOptions};
 #[cfg(feature = "rapier")]
 use crate::physics::{RapierModel, RapierOptions};
-use crate::render::{RenderError, Renderer, SharedGpu, Visual, open_gpu};
+use crate::render::{RenderError, Renderer, Scenery, SharedGpu, open_gpu};
 use crate::sensors::SkinLayout;
 use crate::spaces::NumpyRng;
 
@@ -49,10 +49,13 @@ pub struct Blueprint {
 /// What belongs to the bodies of a scene, whatever moves them.
 #[derive(Clone)]
 struct Surface {
+    /// What the caller gave.
+    given: Arc<dyn AssetSource>,
+    /// The same with the files of a scene of one's own.
     assets: Arc<dyn AssetSource>,
     skin: Option<Arc<SkinLayout>>,
     /// Meshes and textures, made when they are first needed.
-    visual: Arc<OnceLock<Arc<Visual>>>,
+    scenery: Arc<OnceLock<Arc<Scenery>>>,
     /// The renderer on a GPU, opened when it is first needed.
     gpu: Arc<OnceLock<SharedGpu>>,
 }
@@ -88,7 +91,8 @@ impl std::fmt::Debug for Surface {
 pub struct BlueprintOptions {
     /// The task; `None` for that of the key `behavior`, which is not used otherwise.
     pub task: Option<Box<dyn Task>>,
-    /// Where documents and textures come from, laid out like the embedded ones, which are the default.
+    /// Where documents and textures come from, laid out like the embedded ones, which are the default. A scene of one's own
+    /// ([`Scene::File`](crate::config::Scene::File)) is looked for here first; this may then hold its files alone.
     pub assets: Arc<dyn AssetSource>,
 }
 
@@ -174,22 +178,24 @@ impl Blueprint {
         if config.engine == EngineKind::Rapier && cfg!(not(feature = "rapier")) {
             return Err(EnvError::NoRapier);
         }
-        let assets = options.assets;
+        let given = options.assets;
         let task = options.task.unwrap_or_else(|| of_config(&config));
-        let model = Arc::new(task_model(&config, &*task, &*assets)?);
-        let skin = match config.touch_enabled() {
-            true => Some(Arc::new(make_skin(&model, &config, &*task, &*assets)?)),
-            false => None,
+        let model = Arc::new(task_model(&config, &*task, &*given)?);
+        let skin = if config.touch_enabled() {
+            Some(Arc::new(make_skin(&model, &config, &*task, &*given)?))
+        } else {
+            None
         };
         let surface = Surface {
-            assets,
+            assets: scene_assets(&config, given.clone())?,
+            given,
             skin,
-            visual: Arc::default(),
+            scenery: Arc::default(),
             gpu: Arc::default(),
         };
         let blueprint = Self::settled(config, task, model, surface)?;
         if blueprint.config.vision_active {
-            blueprint.visual()?;
+            blueprint.scenery()?;
         }
         Ok(blueprint)
     }
@@ -229,9 +235,14 @@ impl Blueprint {
         let model = if servos(self.config.actuation_model) == servos(actuation_model) {
             self.model.clone()
         } else {
-            Arc::new(task_model(&config, &*self.task, self.assets())?)
+            Arc::new(task_model(&config, &*self.task, &*self.surface.given)?)
         };
-        Self::settled(config, self.task.clone(), model, self.surface.clone())
+        let surface = Surface {
+            // the actuators of a scene of one's own are among them
+            assets: scene_assets(&config, self.surface.given.clone())?,
+            ..self.surface.clone()
+        };
+        Self::settled(config, self.task.clone(), model, surface)
     }
 
     /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
@@ -248,12 +259,12 @@ impl Blueprint {
         };
         let options = BlueprintOptions {
             task: Some(self.task.clone()),
-            assets: self.surface.assets.clone(),
+            assets: self.surface.given.clone(),
         };
         Self::with(config, options)
     }
 
-    /// Returns the assets that the scene is built from.
+    /// Returns the assets that the scene is built from; see [`scene_assets`].
     pub fn assets(&self) -> &dyn AssetSource {
         &*self.surface.assets
     }
@@ -312,6 +323,7 @@ impl Blueprint {
     }
 
     /// Returns the parameters after a reset: the model's, with the configured locks active and the changes of the actuation model.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn params(&self) -> &Params {
         &self.params
     }
@@ -325,12 +337,12 @@ impl Blueprint {
     ///
     /// # Errors
     /// Textures that cannot be read.
-    pub fn visual(&self) -> Result<Arc<Visual>, EnvError> {
-        let shared = &self.surface.visual;
-        if let Some(visual) = shared.get() {
-            return Ok(visual.clone());
+    pub fn scenery(&self) -> Result<Arc<Scenery>, EnvError> {
+        let shared = &self.surface.scenery;
+        if let Some(scenery) = shared.get() {
+            return Ok(scenery.clone());
         }
-        let made = Arc::new(Visual::new(&self.model, self.assets())?);
+        let made = Arc::new(Scenery::new(&self.model, self.assets())?);
         Ok(shared.get_or_init(|| made).clone())
     }
 
@@ -340,7 +352,7 @@ impl Blueprint {
     /// Textures that cannot be read; for `renderer: wgpu` no graphics adapter, a build without it, a browser.
     pub fn renderer(&self) -> Result<Renderer, EnvError> {
         match self.config.renderer {
-            RendererKind::Cpu => Ok(Renderer::cpu(self.visual()?)),
+            RendererKind::Cpu => Ok(Renderer::cpu(self.scenery()?)),
             RendererKind::Wgpu => Ok(Renderer::gpu(self.gpu()?)),
         }
     }
@@ -350,11 +362,12 @@ impl Blueprint {
     ///
     /// # Errors
     /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
         if let Some(gpu) = self.surface.gpu.get() {
             return Ok(gpu.clone());
         }
-        let opened = open_gpu(self.visual()?)?;
+        let opened = open_gpu(self.scenery()?)?;
         Ok(self.surface.gpu.get_or_init(|| opened).clone())
     }
 }

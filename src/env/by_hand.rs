@@ -138,15 +138,17 @@ impl<'a> Parts<'a> {
         self.env.set_position(qpos, qvel)
     }
 
-    /// Sets the activations of the muscles ([`act`](crate::physics::State::act)), in the order of the action, each clipped to [0, 1].
+    /// Sets the activations ([`act`](crate::physics::State::act)). Those of MIMo's muscles are in the order of the action, each clipped
+    /// to [0, 1].
     ///
     /// # Errors
-    /// A wrong length (models without muscles have none) or numbers that are not finite; nothing is changed then.
+    /// A wrong length (motors and servos have none) or numbers that are not finite; nothing is changed then.
     pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
-        let act = &mut self.env.physics.state.act;
-        check_vector("activity", activity, act.len())?;
-        for (act, &new) in act.iter_mut().zip(activity) {
-            *act = new.clamp(0.0, 1.0);
+        let state = &mut self.env.physics.state;
+        check_vector("activity", activity, state.act.len())?;
+        let muscles = !state.muscle_torque.is_empty();
+        for (act, &new) in state.act.iter_mut().zip(activity) {
+            *act = if muscles { new.clamp(0.0, 1.0) } else { new };
         }
         Ok(())
     }

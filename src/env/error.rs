@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::actuation::ActuationError;
 use crate::config::ConfigError;
 use crate::env::SnapshotError;
-use crate::mimo::{GrowthError, LockError, SceneError};
+use crate::mimo::{GrowthError, LockError, RoomError, SceneError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
 #[cfg(feature = "rapier")]
@@ -24,6 +24,9 @@ pub enum EnvError {
     /// The assets cannot be loaded.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
+    /// A scene of one's own is not as it must be.
+    #[error(transparent)]
+    Room(#[from] RoomError),
     /// MIMo cannot grow to the age of the configuration.
     #[error(transparent)]
     Growth(#[from] GrowthError),
@@ -108,6 +111,7 @@ impl From<SceneError> for EnvError {
     fn from(error: SceneError) -> Self {
         match error {
             SceneError::Load(error) => error.into(),
+            SceneError::Room(error) => error.into(),
             SceneError::Growth(error) => error.into(),
             SceneError::Engine(error) => error.into(),
         }

@@ -41,8 +41,9 @@ impl BehaviorInfo {
     /// Iterates over keys and values, in the order of the reference.
     ///
     /// ```
-    /// use babybench::config::{Behavior, Config};
+    /// use babybench::config::Behavior;
     /// use babybench::{Env, env::InfoValue};
+    /// use babybench::Config;
     ///
     /// let mut env = Env::new(Config::of(Behavior::Standup))?;
     /// env.reset(Some(0))?;

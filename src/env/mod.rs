@@ -6,11 +6,11 @@ mod age;
 mod blueprint;
 mod by_hand;
 mod details;
-mod error;
+pub(crate) mod error;
 mod eyes;
 mod fields;
-mod info;
-mod observation;
+pub(crate) mod info;
+pub(crate) mod observation;
 mod outcome;
 mod physics;
 mod pipeline;
@@ -28,23 +28,25 @@ mod viewer;
 pub use blueprint::{Blueprint, BlueprintOptions};
 pub use by_hand::Parts;
 pub use details::{InfoDetails, PartNames};
-pub use error::EnvError;
+internals!(use error::EnvError);
 pub use eyes::draw_eyes;
 pub use fields::{InfoField, InfoValue};
 #[cfg(feature = "eval")]
 pub(crate) use fields::{InfoSource, PARTS, STEPS};
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
-pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Info, PerEyeAndHand, PerHand, TaskInfo};
-pub use observation::{Observation, Step};
+internals!(use info::Info);
+pub use info::{BehaviorInfo, EYE_HAND_PAIRS, PerEyeAndHand, PerHand, TaskInfo};
+internals!(use observation::{Observation, Step});
 #[cfg(feature = "eval")]
 pub(crate) use outcome::reports_outcome;
 pub use senses::Senses;
 pub use sensing::SensesMut;
 #[cfg(feature = "serde")]
-pub use serial::Detailed;
-pub use snapshot::{Snapshot, SnapshotError, SnapshotInfo};
-pub use stage::{EnvProbe, EnvStage};
+internals!(use serial::Detailed);
+pub use snapshot::{Snapshot, SnapshotError};
+internals!(use snapshot::SnapshotInfo);
+internals!(use stage::{EnvProbe, EnvStage});
 pub use task::{
     CloneTask, Goal, GoalError, Outcome, Task, TaskDocument, TaskEvent, TaskScene, TaskSizes, TaskView, Verdict,
 };
@@ -321,8 +323,8 @@ impl Env {
     /// the configuration asks for can be moved and taken off too.
     ///
     /// ```
-    /// use babybench::config::{Config, Part};
-    /// use babybench::Env;
+    /// use babybench::config::Part;
+    /// use babybench::{Config, Env};
     ///
     /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
     /// env.reset(Some(0))?;
@@ -453,8 +455,9 @@ impl Env {
             });
         }
         if let Some((index, &value)) = action.iter().enumerate().find(|(_, a)| !a.is_finite()) {
-            let names = &self.model().actuator_name;
-            let actuator = names.get(index % names.len().max(1)).cloned().unwrap_or_default();
+            let driven = self.actuation.actuators();
+            let id = driven.get(index % driven.len().max(1));
+            let actuator = id.map(|&id| self.model().actuator_name[id].clone()).unwrap_or_default();
             return Err(EnvError::ActionNotFinite { index, actuator, value });
         }
         Ok(())

@@ -244,17 +244,19 @@ impl Senses {
 
     /// Returns touch as it was observed last, if it is.
     pub(super) fn touch_values(&self) -> Option<&SkinValues> {
-        match self.pipeline.changes(Sense::Touch) {
-            true => Some(&self.touch_values),
-            false => self.touch.as_ref().map(Touch::felt),
+        if self.pipeline.changes(Sense::Touch) {
+            Some(&self.touch_values)
+        } else {
+            self.touch.as_ref().map(Touch::felt)
         }
     }
 
     /// Returns pain as it was observed last, if it is.
     pub(super) fn pain_values(&self) -> Option<&SkinValues> {
-        match self.pipeline.changes(Sense::Pain) {
-            true => Some(&self.pain_values),
-            false => self.pain.as_ref().map(Pain::felt),
+        if self.pipeline.changes(Sense::Pain) {
+            Some(&self.pain_values)
+        } else {
+            self.pain.as_ref().map(Pain::felt)
         }
     }
 

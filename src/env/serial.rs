@@ -27,7 +27,7 @@ impl Info {
     /// Returns one line of JSON with the keys of the reference, as Python's `json.dumps` separates them.
     ///
     /// ```
-    /// use babybench::env::Info;
+    /// use babybench::Info;
     ///
     /// assert_eq!(Info::default().to_json(), "{\"steps\": 0}");
     /// ```
@@ -73,8 +73,10 @@ impl Serialize for InfoValue<'_> {
 
 /// An [`Info`] together with details, in one flat map: behavior, details, steps.
 ///
-/// ```
-/// use babybench::env::{Detailed, Info};
+#[cfg_attr(feature = "internals", doc = "```")]
+#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+/// use babybench::env::Detailed;
+/// use babybench::Info;
 ///
 /// let info = Info { steps: 3, ..Info::default() };
 /// let detailed = Detailed { info: &info, details: Some(&info.details) };

@@ -304,9 +304,10 @@ impl InfoSource for Counted<'_, '_> {
 
     fn number(&mut self, key: &'static str) -> Result<f64, SnapshotError> {
         let number = f64::from_bits(self.count(key)?);
-        match number.is_finite() {
-            true => Ok(number),
-            false => Err(damaged("a number is not finite")),
+        if number.is_finite() {
+            Ok(number)
+        } else {
+            Err(damaged("a number is not finite"))
         }
     }
 }

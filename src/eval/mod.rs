@@ -40,10 +40,16 @@
 
 mod episodes;
 mod evaluation;
+#[cfg(feature = "internals")]
 pub mod film;
+#[cfg(not(feature = "internals"))]
+pub(crate) mod film;
 mod scores;
 
 pub use episodes::{EpisodeError, Plan, run_episodes};
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
 pub use film::{Film, FilmError, RoomFilm};
-pub use scores::{MAX_EPISODES, Score, ScoreError, ScoreParts, Touchables, steps};
+pub use scores::{Score, ScoreError, ScoreParts, Touchables};
+internals!(use scores::{MAX_EPISODES, steps});
+
+pub use crate::formats::avi::DEFAULT_FPS;

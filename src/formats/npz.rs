@@ -3,7 +3,8 @@
 //! Reading trusts nothing: a size is checked against what the file holds before it is used, and no array may take more
 //! than [`Limits::npz_array_bytes`](crate::Limits::npz_array_bytes). Writing is deterministic: the same arrays in the same order give the same bytes.
 //!
-//! ```
+#![cfg_attr(feature = "internals", doc = "```")]
+#![cfg_attr(not(feature = "internals"), doc = "```ignore")]
 //! use babybench::formats::npz::{Npz, NpzWriter};
 //!
 //! let mut writer = NpzWriter::new();

@@ -50,6 +50,7 @@ embed![
     "babybench/selfbody.xml",
     "babybench/senses_v1.xml",
     "babybench/senses_v2.xml",
+    "babybench/settings.xml",
     "babybench/standup.xml",
     "babybench/task_objects.xml",
     "babybench/task_world.xml",

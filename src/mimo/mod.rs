@@ -7,16 +7,26 @@ mod growth;
 mod locks;
 mod parts;
 mod placement;
+mod room;
 mod scene;
 
-pub use anatomy::{BodyKind, body_kind};
+internals!(use anatomy::{BodyKind, body_kind});
 pub use assets::embedded;
 pub use figures::BodyFigures;
 #[cfg(feature = "report")]
 pub(crate) use figures::upright_extent;
-pub use growth::{Growth, GrowthError};
-pub use locks::{LockError, LockReport, LockTarget, held_by, lock, lock_of, unlock};
-pub(crate) use parts::JOINT_PREFIX;
-pub use parts::{MimoJoints, joint_part};
-pub use placement::held_posture;
-pub use scene::{DOCUMENT, SceneError, Version, build_model, build_scene, scene_xml};
+internals!(use growth::Growth);
+pub use growth::GrowthError;
+pub use locks::{LockError, LockReport, LockTarget};
+internals!(use locks::{held_by, lock, lock_of, unlock});
+pub(crate) use parts::{JOINT_PREFIX, ROOT};
+internals!(use parts::{MimoBodies, MimoJoints, joint_part});
+internals!(use placement::held_posture);
+#[cfg(feature = "eval")]
+pub(crate) use room::open_room;
+internals!(use room::{PARTS as ROOM_PARTS, Unused, unused_attributes});
+pub use room::{RoomError, scene_assets};
+#[cfg(feature = "eval")]
+pub(crate) use scene::document_path;
+internals!(use scene::{DOCUMENT, build_scene});
+pub use scene::{SceneError, Version, build_model, scene_xml};

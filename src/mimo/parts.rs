@@ -2,12 +2,69 @@
 
 use crate::config::Part;
 use crate::mimo::body_kind;
-use crate::model::{JointType, Model};
+use crate::model::{JointType, Model, ObjType};
 
 /// Prefix of the names of MIMo's own joints.
 pub(crate) const JOINT_PREFIX: &str = "robot:";
 
-/// MIMo's own joints: the hinges named `robot:...`, in id order. The free joint and objects are not among them.
+/// The body on which all others of MIMo hang.
+pub(crate) const ROOT: &str = "hip";
+
+/// Tells MIMo's bodies from others in a scene: his hip and all that hangs on it, whatever others are called.
+///
+/// In a model without a hip, nothing but names can tell, and every body may be his.
+///
+/// ```
+/// use babybench::mimo::{MimoBodies, build_model, embedded};
+/// use babybench::{Config, config::Scene};
+///
+/// let config = Config { scene: Scene::Cubes, ..Config::default() };
+/// let model = build_model(&config, &embedded())?;
+/// let mimo = MimoBodies::of(&model);
+/// assert!(model.body("left_hand").is_some_and(|body| mimo.contains(body)));
+/// assert!(model.body("red_sphere").is_some_and(|body| !mimo.contains(body)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct MimoBodies<'m> {
+    model: &'m Model,
+    root: Option<usize>,
+}
+
+impl<'m> MimoBodies<'m> {
+    /// Finds MIMo in `model`.
+    pub fn of(model: &'m Model) -> Self {
+        Self {
+            root: model.body(ROOT),
+            model,
+        }
+    }
+
+    /// Returns whether a body, by id, is MIMo's.
+    pub fn contains(&self, body: usize) -> bool {
+        self.root.is_none_or(|root| self.model.in_subtree(body, root))
+    }
+
+    /// Lists the actuators on MIMo's joints, by id.
+    pub fn actuators(&self) -> Vec<usize> {
+        let model = self.model;
+        let own = |&i: &usize| self.contains(model.jnt_bodyid[model.actuator_trnid[i]]);
+        (0..model.nu()).filter(own).collect()
+    }
+
+    /// Lists the sensors on MIMo's sites, by id.
+    pub fn sensors(&self) -> Vec<usize> {
+        let model = self.model;
+        let own = |&i: &usize| match (model.sensor_objtype[i], model.sensor_objid[i]) {
+            (ObjType::Site, Some(site)) => self.contains(model.site_bodyid[site]),
+            _ => false,
+        };
+        (0..model.nsensor()).filter(own).collect()
+    }
+}
+
+/// MIMo's own joints: the hinges of his bodies that are named `robot:...`, in id order. The free joint and objects are not among
+/// them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MimoJoints {
     /// Joint ids.
@@ -21,7 +78,12 @@ pub struct MimoJoints {
 impl MimoJoints {
     /// Finds MIMo's joints in `model`.
     pub fn new(model: &Model) -> Self {
-        let own = |j: &usize| model.jnt_name[*j].starts_with(JOINT_PREFIX) && model.jnt_type[*j] != JointType::Free;
+        let bodies = MimoBodies::of(model);
+        let own = |&j: &usize| {
+            model.jnt_name[j].starts_with(JOINT_PREFIX)
+                && model.jnt_type[j] != JointType::Free
+                && bodies.contains(model.jnt_bodyid[j])
+        };
         let joint: Vec<usize> = (0..model.njnt()).filter(own).collect();
         Self {
             qpos: joint.iter().map(|&j| model.jnt_qposadr[j]).collect(),
@@ -44,9 +106,10 @@ impl MimoJoints {
 /// Returns the part that one of MIMo's joints belongs to: that of the body it moves. `None` for joints that are not
 /// MIMo's or do not exist.
 pub fn joint_part(model: &Model, joint: usize) -> Option<Part> {
-    if !model.jnt_name.get(joint)?.starts_with(JOINT_PREFIX) {
+    let carrier = *model.jnt_bodyid.get(joint)?;
+    if !model.jnt_name[joint].starts_with(JOINT_PREFIX) || !MimoBodies::of(model).contains(carrier) {
         return None;
     }
-    let body = model.body_name[model.jnt_bodyid[joint]].as_str();
+    let body = model.body_name[carrier].as_str();
     Some(body_kind(body).map_or(Part::Fingers, |kind| kind.part))
 }

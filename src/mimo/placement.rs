@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use crate::math::Vec3;
+use crate::mimo::ROOT;
+use crate::mimo::scene::MIMO;
 use crate::model::{EqualityKind, GeomType, Model};
 use crate::physics::{Engine, EngineError, SoftEngine, SoftOptions, State};
 
@@ -48,7 +50,7 @@ fn at_rest(model: &Arc<Model>) -> Result<State, EngineError> {
 
 /// Returns whether a geom is MIMo's.
 fn own(model: &Model) -> impl Fn(&usize) -> bool {
-    let hip = model.body("hip");
+    let hip = model.body(ROOT);
     move |g| hip.is_some_and(|hip| model.in_subtree(model.geom_bodyid[*g], hip))
 }
 
@@ -64,15 +66,30 @@ pub(super) fn overlaps(model: &Arc<Model>) -> Result<Vec<Overlap>, EngineError> 
         .collect())
 }
 
-/// Returns the height of MIMo's lowest point at the held posture, m.
-pub(super) fn lowest_point(model: &Arc<Model>) -> Result<f64, EngineError> {
-    let (state, own) = (at_rest(model)?, own(model));
-    let bottom = |g: usize| {
-        let mat = &state.geom_xmat[g];
-        let down = reach(model.geom_type[g], model.geom_size[g], [mat[6], mat[7], mat[8]]);
-        state.geom_xpos[g][2] - down
-    };
-    Ok((0..model.ngeom()).filter(own).map(bottom).fold(f64::INFINITY, f64::min))
+/// MIMo's lowest point at the held posture.
+pub(super) struct LowestPoint {
+    /// Height, m.
+    pub height: f64,
+    /// The upward direction in the frame of the body that holds `mimo_location`.
+    pub up: Vec3,
+}
+
+impl LowestPoint {
+    /// Finds the lowest point of MIMo's geoms; other bodies of the scene may reach lower.
+    pub fn of(model: &Arc<Model>) -> Result<Self, EngineError> {
+        let (state, own) = (at_rest(model)?, own(model));
+        let bottom = |g: usize| {
+            let mat = &state.geom_xmat[g];
+            let down = reach(model.geom_type[g], model.geom_size[g], [mat[6], mat[7], mat[8]]);
+            state.geom_xpos[g][2] - down
+        };
+        let around = model.body(MIMO).map_or(0, |body| model.body_parentid[body]);
+        let mat = &state.xmat[around];
+        Ok(Self {
+            height: (0..model.ngeom()).filter(own).map(bottom).fold(f64::INFINITY, f64::min),
+            up: [mat[6], mat[7], mat[8]],
+        })
+    }
 }
 
 /// Returns how far a shape reaches from its centre along a direction in its own frame, m.

@@ -4,8 +4,10 @@ use thiserror::Error;
 
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Behavior, Config, Measurements, Part, Scene};
+use crate::math::{Vec3, scale};
 use crate::mimo::growth::blame;
-use crate::mimo::placement::{Overlap, lowest_point, overlaps};
+use crate::mimo::placement::{LowestPoint, Overlap, overlaps};
+use crate::mimo::room::{Room, RoomError, file_name};
 use crate::mimo::{Growth, GrowthError};
 use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
@@ -14,8 +16,19 @@ use crate::physics::{EngineError, compile};
 /// Gives the path of the top document in the assets; includes and textures are found relative to it.
 pub const DOCUMENT: &str = "babybench/scene.xml";
 
+/// The path of the top document around a scene of one's own, which may be called `scene.xml` itself.
+const AROUND: &str = "babybench/*";
+
 /// Name of the body that places MIMo in the world, and of its free joint.
-const MIMO: &str = "mimo_location";
+pub(super) const MIMO: &str = "mimo_location";
+
+/// Returns the path of the top document of a configuration.
+pub(crate) fn document_path(config: &Config) -> &'static str {
+    match config.scene {
+        Scene::File(_) => AROUND,
+        _ => DOCUMENT,
+    }
+}
 
 /// A version of MIMo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -61,15 +74,19 @@ const ACTUATOR_GROUPS: [Part; 8] = [
     Part::Feet,
 ];
 
-/// Writes the top document of an environment: that of its task, or that of BabyBench's scenes.
+/// Writes the top document of an environment: that of its task, or that of BabyBench's scenes, or one that includes a scene of one's
+/// own, which [`scene_assets`](crate::mimo::scene_assets) has.
 pub fn scene_xml(config: &Config) -> String {
     let name = match config.age {
         None => "MIMo".to_string(),
         Some(age) => format!("MIMo at {age} months"),
     };
-    let content = match config.behavior {
-        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard => babybench_scene(config),
-        task => include(task.name()),
+    let content = match (config.behavior, &config.scene) {
+        (Behavior::None | Behavior::SelfTouch | Behavior::HandRegard, Scene::File(path)) => {
+            format!("  <include file=\"{}\"/>\n", quick_xml::escape::escape(file_name(path)))
+        }
+        (Behavior::None | Behavior::SelfTouch | Behavior::HandRegard, _) => babybench_scene(config),
+        (task, _) => include(task.name()),
     };
     format!("<mujoco model=\"{name}\">\n{content}</mujoco>\n")
 }
@@ -79,7 +96,7 @@ pub fn scene_xml(config: &Config) -> String {
 fn babybench_scene(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     let pose = match config.scene {
-        Scene::Base => r#"pos="0 0 0.1" euler="0 -90 0""#,
+        Scene::Base | Scene::File(_) => r#"pos="0 0 0.1" euler="0 -90 0""#,
         Scene::Crib => r#"pos="0 0 0.3" euler="0 -90 0""#,
         Scene::Cubes => r#"pos="0 0 0.0467196" quat="0.885453 -0.000184209 -0.464728 -0.000527509""#,
     };
@@ -89,29 +106,35 @@ fn babybench_scene(config: &Config) -> String {
     );
     xml += &include("base");
     xml += &include(&format!("meta_{version}"));
-    let kind = match config.actuation_model {
-        ActuationModel::SpringDamper | ActuationModel::Muscle => "motor",
-        ActuationModel::Positional => "position",
-    };
-    for part in ACTUATOR_GROUPS {
-        if config.act.get(part) {
-            let suffix = match part {
-                Part::Fingers | Part::Feet => format!("_{version}"),
-                _ => String::new(),
-            };
-            xml += &include(&format!("{kind}_{}{suffix}", part.name()));
-        }
-    }
+    xml += &actuators(config);
     match config.scene {
-        Scene::Base => {}
+        Scene::Base | Scene::File(_) => {}
         Scene::Crib => xml += &include("crib"),
         Scene::Cubes => xml += &include("cubes"),
     }
     xml
 }
 
+/// Writes the lines that include the actuators of the active groups.
+pub(super) fn actuators(config: &Config) -> String {
+    let version = Version::of(config.behavior).name();
+    let kind = match config.actuation_model {
+        ActuationModel::SpringDamper | ActuationModel::Muscle => "motor",
+        ActuationModel::Positional => "position",
+    };
+    let active = ACTUATOR_GROUPS.iter().filter(|part| config.act.get(**part));
+    let files = active.map(|part| {
+        let suffix = match part {
+            Part::Fingers | Part::Feet => format!("_{version}"),
+            _ => String::new(),
+        };
+        include(&format!("{kind}_{}{suffix}", part.name()))
+    });
+    files.collect()
+}
+
 /// Writes the line that includes a file of the assets.
-fn include(file: &str) -> String {
+pub(super) fn include(file: &str) -> String {
     format!("  <include file=\"{file}.xml\"/>\n")
 }
 
@@ -122,6 +145,9 @@ pub enum SceneError {
     /// The assets cannot be read or compiled.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// A scene of one's own is not as it must be.
+    #[error(transparent)]
+    Room(#[from] RoomError),
     /// MIMo cannot grow to the age of the configuration.
     #[error(transparent)]
     Growth(#[from] GrowthError),
@@ -133,11 +159,12 @@ pub enum SceneError {
 /// Loads and compiles the scene of a configuration from `assets`, with MIMo at his age.
 ///
 /// A MIMo of another size than the original's is moved up or down until his lowest point is where the original's is, both in
-/// the posture in which the scene holds them.
+/// the posture in which the scene holds them. A scene of one's own is one of the assets, or else a file of the system; see
+/// [`scene_assets`](crate::mimo::scene_assets).
 ///
 /// # Errors
-/// Fails if the assets cannot be read or compiled, and then names file, line and element; if MIMo cannot grow to the age, or
-/// measurements make a body whose parts vanish or are in each other, and then names the keys.
+/// Fails if the assets cannot be read or compiled, and then names file, line and element; if a scene of one's own lacks MIMo or changes
+/// him; if MIMo cannot grow to the age, or measurements make a body whose parts vanish or are in each other, and then names the keys.
 pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, SceneError> {
     build_scene(&scene_xml(config), Version::of(config.behavior), config, assets)
 }
@@ -152,52 +179,91 @@ pub fn build_scene(
     config: &Config,
     assets: &dyn AssetSource,
 ) -> Result<Model, SceneError> {
-    let Some(growth) = Growth::of(config, version)? else {
-        let draft = Draft::read_str(document, DOCUMENT, assets)?;
-        return Ok(compile(draft.compile(assets)?)?);
+    let path = document_path(config);
+    let Some(room) = Room::open(config, assets)? else {
+        return Source { document, path, assets }.build(version, config);
     };
-    let made = grow(&growth, document, assets);
-    if config.measurements == Measurements::default() {
-        return made;
+    let source = Source {
+        document,
+        path,
+        assets: &room,
+    };
+    if document != scene_xml(config) {
+        // a task with a document of its own, in which the room may or may not be
+        return source.build(version, config).map_err(|e| room.localized(e));
     }
-    // user-supplied measurements may describe an impossible body
-    let age = growth.age();
-    let ordinary = Config {
-        measurements: Measurements::default(),
-        ..config.clone()
-    };
-    let usual = overlaps(&build_scene(document, version, &ordinary, assets)?.into())?;
-    let fault = |made: &Result<Model, SceneError>| -> Option<String> {
-        match made {
-            Ok(model) => {
-                let found = overlaps(&model.clone().into()).ok()?;
-                deeper(model, &found, &usual)
-            }
-            Err(e) => Some(format!("the body cannot be made ({e})")),
-        }
-    };
-    let Some(reason) = fault(&made) else { return made };
-    let works = |other: &Config| {
-        let growth = Growth::of(other, version).ok().flatten();
-        growth.is_some_and(|growth| fault(&grow(&growth, document, assets)).is_none())
-    };
-    Err(blame(config, age, reason, works).into())
+    room.check(&source)?;
+    let model = source.build(version, config).map_err(|e| room.localized(e))?;
+    room.compare(&source, &model, config)?;
+    Ok(model)
 }
 
-/// Compiles the scene with a MIMo that has grown, his lowest point where the original's is.
-fn grow(growth: &Growth, document: &str, assets: &dyn AssetSource) -> Result<Model, SceneError> {
-    let original = || Draft::read_str(document, DOCUMENT, assets);
-    let grown = |up: f64| -> Result<Model, SceneError> {
-        let mut draft = original()?;
-        growth.apply(&mut draft)?;
-        if let Some(pos) = draft.body_pos(MIMO) {
-            pos[2] += up;
+/// A document and what it includes.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub document: &'a str,
+    /// As which file of the assets it is read.
+    pub path: &'a str,
+    pub assets: &'a dyn AssetSource,
+}
+
+impl Source<'_> {
+    fn read(&self) -> Result<Draft, LoadError> {
+        Draft::read_str(self.document, self.path, self.assets)
+    }
+
+    /// Compiles the document with MIMo of the original proportions.
+    pub fn original(&self) -> Result<Model, SceneError> {
+        Ok(compile(self.read()?.compile(self.assets)?)?)
+    }
+
+    /// Compiles the document with MIMo at the age of a configuration.
+    fn build(&self, version: Version, config: &Config) -> Result<Model, SceneError> {
+        let Some(growth) = Growth::of(config, version)? else {
+            return self.original();
+        };
+        let made = self.grow(&growth);
+        if config.measurements == Measurements::default() {
+            return made;
         }
-        Ok(compile(draft.compile(assets)?)?)
-    };
-    let before = lowest_point(&compile(original()?.compile(assets)?)?.into())?;
-    let after = lowest_point(&grown(0.0)?.into())?;
-    grown(before - after)
+        // user-supplied measurements may describe an impossible body
+        let age = growth.age();
+        let ordinary = Config {
+            measurements: Measurements::default(),
+            ..config.clone()
+        };
+        let usual = overlaps(&self.build(version, &ordinary)?.into())?;
+        let fault = |made: &Result<Model, SceneError>| -> Option<String> {
+            match made {
+                Ok(model) => {
+                    let found = overlaps(&model.clone().into()).ok()?;
+                    deeper(model, &found, &usual)
+                }
+                Err(e) => Some(format!("the body cannot be made ({e})")),
+            }
+        };
+        let Some(reason) = fault(&made) else { return made };
+        let works = |other: &Config| {
+            let growth = Growth::of(other, version).ok().flatten();
+            growth.is_some_and(|growth| fault(&self.grow(&growth)).is_none())
+        };
+        Err(blame(config, age, reason, works).into())
+    }
+
+    /// Compiles the scene with a MIMo that has grown, his lowest point where the original's is.
+    fn grow(&self, growth: &Growth) -> Result<Model, SceneError> {
+        let grown = |shift: Vec3| -> Result<Model, SceneError> {
+            let mut draft = self.read()?;
+            growth.apply(&mut draft)?;
+            if let Some(pos) = draft.body_pos(MIMO) {
+                pos.iter_mut().zip(shift).for_each(|(x, by)| *x += by);
+            }
+            Ok(compile(draft.compile(self.assets)?)?)
+        };
+        let before = LowestPoint::of(&self.original()?.into())?;
+        let after = LowestPoint::of(&grown([0.0; 3])?.into())?;
+        grown(scale(before.up, before.height - after.height))
+    }
 }
 
 /// How much deeper than at the same age without measurements two parts may be in each other, m.

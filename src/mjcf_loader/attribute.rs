@@ -35,10 +35,15 @@ pub(super) enum Kind {
     User,
     /// The length of such data; -1 for that of the longest.
     UserCount,
+    /// Numbers of which the compiler knows how many there must be, as many as a whole state has at most.
+    State,
+    /// Two whole numbers.
+    Ints,
 }
 
 pub(super) const TEXT: Kind = Kind::Text;
 pub(super) const FLAG: Kind = Kind::Flag;
+pub(super) const INTS: Kind = Kind::Ints;
 pub(super) const fn int(min: i64, max: i64) -> Kind {
     Kind::Int { min, max }
 }
@@ -98,20 +103,51 @@ impl<T: Copy + PartialEq> Words<T> {
         }
     }
 
-    pub fn store(self, value: &Value, into: &mut T) {
+    pub fn store(self, value: &Value, into: &mut impl Worded<T>) {
         if let Value::Word(index) = value
             && let Some(value) = self.values.get(*index)
         {
-            *into = *value;
+            into.set_word(*value);
         }
     }
 
-    pub fn show(self, field: &T) -> String {
+    pub fn show(self, field: &impl Worded<T>) -> String {
         let mut pairs = self.names.iter().zip(self.values);
+        let Some(field) = field.word() else {
+            return String::new();
+        };
         pairs
-            .find(|(_, value)| *value == field)
+            .find(|(_, value)| **value == field)
             .map(|(name, _)| (*name).to_owned())
             .unwrap_or_default()
+    }
+}
+
+/// A field that holds what a word stands for.
+pub(super) trait Worded<T> {
+    fn set_word(&mut self, value: T);
+
+    /// Returns what it holds; nothing where nothing was given.
+    fn word(&self) -> Option<T>;
+}
+
+impl<T: Copy> Worded<T> for T {
+    fn set_word(&mut self, value: T) {
+        *self = value;
+    }
+
+    fn word(&self) -> Option<T> {
+        Some(*self)
+    }
+}
+
+impl<T: Copy> Worded<T> for Option<T> {
+    fn set_word(&mut self, value: T) {
+        *self = Some(value);
+    }
+
+    fn word(&self) -> Option<T> {
+        *self
     }
 }
 
@@ -120,10 +156,11 @@ impl<T: Copy + PartialEq> Words<T> {
 pub(super) enum Rivals {
     Orientation,
     Inertia,
+    Transmission,
 }
 
 impl Rivals {
-    pub const ALL: [Rivals; 2] = [Rivals::Orientation, Rivals::Inertia];
+    pub const ALL: [Rivals; 3] = [Rivals::Orientation, Rivals::Inertia, Rivals::Transmission];
 }
 
 /// An attribute: one line of a table.
@@ -180,6 +217,13 @@ impl Attr {
         }
     }
 
+    pub const fn transmission(self) -> Attr {
+        Attr {
+            rivals: Some(Rivals::Transmission),
+            ..self
+        }
+    }
+
     /// Reads the text of the attribute.
     pub fn parse(&self, text: &str, limits: &Limits) -> Result<Value, ErrorKind> {
         let attribute = self.name;
@@ -196,6 +240,17 @@ impl Attr {
                 whole(attribute, text, -1, i64::try_from(limits.user).unwrap_or(i64::MAX)).map(Value::Int)
             }
             Kind::User => numbers(attribute, text, 0, limits.user, Sign::Any, limits.real).map(Value::Reals),
+            Kind::State => numbers(attribute, text, 0, limits.state(), Sign::Any, limits.real).map(Value::Reals),
+            Kind::Ints => {
+                let values = numbers(attribute, text, 2, 2, Sign::Any, f64::from(i32::MAX))?;
+                match values.iter().find(|value| value.fract() != 0.0) {
+                    Some(_) => Err(ErrorKind::BadNumber {
+                        attribute,
+                        text: excerpt(text),
+                    }),
+                    None => Ok(Value::Reals(values)),
+                }
+            }
             Kind::Reals { min, max, sign } => numbers(attribute, text, min, max, sign, limits.real).map(Value::Reals),
             Kind::Quat => match numbers(attribute, text, 4, 4, Sign::Any, limits.real)? {
                 zero if zero.iter().all(|&v| v == 0.0) => Err(ErrorKind::Invalid(ZERO_QUAT)),

@@ -2,14 +2,17 @@
 //! are the tables of bodies and what hangs on them, and the document as a whole.
 
 use crate::math::Vec3;
-use crate::model::{self, GeomType, JointType, LightMode, Options, Statistic};
+use crate::model::{self, CamLight, GeomType, JointType, Options, Statistic};
 
+use super::actuator::Actuator;
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
-use super::attribute::{FLAG, Kind, TEXT, int, real, reals, some, words};
-use super::relation::{Actuator, Equality, Exclude, Pair, Sensor, Tendon};
+use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
+use super::custom::{Key, Numeric, Text};
+use super::relation::{Equality, Exclude, Pair, Tendon};
+use super::sensor::Sensor;
 use super::surface::{Material, Texture};
 use super::table::table;
-use super::words::{GREY, JOINTS, LIGHT_MODES, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
+use super::words::{CAM_LIGHT, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
 
 pub(super) use super::settings::{Compiler, Size};
 pub(super) use super::words::{Frame, Orientation, Tri};
@@ -35,6 +38,7 @@ table! {
         "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";
         "solreffriction" solref_friction: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of dry friction.";
         "solimpfriction" solimp_friction: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of dry friction.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
     }
 }
 
@@ -68,6 +72,7 @@ table! {
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         with frame: Frame;
     }
 }
@@ -82,6 +87,7 @@ table! {
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         with frame: Frame;
     }
 }
@@ -90,10 +96,12 @@ table! {
     /// `<camera>`.
     element Camera {
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "mode" targets: bool = false, words! { "fixed" => false, "targetbody" => true }, "Whether it looks along its frame or at a body.";
-        "target" target: Option<String> = None, TEXT, own, "Body that it looks at.";
+        "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
+        "target" target: Option<String> = None, TEXT, own, "Body that it looks at in modes `targetbody` and `targetbodycom`.";
         "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view, degrees.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        check "ipd", real(Any), "Distance of a person's eyes for stereoscopic pictures, m. Ignored: pictures are not stereoscopic.";
+        check "resolution", INTS, "Pixels of a real camera. Ignored: pictures have the size that the caller asks for.";
         with frame: Frame;
     }
 }
@@ -102,7 +110,7 @@ table! {
     /// `<light>`.
     element Light {
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "mode" mode: LightMode = LightMode::Fixed, LIGHT_MODES, "How it is placed and aimed.";
+        "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it shines at in modes `targetbody` and `targetbodycom`.";
         "directional" directional: bool = false, FLAG, "Whether its rays are parallel.";
         "castshadow" castshadow: bool = true, FLAG, "Whether it casts shadows, which are not drawn.";
@@ -139,6 +147,8 @@ table! {
         also cameras: Vec<Camera> = Vec::new();
         also lights: Vec<Light> = Vec::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "gravcomp" gravcomp: f64 = 0.0, real(Any), "Part of its weight that is compensated.";
         check "childclass", TEXT, "Default class of the elements in it that name none.";
         with frame: Frame;
     }
@@ -161,4 +171,7 @@ pub(super) struct Document {
     pub tendons: Vec<Tendon>,
     pub actuators: Vec<Actuator>,
     pub sensors: Vec<Sensor>,
+    pub numerics: Vec<Numeric>,
+    pub texts: Vec<Text>,
+    pub keys: Vec<Key>,
 }

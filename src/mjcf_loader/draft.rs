@@ -15,7 +15,8 @@ use super::{compile, elements, read, schema};
 /// An MJCF document that was read and checked, with its default classes applied, and not yet compiled: sizes, positions,
 /// masses and strengths can be changed, as in MuJoCo's `mjSpec` before `mj_compile`. Names and ids stay.
 ///
-/// ```
+#[cfg_attr(feature = "internals", doc = "```")]
+#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
 /// use babybench::assets::MemoryAssets;
 /// use babybench::{mjcf_loader::Draft, physics};
 ///
@@ -59,6 +60,8 @@ impl DraftGeom<'_> {
 pub struct DraftActuator<'a> {
     /// Name.
     pub name: &'a str,
+    /// Name of the joint that it drives.
+    pub joint: &'a str,
     /// Ratio of the force on the joint to the actuator's force.
     pub gear: &'a mut f64,
     /// Numbers for programs.
@@ -113,6 +116,7 @@ impl Draft {
         let places = Places {
             bodies: document.bodies.iter().map(|body| body.at).collect(),
             tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),
+            actuators: document.actuators.iter().map(|actuator| actuator.at).collect(),
             tree,
         };
         Ok(Spec { arrays, places })
@@ -158,9 +162,28 @@ impl Draft {
     pub fn actuators(&mut self) -> impl Iterator<Item = DraftActuator<'_>> {
         self.document.actuators.iter_mut().map(|actuator| DraftActuator {
             name: &actuator.name,
+            joint: actuator
+                .joint
+                .as_ref()
+                .or(actuator.jointinparent.as_ref())
+                .map_or("", String::as_str),
             gear: &mut actuator.gear,
             user: &mut actuator.user,
         })
+    }
+
+    /// Lists the names of the joints of a body and of all below it.
+    pub(crate) fn joints_below(&self, body: &str) -> Vec<String> {
+        let bodies = &self.document.bodies;
+        // a parent comes before its children
+        let mut inside = Vec::with_capacity(bodies.len());
+        for one in bodies {
+            inside.push(one.name == body || inside.get(one.parent).copied().unwrap_or(false));
+        }
+        let own = bodies.iter().zip(&inside).filter(|(_, inside)| **inside);
+        own.flat_map(|(one, _)| &one.joints)
+            .map(|joint| joint.name.clone())
+            .collect()
     }
 
     fn body(&mut self, name: &str) -> Option<&mut Body> {

@@ -1,13 +1,16 @@
 //! The MJCF that is understood: which element may stand in which, and the tables of its attributes. What is not here is an
 //! error.
 
-use crate::model::{Options, Statistic};
+use crate::model::{Flags, Options, SensorType, Statistic};
 
+use super::actuator::{Activation, Actuator, Control, Cylinder, Filter, Law, Servo, Speed};
 use super::attribute::{Attr, TEXT};
+use super::custom::{Key, Numeric, Text};
 use super::document::{Body, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
-use super::relation::{Actuator, Equality, Exclude, JointEquality, Pair, Sensor, Servo, Tendon, WeldEquality, Wrap};
+use super::relation::{ConnectEquality, Equality, Exclude, JointEquality, Pair, Tendon, WeldEquality, Wrap};
 use super::schema::{self, Rule};
-use super::settings::{Global, Headlight, Map, Quality, Rgba, Root};
+use super::sensor;
+use super::settings::{Global, Headlight, Map, Quality, Rgba, Root, Scale};
 use super::surface::{Material, Texture};
 use super::table::Table;
 
@@ -29,14 +32,16 @@ const CLASS_NAME: Groups = &[&[Attr::new(
 )]];
 
 static COMPILER: Rule = rule("compiler", &[Compiler::ATTRIBUTES], &[]);
-static OPTION: Rule = rule("option", &[Options::ATTRIBUTES], &[]);
+static FLAG: Rule = rule("flag", &[Flags::ATTRIBUTES], &[]);
+static OPTION: Rule = rule("option", &[Options::ATTRIBUTES], &[&FLAG]);
 static SIZE: Rule = rule("size", &[Size::ATTRIBUTES], &[]);
 static GLOBAL: Rule = rule("global", &[Global::ATTRIBUTES], &[]);
 static MAP: Rule = rule("map", &[Map::ATTRIBUTES], &[]);
 static QUALITY: Rule = rule("quality", &[Quality::ATTRIBUTES], &[]);
 static HEADLIGHT: Rule = rule("headlight", &[Headlight::ATTRIBUTES], &[]);
 static RGBA: Rule = rule("rgba", &[Rgba::ATTRIBUTES], &[]);
-static VISUAL: Rule = rule("visual", &[], &[&GLOBAL, &MAP, &QUALITY, &HEADLIGHT, &RGBA]);
+static SCALE: Rule = rule("scale", &[Scale::ATTRIBUTES], &[]);
+static VISUAL: Rule = rule("visual", &[], &[&GLOBAL, &MAP, &QUALITY, &HEADLIGHT, &SCALE, &RGBA]);
 static STATISTIC: Rule = rule("statistic", &[Statistic::ATTRIBUTES], &[]);
 
 static DEFAULT_EQUALITY: Rule = rule("equality", &[Equality::ATTRIBUTES], &[]);
@@ -54,8 +59,13 @@ static DEFAULT: Rule = rule(
         &PAIR,
         &DEFAULT_EQUALITY,
         &DEFAULT_TENDON,
+        &GENERAL,
         &MOTOR,
         &POSITION,
+        &VELOCITY,
+        &INTVELOCITY,
+        &DAMPER,
+        &CYLINDER,
         &MATERIAL,
     ],
 );
@@ -83,21 +93,114 @@ static EXCLUDE: Rule = rule("exclude", &[Exclude::ATTRIBUTES], &[]);
 static CONTACT: Rule = rule("contact", &[], &[&PAIR, &EXCLUDE]);
 
 static EQUALITY_JOINT: Rule = rule("joint", &[CLASS, JointEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
+static EQUALITY_CONNECT: Rule = rule(
+    "connect",
+    &[CLASS, ConnectEquality::ATTRIBUTES, Equality::ATTRIBUTES],
+    &[],
+);
 static EQUALITY_WELD: Rule = rule("weld", &[CLASS, WeldEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
-static EQUALITY: Rule = rule("equality", &[], &[&EQUALITY_JOINT, &EQUALITY_WELD]);
+static EQUALITY: Rule = rule("equality", &[], &[&EQUALITY_CONNECT, &EQUALITY_JOINT, &EQUALITY_WELD]);
 
 static TENDON_JOINT: Rule = rule("joint", &[Wrap::ATTRIBUTES], &[]);
 static FIXED: Rule = rule("fixed", &[CLASS, Tendon::ATTRIBUTES], &[&TENDON_JOINT]);
 static TENDON: Rule = rule("tendon", &[], &[&FIXED]);
 
-static MOTOR: Rule = rule("motor", &[CLASS, Actuator::ATTRIBUTES], &[]);
-static POSITION: Rule = rule("position", &[CLASS, Actuator::ATTRIBUTES, Servo::ATTRIBUTES], &[]);
-static ACTUATOR: Rule = rule("actuator", &[], &[&MOTOR, &POSITION]);
+/// What all actuators have.
+const DRIVE: Groups = Actuator::ATTRIBUTES;
+static GENERAL: Rule = rule(
+    "general",
+    &[
+        CLASS,
+        DRIVE,
+        Control::ATTRIBUTES,
+        Activation::ATTRIBUTES,
+        Law::ATTRIBUTES,
+    ],
+    &[],
+);
+static MOTOR: Rule = rule("motor", &[CLASS, DRIVE, Control::ATTRIBUTES], &[]);
+static POSITION: Rule = rule(
+    "position",
+    &[CLASS, DRIVE, Control::ATTRIBUTES, Servo::ATTRIBUTES, Filter::ATTRIBUTES],
+    &[],
+);
+static VELOCITY: Rule = rule("velocity", &[CLASS, DRIVE, Control::ATTRIBUTES, Speed::ATTRIBUTES], &[]);
+static INTVELOCITY: Rule = rule(
+    "intvelocity",
+    &[
+        CLASS,
+        DRIVE,
+        Control::ATTRIBUTES,
+        Activation::ATTRIBUTES,
+        Servo::ATTRIBUTES,
+    ],
+    &[],
+);
+static DAMPER: Rule = rule("damper", &[CLASS, DRIVE, Speed::ATTRIBUTES], &[]);
+static CYLINDER: Rule = rule(
+    "cylinder",
+    &[CLASS, DRIVE, Control::ATTRIBUTES, Cylinder::ATTRIBUTES],
+    &[],
+);
+static ACTUATOR: Rule = rule(
+    "actuator",
+    &[],
+    &[&GENERAL, &MOTOR, &POSITION, &VELOCITY, &INTVELOCITY, &DAMPER, &CYLINDER],
+);
 
-static ACCELEROMETER: Rule = rule("accelerometer", &[Sensor::ATTRIBUTES], &[]);
-static GYRO: Rule = rule("gyro", &[Sensor::ATTRIBUTES], &[]);
-static TORQUE: Rule = rule("torque", &[Sensor::ATTRIBUTES], &[]);
-static SENSOR: Rule = rule("sensor", &[], &[&ACCELEROMETER, &GYRO, &TORQUE]);
+/// Defines the rule of every kind of sensor, and that of their section.
+macro_rules! sensor_rules {
+    ($($kind:ident),* $(,)?) => {
+        static SENSOR: Rule = rule("sensor", &[], &[$({
+            static RULE: Rule = rule(SensorType::$kind.name(), sensor::tables(SensorType::$kind), &[]);
+            &RULE
+        }),*]);
+    };
+}
+sensor_rules!(
+    Touch,
+    Accelerometer,
+    Velocimeter,
+    Gyro,
+    Force,
+    Torque,
+    Magnetometer,
+    RangeFinder,
+    JointPos,
+    JointVel,
+    TendonPos,
+    TendonVel,
+    ActuatorPos,
+    ActuatorVel,
+    ActuatorFrc,
+    JointActFrc,
+    JointLimitPos,
+    JointLimitVel,
+    JointLimitFrc,
+    TendonLimitPos,
+    TendonLimitVel,
+    TendonLimitFrc,
+    FramePos,
+    FrameQuat,
+    FrameXAxis,
+    FrameYAxis,
+    FrameZAxis,
+    FrameLinVel,
+    FrameAngVel,
+    FrameLinAcc,
+    FrameAngAcc,
+    SubtreeCom,
+    SubtreeLinVel,
+    SubtreeAngMom,
+    Clock,
+);
+
+static NUMERIC: Rule = rule("numeric", &[Numeric::ATTRIBUTES], &[]);
+static CUSTOM_TEXT: Rule = rule("text", &[Text::ATTRIBUTES], &[]);
+static CUSTOM: Rule = rule("custom", &[], &[&NUMERIC, &CUSTOM_TEXT]);
+
+static KEY: Rule = rule("key", &[Key::ATTRIBUTES], &[]);
+static KEYFRAME: Rule = rule("keyframe", &[], &[&KEY]);
 
 /// The root.
 pub(super) static MUJOCO: Rule = rule(
@@ -105,6 +208,6 @@ pub(super) static MUJOCO: Rule = rule(
     &[Root::ATTRIBUTES],
     &[
         &COMPILER, &OPTION, &SIZE, &VISUAL, &STATISTIC, &DEFAULT, &ASSET, &WORLDBODY, &CONTACT, &EQUALITY, &TENDON,
-        &ACTUATOR, &SENSOR,
+        &ACTUATOR, &SENSOR, &CUSTOM, &KEYFRAME,
     ],
 );

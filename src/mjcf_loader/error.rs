@@ -101,6 +101,14 @@ pub enum ErrorKind {
     /// A required attribute is missing.
     #[error("attribute \"{0}\" is required")]
     MissingAttribute(&'static str),
+    /// More user data than `<size>` says.
+    #[error("user has {count} values, more than {attribute} in <size>")]
+    UserExcess {
+        /// The attribute of `<size>`.
+        attribute: &'static str,
+        /// The number of values found.
+        count: usize,
+    },
     /// Attributes that contradict each other.
     #[error("attributes \"{0}\" and \"{1}\" are mutually exclusive")]
     Conflict(&'static str, &'static str),

@@ -32,7 +32,8 @@ pub struct AttributeInfo {
 
 /// Lists the elements and attributes that the loader understands; everything else in a document is an error.
 ///
-/// ```
+#[cfg_attr(feature = "internals", doc = "```")]
+#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
 /// use babybench::mjcf_loader::elements;
 /// let camera = elements().into_iter().find(|e| e.path == "worldbody/body/camera").unwrap();
 /// let fovy = camera.attributes.iter().find(|a| a.name == "fovy").unwrap();
@@ -92,7 +93,8 @@ fn values(kind: Kind) -> String {
         Kind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
         Kind::Int { min, max } => format!("whole number, {min} to {max}"),
         Kind::Quat => "4 numbers, not all 0".to_owned(),
-        Kind::User => "numbers".to_owned(),
+        Kind::User | Kind::State => "numbers".to_owned(),
+        Kind::Ints => "2 whole numbers".to_owned(),
         Kind::UserCount => "whole number from -1".to_owned(),
         Kind::EulerSeq => "three letters of xyzXYZ".to_owned(),
         Kind::Reals { min, max, sign } => {

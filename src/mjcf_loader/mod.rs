@@ -4,8 +4,9 @@
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
 //! physics: what needs dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) comes with the last step.
 //!
-//! What is understood is what the models of this project and the original BabyBench files use; the elements and
-//! attributes are listed by [`elements`]. Everything else is an error that names the place. Ignored are only the
+//! What is understood is what the models of this project and the original BabyBench files use, and of the rest of the language
+//! whatever needs no meshes and no spatial tendons, with few exceptions; the elements and
+//! attributes are listed by `babybench inspect --mjcf`. Everything else is an error that names the place. Ignored are only the
 //! memory reservations in `size`, the matrix format `jacobian`, and the colours in `visual/rgba` of what only MuJoCo's
 //! viewer draws: none changes a compiled array of physics. User data (`user` of actuators and cameras, `nuser_*`) are kept
 //! and mean nothing.
@@ -25,8 +26,10 @@
 //! # Ok::<(), babybench::mjcf_loader::LoadError>(())
 //! ```
 
+mod actuator;
 mod attribute;
 mod compile;
+mod custom;
 mod document;
 mod draft;
 mod elements;
@@ -37,6 +40,7 @@ mod listing;
 mod read;
 mod relation;
 mod schema;
+mod sensor;
 mod settings;
 mod spec;
 mod surface;
@@ -48,13 +52,12 @@ mod xml;
 
 pub(crate) use compile::bounding_radius;
 use compile::volume as geom_volume;
-pub use draft::{Draft, DraftActuator, DraftGeom};
+internals!(use draft::{Draft, DraftActuator, DraftGeom});
 pub use error::{ErrorKind, LoadError, Place};
-pub use listing::{AttributeInfo, ElementInfo, elements};
+internals!(use listing::{AttributeInfo, ElementInfo, elements});
 pub(crate) use spec::Places;
 pub use spec::Spec;
-#[cfg(feature = "eval")]
-pub(crate) use xml::Tree;
+pub(crate) use xml::{Node, Tree};
 
 use crate::assets::{AssetSource, resolve};
 use crate::limits::Limits;

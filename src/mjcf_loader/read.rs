@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{JointType, Options, SensorType, Statistic};
+use crate::model::{JointType, Options, Statistic};
 
+use super::actuator::Actuator;
+use super::custom::{Key, Numeric, Text};
 use super::document::{Body, Camera, Compiler, Document, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
 use super::error::{ErrorKind, LoadError};
-use super::relation::{Actuator, Equality, Exclude, Pair, Sensor, Tendon, Wrap};
+use super::relation::{Equality, Exclude, Pair, Tendon, Wrap};
 use super::schema::{DEFAULT, Element};
+use super::sensor::Sensor;
 use super::settings::{Root, Visual};
 use super::surface::{Material, Texture};
 use super::table::Table;
@@ -29,7 +32,8 @@ struct Class {
 }
 
 impl Class {
-    fn apply(&mut self, e: &Element) {
+    /// Takes over an element; returns what is wrong with it.
+    fn apply(&mut self, e: &Element) -> Result<(), &'static str> {
         match e.name {
             "joint" => self.joint.apply(e),
             "geom" => self.geom.apply(e),
@@ -39,10 +43,13 @@ impl Class {
             "pair" => self.pair.apply(e),
             "equality" => self.equality.apply(e),
             "tendon" => self.tendon.apply(e),
-            "motor" | "position" => self.actuator.drive(e),
             "material" => self.material.apply(e),
+            "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" => {
+                return self.actuator.drive(e);
+            }
             _ => {}
         }
+        Ok(())
     }
 }
 
@@ -89,7 +96,8 @@ impl<'t> Classes<'t> {
         }
         let mut class = self.by_name.get(parent.unwrap_or(MAIN)).cloned().unwrap_or_default();
         for element in &section.children {
-            class.apply(element);
+            let wrong = |what| self.error(element, ErrorKind::Invalid(what));
+            class.apply(element).map_err(wrong)?;
         }
         self.by_name.insert(name.to_owned(), class);
         Ok(name.to_owned())
@@ -131,6 +139,9 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         tendons: Vec::new(),
         actuators: Vec::new(),
         sensors: Vec::new(),
+        numerics: Vec::new(),
+        texts: Vec::new(),
+        keys: Vec::new(),
     };
     let mut classes = Classes {
         tree,
@@ -138,7 +149,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     };
     let sections = |name: &'static str| root.children.iter().filter(move |e| e.name == name);
     for section in sections("compiler") {
-        document.compiler.apply(section);
+        document.compiler.section(section);
     }
     for section in sections(DEFAULT) {
         classes.read(section, None)?;
@@ -146,7 +157,13 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     let mut visual = Visual::default();
     for section in &root.children {
         match section.name {
-            "option" => document.option.apply(section),
+            "option" => {
+                document.option.apply(section);
+                section
+                    .children
+                    .iter()
+                    .for_each(|flags| document.option.flags.apply(flags));
+            }
             "size" => document.size.apply(section),
             "visual" => section.children.iter().for_each(|e| visual.apply(e)),
             "statistic" => document.statistic.apply(section),
@@ -175,18 +192,16 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
             tendon.wrap = e.children.iter().map(Wrap::read).collect();
             document.tendons.push(tendon);
         }
-        ("actuator", _) => document.actuators.push(with(&class()?.actuator, e, Actuator::drive)),
-        ("sensor", name) => {
-            let kind = match name {
-                "accelerometer" => SensorType::Accelerometer,
-                "torque" => SensorType::Torque,
-                _ => SensorType::Gyro,
-            };
-            document.sensors.push(Sensor {
-                kind,
-                ..Sensor::read(e)
-            });
+        ("actuator", _) => {
+            let mut actuator: Actuator = class()?.actuator.clone();
+            let wrong = |what| classes.error(e, ErrorKind::Invalid(what));
+            actuator.drive(e).map_err(wrong)?;
+            document.actuators.push(actuator);
         }
+        ("sensor", _) => document.sensors.push(Sensor::of(e)),
+        ("custom", "numeric") => document.numerics.push(Numeric::read(e)),
+        ("custom", _) => document.texts.push(Text::read(e)),
+        ("keyframe", _) => document.keys.push(Key::read(e)),
         _ => {}
     }
     Ok(())

@@ -1,13 +1,12 @@
-//! Tables of what refers to bodies, joints, geoms and sites: contact, equalities, tendons, actuators, sensors.
+//! Tables of what refers to bodies, joints, geoms and sites: contact, equalities, tendons.
 
 use crate::math::Vec3;
-use crate::model::{BiasType, SensorType};
 
-use super::attribute::Sign::{Any, NonNegative};
+use super::attribute::Sign::{Any, NonNegative, Unit};
 use super::attribute::{FLAG, Kind, Store, TEXT, Value, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{SOLIMP, SOLREF, TRI, Tri};
+use super::words::{MAX_GROUP, SOLIMP, SOLREF, TRI, Tri};
 
 table! {
     /// `<pair>`.
@@ -54,10 +53,20 @@ table! {
     }
 }
 
+table! {
+    /// Attributes of `<equality><connect>`.
+    group ConnectEquality {
+        "body1" body1: String = String::new(), TEXT, required, "First body.";
+        "body2" body2: Option<String> = None, TEXT, own, "Second body; else the world.";
+        "anchor" anchor: Vec3 = [0.0; 3], reals(3, Any), required, "Point of the first body that is held, m.";
+    }
+}
+
 /// The elements of an equality, by name.
 #[derive(Clone)]
 pub(super) enum Held {
     Joint(JointEquality),
+    Connect(ConnectEquality),
     Weld(WeldEquality),
 }
 
@@ -77,6 +86,7 @@ impl Equality {
     pub fn hold(&mut self, e: &Element) {
         self.apply(e);
         self.held = match e.name {
+            "connect" => Held::Connect(ConnectEquality::read(e)),
             "weld" => Held::Weld(WeldEquality::read(e)),
             _ => Held::Joint(JointEquality::read(e)),
         };
@@ -129,60 +139,10 @@ table! {
         "springlength" springlength: SpringLength = SpringLength::AT_REST, some(1, 2, Any), "Shortest and longest length without a spring force; a single one is both. -1 for that of the springs' rest configuration.";
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring.";
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
-    }
-}
-
-table! {
-    /// Attributes of all actuators. Motors and position servos share one default per class, as in MuJoCo: a `motor`
-    /// default reaches servos too.
-    element Actuator {
-        also gain: f64 = 1.0;
-        also biastype: BiasType = BiasType::None;
-        also biasprm: [f64; 3] = [0.0; 3];
-        "name" name: String = String::new(), TEXT, own, "Name.";
-        "joint" joint: String = String::new(), TEXT, required, "Joint that it drives.";
-        "ctrllimited" ctrllimited: Tri = Tri::Auto, TRI, "Whether `ctrlrange` is enforced.";
-        "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
-        "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the control.";
-        "forcerange" forcerange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force.";
-        "gear" gear: f64 = 1.0, real(Any), "Ratio of the force on the joint to the actuator's force.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
-    }
-}
-
-table! {
-    /// Attributes of `<position>` beyond those of other actuators.
-    group Servo {
-        "kp" kp: Option<f64> = None, real(NonNegative), "Gain of the position error; 1 if no default gives another.";
-        "kv" kv: Option<f64> = None, real(NonNegative), "Damping; 0 if no default gives another.";
-    }
-}
-
-impl Actuator {
-    /// Reads a motor or a position servo.
-    pub fn drive(&mut self, e: &Element) {
-        self.apply(e);
-        if e.name == "position" {
-            let servo = Servo::read(e);
-            self.gain = servo.kp.unwrap_or(self.gain);
-            self.biastype = BiasType::Affine;
-            self.biasprm[1] = -self.gain;
-            if let Some(kv) = servo.kv {
-                self.biasprm[2] = -kv;
-            }
-        } else {
-            // Bias parameters of a servo default stay, unused without a bias type.
-            self.gain = 1.0;
-            self.biastype = BiasType::None;
-        }
-    }
-}
-
-table! {
-    /// A sensor.
-    element Sensor {
-        also kind: SensorType = SensorType::Gyro;
-        "name" name: String = String::new(), TEXT, own, "Name.";
-        "site" site: String = String::new(), TEXT, required, "Site that it sits on.";
+        check "group", int(0, MAX_GROUP), "Visual group. Ignored: tendons are not drawn.";
+        check "width", real(NonNegative), "Width in MuJoCo's viewer, m. Ignored: tendons are not drawn.";
+        check "rgba", reals(4, Unit), "Colour in MuJoCo's viewer. Ignored: tendons are not drawn.";
+        check "material", TEXT, "Material in MuJoCo's viewer. Ignored: tendons are not drawn.";
     }
 }

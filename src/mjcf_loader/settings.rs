@@ -1,13 +1,13 @@
 //! Tables of what concerns the whole document: compiler, options, sizes, visual settings, statistics.
 
 use crate::math::Vec3;
-use crate::model::{self, ConeType, JacobianFormat, Options, Statistic};
+use crate::model::{self, ConeType, Flags, IntegratorType, JacobianFormat, Options, SolverType, Statistic};
 
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
-use super::attribute::{FLAG, Kind, TEXT, int, real, reals, words};
+use super::attribute::{FLAG, INTS, Kind, TEXT, Words, int, real, reals, some, words};
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{MAX_COUNT, MAX_PIXELS, TRI, Tri};
+use super::words::{MAX_COUNT, MAX_KEYS, MAX_PIXELS, TRI, Tri};
 
 table! {
     /// `<mujoco>`.
@@ -23,13 +23,24 @@ table! {
         "eulerseq" eulerseq: [u8; 3] = *b"xyz", Kind::EulerSeq, "Axes of Euler angles; lower case turns with the body.";
         "inertiafromgeom" inertiafromgeom: Tri = Tri::Auto, TRI, "Whether inertia is inferred from geoms; `auto`: only where a body has no `inertial`.";
         "autolimits" autolimits: bool = true, FLAG, "Whether giving a range enables its limit.";
+        "inertiagrouprange" inertiagrouprange: [f64; 2] = [0.0, 5.0], INTS, "Lowest and highest group of the geoms from which inertia is inferred.";
+        "balanceinertia" balanceinertia: bool = false, FLAG, "Whether principal moments that no body can have are replaced by their mean.";
+        "boundmass" boundmass: f64 = 0.0, real(NonNegative), "Least mass of a body, kg.";
+        "boundinertia" boundinertia: f64 = 0.0, real(NonNegative), "Least principal moment of a body, kg m^2.";
+        "settotalmass" settotalmass: f64 = -1.0, real(Any), "Mass to which all bodies together are scaled, kg; not above 0 for none.";
         "texturedir" texturedir: String = String::new(), TEXT, "Directory of the textures.";
+        "strippath" strippath: bool = false, FLAG, "Whether directories in the names of files are dropped.";
+        check "assetdir", TEXT, "Directory of textures and meshes, where `texturedir` says no other.";
+        check "meshdir", TEXT, "Directory of meshes.";
         check "coordinate", Kind::Word(&["local"]), "Frame of positions; only the parent's.";
+        check "fitaabb" | "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
+        check "fusestatic" | "discardvisual" | "alignfree", Kind::Word(&["false"]), "Whether MuJoCo rewrites the bodies; they stay as they are written.";
     }
 }
 
 table! {
     fields Options {
+        also flags: Flags = Flags::initial();
         "timestep" timestep: f64 = 0.002, real(Positive), "Time step, s.";
         "gravity" gravity: Vec3 = [0.0, 0.0, -9.81], reals(3, Any), "Gravity, m/s^2.";
         "iterations" iterations: usize = 100, int(0, MAX_COUNT), "Maximum number of Newton iterations per step.";
@@ -41,16 +52,59 @@ table! {
         "jacobian" jacobian: JacobianFormat = JacobianFormat::Auto, words! { "dense" => JacobianFormat::Dense, "sparse" => JacobianFormat::Sparse, "auto" => JacobianFormat::Auto }, "Format of the constraint Jacobian in MuJoCo. It changes no accelerations; sparse, also equalities without effect keep their rows.";
         "ccd_iterations" ccd_iterations: usize = 50, int(0, MAX_COUNT), "Maximum number of iterations of the convex collision routine.";
         "ccd_tolerance" ccd_tolerance: f64 = 1e-6, real(NonNegative), "Tolerance of the convex collision routine, m.";
-        check "integrator", Kind::Word(&["Euler"]), "Integrator; only implicit damping with Euler's method.";
-        check "solver", Kind::Word(&["Newton"]), "Solver; only Newton's method.";
+        "integrator" integrator: IntegratorType = IntegratorType::Euler, words! { "Euler" => IntegratorType::Euler, "RK4" => IntegratorType::Rk4 }, "Integrator: Euler's method with implicit damping, or Runge and Kutta's of fourth order.";
+        "solver" solver: SolverType = SolverType::Newton, words! { "PGS" => SolverType::Pgs, "Newton" => SolverType::Newton }, "Solver of constraints: Newton's method, or projected Gauss-Seidel with pyramidal cones.";
+        "density" density: f64 = 0.0, real(NonNegative), "Density of the medium around bodies, kg/m^3.";
+        "viscosity" viscosity: f64 = 0.0, real(NonNegative), "Viscosity of the medium around bodies, Pa s.";
+        "wind" wind: Vec3 = [0.0; 3], reals(3, Any), "Velocity of the medium, m/s.";
+        "magnetic" magnetic: Vec3 = [0.0, -0.5, 0.0], reals(3, Any), "Magnetic flux, which magnetometers read.";
+        check "noslip_iterations", int(0, 0), "Iterations of the solver against slip; only none.";
+        check "noslip_tolerance", real(NonNegative), "Tolerance of the solver against slip, which is not used.";
+        check "apirate", real(NonNegative), "Rate at which programs are to be told. Ignored.";
+        check "o_margin" | "o_solref" | "o_solimp" | "o_friction", some(1, 5, Any), "Parameters of all contacts where the flag `override` is on, which it cannot be. Ignored.";
+        check "sdf_iterations" | "sdf_initpoints", int(0, MAX_COUNT), "Collision of signed distance fields, of which there are none. Ignored.";
+    }
+}
+
+/// The words of a flag.
+const SWITCH: Words<bool> = words! { "enable" => true, "disable" => false };
+
+table! {
+    fields Flags {
+        "constraint" constraint: bool = true, SWITCH, "Whether there are constraints: equalities, dry friction, limits, contacts.";
+        "equality" equality: bool = true, SWITCH, "Whether equalities hold.";
+        "frictionloss" frictionloss: bool = true, SWITCH, "Whether joints have dry friction.";
+        "limit" limit: bool = true, SWITCH, "Whether joints and tendons have limits.";
+        "contact" contact: bool = true, SWITCH, "Whether geoms touch.";
+        "passive" passive: bool = true, SWITCH, "Whether springs, dampers, the medium and compensated gravity act.";
+        "gravity" gravity: bool = true, SWITCH, "Whether gravity acts.";
+        "clampctrl" clampctrl: bool = true, SWITCH, "Whether controls are kept in their range.";
+        "warmstart" warmstart: bool = true, SWITCH, "Whether the solver may start from the last acceleration.";
+        "filterparent" filterparent: bool = true, SWITCH, "Whether geoms of a body pass through those of its parent.";
+        "actuation" actuation: bool = true, SWITCH, "Whether actuators act.";
+        "refsafe" refsafe: bool = true, SWITCH, "Whether time constants in `solref` are at least two time steps.";
+        "sensor" sensor: bool = true, SWITCH, "Whether sensors are computed.";
+        "midphase" midphase: bool = true, SWITCH, "Whether contacts of two bodies are listed by the types of the geoms; else by their ids.";
+        "eulerdamp" eulerdamp: bool = true, SWITCH, "Whether Euler's method takes joint damping implicitly.";
+        check "autoreset" | "energy" | "fwdinv" | "invdiscrete", Kind::Word(SWITCH.names), "What changes no motion. Ignored: pairs of geoms are found in one way, and a simulation that diverges is an error.";
+        check "nativeccd", Kind::Word(&["enable"]), "Convex collision; only MuJoCo's own.";
+        check "override" | "multiccd" | "island", Kind::Word(&["disable"]), "What is off by default; only that.";
     }
 }
 
 table! {
     /// `<size>`.
     group Size {
-        "nuser_actuator" nuser_actuator: Option<usize> = None, Kind::UserCount, "Length of `user` of actuators; -1 for the longest given.";
+        "nuser_body" nuser_body: Option<usize> = None, Kind::UserCount, "Length of `user` of bodies; -1 for the longest given.";
+        "nuser_jnt" nuser_jnt: Option<usize> = None, Kind::UserCount, "Length of `user` of joints; -1 for the longest given.";
+        "nuser_geom" nuser_geom: Option<usize> = None, Kind::UserCount, "Length of `user` of geoms; -1 for the longest given.";
+        "nuser_site" nuser_site: Option<usize> = None, Kind::UserCount, "Length of `user` of sites; -1 for the longest given.";
         "nuser_cam" nuser_cam: Option<usize> = None, Kind::UserCount, "Length of `user` of cameras; -1 for the longest given.";
+        "nuser_tendon" nuser_tendon: Option<usize> = None, Kind::UserCount, "Length of `user` of tendons; -1 for the longest given.";
+        "nuser_actuator" nuser_actuator: Option<usize> = None, Kind::UserCount, "Length of `user` of actuators; -1 for the longest given.";
+        "nuser_sensor" nuser_sensor: Option<usize> = None, Kind::UserCount, "Length of `user` of sensors; -1 for the longest given.";
+        "nkey" nkey: usize = 0, int(0, MAX_KEYS), "Least number of keyframes; those that are not given hold the reference configuration.";
+        check "nuserdata", int(0, MAX_COUNT), "Length of `userdata` of a simulation, which only programs use. Ignored.";
         check "nconmax", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         check "njmax", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
         check "nstack", int(-1, i64::MAX), "Memory of MuJoCo. Ignored.";
@@ -64,6 +118,9 @@ table! {
         "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view of the free camera, degrees.";
         "offwidth" offwidth: usize = 640, int(1, MAX_PIXELS), "Width of pictures drawn offscreen, pixels.";
         "offheight" offheight: usize = 480, int(1, MAX_PIXELS), "Height of pictures drawn offscreen, pixels.";
+        check "ipd" | "azimuth" | "elevation" | "linewidth" | "glow", real(Any), "View and drawing of MuJoCo's viewer. Ignored.";
+        check "realtime", real(Positive), "Speed of MuJoCo's viewer. Ignored.";
+        check "ellipsoidinertia" | "bvactive" | "orthographic", FLAG, "What MuJoCo's viewer draws. Ignored.";
     }
 }
 
@@ -77,6 +134,7 @@ table! {
         "zfar" zfar: f64 = 50.0, real(Positive), "Distance of the far plane, times the extent.";
         "haze" haze: f64 = 0.3, real(NonNegative), "Haze at the horizon, which is not drawn, 0..1.";
         "shadowclip" shadowclip: f64 = 1.0, real(NonNegative), "Clip distance of shadows, which are not drawn, times the extent.";
+        check "stiffness" | "stiffnessrot" | "torque" | "alpha" | "shadowscale" | "actuatortendon", real(Any), "Scale in MuJoCo's viewer. Ignored.";
     }
 }
 
@@ -85,6 +143,7 @@ table! {
     group Quality {
         "shadowsize" shadowsize: usize = 4096, int(0, MAX_PIXELS), "Size of the map of shadows, which are not drawn, pixels.";
         "offsamples" offsamples: usize = 4, int(0, 64), "Samples per pixel of pictures drawn offscreen.";
+        check "numslices" | "numstacks" | "numquads", int(0, MAX_COUNT), "Fineness of round shapes in MuJoCo's viewer. Ignored.";
     }
 }
 
@@ -106,12 +165,29 @@ table! {
 }
 
 table! {
+    /// `<visual><scale>`: sizes of what only MuJoCo's viewer draws.
+    group Scale {
+        check "forcewidth" | "contactwidth" | "contactheight" | "connect" | "com" | "camera" | "light" | "selectpoint" | "jointlength" | "jointwidth" | "actuatorlength" | "actuatorwidth" | "framelength" | "framewidth" | "constraint" | "slidercrank" | "frustum", real(Any), "Size in MuJoCo's viewer. Ignored: it is not drawn.";
+    }
+}
+
+table! {
     fields Statistic {
         "meaninertia" meaninertia: f64 = 0.0, real(Positive), "Mean diagonal of the inertia at `qpos0`, kg m^2; 0 (here and below) means computed.";
         "meanmass" meanmass: f64 = 0.0, real(Positive), "Mean mass of the bodies, kg.";
         "meansize" meansize: f64 = 0.0, real(Positive), "Mean size of the bodies, m.";
         "extent" extent: f64 = 0.0, real(Positive), "Extent of the model, m.";
         "center" center: Vec3 = [f64::NAN; 3], reals(3, Any), "Centre of the model, m; NaN means computed.";
+    }
+}
+
+impl Compiler {
+    /// Reads a section; those behind it win. A directory of all assets stands where the section names none of its own.
+    pub fn section(&mut self, e: &Element) {
+        if let Some(dir) = e.text("assetdir") {
+            dir.clone_into(&mut self.texturedir);
+        }
+        self.apply(e);
     }
 }
 
@@ -131,7 +207,7 @@ impl Visual {
             "map" => self.map.apply(e),
             "quality" => self.quality.apply(e),
             "headlight" => self.headlight.apply(e),
-            // colours of what is not drawn
+            // colours and sizes of what is not drawn
             _ => {}
         }
     }

@@ -22,6 +22,8 @@ pub(crate) struct Places {
     pub(super) bodies: Vec<usize>,
     /// The tendon elements (ntendon).
     pub(super) tendons: Vec<usize>,
+    /// The actuator elements (nu).
+    pub(super) actuators: Vec<usize>,
 }
 
 impl Places {
@@ -34,12 +36,18 @@ impl Places {
     pub fn tendon_error(&self, tendon: usize, message: &'static str) -> LoadError {
         self.tree.error(self.tendons[tendon], ErrorKind::Invalid(message))
     }
+
+    /// Returns an error at an actuator.
+    pub fn actuator_error(&self, actuator: usize, message: &'static str) -> LoadError {
+        self.tree.error(self.actuators[actuator], ErrorKind::Invalid(message))
+    }
 }
 
 macro_rules! counts {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {
         impl Spec {$(
             #[doc = concat!("Returns the number of ", $what, ".")]
+            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn $fun(&self) -> usize {
                 self.arrays.$field.len()
             }

@@ -14,8 +14,8 @@
 //! ```
 //!
 //! Sections come in this order, and each may be absent. Between form and meaning of a `set` or a field may stand `own` (not
-//! allowed in default classes), `required`, `orientation` or `inertia` (an element may have one of those so marked). `element` makes a struct that also
-//! keeps its place in the text, `at`; `group` makes a struct without; `fields` fills a struct that is declared elsewhere.
+//! allowed in default classes), `required`, `orientation`, `inertia` or `transmission` (an element may have one of those so marked).
+//! `element` makes a struct that also keeps its place in the text, `at`; `group` makes a struct without; `fields` fills a struct that is declared elsewhere.
 
 use super::attribute::{Attr, Value};
 use super::schema::Element;

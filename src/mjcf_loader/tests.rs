@@ -167,7 +167,7 @@ fn values_are_checked() {
         "<size nuser_actuator='65'/>",
         "mujoco/size: nuser_actuator: 65 must be from -1 to 64",
     );
-    check("<keyframe/>", "mujoco/keyframe: unknown element \"keyframe\"");
+    check("<extension/>", "mujoco/extension: unknown element \"extension\"");
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn bodies_are_checked() {
     );
     check_world(
         "<body><inertial pos='0 0 0' mass='1' diaginertia='1 1 3'/></body>",
-        "body: the principal moments must satisfy A + B >= C",
+        "body: the principal moments must satisfy A + B >= C; correct them, or set balanceinertia in <compiler>",
     );
     check_world(
         "<body><inertial pos='0 0 0' mass='1' fullinertia='1 1 -1 0 0 0'/></body>",
@@ -305,6 +305,74 @@ fn names_and_classes_are_resolved() {
 }
 
 #[test]
+fn actuators_are_checked() {
+    let told = |of: &str, expect: &str| {
+        let element = of.split(' ').next().unwrap();
+        let expect = match expect {
+            "" => String::new(),
+            _ => format!("mujoco/actuator/{element}: {expect}"),
+        };
+        check_with_bodies(&format!("<actuator><{of}/></actuator>"), &expect);
+    };
+    told("general", "attribute \"joint\" is required");
+    told(
+        "general joint='j' jointinparent='j'",
+        "attributes \"joint\" and \"jointinparent\" are mutually exclusive",
+    );
+    told("velocity jointinparent='x'", "jointinparent: there is no joint \"x\"");
+    told("motor joint='j' actrange='0 1'", "unknown attribute \"actrange\"");
+    told(
+        "general joint='j' dyntype='muscle'",
+        "dyntype=\"muscle\": not one of none, integrator, filter, filterexact",
+    );
+    told("general joint='j' actrange='0 1'", NO_ACTIVATION);
+    told("general joint='j' actrange='0 1' actlimited='false'", "");
+    told(
+        "intvelocity joint='j'",
+        "actrange: 0 must be greater than the lower end of the range",
+    );
+    told(
+        "general joint='j' actdim='1'",
+        "actdim must be 0 or left out where dyntype is none",
+    );
+    let one = "actdim must be 1 or left out: each activation is one number";
+    told("general joint='j' dyntype='filter' actdim='0'", one);
+    told("general joint='j' dyntype='filter' actdim='2'", one);
+    told(
+        "damper joint='j' ctrlrange='-1 1'",
+        "the ctrlrange of a damper must not be negative",
+    );
+    let twice = "are two ways to say the same: give one of them";
+    told(
+        "position joint='j' kv='1' dampratio='1'",
+        &format!("kv and dampratio {twice}"),
+    );
+    told(
+        "position joint='j' ctrlrange='0 1' inheritrange='1'",
+        &format!("ctrlrange and inheritrange {twice}"),
+    );
+    told(
+        "intvelocity joint='j' actrange='0 1' inheritrange='1'",
+        &format!("actrange and inheritrange {twice}"),
+    );
+    told(
+        "position joint='j' inheritrange='1'",
+        "inheritrange is used, but the joint has no range",
+    );
+    told(
+        "position jointinparent='j' inheritrange='1'",
+        "inheritrange needs the attribute joint, not jointinparent",
+    );
+    // a class is wrong even where nothing takes its defaults from it
+    check(
+        "<default><motor ctrlrange='-1 1'/><damper/></default>",
+        "mujoco/default/damper: the ctrlrange of a damper must not be negative",
+    );
+}
+
+const NO_ACTIVATION: &str = "actrange applies, but the actuator has no activation: set dyntype, or actlimited to false";
+
+#[test]
 fn constraints_are_checked() {
     let pair = "mujoco/contact/pair: ";
     check_with_bodies(
@@ -331,7 +399,10 @@ fn constraints_are_checked() {
         "mujoco/tendon/fixed: the tendon has no joints",
     );
     let input = "<size nuser_actuator='1'/><actuator><motor joint='j' user='1 2'/></actuator>";
-    check_with_bodies(input, "mujoco/actuator/motor: user has more values than nuser_actuator");
+    check_with_bodies(
+        input,
+        "mujoco/actuator/motor: user has 2 values, more than nuser_actuator in <size>",
+    );
     check_with_bodies(
         "<sensor><gyro site='x'/></sensor>",
         "mujoco/sensor/gyro: site: there is no site \"x\"",
@@ -496,7 +567,7 @@ fn lights_follow_and_cameras_carry_numbers() {
     check_world("<camera user='1 2'/>", "");
     check(
         "<size nuser_cam='1'/><worldbody><camera user='1 2'/></worldbody>",
-        "mujoco/worldbody/camera: user has more values than nuser_cam",
+        "mujoco/worldbody/camera: user has 2 values, more than nuser_cam in <size>",
     );
     check("<visual><rgba contactforce='1 0 0 2'/></visual>", "");
     check(

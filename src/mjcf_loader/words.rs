@@ -1,7 +1,7 @@
 //! Shared by the tables: words with their values, bounds, defaults, and poses as they are written.
 
 use crate::math::Vec3;
-use crate::model::{Builtin, GeomType, JointType, LightMode, Mark, TextureType};
+use crate::model::{BiasType, Builtin, CamLight, DynType, GainType, GeomType, JointType, Mark, TextureType};
 
 use super::attribute::Sign::Any;
 use super::attribute::{Kind, Value, Words, reals, words};
@@ -13,6 +13,8 @@ pub(super) const GREY: [f64; 4] = [0.5, 0.5, 0.5, 1.0];
 
 pub(super) const MAX_GROUP: i64 = 5;
 pub(super) const MAX_BITS: i64 = u32::MAX as i64;
+/// The greatest number of keyframes that a document may ask for without giving them.
+pub(super) const MAX_KEYS: i64 = 10_000;
 pub(super) const MAX_COUNT: i64 = 1 << 30;
 pub(super) const MAX_PIXELS: i64 = 16384;
 
@@ -57,13 +59,22 @@ pub(super) const MARKS: Words<Mark> = words! {
     "cross" => Mark::Cross,
     "random" => Mark::Random,
 };
-pub(super) const LIGHT_MODES: Words<LightMode> = words! {
-    "fixed" => LightMode::Fixed,
-    "track" => LightMode::Track,
-    "trackcom" => LightMode::TrackCom,
-    "targetbody" => LightMode::TargetBody,
-    "targetbodycom" => LightMode::TargetBodyCom,
+pub(super) const CAM_LIGHT: Words<CamLight> = words! {
+    "fixed" => CamLight::Fixed,
+    "track" => CamLight::Track,
+    "trackcom" => CamLight::TrackCom,
+    "targetbody" => CamLight::TargetBody,
+    "targetbodycom" => CamLight::TargetBodyCom,
 };
+
+pub(super) const DYNAMICS: Words<DynType> = words! {
+    "none" => DynType::None,
+    "integrator" => DynType::Integrator,
+    "filter" => DynType::Filter,
+    "filterexact" => DynType::FilterExact,
+};
+pub(super) const GAINS: Words<GainType> = words! { "fixed" => GainType::Fixed, "affine" => GainType::Affine };
+pub(super) const BIASES: Words<BiasType> = words! { "none" => BiasType::None, "affine" => BiasType::Affine };
 
 /// An orientation as written.
 #[derive(Clone, Copy, Debug)]

@@ -23,6 +23,14 @@ pub(crate) struct Node {
     parent: Option<usize>,
 }
 
+impl Node {
+    /// Returns the text of an attribute, if it is given.
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        let found = self.attributes.iter().find(|(other, _)| other == name);
+        found.map(|(_, text)| text.as_str())
+    }
+}
+
 /// All elements of a document and its includes, by index.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
@@ -59,7 +67,18 @@ impl Tree {
         }
     }
 
-    fn place(&self, at: usize) -> Place {
+    /// Returns the paths of the files that were read, the main document first.
+    pub fn files(&self) -> &[String] {
+        &self.files
+    }
+
+    /// Returns the file of an element.
+    pub fn file(&self, at: usize) -> &str {
+        &self.files[self.nodes[at].file]
+    }
+
+    /// Returns the place of an element.
+    pub fn place(&self, at: usize) -> Place {
         let Some(node) = self.nodes.get(at) else {
             return Place::default();
         };

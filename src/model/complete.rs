@@ -3,13 +3,13 @@
 use std::ops::Deref;
 
 use super::{Arrays, EqualityKind, Statistic};
-use crate::math::{Quat, Vec3};
+use crate::math::{Mat3, Quat, Vec3};
 
 /// Owns the complete arrays of a compiled scene; they can be read, but not changed.
 ///
 /// Every array of [`Arrays`] can be read through the model (`model.body_mass[b]`, `model.nbody()`). Only
 /// [`crate::physics::compile`] makes a model, so that constants which need dynamics (`body_invweight0`, `dof_invweight0`,
-/// `tendon_invweight0`, `dof_m0`, statistics, poses of welds) are never missing:
+/// `tendon_invweight0`, `dof_m0`, statistics, poses of welds, damping from damping ratios) are never missing:
 ///
 /// ```
 /// use babybench::{assets::MemoryAssets, mjcf_loader, physics};
@@ -54,10 +54,16 @@ pub(crate) struct Constants {
     pub tendon_lengthspring: Vec<[f64; 2]>,
     /// See [`Arrays::tendon_invweight0`].
     pub tendon_invweight0: Vec<f64>,
+    /// See [`Arrays::actuator_biasprm`].
+    pub actuator_biasprm: Vec<[f64; 3]>,
     /// The statistics, given or computed.
     pub stat: Statistic,
     /// The relative pose of each weld that is to hold that at `qpos0`.
     pub weld_poses: Vec<WeldPose>,
+    /// The point in body 2 of each connection, by equality.
+    pub connect_anchors: Vec<(usize, Vec3)>,
+    /// The part of its pose at `qpos0` that each camera keeps.
+    pub camera_poses: Vec<CameraPose>,
     /// The part of its pose at `qpos0` that each light keeps.
     pub light_poses: Vec<LightPose>,
 }
@@ -71,6 +77,14 @@ pub(crate) struct WeldPose {
     pub relpos: Vec3,
     /// See [`EqualityKind::Weld`].
     pub relquat: Quat,
+}
+
+/// The part of its pose at `qpos0` that a camera keeps; see [`Arrays::cam_pos0`] and those after it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CameraPose {
+    pub pos0: Vec3,
+    pub poscom0: Vec3,
+    pub mat0: Mat3,
 }
 
 /// The part of its pose at `qpos0` that a light keeps; see [`super::Light`].
@@ -89,11 +103,22 @@ impl Model {
         arrays.dof_m0 = constants.dof_m0;
         arrays.tendon_lengthspring = constants.tendon_lengthspring;
         arrays.tendon_invweight0 = constants.tendon_invweight0;
+        arrays.actuator_biasprm = constants.actuator_biasprm;
         arrays.stat = constants.stat;
         for pose in constants.weld_poses {
             if let EqualityKind::Weld { relpos, relquat, .. } = &mut arrays.eq_kind[pose.equality] {
                 (*relpos, *relquat) = (pose.relpos, pose.relquat);
             }
+        }
+        for (equality, point) in constants.connect_anchors {
+            if let EqualityKind::Connect { anchor2, .. } = &mut arrays.eq_kind[equality] {
+                *anchor2 = point;
+            }
+        }
+        for CameraPose { pos0, poscom0, mat0 } in constants.camera_poses {
+            arrays.cam_pos0.push(pos0);
+            arrays.cam_poscom0.push(poscom0);
+            arrays.cam_mat0.push(mat0);
         }
         for (light, pose) in arrays.lights.iter_mut().zip(constants.light_poses) {
             (light.pos0, light.poscom0, light.dir0) = (pose.pos0, pose.poscom0, pose.dir0);

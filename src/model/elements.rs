@@ -81,15 +81,6 @@ impl SameFrame {
     }
 }
 
-/// The mode of a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum CameraMode {
-    /// Fixed in its body.
-    Fixed,
-    /// Fixed in its body, turned so that it looks at a target body.
-    TargetBody(usize),
-}
-
 /// An equality constraint, with what it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EqualityKind {
@@ -101,6 +92,17 @@ pub enum EqualityKind {
         joint2: Option<usize>,
         /// Coefficients of the quartic polynomial.
         polycoef: [f64; 5],
+    },
+    /// A point of body 1 and a point of body 2 stay together.
+    Connect {
+        /// First body.
+        body1: usize,
+        /// Second body; the world by default.
+        body2: usize,
+        /// The point in body 1, m.
+        anchor1: Vec3,
+        /// The point in body 2, m: where the first one is at `qpos0`.
+        anchor2: Vec3,
     },
     /// Body 1 keeps its pose relative to body 2.
     Weld {
@@ -119,6 +121,28 @@ pub enum EqualityKind {
     },
 }
 
+/// The dynamics of an actuator's activation, from which the force follows in place of the control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DynType {
+    /// No activation: the force follows from the control.
+    None,
+    /// The integral of the control over time, s.
+    Integrator,
+    /// A linear filter of the control with time constant `dynprm[0]`, s, integrated by Euler's method.
+    Filter,
+    /// The same filter, integrated exactly.
+    FilterExact,
+}
+
+/// The type of an actuator's gain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GainType {
+    /// `gainprm[0]`.
+    Fixed,
+    /// `gainprm[0] + gainprm[1] length + gainprm[2] velocity` (damper).
+    Affine,
+}
+
 /// The type of an actuator's bias.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BiasType {
@@ -126,17 +150,6 @@ pub enum BiasType {
     None,
     /// `biasprm[0] + biasprm[1] length + biasprm[2] velocity` (position servo).
     Affine,
-}
-
-/// The type of a sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SensorType {
-    /// Specific force at a site, m/s^2, site frame (3).
-    Accelerometer,
-    /// Angular velocity at a site, rad/s, site frame (3).
-    Gyro,
-    /// Torque that the parent exerts on the site's body, N m, site frame (3).
-    Torque,
 }
 
 /// The layout of a texture.
@@ -230,18 +243,18 @@ pub struct Material {
     pub texuniform: bool,
 }
 
-/// The mode of a light: how it is placed and aimed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LightMode {
+/// The mode of a camera or a light: how it is placed and aimed (MuJoCo's `mjtCamLight`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CamLight {
     /// Moves and turns with its body.
     Fixed,
-    /// Keeps its direction in the world and its distance from the origin of its body.
+    /// Keeps its orientation in the world and its distance from the origin of its body.
     Track,
-    /// Keeps its direction in the world and its distance from the centre of mass of its body and those below it.
+    /// Keeps its orientation in the world and its distance from the centre of mass of its body and those below it.
     TrackCom,
-    /// Moves with its body and shines at the origin of the target.
+    /// Moves with its body and aims at the origin of the target.
     TargetBody,
-    /// Moves with its body and shines at the centre of mass of the target and the bodies below it.
+    /// Moves with its body and aims at the centre of mass of the target and the bodies below it.
     TargetBodyCom,
 }
 
@@ -261,7 +274,7 @@ pub struct Light {
     /// Unit direction in the body.
     pub dir: Vec3,
     /// How it is placed and aimed.
-    pub mode: LightMode,
+    pub mode: CamLight,
     /// Body that it shines at in modes that aim at one.
     pub targetbodyid: Option<usize>,
     /// Position at `qpos0` relative to the origin of its body, along the axes of the world, m.
@@ -283,6 +296,23 @@ pub struct Light {
     pub cutoff: f64,
     /// Softness of a spot light.
     pub exponent: f64,
+}
+
+/// A state that a document names (`<keyframe><key>`).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keyframe {
+    /// Name; may be empty.
+    pub name: String,
+    /// Time, s.
+    pub time: f64,
+    /// Positions (nq).
+    pub qpos: Vec<f64>,
+    /// Velocities (nv).
+    pub qvel: Vec<f64>,
+    /// Activations (na).
+    pub act: Vec<f64>,
+    /// Controls (nu).
+    pub ctrl: Vec<f64>,
 }
 
 /// The shape of the friction cones of contacts (`<option cone>`).
@@ -346,6 +376,83 @@ pub struct Options {
     pub ccd_iterations: usize,
     /// Tolerance of the convex collision routine, m.
     pub ccd_tolerance: f64,
+    /// Solver of constraints.
+    pub solver: SolverType,
+    /// Method of integration.
+    pub integrator: IntegratorType,
+    /// Density of the medium around bodies, kg/m^3; 0 for none.
+    pub density: f64,
+    /// Viscosity of the medium around bodies, Pa s; 0 for none.
+    pub viscosity: f64,
+    /// Velocity of the medium, m/s.
+    pub wind: Vec3,
+    /// Magnetic flux, which magnetometers read.
+    pub magnetic: Vec3,
+    /// Parts of the simulation that may be switched off.
+    pub flags: Flags,
+}
+
+impl Options {
+    /// Returns the least time constant that a `solref` may have, s: two time steps, unless the flag `refsafe` is off.
+    pub(crate) fn least_timeconst(&self) -> f64 {
+        if self.flags.refsafe { 2.0 * self.timestep } else { 0.0 }
+    }
+}
+
+/// The solver of constraints (`<option solver>`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum SolverType {
+    /// Newton's method on the accelerations, with exact line search.
+    #[default]
+    Newton,
+    /// Projected Gauss-Seidel on the forces. It has no elliptic cones.
+    Pgs,
+}
+
+/// The method of integration (`<option integrator>`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum IntegratorType {
+    /// Euler's semi-implicit method, with implicit joint damping.
+    #[default]
+    Euler,
+    /// The fourth-order method of Runge and Kutta.
+    Rk4,
+}
+
+/// The parts of a simulation that a document may switch off (`<option><flag>`); all are on by default.
+#[doc(alias = "mjtDisableBit")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flags {
+    /// All constraints.
+    pub constraint: bool,
+    /// Equalities.
+    pub equality: bool,
+    /// Dry friction.
+    pub frictionloss: bool,
+    /// Limits of joints and tendons.
+    pub limit: bool,
+    /// Contacts.
+    pub contact: bool,
+    /// Springs, dampers, the medium, compensated gravity.
+    pub passive: bool,
+    /// Gravity.
+    pub gravity: bool,
+    /// Clamping of controls to their range.
+    pub clampctrl: bool,
+    /// Start of the solver from the last acceleration.
+    pub warmstart: bool,
+    /// Geoms of a body pass through those of its parent.
+    pub filterparent: bool,
+    /// Actuators.
+    pub actuation: bool,
+    /// Time constants of at least two time steps.
+    pub refsafe: bool,
+    /// Sensors.
+    pub sensor: bool,
+    /// Contacts of two bodies listed by the types of the geoms, not by their ids. It changes nothing else.
+    pub midphase: bool,
+    /// Implicit joint damping in Euler's method.
+    pub eulerdamp: bool,
 }
 
 /// The visual settings (`<visual>`) as MuJoCo stores them, in single precision where it does.

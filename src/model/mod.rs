@@ -7,18 +7,22 @@
 
 mod complete;
 mod elements;
+mod sensor;
 
 pub use complete::Model;
-pub(crate) use complete::{Constants, LightPose, WeldPose};
-pub use elements::*;
+pub(crate) use complete::{CameraPose, Constants, LightPose, WeldPose};
+pub use elements::{
+    BiasType, CamLight, ConeType, DynType, EqualityKind, Flags, GainType, GeomType, IntegratorType, JacobianFormat,
+    JointType, Keyframe, Light, Material, Options, SolverType, Statistic,
+};
+internals!(use elements::{Builtin, Mark, SameFrame, Texture, TextureType, Visual});
+pub use sensor::{DataType, ObjType, SensorType};
 
-use crate::math::{Quat, Vec3};
+use crate::math::{Mat3, Quat, Vec3};
 
 macro_rules! arrays {
     ($($(#[$setting_doc:meta])* $setting:ident : $setting_ty:ty),*; $($(#[$doc:meta])* $field:ident : $ty:ty),* $(,)?) => {
-        /// The numbers of a scene under MuJoCo's names, as a [`Model`] shows them.
-        ///
-        /// See the [module documentation](self).
+        /// The numbers of a scene under MuJoCo's names, as a [`Model`] shows them; see the [module documentation](self).
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub struct Arrays {
@@ -41,6 +45,7 @@ arrays! {
     /// Options.
     opt: Options,
     /// Visual settings.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     vis: Visual,
     /// Statistics.
     stat: Statistic;
@@ -49,6 +54,8 @@ arrays! {
     nq: usize,
     /// Number of degrees of freedom.
     nv: usize,
+    /// Number of activations.
+    na: usize,
 
     /// Body names (nbody); may be empty.
     body_name: Vec<String>,
@@ -85,9 +92,14 @@ arrays! {
     /// Principal moments of inertia, kg m^2.
     body_inertia: Vec<Vec3>,
     /// Whether the inertial frame is the body's.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     body_sameframe: Vec<SameFrame>,
+    /// Part of the weight that is compensated, 0 for none.
+    body_gravcomp: Vec<f64>,
     /// Mean inverse weight at `qpos0`: translation 1/kg, rotation 1/(kg m^2).
     body_invweight0: Vec<[f64; 2]>,
+    /// Numbers for programs, `nuser_body` for each body.
+    body_user: Vec<Vec<f64>>,
 
     /// Joint names.
     jnt_name: Vec<String>,
@@ -117,6 +129,8 @@ arrays! {
     jnt_solimp: Vec<[f64; 5]>,
     /// Visual group.
     jnt_group: Vec<usize>,
+    /// Numbers for programs, `nuser_jnt` for each joint.
+    jnt_user: Vec<Vec<f64>>,
 
     /// Body of a degree of freedom.
     dof_bodyid: Vec<usize>,
@@ -157,6 +171,7 @@ arrays! {
     /// Orientation in the body.
     geom_quat: Vec<Quat>,
     /// Whether its frame is one that the body has already.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     geom_sameframe: Vec<SameFrame>,
     /// Collision type bits.
     geom_contype: Vec<u32>,
@@ -186,6 +201,8 @@ arrays! {
     geom_rgba: Vec<[f64; 4]>,
     /// Index into [`Arrays::materials`].
     geom_matid: Vec<Option<usize>>,
+    /// Numbers for programs, `nuser_geom` for each geom.
+    geom_user: Vec<Vec<f64>>,
 
     /// Site names.
     site_name: Vec<String>,
@@ -200,6 +217,7 @@ arrays! {
     /// Orientation in the body.
     site_quat: Vec<Quat>,
     /// Whether its frame is one that the body has already.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     site_sameframe: Vec<SameFrame>,
     /// Visual group.
     site_group: Vec<usize>,
@@ -207,17 +225,28 @@ arrays! {
     site_rgba: Vec<[f64; 4]>,
     /// Index into [`Arrays::materials`].
     site_matid: Vec<Option<usize>>,
+    /// Numbers for programs, `nuser_site` for each site.
+    site_user: Vec<Vec<f64>>,
 
     /// Camera names.
     cam_name: Vec<String>,
-    /// Mode and target.
-    cam_mode: Vec<CameraMode>,
+    /// How it is placed and aimed.
+    cam_mode: Vec<CamLight>,
+    /// Body that it looks at in modes that aim at one.
+    cam_targetbodyid: Vec<Option<usize>>,
     /// Body that carries the camera.
     cam_bodyid: Vec<usize>,
     /// Position in the body, m.
     cam_pos: Vec<Vec3>,
     /// Orientation in the body; the camera looks along its -z.
     cam_quat: Vec<Quat>,
+    /// Position at `qpos0` relative to the origin of its body, along the axes of the world, m.
+    cam_pos0: Vec<Vec3>,
+    /// Position at `qpos0` relative to the centre of mass of the target, or else its body, and those below, along the axes of
+    /// the world, m.
+    cam_poscom0: Vec<Vec3>,
+    /// Orientation at `qpos0` in the world.
+    cam_mat0: Vec<Mat3>,
     /// Vertical field of view, degrees.
     cam_fovy: Vec<f64>,
     /// Numbers for programs, `nuser_cam` for each camera. They mean nothing to physics and pictures.
@@ -226,6 +255,7 @@ arrays! {
     /// Lights.
     lights: Vec<Light>,
     /// Textures.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     textures: Vec<Texture>,
     /// Materials.
     materials: Vec<Material>,
@@ -282,6 +312,8 @@ arrays! {
     tendon_damping: Vec<f64>,
     /// Inverse weight at `qpos0`.
     tendon_invweight0: Vec<f64>,
+    /// Numbers for programs, `nuser_tendon` for each tendon.
+    tendon_user: Vec<Vec<f64>>,
 
     /// Actuator names.
     actuator_name: Vec<String>,
@@ -297,11 +329,27 @@ arrays! {
     actuator_forcelimited: Vec<bool>,
     /// Limits of the force before the gear, N m.
     actuator_forcerange: Vec<[f64; 2]>,
-    /// Gain.
+    /// Shortest and longest length, which only muscles of MuJoCo's use.
+    actuator_lengthrange: Vec<[f64; 2]>,
+    /// How the activation follows the control.
+    actuator_dyntype: Vec<DynType>,
+    /// Parameters of the activation; see [`DynType`].
+    actuator_dynprm: Vec<[f64; 3]>,
+    /// Address of the activation; `None` without one.
+    actuator_actadr: Vec<Option<usize>>,
+    /// Whether `actuator_actrange` applies.
+    actuator_actlimited: Vec<bool>,
+    /// Limits of the activation.
+    actuator_actrange: Vec<[f64; 2]>,
+    /// Whether the force follows from the activation at the end of the step.
+    actuator_actearly: Vec<bool>,
+    /// Gain type.
+    actuator_gaintype: Vec<GainType>,
+    /// Gain parameters; see [`GainType`].
     actuator_gainprm: Vec<[f64; 3]>,
     /// Bias type.
     actuator_biastype: Vec<BiasType>,
-    /// Bias parameters.
+    /// Bias parameters; see [`BiasType`]. The damping of a servo that is given by its damping ratio is that at `qpos0`.
     actuator_biasprm: Vec<[f64; 3]>,
     /// User data, `nuser_actuator` values each.
     actuator_user: Vec<Vec<f64>>,
@@ -310,10 +358,34 @@ arrays! {
     sensor_name: Vec<String>,
     /// Sensor type.
     sensor_type: Vec<SensorType>,
-    /// Site that it is attached to.
-    sensor_objid: Vec<usize>,
+    /// Kind of the object that it measures.
+    sensor_objtype: Vec<ObjType>,
+    /// Id of that object; none for the clock.
+    sensor_objid: Vec<Option<usize>>,
+    /// Kind of the object in whose frame it measures.
+    sensor_reftype: Vec<ObjType>,
+    /// Id of that object; none for the frame of the world.
+    sensor_refid: Vec<Option<usize>>,
+    /// Bound of its numbers; 0 for none.
+    sensor_cutoff: Vec<f64>,
+    /// Standard deviation of noise, for programs: sensors are exact.
+    sensor_noise: Vec<f64>,
     /// First entry in `sensordata`.
     sensor_adr: Vec<usize>,
+    /// Numbers for programs, `nuser_sensor` for each sensor.
+    sensor_user: Vec<Vec<f64>>,
+
+    /// Names of `<numeric>` data.
+    numeric_name: Vec<String>,
+    /// Numbers for programs, of any length each.
+    numeric_data: Vec<Vec<f64>>,
+    /// Names of `<text>` data.
+    text_name: Vec<String>,
+    /// Texts for programs.
+    text_data: Vec<String>,
+
+    /// Keyframes.
+    keys: Vec<Keyframe>,
 }
 
 macro_rules! lookup {
@@ -359,9 +431,15 @@ sizes! {
     nu actuator_name "actuators",
     nsensor sensor_name "sensors",
     npair pair_geom "explicit contact pairs",
+    nkey keys "keyframes",
 }
 
 impl Arrays {
+    /// Returns the id of the keyframe called `name`.
+    pub fn key(&self, name: &str) -> Option<usize> {
+        self.keys.iter().position(|key| key.name == name)
+    }
+
     /// Returns the length of `qpos`, as the field of that name.
     pub fn nq(&self) -> usize {
         self.nq
@@ -372,9 +450,14 @@ impl Arrays {
         self.nv
     }
 
-    /// Returns the length of `sensordata`: three per sensor.
+    /// Returns the number of activations, as the field of that name.
+    pub fn na(&self) -> usize {
+        self.na
+    }
+
+    /// Returns the length of `sensordata`.
     pub fn nsensordata(&self) -> usize {
-        3 * self.nsensor()
+        self.sensor_type.iter().map(|kind| kind.dim()).sum()
     }
 
     /// Returns whether `body` is `ancestor` or lies below it; false for a body that does not exist.

@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::model::Model;
 use crate::physics::MAXVAL;
 use crate::physics::state::{Contact, State};
+use crate::physics::table::length;
 use crate::physics::topology::Topology;
 use crate::physics::world::PairTable;
 
@@ -17,9 +18,11 @@ pub trait Engine: Send + Sync {
     fn model(&self) -> &Arc<Model>;
 
     /// Returns what the engine derived from the tree of the model.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn topology(&self) -> &Topology;
 
     /// Returns the geom pairs that may touch, in contact order.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn pairs(&self) -> &PairTable;
 
     /// Returns a state at `qpos0`, at rest, of which nothing has been computed.
@@ -31,24 +34,61 @@ pub trait Engine: Send + Sync {
     /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`. It is empty
     /// if the state is of another model.
     #[doc(alias("mj_fullM", "qM"))]
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn full_m(&self, state: &State) -> Vec<f64> {
-        match state.qm.len() == self.topology().tiles.tiles() {
-            true => self.topology().full(&state.qm),
-            false => Vec::new(),
+        if state.qm.len() == self.topology().tiles.tiles() {
+            self.topology().full(&state.qm)
+        } else {
+            Vec::new()
         }
     }
 
     /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows, or the state
     /// is of another model.
     #[doc(alias("efc_J", "mj_mulJacVec"))]
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn efc_j(&self, state: &State, row: usize) -> Option<Vec<f64>> {
         state.efc.jacobian_row(self.topology(), row)
+    }
+
+    /// Sets time, positions, velocities, activations and controls of a state to those of keyframe `key` of the model, and
+    /// everything else that decides how a run goes on to what it is in a new state: forces, warm start and parameters.
+    ///
+    /// ```
+    /// use babybench::assets::MemoryAssets;
+    /// use babybench::physics::{Engine, SoftEngine, SoftOptions, compile};
+    ///
+    /// let text = "<mujoco><worldbody><body><joint name='hinge'/><geom size='.1' pos='1 0 0'/></body></worldbody>
+    ///   <keyframe><key name='up' qpos='-1.5' qvel='2'/></keyframe></mujoco>";
+    /// let model = compile(babybench::mjcf_loader::load_str(text, "arm.xml", &MemoryAssets::new())?)?;
+    /// let mut engine = SoftEngine::new(model.into(), SoftOptions::default());
+    /// let mut state = engine.new_state();
+    /// let up = engine.model().key("up").ok_or("no such keyframe")?;
+    /// engine.reset_to_keyframe(&mut state, up)?;
+    /// assert_eq!((state.qpos[0], state.qvel[0]), (-1.5, 2.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The model has no such keyframe; nothing is changed then.
+    #[doc(alias("mj_resetDataKeyframe"))]
+    fn reset_to_keyframe(&self, state: &mut State, key: usize) -> Result<(), EngineError> {
+        let (model, count) = (self.model(), self.model().nkey());
+        let keyframe = model.keys.get(key).ok_or(EngineError::NoKeyframe { key, count })?;
+        state.copy_dynamic_from(&self.new_state());
+        state.time = keyframe.time;
+        state.qpos.clone_from(&keyframe.qpos);
+        state.qvel.clone_from(&keyframe.qvel);
+        state.act.clone_from(&keyframe.act);
+        state.ctrl.clone_from(&keyframe.ctrl);
+        Ok(())
     }
 
     /// Checks that the vectors of a state have the lengths that the model needs, as every forward and step do.
     ///
     /// # Errors
     /// The first vector that has another length.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn check_shape(&self, state: &State) -> Result<(), EngineError> {
         check_shape(self.model(), self.topology(), state)
     }
@@ -68,6 +108,7 @@ pub trait Engine: Send + Sync {
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
 
     /// Installs or removes a probe that is told when each stage of a step begins, and when the step is done.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn set_probe(&mut self, probe: Option<Probe>);
 }
 
@@ -150,6 +191,14 @@ pub enum EngineError {
         /// Body asked for, by id.
         body: usize,
         /// Number of bodies.
+        count: usize,
+    },
+    /// A keyframe that does not exist is asked for.
+    #[error("there is no keyframe {key}; the model has {count}, numbered from 0")]
+    NoKeyframe {
+        /// Keyframe asked for.
+        key: usize,
+        /// Number of keyframes.
         count: usize,
     },
     /// The mass or the size of a body that something holds cannot change.
@@ -240,12 +289,25 @@ pub(super) fn check_input(m: &Model, topology: &Topology, s: &State) -> Result<(
 
 fn check_shape(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
     s.fits(m, topology)?;
+    // an actuation model may keep its own activations where actuators have none
+    if m.na > 0 {
+        length("act", s.act.len(), m.na)?;
+    }
     s.params.fits(m)
 }
 
 /// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
 pub(super) fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
+}
+
+/// Reports accelerations that are not finite, at an evaluation within a step. MuJoCo looks for large ones at the start of a
+/// step only.
+pub(super) fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineError> {
+    if s.qacc.iter().all(|v| v.is_finite()) {
+        return Ok(());
+    }
+    check_output(model, s)
 }
 
 /// Reports the first contact that is not finite. Bodies may be finite all the same: one of 1e30 kg does not feel it.
@@ -266,7 +328,6 @@ pub(super) fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError
 }
 
 /// Checks positions and velocities alone; see [`check_output`].
-#[cfg(feature = "rapier")]
 pub(super) fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel)])
 }

@@ -5,13 +5,17 @@
 
 mod compile;
 mod constraint;
+#[cfg(feature = "internals")]
 pub mod contact;
+#[cfg(not(feature = "internals"))]
+pub(crate) mod contact;
 mod dynamics;
 mod engine;
 mod free_body;
 mod params;
 #[cfg(feature = "rapier")]
 pub mod rapier;
+mod ray;
 mod soft;
 mod spatial;
 mod state;
@@ -19,20 +23,26 @@ mod table;
 mod tiles;
 mod topology;
 mod vectorize;
+#[cfg(feature = "internals")]
 pub mod world;
+#[cfg(not(feature = "internals"))]
+pub(crate) mod world;
 
 pub use compile::compile;
-pub use constraint::{ConstraintType, EfcRow};
-pub use dynamics::{cameras, kinematics};
-pub use engine::{Engine, EngineError, Probe, Stage};
+pub use contact::Quirks;
+internals!(use constraint::{ConstraintType, EfcRow});
+internals!(use dynamics::{cameras, com_pos, kinematics});
+pub use engine::{Engine, EngineError};
+internals!(use engine::{Probe, Stage});
 pub use free_body::FreeBody;
 pub use params::Params;
 #[cfg(feature = "rapier")]
-pub use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions, RapierScene};
-pub use soft::{SoftEngine, SoftModel, SoftOptions};
+internals!(use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions, RapierScene});
+pub use soft::{SoftEngine, SoftOptions};
+internals!(use soft::SoftModel);
 pub use state::{Contact, State};
 pub(crate) use table::Row;
-pub use topology::Topology;
+internals!(use topology::Topology);
 pub(crate) use vectorize::vectorize;
 
 /// Distance that counts as infinite; coordinates and velocities beyond it count as divergence (MuJoCo's `mjMAXVAL`).

@@ -23,7 +23,7 @@ table! {
         /// Whether the actuator force is limited (nu).
         pub actuator_forcelimited: [bool; model.nu()] => model.actuator_forcelimited.clone();
         /// Gravity, m/s^2.
-        pub gravity: (Vec3) finite = model.opt.gravity;
+        pub gravity: (Vec3) finite = if model.opt.flags.gravity { model.opt.gravity } else { [0.0; 3] };
         /// Inverse weight of each degree of freedom (nv), as [`Arrays::dof_invweight0`].
         pub dof_invweight0: [f64; model.nv] => model.dof_invweight0.clone();
         /// Mass of each body (nbody), kg. [`State::set_free_body`](crate::physics::State::set_free_body) keeps what depends on it
@@ -45,6 +45,7 @@ table! {
 
 impl Params {
     /// Returns the model's own values.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(model: &Arrays) -> Self {
         Self::first(model)
     }
@@ -54,6 +55,6 @@ impl Params {
 fn offset(kind: &EqualityKind) -> f64 {
     match kind {
         EqualityKind::Joint { polycoef, .. } => polycoef[0],
-        EqualityKind::Weld { .. } => 0.0,
+        EqualityKind::Connect { .. } | EqualityKind::Weld { .. } => 0.0,
     }
 }

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::model::Model;
-use crate::physics::constraint::{Newton, RowBuilder};
+use crate::model::{IntegratorType, Model, SolverType};
+use crate::physics::constraint::{GaussSeidel, Newton, RowBuilder, contact_forces};
 use crate::physics::contact::Quirks;
 use crate::physics::dynamics::*;
-use crate::physics::engine::{Engine, EngineError, Probe, Stage, check_contacts, check_input, check_output};
+use crate::physics::engine::{
+    Engine, EngineError, Probe, Stage, check_contacts, check_evaluation, check_input, check_motion, check_output,
+};
 use crate::physics::state::{RESERVED_CONTACTS, State};
 use crate::physics::topology::Topology;
 use crate::physics::vectorize::vectorized;
@@ -39,7 +41,10 @@ pub struct SoftEngine {
     sweep: Sweep,
     rows: RowBuilder,
     newton: Newton,
+    dual: GaussSeidel,
     integrator: Integrator,
+    stages: RungeKutta,
+    subtrees: SubtreeScratch,
     bias: BiasScratch,
     bodies: Articulated,
     probe: Option<Probe>,
@@ -82,7 +87,10 @@ impl SoftModel {
             sweep: Sweep::new(model, pairs, contact),
             rows: RowBuilder::new(model, topology),
             newton: Newton::with_capacity(topology, model.nv, RESERVED_CONTACTS),
+            dual: GaussSeidel::default(),
             integrator: Integrator::default(),
+            stages: RungeKutta::default(),
+            subtrees: SubtreeScratch::default(),
             bias: BiasScratch::default(),
             bodies: Articulated::default(),
             probe: None,
@@ -112,13 +120,14 @@ impl SoftEngine {
         self.mark(Some(Stage::Kinematics));
         vectorized!({
             kinematics(&self.model, s);
-            cameras(&self.model, s);
             com_pos(&self.model, s);
+            cameras(&self.model, s);
         });
         vectorized!(crb(&self.model, &self.topology, s));
         vectorized!(self.bodies.update(&self.model, s));
         self.mark(Some(Stage::Collision));
-        if self.options.disable_contacts {
+        let flags = &self.model.opt.flags;
+        if self.options.disable_contacts || !flags.contact || !flags.constraint {
             s.contact.clear();
         } else {
             vectorized!(self.sweep.contacts(&self.model, &self.pairs, s))?;
@@ -128,6 +137,8 @@ impl SoftEngine {
         Ok(())
     }
 
+    // everything hot is inlined into it, so there must be one of it only
+    #[inline(never)]
     fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
         check_input(&self.model, &self.topology, s)?;
         self.fwd_position(s)?;
@@ -135,12 +146,29 @@ impl SoftEngine {
         vectorized!(fwd_velocity(&self.model, s, &mut self.bias));
         vectorized!(fwd_actuation(&self.model, &mut self.bodies, s));
         self.mark(Some(Stage::Solver));
-        vectorized!(self.newton.solve(&self.model, &self.topology, s));
+        match self.model.opt.solver {
+            SolverType::Newton => vectorized!({
+                self.newton.solve(&self.model, &self.topology, s);
+                contact_forces(&self.model, s);
+            }),
+            SolverType::Pgs => {
+                self.dual.solve(&self.model, &self.topology, &mut self.bodies, s);
+                contact_forces(&self.model, s);
+            }
+        }
         self.mark(Some(Stage::Wrenches));
         vectorized!({
             rne_post_constraint(&self.model, s, self.options.double_weld_torque);
-            sensors(&self.model, s);
+            if self.model.opt.flags.sensor {
+                sensors(&self.model, s, &mut self.subtrees);
+            }
         });
+        Ok(())
+    }
+
+    /// Computes everything, and refuses what shows that the simulation diverged.
+    fn compute_checked(&mut self, s: &mut State) -> Result<(), EngineError> {
+        self.compute(s)?;
         check_output(&self.model, s)?;
         check_contacts(&self.model, s)
     }
@@ -160,17 +188,30 @@ impl Engine for SoftEngine {
     }
 
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError> {
-        let done = self.compute(state);
+        let done = self.compute_checked(state);
         self.mark(None);
         done
     }
 
     fn step(&mut self, state: &mut State) -> Result<(), EngineError> {
-        self.compute(state)?;
+        self.compute_checked(state)?;
         self.mark(Some(Stage::Integration));
-        vectorized!(self.integrator.advance(&self.model, &mut self.bodies, state));
+        match self.model.opt.integrator {
+            IntegratorType::Euler => vectorized!(self.integrator.advance(&self.model, &mut self.bodies, state)),
+            IntegratorType::Rk4 => {
+                let (model, mut stages) = (self.model.clone(), std::mem::take(&mut self.stages));
+                let done = stages.advance(&model, state, |s| {
+                    self.compute(s)?;
+                    check_evaluation(&model, s)?;
+                    check_contacts(&model, s)
+                });
+                self.stages = stages;
+                done?;
+            }
+        }
         self.mark(None);
-        check_output(&self.model, state)
+        // accelerations on the way may be large where those at the start are not: that shows at the start of the next step
+        check_motion(&self.model, state)
     }
 
     fn set_probe(&mut self, probe: Option<Probe>) {

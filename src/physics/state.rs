@@ -67,12 +67,13 @@ table! {
         pub qvel: [f64; model.nv] finite = 0.0;
         /// Controls of the actuators (nu). With muscles 1 while they pull and 0 while they do not.
         pub ctrl: [f64; model.nu()] finite = 0.0;
-        /// Activations of the muscles (na), 0..1: muscle 1 of every actuator, then muscle 2. Empty without muscles.
-        pub act: [f64; any];
-        /// What the actuators were last told to reach: excitations of muscles (na), 0..1, or desired angles of position
+        /// Activations of the actuators that have one (na), in their order. With MIMo's muscles theirs (2 nu), 0..1: muscle 1 of
+        /// every actuator, then muscle 2.
+        pub act: [f64; any] finite => vec![0.0; model.na];
+        /// What the actuators were last told to reach: excitations of muscles (2 nu), 0..1, or desired angles of position
         /// servos (nu), rad. Empty for motors.
         pub actuator_target: [f64; any];
-        /// Forces of the muscles (na) at the last activation, relative to their isometric maxima. Empty without muscles.
+        /// Forces of the muscles (2 nu) at the last activation, relative to their isometric maxima. Empty without muscles.
         pub muscle_force: [f64; any];
         /// Torques of the muscles on the joints of the actuators (nu), N m, which act at control 1 in place of the
         /// actuators' own. Empty without muscles.
@@ -143,6 +144,8 @@ table! {
         pub qfrc_passive: [f64; model.nv] = 0.0;
 
         // acceleration stage
+        /// Rates of the activations (na), 1/s. MIMo's muscles have none.
+        pub act_dot: [f64; model.na] = 0.0;
         /// Actuator force before the gear (nu); with muscles their torque on the joint, N m.
         pub actuator_force: [f64; model.nu()] = 0.0;
         /// Actuator force on the joints (nv).
@@ -165,7 +168,8 @@ table! {
         pub cfrc_ext: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Wrench that the parent exerts on each body (nbody): torque, N m, force, N.
         pub cfrc_int: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// Values of the model's sensors (nsensordata), three for each, in the frame of its site: linear acceleration minus
+        /// Values of the model's sensors (nsensordata), from `sensor_adr` of each on; [`SensorType`](crate::model::SensorType)
+        /// tells quantities, units and frames. Those of MIMo give three each, in the frame of their site: linear acceleration minus
         /// gravity, m/s^2; angular velocity, rad/s; torque that the parent exerts on the site's body about the site, N m.
         pub sensordata: [f64; model.nsensordata()] = 0.0;
     }
@@ -173,14 +177,16 @@ table! {
 
 impl State {
     /// Returns the reference configuration at rest, of which nothing is computed yet: all frames are at the origin.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(model: &Arrays, topology: &Topology) -> Self {
         Self::first(model, topology)
     }
 
-    /// Copies what a continuation depends on: time, positions, velocities, controls, muscles, applied forces, warm
+    /// Copies what a continuation depends on: time, positions, velocities, controls, activations, applied forces, warm
     /// start and parameters. Everything else is computed anew by the next step. Between states of one model and one
     /// actuation model nothing is allocated.
     #[doc(alias("mj_copyData", "mj_setState"))]
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn copy_dynamic_from(&mut self, other: &State) {
         self.copy_dynamic(other);
     }
@@ -235,6 +241,7 @@ impl State {
 
     /// Returns the gears (nu) that the reference shows: its muscles act through the gears of the actuators, so with
     /// muscles these are the muscles' torques, N m, and otherwise `params.actuator_gear`.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reference_gear(&self) -> &[f64] {
         if self.muscle_torque.is_empty() {
             &self.params.actuator_gear
@@ -249,6 +256,7 @@ impl State {
     }
 
     /// Returns the constraint rows of the last step, in MuJoCo's order.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn efc_rows(&self) -> impl Iterator<Item = EfcRow> + '_ {
         self.efc.rows()
     }

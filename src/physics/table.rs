@@ -9,7 +9,7 @@
 //!                                                      // `finite`: the engine refuses NaN and infinity
 //!     pub qpos: [f64; model.nq] finite => model.qpos0.clone();   // the whole vector
 //!     pub torque: [f64; maybe model.nu()] finite;      // empty at first; then empty or of that length
-//!     pub act: [f64; any];                             // empty at first; its length is another's business
+//!     pub act: [f64; any];                             // empty at first, unless a value follows; its length is another's business
 //!     pub time: (f64) = 0.0;                           // a value of that type
 //! }
 //! computed { .. }                                      // what every step computes anew

@@ -8,9 +8,10 @@ mod protocol;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+pub use command::CommandPolicy;
 #[cfg(fuzzing)]
 pub use command::answers;
-pub use command::{CommandPolicy, DEFAULT_LIMIT};
+internals!(use command::DEFAULT_LIMIT);
 #[cfg(feature = "onnx")]
 pub use onnx::{OnnxError, OnnxPolicy};
 use thiserror::Error;
@@ -160,6 +161,7 @@ impl Policy for ZeroPolicy {
 
 /// A policy as the command line names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(not(feature = "internals"), doc(hidden))]
 pub enum PolicySource {
     /// `random`
     Random,

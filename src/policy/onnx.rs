@@ -194,6 +194,7 @@ impl OnnxPolicy {
     ///
     /// # Errors
     /// An input that is no sense, or of another shape or type.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn connect(&mut self, spaces: &[ObservationSpace]) -> Result<(), PolicyError> {
         self.inputs = self.match_inputs(spaces).map_err(|e| self.error(e))?;
         Ok(())
@@ -204,6 +205,7 @@ impl OnnxPolicy {
     ///
     /// # Errors
     /// The model fails, or its output is no action.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn decide(
         &self,
         observation: &Observation,

@@ -2,9 +2,9 @@
 
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
-use crate::render::texture::Texture;
+use crate::render::scenery::single;
+use crate::render::texture::TexturePixels;
 use crate::render::view::Poses;
-use crate::render::visual::single;
 
 /// Default colour of a geom; a geom that has it takes the colour of its material.
 const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
@@ -38,7 +38,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// All shapes, in the order of [`Visual::meshes`](crate::render::Visual::meshes).
+    /// All shapes, in the order of [`Scenery::meshes`](crate::render::Scenery::meshes).
     pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
 }
 
@@ -62,7 +62,7 @@ pub struct Drawable {
     pub specular: f32,
     /// Exponent of highlights.
     pub exponent: f32,
-    /// Index into [`Visual::textures`](crate::render::Visual::textures).
+    /// Index into [`Scenery::textures`](crate::render::Scenery::textures).
     pub texture: Option<usize>,
     /// Scale of texture coordinates: they are those of the unit shape times this, plus `texture_offset`.
     pub texture_scale: [f32; 3],
@@ -171,19 +171,19 @@ impl Drawable {
     }
 
     /// Derives texture coordinates from the material's repetition and the kind of texture.
-    pub(super) fn place_texture(&mut self, model: &Model, textures: &[Texture]) {
+    pub(super) fn place_texture(&mut self, model: &Model, textures: &[TexturePixels]) {
         let (Some(texture), Some(m)) = (self.texture, material(model, self.element)) else {
             return;
         };
         let m = &model.materials[m];
         let scale = if m.texuniform { self.size } else { [1.0; 3] };
         match textures[texture] {
-            Texture::Flat(_) => {
+            TexturePixels::Flat(_) => {
                 let [u, v] = single(m.texrepeat);
                 self.texture_scale = [0.5 * u * scale[0], -0.5 * v * scale[1], 0.0];
                 self.texture_offset = -0.5;
             }
-            Texture::Cube(_) => self.texture_scale = scale,
+            TexturePixels::Cube(_) => self.texture_scale = scale,
         }
     }
 }

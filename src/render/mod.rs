@@ -1,13 +1,13 @@
-//! Rendering: a [`Visual`] is built once from a [`Model`](crate::Model), and drawn from poses.
+//! Rendering: a [`Scenery`] is built once from a [`Model`](crate::Model), and drawn from poses.
 //!
 //! ```
-//! use babybench::config::Config;
+//! use babybench::Config;
 //! use babybench::mimo::{build_model, embedded};
 //! use babybench::physics::{Engine, SoftEngine, SoftOptions};
-//! use babybench::render::{Poses, CpuRenderer, View, Visual};
+//! use babybench::render::{Poses, RenderRequest, Renderer, Scenery, View};
 //!
 //! let model = build_model(&Config::default(), &embedded())?;
-//! let visual = Visual::new(&model, &embedded())?;
+//! let mut renderer = Renderer::cpu(Scenery::new(&model, &embedded())?.into());
 //! let camera = model.camera("corner").expect("the base scene has it");
 //! let view = View { camera, width: 64, height: 64 };
 //!
@@ -15,20 +15,23 @@
 //! let mut state = engine.new_state();
 //! engine.forward(&mut state)?;
 //! let mut image = vec![0; view.rgb_len()];
-//! CpuRenderer::new().rgb(&visual, &Poses::from(&state), &view, &mut image)?;
+//! let poses = Poses::from(&state);
+//! renderer.rgb(&[RenderRequest { poses, view }], [&mut image[..]])?;
 //! assert!(image.iter().any(|&v| v != image[0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! The look is that of MuJoCo's classic renderer: its tessellations, light per vertex, textures with mip levels, four
-//! samples per pixel, no shadows, no gamma. [`CpuRenderer`] is pure Rust and gives the same bytes on every target.
+//! samples per pixel, no shadows, no gamma. [`Renderer::cpu`] is pure Rust and gives the same bytes on every target.
 //!
 //! Not drawn: shadows, reflections, fog, haze. Planes without a size are drawn as far as the far plane.
 
 mod cpu;
 mod drawable;
-#[cfg(feature = "wgpu")]
+#[cfg(all(feature = "wgpu", feature = "internals"))]
 pub mod gpu;
+#[cfg(all(feature = "wgpu", not(feature = "internals")))]
+pub(crate) mod gpu;
 #[cfg_attr(all(feature = "wgpu", not(target_arch = "wasm32")), path = "native_gpu.rs")]
 #[cfg_attr(not(all(feature = "wgpu", not(target_arch = "wasm32"))), path = "no_gpu.rs")]
 mod gpu_of_build;
@@ -37,22 +40,25 @@ mod pair;
 mod patch;
 mod plain;
 mod renderer;
+mod scenery;
 mod strip;
 mod texture;
 mod view;
-mod visual;
 
-pub use cpu::CpuRenderer;
+internals!(use cpu::CpuRenderer);
 #[cfg(any(feature = "eval", feature = "wgpu"))]
 pub(crate) use cpu::luma;
-pub use drawable::{Drawable, Element, Shape};
-pub use gpu_of_build::SharedGpu;
+internals!(use drawable::{Drawable, Element, Shape});
+#[cfg(feature = "wgpu")]
+pub use gpu::GpuError;
+internals!(use gpu_of_build::SharedGpu);
 pub(crate) use gpu_of_build::{draw_on, open_gpu};
-pub use mesh::{Mesh, MeshPart};
+internals!(use mesh::{Mesh, MeshPart});
 pub use renderer::Renderer;
-pub use texture::{Face, Level, MAX_TEXTURE, Texture};
+internals!(use texture::{Face, Level, MAX_TEXTURE, TexturePixels});
+pub use scenery::Scenery;
 pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
-pub use visual::{Aim, Camera, Light, Visual};
+internals!(use scenery::{Aim, Camera, LightSource});
 
 use crate::assets::AssetError;
 use crate::text::quoted;

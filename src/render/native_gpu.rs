@@ -4,14 +4,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::gpu::{Channel, Depth, GpuRenderer, Gray, Rgb, Segmentation};
 use super::renderer::pairs;
-use super::{ImageBuffers, RenderError, RenderRequest, Visual};
+use super::{ImageBuffers, RenderError, RenderRequest, Scenery};
 
 /// A renderer on a GPU that several environments share.
 pub type SharedGpu = Arc<Mutex<GpuRenderer>>;
 
 /// Opens a GPU for a scene.
-pub(crate) fn open_gpu(visual: Arc<Visual>) -> Result<SharedGpu, RenderError> {
-    Ok(Arc::new(Mutex::new(GpuRenderer::new(visual)?)))
+pub(crate) fn open_gpu(scenery: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
+    Ok(Arc::new(Mutex::new(GpuRenderer::new(scenery)?)))
 }
 
 fn locked(gpu: &SharedGpu) -> MutexGuard<'_, GpuRenderer> {
@@ -19,8 +19,8 @@ fn locked(gpu: &SharedGpu) -> MutexGuard<'_, GpuRenderer> {
 }
 
 /// Returns the scene that a GPU draws.
-pub(super) fn visual_of(gpu: &SharedGpu) -> Arc<Visual> {
-    locked(gpu).visual().clone()
+pub(super) fn scenery_of(gpu: &SharedGpu) -> Arc<Scenery> {
+    locked(gpu).scenery().clone()
 }
 
 /// Draws images on a GPU, in one submission for each kind.

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{ImageBuffers, RenderError, RenderRequest, Visual};
+use super::{ImageBuffers, RenderError, RenderRequest, Scenery};
 
 /// A renderer that cannot be: the library was built without one.
 #[derive(Debug)]
@@ -13,7 +13,7 @@ pub enum NoGpu {}
 pub type SharedGpu = Arc<NoGpu>;
 
 /// Says why there is no GPU.
-pub(crate) fn open_gpu(_: Arc<Visual>) -> Result<SharedGpu, RenderError> {
+pub(crate) fn open_gpu(_: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
     Err(if cfg!(feature = "wgpu") {
         RenderError::CannotWait
     } else {
@@ -21,7 +21,7 @@ pub(crate) fn open_gpu(_: Arc<Visual>) -> Result<SharedGpu, RenderError> {
     })
 }
 
-pub(super) fn visual_of(gpu: &SharedGpu) -> Arc<Visual> {
+pub(super) fn scenery_of(gpu: &SharedGpu) -> Arc<Scenery> {
     match **gpu {}
 }
 

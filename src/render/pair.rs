@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::math::{Mat3, Vec3};
 use crate::render::view::ImageBuffers;
-use crate::render::{CpuRenderer, Poses, RenderError, RenderRequest, View, Visual};
+use crate::render::{CpuRenderer, Poses, RenderError, RenderRequest, Scenery, View};
 use crate::threads::{Job, PARALLEL, Pool};
 
 /// A thread that draws images, and the drawing it works on. The thread starts with the first pair of images.
@@ -35,14 +35,14 @@ impl Pair {
     /// As [`CpuRenderer::draw`], the first image's first.
     pub fn draw(
         &mut self,
-        visual: &Arc<Visual>,
+        scenery: &Arc<Scenery>,
         own: &mut CpuRenderer,
         [first, second]: [(&RenderRequest, ImageBuffers<'_>); 2],
     ) -> Result<(), RenderError> {
-        let draw_first = || own.draw(visual, &first.0.poses, &first.0.view, first.1);
+        let draw_first = || own.draw(scenery, &first.0.poses, &first.0.view, first.1);
         let mut drawing = match self.drawing.take() {
             Some(drawing) => drawing,
-            None => Box::new(Drawing::new(visual)),
+            None => Box::new(Drawing::new(scenery)),
         };
         drawing.take_up(second.0, &second.1);
         let drawn = match self.thread() {
@@ -114,7 +114,7 @@ impl std::fmt::Debug for Pair {
 
 /// An image to draw, in memory of its own.
 struct Drawing {
-    visual: Arc<Visual>,
+    scenery: Arc<Scenery>,
     renderer: CpuRenderer,
     poses: PosesBuffer,
     view: View,
@@ -128,9 +128,9 @@ struct Drawing {
 }
 
 impl Drawing {
-    fn new(visual: &Arc<Visual>) -> Self {
+    fn new(scenery: &Arc<Scenery>) -> Self {
         Self {
-            visual: visual.clone(),
+            scenery: scenery.clone(),
             renderer: CpuRenderer::new(),
             poses: PosesBuffer::default(),
             view: View {
@@ -180,8 +180,8 @@ impl Job for Drawing {
             depth: self.depth.wanted(),
             segmentation: self.segmentation.wanted(),
         };
-        let (renderer, visual, poses, view) = (&mut self.renderer, &self.visual, self.poses.lend(), &self.view);
-        let drawn = catch_unwind(AssertUnwindSafe(|| renderer.draw(visual, &poses, view, images)));
+        let (renderer, scenery, poses, view) = (&mut self.renderer, &self.scenery, self.poses.lend(), &self.view);
+        let drawn = catch_unwind(AssertUnwindSafe(|| renderer.draw(scenery, &poses, view, images)));
         match drawn {
             Ok(outcome) => self.outcome = outcome,
             Err(payload) => *self.panic() = Some(payload),

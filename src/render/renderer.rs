@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::gpu_of_build::{SharedGpu, draw_on, visual_of};
+use super::gpu_of_build::{SharedGpu, draw_on, scenery_of};
 use super::pair::Pair;
-use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Visual};
+use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Scenery};
 
 /// A renderer of one scene, on the CPU or on a GPU, that waits for its images.
 #[derive(Debug)]
 pub struct Renderer {
-    visual: Arc<Visual>,
+    scenery: Arc<Scenery>,
     backend: Backend,
 }
 
@@ -34,7 +34,7 @@ impl Clone for Renderer {
             Backend::Gpu(gpu) => Backend::Gpu(gpu.clone()),
         };
         Self {
-            visual: self.visual.clone(),
+            scenery: self.scenery.clone(),
             backend,
         }
     }
@@ -42,9 +42,9 @@ impl Clone for Renderer {
 
 impl Renderer {
     /// Creates a renderer on the CPU.
-    pub fn cpu(visual: Arc<Visual>) -> Self {
+    pub fn cpu(scenery: Arc<Scenery>) -> Self {
         Self {
-            visual,
+            scenery,
             backend: Backend::Cpu {
                 renderer: Box::default(),
                 pair: None,
@@ -53,16 +53,17 @@ impl Renderer {
     }
 
     /// Creates a renderer on a GPU that others may share.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn gpu(gpu: SharedGpu) -> Self {
         Self {
-            visual: visual_of(&gpu),
+            scenery: scenery_of(&gpu),
             backend: Backend::Gpu(gpu),
         }
     }
 
     /// Returns the scene that is drawn.
-    pub fn visual(&self) -> &Arc<Visual> {
-        &self.visual
+    pub fn scenery(&self) -> &Arc<Scenery> {
+        &self.scenery
     }
 
     /// Sets whether two images are drawn at once on the CPU, by the caller and one more thread, which starts with the first
@@ -78,6 +79,7 @@ impl Renderer {
 
     /// Signals that two images will be requested within about 0.1 ms, so that the second thread can wake up in the meantime. Does
     /// nothing with one thread.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn prepare(&self) {
         if let Backend::Cpu { pair: Some(pair), .. } = &self.backend {
             pair.wake();
@@ -93,6 +95,7 @@ impl Renderer {
     }
 
     /// Returns the number of passes over the scene's geometry on the CPU; 0 if images are drawn on a GPU.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn passes(&self) -> u64 {
         match &self.backend {
             Backend::Cpu { renderer, pair } => renderer.passes() + pair.as_ref().map_or(0, Pair::passes),
@@ -101,6 +104,7 @@ impl Renderer {
     }
 
     /// Returns the renderer on the GPU; `None` if images are drawn on the CPU.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn shared_gpu(&self) -> Option<&SharedGpu> {
         match &self.backend {
             Backend::Gpu(gpu) => Some(gpu),
@@ -123,8 +127,8 @@ impl Renderer {
                 let mut rest = pairs(requests, images);
                 while let Some(first) = rest.next() {
                     match pair.as_mut().and_then(|pair| Some((pair, rest.next()?))) {
-                        Some((pair, second)) => pair.draw(&self.visual, renderer, [first, second])?,
-                        None => renderer.draw(&self.visual, &first.0.poses, &first.0.view, first.1)?,
+                        Some((pair, second)) => pair.draw(&self.scenery, renderer, [first, second])?,
+                        None => renderer.draw(&self.scenery, &first.0.poses, &first.0.view, first.1)?,
                     }
                 }
                 Ok(())

@@ -31,7 +31,7 @@ pub type Face = Arc<Vec<Level>>;
 
 /// A texture ready for sampling.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Texture {
+pub enum TexturePixels {
     /// One image, repeated in both directions.
     Flat(Face),
     /// Images on the sides of a cube: +x, -x, +y, -y, +z, -z.
@@ -127,7 +127,7 @@ impl<'a> Loader<'a> {
     ///
     /// # Errors
     /// Fails if an image is missing, broken, too large or of a shape that does not fit, or if all textures together are too large.
-    pub fn texture(&mut self, recipe: &Recipe) -> Result<Texture, RenderError> {
+    pub fn texture(&mut self, recipe: &Recipe) -> Result<TexturePixels, RenderError> {
         let wrong = |message: String| RenderError::Texture {
             name: recipe.name.clone(),
             message,
@@ -145,20 +145,20 @@ impl<'a> Loader<'a> {
             let height = if flat { size(recipe.height)? } else { 6 * width };
             self.take(width * height).map_err(wrong)?;
             return Ok(if flat {
-                Texture::Flat(flat_builtin(recipe, width, height).face())
+                TexturePixels::Flat(flat_builtin(recipe, width, height).face())
             } else {
                 let mut dice = Mt19937::new(MARK_SEED);
-                Texture::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side, &mut dice).face()))
+                TexturePixels::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side, &mut dice).face()))
             });
         }
         if let Some(path) = &recipe.file {
             if flat {
-                return Ok(Texture::Flat(self.image(path)?));
+                return Ok(TexturePixels::Flat(self.image(path)?));
             }
             let face = self.image(path)?;
             // MuJoCo repeats a square image on all six sides
             if face[0].width == face[0].height {
-                return Ok(Texture::Cube([0; 6].map(|_| face.clone())));
+                return Ok(TexturePixels::Cube([0; 6].map(|_| face.clone())));
             }
             return Err(wrong(format!(
                 "\"{path}\" has {} x {} pixels (after reduction); a cube needs a square image",
@@ -186,7 +186,7 @@ impl<'a> Loader<'a> {
             return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
         };
         let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
-        Ok(Texture::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
+        Ok(TexturePixels::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
     }
 
     /// Counts pixels of a texture, before time and memory are spent on them; the error says that they are too many.

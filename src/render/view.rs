@@ -15,7 +15,7 @@ pub struct View {
 }
 
 impl View {
-    /// The camera that [`Poses::free`] places, with the field of view of [`Visual::fovy`](crate::render::Visual::fovy).
+    /// The camera that [`Poses::free`] places, with the field of view of [`Scenery::fovy`](crate::render::Scenery::fovy).
     pub const FREE: usize = usize::MAX;
 
     /// Returns the number of pixels; it saturates for sizes that [`View::check`] refuses.

@@ -7,8 +7,8 @@ use crate::formats::png::png;
 use crate::math::*;
 use crate::mimo::{JOINT_PREFIX, upright_extent};
 use crate::model::Model;
-use crate::physics::{State, Topology, cameras, kinematics};
-use crate::render::{Aim, CpuRenderer, Element, Light, Poses, View, Visual};
+use crate::physics::{State, Topology, cameras, com_pos, kinematics};
+use crate::render::{Aim, CpuRenderer, Element, LightSource, Poses, Scenery, View};
 
 /// Width of a picture, pixels.
 pub(super) const WIDTH: usize = 400;
@@ -44,7 +44,7 @@ pub(super) enum Side {
 
 /// MIMo without the scene, standing with the arms away from the body.
 pub(super) struct Doll {
-    visual: Visual,
+    scenery: Scenery,
     state: State,
     hip: usize,
     center: Vec3,
@@ -58,7 +58,7 @@ impl Doll {
     /// camera. MIMo has a face if its textures are in `assets`.
     pub fn new(model: &Model, assets: &dyn AssetSource) -> Option<Self> {
         let mut doll = Self::posed(model, assets, [WIDTH, HEIGHT], ARMS[0])?;
-        for drawable in &mut doll.visual.drawables {
+        for drawable in &mut doll.scenery.drawables {
             let face = |g: usize| FACE.contains(&model.body_name[model.geom_bodyid[g]].as_str());
             if !matches!(drawable.element, Element::Geom(g) if face(g)) {
                 drawable.texture = None;
@@ -67,7 +67,7 @@ impl Doll {
         // the box around MIMo along the axes of the hip
         let frame = doll.state.xmat[doll.hip];
         let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
-        for d in &doll.visual.drawables {
+        for d in &doll.scenery.drawables {
             let Element::Geom(g) = d.element else { continue };
             let at = mat_t_vec(&frame, doll.state.geom_xpos[g]);
             let radius = model.geom_size[g].iter().fold(0.0, |m: f64, s| m.max(*s));
@@ -99,17 +99,17 @@ impl Doll {
         if model.ncam() == 0 {
             return None;
         }
-        let visual = Visual::new(model, assets).or_else(|_| Visual::without_textures(model));
-        let mut visual = visual.ok()?;
-        visual.sky = None;
+        let scenery = Scenery::new(model, assets).or_else(|_| Scenery::without_textures(model));
+        let mut scenery = scenery.ok()?;
+        scenery.sky = None;
         let own = |g: usize| model.in_subtree(model.geom_bodyid[g], hip);
-        visual
+        scenery
             .drawables
             .retain(|d| matches!(d.element, Element::Geom(g) if own(g)));
-        for drawable in &mut visual.drawables {
+        for drawable in &mut scenery.drawables {
             (drawable.specular, drawable.exponent, drawable.emission) = (0.15, 20.0, 0.0);
         }
-        visual.cameras[0].fovy = FOVY;
+        scenery.cameras[0].fovy = FOVY;
         let mut state = State::new(model, &Topology::new(model));
         let shoulders = SHOULDERS.map(|joint| (joint, arms));
         for (joint, angle) in POSTURE.into_iter().chain(shoulders) {
@@ -118,9 +118,10 @@ impl Doll {
             }
         }
         kinematics(model, &mut state);
+        com_pos(model, &mut state);
         cameras(model, &mut state);
         Some(Self {
-            visual,
+            scenery,
             state,
             hip,
             center: [0.0; 3],
@@ -134,12 +135,12 @@ impl Doll {
     fn aim(&mut self, center: Vec3, half_height: f64) {
         self.center = center;
         self.distance = half_height / pxfm::f_tan((0.5 * FOVY).to_radians());
-        (self.visual.near, self.visual.far) = (0.2 * self.distance, 3.0 * self.distance);
+        (self.scenery.near, self.scenery.far) = (0.2 * self.distance, 3.0 * self.distance);
     }
 
     /// Draws a PNG image with a transparent background, each geom in a colour.
     pub fn draw(&mut self, side: Side, color: &dyn Fn(usize) -> [f32; 3]) -> Option<Vec<u8>> {
-        for drawable in &mut self.visual.drawables {
+        for drawable in &mut self.scenery.drawables {
             if let Element::Geom(g) = drawable.element {
                 let [r, g, b] = match drawable.texture {
                     // a face stays one under its colour
@@ -165,7 +166,7 @@ impl Doll {
         self.state.cam_xpos[0] = add_scaled(self.center, forward, self.distance);
         let columns = [left, up, forward];
         self.state.cam_xmat[0] = std::array::from_fn(|k| columns[k % 3][k / 3]);
-        let light = |dir: Vec3, strength: f32| Light {
+        let light = |dir: Vec3, strength: f32| LightSource {
             body: self.hip,
             pos: None,
             dir: unit([turn * dir[0], turn * dir[1], dir[2]]).0,
@@ -177,17 +178,17 @@ impl Doll {
             cos_cutoff: -1.0,
             exponent: 0.0,
         };
-        self.visual.headlight = None;
-        self.visual.lights = vec![light([-0.7, -0.5, -0.8], 0.5), light([-0.8, 0.9, -0.2], 0.22)];
+        self.scenery.headlight = None;
+        self.scenery.lights = vec![light([-0.7, -0.5, -0.8], 0.5), light([-0.8, 0.9, -0.2], 0.22)];
         let light = self.picture()?;
         // the same all in white is how much of each pixel is covered
-        self.visual.lights.clear();
-        let colors: Vec<_> = self.visual.drawables.iter().map(|d| (d.rgba, d.texture)).collect();
-        for drawable in &mut self.visual.drawables {
+        self.scenery.lights.clear();
+        let colors: Vec<_> = self.scenery.drawables.iter().map(|d| (d.rgba, d.texture)).collect();
+        for drawable in &mut self.scenery.drawables {
             (drawable.rgba, drawable.emission, drawable.texture) = ([1.0; 4], 1.0, None);
         }
         let cover = self.picture()?;
-        for (drawable, color) in self.visual.drawables.iter_mut().zip(colors) {
+        for (drawable, color) in self.scenery.drawables.iter_mut().zip(colors) {
             drawable.emission = 0.0;
             (drawable.rgba, drawable.texture) = color;
         }
@@ -203,7 +204,7 @@ impl Doll {
         };
         let mut rgb = vec![0; view.rgb_len()];
         let poses = Poses::from(&self.state);
-        self.renderer.rgb(&self.visual, &poses, &view, &mut rgb).ok()?;
+        self.renderer.rgb(&self.scenery, &poses, &view, &mut rgb).ok()?;
         Some(rgb)
     }
 }

@@ -8,7 +8,7 @@ use super::run::Evaluated;
 use crate::config::Compat;
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::{State, Topology, cameras, kinematics};
+use crate::physics::{State, Topology, cameras, com_pos, kinematics};
 
 /// Side of a cell of the map, degrees.
 const CELL: f64 = 3.0;
@@ -63,6 +63,7 @@ impl Gaze {
             for qpos in log.qpos.chunks_exact(log.nq).step_by(stride) {
                 s.qpos.copy_from_slice(qpos);
                 kinematics(model, &mut s);
+                com_pos(model, &mut s);
                 cameras(model, &mut s);
                 for (eye, counts) in eyes.iter().zip(&mut gaze.counts) {
                     for (&hand, counts) in hands.iter().zip(counts) {

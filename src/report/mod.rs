@@ -1,14 +1,20 @@
 //! A report of a run: one HTML page that needs no other file, with the score, the learning curve, what the hands
 //! touched or the eyes saw, and key frames of the video.
 
+#[cfg(feature = "internals")]
 pub mod ages;
+#[cfg(not(feature = "internals"))]
+mod ages;
 mod curve;
 mod doll;
 mod gaze;
 mod lettering;
 mod page;
 mod run;
+#[cfg(feature = "internals")]
 pub mod skin;
+#[cfg(not(feature = "internals"))]
+mod skin;
 mod strip;
 
 use std::io;

@@ -73,10 +73,11 @@ fn title(run: &Run) -> String {
     let Some(config) = &run.config else {
         return behavior.to_string();
     };
-    let place = match config.scene {
-        Scene::Crib => "in the crib",
-        Scene::Cubes => "among the cubes",
-        Scene::Base => "on the floor",
+    let place = match &config.scene {
+        Scene::Crib => "in the crib".to_string(),
+        Scene::Cubes => "among the cubes".to_string(),
+        Scene::Base => "on the floor".to_string(),
+        Scene::File(path) => format!("in {path}"),
     };
     match config.age {
         Some(age) => format!("{behavior} {place}, at {age} months"),

@@ -197,10 +197,10 @@ fn scene(dir: &Path, behavior: Behavior, nq: Option<usize>, notices: &mut Vec<St
 
 /// Builds a scene with the MIMo of a behavior, and with `nq` positions if they are known.
 fn likely_scene(behavior: Behavior, nq: Option<usize>) -> Option<Model> {
-    let build = |&scene: &Scene| {
+    let build = |scene: &Scene| {
         let config = Config {
             behavior,
-            scene,
+            scene: scene.clone(),
             ..Config::default()
         };
         build_model(&config, &embedded()).ok()

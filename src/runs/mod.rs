@@ -43,7 +43,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "internals")]
 pub mod logs;
+#[cfg(not(feature = "internals"))]
+pub(crate) mod logs;
 mod many;
 #[cfg(feature = "npz")]
 mod replay;
@@ -53,11 +56,11 @@ mod training;
 pub use logs::{EvaluationLog, LogError, TrainingLog, TrainingTotals, read_training};
 pub use many::RunVector;
 #[cfg(feature = "npz")]
-pub use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images};
+internals!(use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images});
 #[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
-pub use scene_file::{
-    KeptScene, SceneFile, SceneFileError, complete_scene, complete_scene_from, keep_scene, read_config, read_scene,
-    write_scene, write_scene_from,
-};
+pub use scene_file::{SceneFileError, read_config, read_scene, write_scene};
+internals!(use scene_file::{
+    KeptScene, SceneFile, complete_scene, complete_scene_from, keep_scene, write_scene_from,
+});
 pub use training::{RunEnv, RunError, for_evaluation, make_env, start_training};

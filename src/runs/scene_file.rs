@@ -13,7 +13,7 @@ use crate::config::{Behavior, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
-use crate::mimo::{DOCUMENT, Version, embedded, scene_xml};
+use crate::mimo::{DOCUMENT, RoomError, Version, document_path, embedded, open_room, scene_xml};
 use crate::mjcf_loader::{LoadError, Tree, load};
 use crate::model::Model;
 use crate::physics::compile;
@@ -56,6 +56,9 @@ pub enum SceneFileError {
     /// A scene that does not load.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
+    /// A scene of one's own that cannot be read.
+    #[error(transparent)]
+    Room(#[from] RoomError),
     /// The folder's scene is another one.
     #[error(
         "{}: this is {found}, but the configuration describes {wanted}; positions and geoms in the logs would not \
@@ -96,12 +99,13 @@ pub fn complete_scene(config: &Config) -> Result<SceneFile, SceneFileError> {
 /// # Errors
 /// Assets that are missing or no XML.
 pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
-    complete_document(&scene_xml(config), config, assets)
+    let room = open_room(config, assets)?;
+    complete_document(&scene_xml(config), config, room.as_ref().map_or(assets, |room| room))
 }
 
 /// Writes a document of a configuration as one document.
 fn complete_document(document: &str, config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
-    let (tree, root) = Tree::read(document, DOCUMENT, assets, &Limits::default())?;
+    let (tree, root) = Tree::read(document, document_path(config), assets, &Limits::default())?;
     let mut xml = comment(config);
     let mut images = BTreeMap::new();
     let is_folder = |element: &str, attribute: &str| element == "compiler" && attribute == "texturedir";
@@ -268,7 +272,7 @@ fn comment(config: &Config) -> String {
     out
 }
 
-/// Takes an image along and returns its new path. Equal names in different folders would clash; assets have none.
+/// Takes an image along and returns its new path. Images of equal names, from different folders, are numbered.
 fn image(
     file: &str,
     assets: &dyn AssetSource,
@@ -280,10 +284,13 @@ fn image(
     };
     let path = resolve(directory(DOCUMENT), file).map_err(|e| broken(e.to_string()))?;
     let bytes = assets.read(&path).map_err(|e| broken(e.to_string()))?.into_owned();
-    let name = format!("{IMAGES}/{}", file.rsplit('/').next().unwrap_or(file));
-    let before = images.insert(name.clone(), bytes);
-    if before.is_some_and(|before| images.get(&name) != Some(&before)) {
-        return Err(broken("another image has the same name".to_string()));
+    let own = file.rsplit('/').next().unwrap_or(file);
+    let mut name = format!("{IMAGES}/{own}");
+    let mut number = 1;
+    while images.get(&name).is_some_and(|there| *there != bytes) {
+        number += 1;
+        name = format!("{IMAGES}/{number}_{own}");
     }
+    images.insert(name.clone(), bytes);
     Ok(name)
 }

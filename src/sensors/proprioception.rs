@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
-use crate::mimo::MimoJoints;
+use crate::mimo::{MimoBodies, MimoJoints};
 use crate::model::{Model, SensorType};
 use crate::physics::State;
 
@@ -60,6 +60,8 @@ pub struct Entry {
 pub struct Proprioception {
     joints: MimoJoints,
     torque_sensors: Vec<usize>,
+    /// The first value of each.
+    torque_adr: Vec<usize>,
     layout: Vec<(Component, Range<usize>)>,
 }
 
@@ -69,7 +71,7 @@ impl Proprioception {
         use Component::*;
         let joints = MimoJoints::new(model);
         let is_torque = |i: &usize| model.sensor_type[*i] == SensorType::Torque;
-        let torque_sensors: Vec<usize> = (0..model.nsensor()).filter(is_torque).collect();
+        let torque_sensors: Vec<usize> = MimoBodies::of(model).sensors().into_iter().filter(is_torque).collect();
         let components: Vec<Component> = match config.compat {
             Compat::Reference => vec![Actuation, Limits, Angles, Velocities, Torques],
             Compat::Api => [
@@ -98,6 +100,7 @@ impl Proprioception {
             .collect();
         Self {
             joints,
+            torque_adr: torque_sensors.iter().map(|&i| model.sensor_adr[i]).collect(),
             torque_sensors,
             layout,
         }
@@ -184,8 +187,8 @@ impl Proprioception {
                 Component::Angles => gather(&s.qpos, &self.joints.qpos, out),
                 Component::Velocities => gather(&s.qvel, &self.joints.dof, out),
                 Component::Torques => {
-                    for (values, &i) in out.chunks_exact_mut(3).zip(&self.torque_sensors) {
-                        values.copy_from_slice(&s.sensordata[3 * i..3 * i + 3]);
+                    for (values, &i) in out.chunks_exact_mut(3).zip(&self.torque_adr) {
+                        values.copy_from_slice(&s.sensordata[i..i + 3]);
                     }
                 }
                 Component::Limits => {

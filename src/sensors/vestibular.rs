@@ -2,22 +2,27 @@
 
 use std::ops::Range;
 
+use crate::mimo::MimoBodies;
 use crate::model::{Model, SensorType};
 use crate::physics::State;
 
 /// The vestibular sense: linear acceleration of the head including gravity (m/s^2) and its angular velocity (rad/s), in
-/// the frame of the site at the centre of the head; the model's accelerometers and gyros, in their order.
+/// the frame of the site at the centre of the head; MIMo's accelerometers and gyros, in their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vestibular {
     sensors: Vec<usize>,
+    /// The first value of each.
+    adr: Vec<usize>,
 }
 
 impl Vestibular {
-    /// Finds the vestibular sensors of `model`.
+    /// Finds the vestibular sensors of `model`; those of other bodies than MIMo's are left out.
     pub fn new(model: &Model) -> Self {
-        let felt = |i: &usize| model.sensor_type[*i] != SensorType::Torque;
+        let felt = |i: &usize| matches!(model.sensor_type[*i], SensorType::Accelerometer | SensorType::Gyro);
+        let sensors: Vec<usize> = MimoBodies::of(model).sensors().into_iter().filter(felt).collect();
         Self {
-            sensors: (0..model.nsensor()).filter(felt).collect(),
+            adr: sensors.iter().map(|&i| model.sensor_adr[i]).collect(),
+            sensors,
         }
     }
 
@@ -41,8 +46,8 @@ impl Vestibular {
 
     /// Writes the observation, of length [`Self::len`].
     pub fn observe(&self, s: &State, out: &mut [f64]) {
-        for (values, &i) in out.chunks_exact_mut(3).zip(&self.sensors) {
-            values.copy_from_slice(&s.sensordata[3 * i..3 * i + 3]);
+        for (values, &i) in out.chunks_exact_mut(3).zip(&self.adr) {
+            values.copy_from_slice(&s.sensordata[i..i + 3]);
         }
     }
 }

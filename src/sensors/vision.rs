@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::config::{VisionOutput, VisionOutputs};
 use crate::model::Model;
 use crate::physics::State;
-use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, View, Visual};
+use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, Scenery, View};
 use crate::spaces::Values;
 
 /// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
@@ -111,10 +111,10 @@ pub struct Vision {
 }
 
 impl Vision {
-    /// Creates the eyes of `model`, its cameras [`EYES`], drawn on the CPU; `None` if it has no eyes. `visual` is the
+    /// Creates the eyes of `model`, its cameras [`EYES`], drawn on the CPU; `None` if it has no eyes. `scenery` is the
     /// look of the same model.
-    pub fn new(model: &Model, visual: Arc<Visual>, resolution: usize) -> Option<Self> {
-        Self::with_renderer(model, Renderer::cpu(visual), resolution)
+    pub fn new(model: &Model, scenery: Arc<Scenery>, resolution: usize) -> Option<Self> {
+        Self::with_renderer(model, Renderer::cpu(scenery), resolution)
     }
 
     /// Creates the eyes of `model`, drawn by any renderer of its look.
@@ -142,8 +142,8 @@ impl Vision {
     }
 
     /// Returns the look of the scene.
-    pub fn visual(&self) -> &Arc<Visual> {
-        self.renderer.visual()
+    pub fn scenery(&self) -> &Arc<Scenery> {
+        self.renderer.scenery()
     }
 
     /// Returns the renderer that draws the images.

@@ -6,7 +6,8 @@ mod values;
 
 pub use rng::NumpyRng;
 pub(crate) use values::Number;
-pub use values::{Array, Values, ValuesMut};
+pub use values::Values;
+internals!(use values::{Array, ValuesMut});
 
 /// Largest width and height of an image, pixels.
 pub const MAX_IMAGE_SIZE: usize = 4096;

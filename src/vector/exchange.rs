@@ -75,12 +75,11 @@ impl VectorEnv {
 
     /// Returns the first of the failures as an error.
     fn first_failure(&mut self) -> Result<(), VectorError> {
-        match self.failures.is_empty() {
-            true => Ok(()),
-            false => {
-                let Failure { env, error } = self.failures.remove(0);
-                Err(of(env)(error))
-            }
+        if self.failures.is_empty() {
+            Ok(())
+        } else {
+            let Failure { env, error } = self.failures.remove(0);
+            Err(of(env)(error))
         }
     }
 
@@ -263,9 +262,10 @@ impl VectorEnv {
     /// Checks that environments can be waited for.
     fn check_sent(&self, wanted: usize) -> Result<(), VectorError> {
         let in_flight = self.in_flight;
-        match (1..=in_flight).contains(&wanted) {
-            true => Ok(()),
-            false => Err(VectorError::NotSent { wanted, in_flight }),
+        if (1..=in_flight).contains(&wanted) {
+            Ok(())
+        } else {
+            Err(VectorError::NotSent { wanted, in_flight })
         }
     }
 
@@ -356,8 +356,9 @@ fn panicked(slot: &Slot) -> Option<VectorError> {
 }
 
 fn check_length(what: &'static str, found: usize, expected: [usize; 2]) -> Result<(), VectorError> {
-    match found == expected[0] * expected[1] {
-        true => Ok(()),
-        false => Err(VectorError::Shape { what, expected, found }),
+    if found == expected[0] * expected[1] {
+        Ok(())
+    } else {
+        Err(VectorError::Shape { what, expected, found })
     }
 }

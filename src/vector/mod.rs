@@ -25,7 +25,7 @@ mod error;
 mod exchange;
 mod infos;
 mod memory;
-mod options;
+pub(crate) mod options;
 mod rows;
 mod seeds;
 mod single;
@@ -35,7 +35,7 @@ pub use batch::{Batch, Failure, Finals};
 pub use buffers::Buffers;
 pub use error::VectorError;
 pub use infos::Infos;
-pub use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions};
+internals!(use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions});
 pub use seeds::Seeds;
 
 use crate::config::RendererKind;
@@ -203,6 +203,7 @@ impl VectorEnv {
     }
 
     /// Returns why there are fewer threads than asked for, if there are.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn clipped_threads(&self) -> Option<ClippedThreads> {
         self.clipped
     }

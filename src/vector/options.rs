@@ -69,9 +69,10 @@ impl fmt::Display for ClippedThreads {
 
 /// Returns how many threads are of use, and whether that is fewer than wanted.
 pub(super) fn threads(wanted: usize, envs: usize) -> (usize, Option<ClippedThreads>) {
-    let cores = match PARALLEL {
-        true => std::thread::available_parallelism().map_or(1, usize::from),
-        false => 1,
+    let cores = if PARALLEL {
+        std::thread::available_parallelism().map_or(1, usize::from)
+    } else {
+        1
     };
     let wanted_now = if wanted == 0 { cores } else { wanted };
     let limits = [

@@ -24,12 +24,12 @@ pub const EXAMPLES: [(&str, &str); 3] = [
 /// What pictures are drawn of: all default senses but touch, MIMo v2 among the cubes and v1 elsewhere.
 pub fn seen(scene: Scene) -> Config {
     Config {
-        scene,
         behavior: if scene == Scene::Cubes {
             Behavior::HandRegard
         } else {
             Behavior::None
         },
+        scene,
         touch_active: false,
         ..Config::default()
     }

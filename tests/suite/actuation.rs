@@ -15,7 +15,7 @@ fn config(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, com
     Config {
         actuation_model,
         compat,
-        ..free(behavior, scene)
+        ..free(behavior, scene.clone())
     }
 }
 

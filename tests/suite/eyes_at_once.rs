@@ -36,7 +36,7 @@ fn step(env: &mut Env) {
 
 #[test]
 fn two_threads_draw_the_same_bytes_as_one() {
-    let scenes = Scene::ALL.iter().map(|&scene| every_output(scene));
+    let scenes = Scene::ALL.iter().map(|scene| every_output(scene.clone()));
     for config in scenes.chain([infant()]) {
         let [mut one, mut other] = [1, 2].map(|threads| with_threads(&config, threads));
         assert_eq!(
@@ -100,7 +100,7 @@ fn any_number_of_images_is_drawn_two_by_two() {
     let view = |vision: &babybench::sensors::Vision| vision.requests(env.state());
     let [left, right] = view(env.senses().vision().expect("it sees"));
     let draw = |threads, count: usize| {
-        let mut renderer = Renderer::cpu(env.blueprint().visual().expect("embedded"));
+        let mut renderer = Renderer::cpu(env.blueprint().scenery().expect("embedded"));
         renderer.set_threads(threads);
         let requests: Vec<_> = [left, right].into_iter().cycle().take(count).collect();
         let images = || EyeImages::new(env.config().vision_outputs, 64 * 64);
@@ -112,7 +112,7 @@ fn any_number_of_images_is_drawn_two_by_two() {
     for count in 0..6 {
         assert!(draw(1, count) == draw(2, count), "{count} images");
     }
-    let mut renderer = Renderer::cpu(env.blueprint().visual().expect("embedded"));
+    let mut renderer = Renderer::cpu(env.blueprint().scenery().expect("embedded"));
     for (asked, given) in [(0, 1), (1, 1), (2, two()), (usize::MAX, two())] {
         renderer.set_threads(asked);
         assert_eq!(renderer.threads(), given, "{asked}");

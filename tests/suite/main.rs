@@ -17,6 +17,7 @@ mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
 mod parts;
+mod plain_models;
 #[cfg(feature = "eval")]
 mod policies;
 #[cfg(feature = "rapier")]
@@ -26,6 +27,7 @@ mod render;
 mod report;
 #[cfg(feature = "eval")]
 mod resume;
+mod rooms;
 #[cfg(feature = "rapier")]
 mod scene;
 #[cfg(feature = "eval")]

@@ -95,5 +95,5 @@ fn blueprints_of_other_assets_change_their_actuators_and_their_age() {
     let newborn = kept.with_age(Some(0.0)).expect("he grows");
     assert_eq!(newborn.model().body_name, own.model().body_name);
     assert!(newborn.model().body_mass < own.model().body_mass);
-    assert!(kept.visual().is_ok_and(|look| !look.textures.is_empty()));
+    assert!(kept.scenery().is_ok_and(|look| !look.textures.is_empty()));
 }

@@ -24,7 +24,7 @@ fn rapier(config: Config) -> Config {
 }
 
 fn rapier_env(behavior: Behavior, scene: Scene) -> Env {
-    env(rapier(free(behavior, scene)))
+    env(rapier(free(behavior, scene.clone())))
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn every_scene_resets_steps_and_truncates() {
     for (behavior, scene) in MODELS {
         let mut env = env(rapier(Config {
             max_episode_steps: 5,
-            ..free(behavior, scene)
+            ..free(behavior, scene.clone())
         }));
         assert!(matches!(env.step(&[]), Err(EnvError::NotReset)));
         env.reset(Some(3)).expect("no divergence");
@@ -115,7 +115,7 @@ fn unconstrained(config: &Config) -> Model {
 #[test]
 fn without_contacts_accelerations_are_those_of_the_soft_engine() {
     for (behavior, scene) in MODELS {
-        let config = crate::common::free(behavior, scene);
+        let config = crate::common::free(behavior, scene.clone());
         let model = build_model(&config, &embedded()).expect("the assets load");
         let (free, joints) = (distance(unconstrained(&config), false), distance(model, false));
         let at = |e: &[f64], q: f64| e[((e.len() - 1) as f64 * q) as usize];
@@ -222,7 +222,7 @@ fn locks_hold() {
 #[test]
 fn a_restored_environment_and_a_fresh_one_continue_with_the_same_bits() {
     for (behavior, scene) in [(Behavior::None, Scene::Base), (Behavior::HandRegard, Scene::Cubes)] {
-        let shared: Blueprint = blueprint(rapier(free(behavior, scene)));
+        let shared: Blueprint = blueprint(rapier(free(behavior, scene.clone())));
         let mut first = shared.env().expect("available");
         first.reset(Some(1)).expect("no divergence");
         random_steps(&mut first, 10);
@@ -410,7 +410,7 @@ fn endure(behavior: Behavior, scene: Scene, steps: usize) {
     } else {
         steps / if cfg!(debug_assertions) { 10 } else { 1 }
     };
-    let mut env = rapier_env(behavior, scene);
+    let mut env = rapier_env(behavior, scene.clone());
     env.reset(Some(0)).expect("no divergence");
     let mut action = Vec::new();
     let mut fastest = 0.0_f64;

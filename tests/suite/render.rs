@@ -6,7 +6,7 @@ use babybench::assets::{AssetSource, MemoryAssets};
 use babybench::config::{Config, Scene, VisionOutput, VisionOutputs};
 use babybench::env::Viewer;
 use babybench::mimo::{build_model, embedded};
-use babybench::render::{CpuRenderer, FreeCamera, Poses, RenderError, View, Visual};
+use babybench::render::{CpuRenderer, FreeCamera, Poses, RenderError, Scenery, View};
 use babybench::sensors::EyeImages;
 use babybench::spaces::Dtype;
 use babybench::{Blueprint, Env, EnvError, Model};
@@ -100,7 +100,7 @@ fn a_free_camera_at_the_place_of_another_draws_the_same_picture() {
 #[test]
 fn a_halved_picture_has_the_pixels_of_the_whole() {
     let e = env(Scene::Cubes);
-    let visual = e.blueprint().visual().unwrap();
+    let scenery = e.blueprint().scenery().unwrap();
     let poses = Poses::from(e.state());
     let mut renderer = CpuRenderer::new();
     for (camera, width, height) in [("corner", 64, 48), ("top", 33, 21)] {
@@ -108,13 +108,13 @@ fn a_halved_picture_has_the_pixels_of_the_whole() {
         let view = View { camera, width, height };
         let (w, h) = (width.div_ceil(2), height.div_ceil(2));
         let (mut whole, mut half) = (vec![0; view.rgb_len()], vec![0; 3 * w * h]);
-        renderer.rgb(&visual, &poses, &view, &mut whole).unwrap();
-        renderer.rgb_halved(&visual, &poses, &view, &mut half).unwrap();
+        renderer.rgb(&scenery, &poses, &view, &mut whole).unwrap();
+        renderer.rgb_halved(&scenery, &poses, &view, &mut half).unwrap();
         for i in 0..w * h {
             let at = 2 * (i / w) * width + 2 * (i % w);
             assert_eq!(half[3 * i..3 * i + 3], whole[3 * at..3 * at + 3]);
         }
-        assert!(renderer.rgb_halved(&visual, &poses, &view, &mut whole).is_err());
+        assert!(renderer.rgb_halved(&scenery, &poses, &view, &mut whole).is_err());
     }
 }
 
@@ -122,7 +122,7 @@ fn a_halved_picture_has_the_pixels_of_the_whole() {
 fn drawing_allocates_nothing_after_warm_up() {
     let mut e = env(Scene::Cubes);
     let blueprint = e.blueprint().clone();
-    let visual = blueprint.visual().unwrap();
+    let scenery = blueprint.scenery().unwrap();
     let mut renderer = CpuRenderer::new();
     let views = ["eye_left", "eye_right"].map(|name| View {
         camera: e.model().camera(name).unwrap(),
@@ -137,7 +137,7 @@ fn drawing_allocates_nothing_after_warm_up() {
         e.step(&action).unwrap();
         let before = allocations::of_this_thread();
         for view in &views {
-            renderer.rgb(&visual, &Poses::from(e.state()), view, &mut out).unwrap();
+            renderer.rgb(&scenery, &Poses::from(e.state()), view, &mut out).unwrap();
         }
         late += if k < 60 {
             0
@@ -152,7 +152,7 @@ fn drawing_allocates_nothing_after_warm_up() {
 #[test]
 fn depth_segmentation_and_gray_describe_the_same_picture() {
     let e = env(Scene::Cubes);
-    let visual = e.blueprint().visual().unwrap();
+    let scenery = e.blueprint().scenery().unwrap();
     let camera = e.model().camera("top").unwrap();
     let view = View {
         camera,
@@ -162,10 +162,10 @@ fn depth_segmentation_and_gray_describe_the_same_picture() {
     let mut renderer = CpuRenderer::new();
     let poses = Poses::from(e.state());
     let (mut depth, mut ids) = (vec![0.0; view.pixels()], vec![0; view.pixels()]);
-    renderer.depth(&visual, &poses, &view, &mut depth).unwrap();
-    renderer.segmentation(&visual, &poses, &view, &mut ids).unwrap();
+    renderer.depth(&scenery, &poses, &view, &mut depth).unwrap();
+    renderer.segmentation(&scenery, &poses, &view, &mut ids).unwrap();
     let (mut rgb, mut gray) = (vec![0; view.rgb_len()], vec![0; view.pixels()]);
-    renderer.gray(&visual, &poses, &view, &mut rgb, &mut gray).unwrap();
+    renderer.gray(&scenery, &poses, &view, &mut rgb, &mut gray).unwrap();
     // the camera hangs 2 m above the floor and sees MIMo, the rug and the floor around it
     let rug = e.model().geom("rug").unwrap() as i32;
     let floor = e.model().geom("floor").unwrap() as i32;
@@ -203,7 +203,7 @@ fn eyes_see_distances_geoms_and_grey() {
     })
     .unwrap();
     e.reset(Some(0)).unwrap();
-    let visual = e.blueprint().visual().unwrap();
+    let scenery = e.blueprint().scenery().unwrap();
     let mut gray = [vec![0; 32 * 32], vec![0; 32 * 32]];
     let mut depth = gray.clone().map(|v| vec![0.0; v.len()]);
     let mut geoms = gray.clone().map(|v| vec![0; v.len()]);
@@ -221,13 +221,13 @@ fn eyes_see_distances_geoms_and_grey() {
         };
         let poses = Poses::from(e.state());
         let (mut rgb, mut expected) = (vec![0; view.rgb_len()], vec![0; view.pixels()]);
-        renderer.gray(&visual, &poses, &view, &mut rgb, &mut expected).unwrap();
+        renderer.gray(&scenery, &poses, &view, &mut rgb, &mut expected).unwrap();
         assert_eq!(gray[k], expected);
         let mut expected = vec![0.0; view.pixels()];
-        renderer.depth(&visual, &poses, &view, &mut expected).unwrap();
+        renderer.depth(&scenery, &poses, &view, &mut expected).unwrap();
         assert_eq!(depth[k], expected);
         let mut expected = vec![0; view.pixels()];
-        renderer.segmentation(&visual, &poses, &view, &mut expected).unwrap();
+        renderer.segmentation(&scenery, &poses, &view, &mut expected).unwrap();
         assert_eq!(geoms[k], expected);
         assert!(geoms[k].iter().any(|&g| g >= 0));
     }
@@ -239,14 +239,14 @@ fn eyes_see_distances_geoms_and_grey() {
 }
 
 /// Images of one view in every kind, drawn one by one.
-fn apart(renderer: &mut CpuRenderer, visual: &Visual, poses: &Poses, view: &View) -> EyeImages {
+fn apart(renderer: &mut CpuRenderer, scenery: &Scenery, poses: &Poses, view: &View) -> EyeImages {
     let mut images = EyeImages::new(every_output(), view.pixels());
-    renderer.rgb(visual, poses, view, &mut images.rgb).unwrap();
+    renderer.rgb(scenery, poses, view, &mut images.rgb).unwrap();
     let mut rgb = vec![0; view.rgb_len()];
-    renderer.gray(visual, poses, view, &mut rgb, &mut images.gray).unwrap();
-    renderer.depth(visual, poses, view, &mut images.depth).unwrap();
+    renderer.gray(scenery, poses, view, &mut rgb, &mut images.gray).unwrap();
+    renderer.depth(scenery, poses, view, &mut images.depth).unwrap();
     renderer
-        .segmentation(visual, poses, view, &mut images.segmentation)
+        .segmentation(scenery, poses, view, &mut images.segmentation)
         .unwrap();
     images
 }
@@ -258,15 +258,15 @@ fn every_output() -> VisionOutputs {
 #[test]
 fn images_of_one_pass_are_those_drawn_alone() {
     for scene in Scene::ALL {
-        let e = env(*scene);
+        let e = env(scene.clone());
         let poses = Poses::from(e.state());
-        let plain = e.blueprint().visual().unwrap();
+        let plain = e.blueprint().scenery().unwrap();
         let mut glass = (*plain).clone();
         for drawable in glass.drawables.iter_mut().step_by(3) {
             drawable.rgba[3] = 0.5;
         }
         let mut renderer = CpuRenderer::new();
-        for (visual, camera) in [&*plain, &glass]
+        for (scenery, camera) in [&*plain, &glass]
             .into_iter()
             .flat_map(|v| (0..v.cameras.len()).map(move |c| (v, c)))
         {
@@ -275,13 +275,13 @@ fn images_of_one_pass_are_those_drawn_alone() {
                 width: 60,
                 height: 45,
             };
-            let expected = apart(&mut renderer, visual, &poses, &view);
+            let expected = apart(&mut renderer, scenery, &poses, &view);
             for outputs in 1..1 << VisionOutput::ALL.len() {
                 let wanted = VisionOutput::ALL.iter().copied();
                 let wanted = VisionOutputs::new(wanted.filter(|&o| outputs >> o as usize & 1 == 1));
                 let mut images = EyeImages::new(wanted, view.pixels());
                 let before = renderer.passes();
-                renderer.draw(visual, &poses, &view, images.buffers()).unwrap();
+                renderer.draw(scenery, &poses, &view, images.buffers()).unwrap();
                 assert_eq!(renderer.passes() - before, 1, "a second drawing");
                 for output in wanted.iter() {
                     let same = match output {
@@ -358,7 +358,7 @@ fn the_observation_has_the_images_that_the_configuration_asks_for() {
 #[test]
 fn wrong_requests_are_errors() {
     let e = env(Scene::Base);
-    let visual = e.blueprint().visual().unwrap();
+    let scenery = e.blueprint().scenery().unwrap();
     let mut renderer = CpuRenderer::new();
     let poses = Poses::from(e.state());
     let view = |camera, width| View {
@@ -367,7 +367,7 @@ fn wrong_requests_are_errors() {
         height: 8,
     };
     let mut out = [0; 8 * 8 * 3];
-    let mut draw = |poses: &Poses, view: View, n: usize| renderer.rgb(&visual, poses, &view, &mut out[..n]);
+    let mut draw = |poses: &Poses, view: View, n: usize| renderer.rgb(&scenery, poses, &view, &mut out[..n]);
     assert_eq!(draw(&poses, view(0, 8), 192), Ok(()));
     assert!(matches!(
         draw(&poses, view(99, 8), 192),
@@ -391,7 +391,7 @@ fn wrong_requests_are_errors() {
 #[test]
 fn poses_that_are_not_numbers_draw_nothing_and_do_not_panic() {
     let e = env(Scene::Base);
-    let visual = e.blueprint().visual().unwrap();
+    let scenery = e.blueprint().scenery().unwrap();
     let mut renderer = CpuRenderer::new();
     let poses = Poses::from(e.state());
     let view = View {
@@ -400,7 +400,7 @@ fn poses_that_are_not_numbers_draw_nothing_and_do_not_panic() {
         height: 8,
     };
     let mut out = [0; 8 * 8 * 3];
-    let mut draw = |poses: Poses| renderer.rgb(&visual, &poses, &view, &mut out);
+    let mut draw = |poses: Poses| renderer.rgb(&scenery, &poses, &view, &mut out);
     let turned = vec![[f64::NAN; 9]; poses.geom_xpos.len()];
     let geom_xmat = &turned[..];
     assert_eq!(draw(Poses { geom_xmat, ..poses }), Ok(()));
@@ -443,7 +443,7 @@ fn broken_images_are_errors_that_name_them() {
     let good = embedded().read(rug).unwrap().into_owned();
     let load = |bytes: Vec<u8>| {
         let (model, assets) = with_file(rug, bytes);
-        Visual::new(&model, &assets)
+        Scenery::new(&model, &assets)
     };
     assert!(load(good.clone()).is_ok());
     assert!(load(png(300, 300)).is_ok(), "any square will do");
@@ -480,7 +480,7 @@ fn broken_images_are_errors_that_name_them() {
 fn environments_of_a_blueprint_share_the_look() {
     let blueprint = Blueprint::new(seen(Scene::Base)).unwrap();
     let (a, b) = (blueprint.env().unwrap(), blueprint.env().unwrap());
-    let look = |e: &Env| e.senses().vision().unwrap().visual().clone();
+    let look = |e: &Env| e.senses().vision().unwrap().scenery().clone();
     assert!(Arc::ptr_eq(&look(&a), &look(&b)));
     assert!(look(&a).texture_bytes() < 32 << 20);
 }

@@ -22,7 +22,7 @@ fn run(folder: &Folder, behavior: Behavior, training: u64, evaluation: u64, rend
     let config = Config {
         save_dir: folder.text(),
         max_episode_steps: 40,
-        ..free(behavior, scene)
+        ..free(behavior, scene.clone())
     };
     let blueprint = blueprint(config);
     if training > 0 {

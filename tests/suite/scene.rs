@@ -18,7 +18,7 @@ const STEPS: usize = if cfg!(debug_assertions) { 40 } else { 300 };
 /// Runs every model with random actions; `look` sees the environment after each step, and its mirror.
 fn visit(steps: usize, mut look: impl FnMut(&str, usize, &mut Env, &RapierScene)) {
     for (behavior, scene) in MODELS {
-        let mut env = env(free(behavior, scene));
+        let mut env = env(free(behavior, scene.clone()));
         env.reset(Some(0)).expect("no divergence");
         let mut mirror = mirror(&env);
         let name = format!("{behavior}/{scene}");

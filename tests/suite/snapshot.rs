@@ -32,7 +32,7 @@ fn of(actuation_model: ActuationModel, behavior: Behavior, scene: Scene, compat:
         compat,
         max_episode_steps: 12,
         frame_skip: 2,
-        ..free(behavior, scene)
+        ..free(behavior, scene.clone())
     }
 }
 
@@ -79,7 +79,7 @@ fn a_continuation_has_the_same_bits() {
             (Behavior::HandRegard, Scene::Base, Compat::Reference),
             (Behavior::None, Scene::Cubes, Compat::Reference),
         ] {
-            let mut env = started(of(kind, behavior, scene, compat));
+            let mut env = started(of(kind, behavior, scene.clone(), compat));
             env.lock(Part::Arms, 0.02).expect("locks");
             random_steps(&mut env, 1);
             let snapshot = env.snapshot();

@@ -7,7 +7,7 @@ use babybench::config::{Behavior, Compat, Config, Example, StartingPosition};
 use babybench::env::{BehaviorInfo, Goal, Outcome};
 use babybench::mjcf_loader::load_str;
 use babybench::physics::{Engine, EngineError, FreeBody, SoftEngine, SoftOptions, compile};
-use babybench::render::{CpuRenderer, Poses, View, Visual};
+use babybench::render::{CpuRenderer, Poses, Scenery, View};
 use babybench::{Env, Model, VectorEnv, VectorOptions};
 use testkit::Rng;
 
@@ -419,14 +419,14 @@ fn a_changed_ball_looks_like_a_ball_compiled_so() {
             state.set_free_body(model, id, change).expect("it is free");
         }
         engine.forward(&mut state).expect("no divergence");
-        let visual = Visual::new(model, &MemoryAssets::new()).expect("no files");
+        let scenery = Scenery::new(model, &MemoryAssets::new()).expect("no files");
         let view = View {
             camera: model.camera("near").expect("a camera"),
             width: 40,
             height: 40,
         };
         let mut out = vec![0; view.rgb_len()];
-        let drawn = CpuRenderer::new().rgb(&visual, &Poses::from(&state), &view, &mut out);
+        let drawn = CpuRenderer::new().rgb(&scenery, &Poses::from(&state), &view, &mut out);
         drawn.expect("it can be drawn");
         out
     };

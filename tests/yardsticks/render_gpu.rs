@@ -97,9 +97,9 @@ fn assert_alike(a: &[u8], b: &[u8]) {
 
 fn cpu(env: &Env, s: &RenderRequest) -> Vec<u8> {
     let mut out = vec![0; s.view.rgb_len()];
-    let visual = env.blueprint().visual().expect("textures");
+    let scenery = env.blueprint().scenery().expect("textures");
     CpuRenderer::new()
-        .rgb(&visual, &s.poses, &s.view, &mut out)
+        .rgb(&scenery, &s.poses, &s.view, &mut out)
         .expect("a fine shot");
     out
 }
@@ -222,7 +222,7 @@ fn a_picture_does_not_depend_on_its_company() {
 fn depth_segmentation_and_gray_are_those_of_the_cpu_renderer() {
     let (blueprint, gpu) = open(Scene::Cubes);
     let environments = environments(&blueprint, 2);
-    let visual = blueprint.visual().unwrap();
+    let scenery = blueprint.scenery().unwrap();
     let mut gpu = gpu.lock().unwrap();
     let mut renderer = CpuRenderer::new();
     for camera in ["top", "eye_left", "corner"] {
@@ -233,8 +233,8 @@ fn depth_segmentation_and_gray_are_those_of_the_cpu_renderer() {
         for (k, s) in shots.iter().enumerate() {
             let n = s.view.pixels();
             let (mut d, mut i) = (vec![0.0; n], vec![0; n]);
-            renderer.depth(&visual, &s.poses, &s.view, &mut d).unwrap();
-            renderer.segmentation(&visual, &s.poses, &s.view, &mut i).unwrap();
+            renderer.depth(&scenery, &s.poses, &s.view, &mut d).unwrap();
+            renderer.segmentation(&scenery, &s.poses, &s.view, &mut i).unwrap();
             let same = ids.get(k).unwrap().iter().zip(&i).filter(|(a, b)| a == b).count();
             assert!(same >= n - n / 100, "{camera}: {} pixels show other geoms", n - same);
             let ours = depth.get(k).unwrap();
@@ -348,7 +348,7 @@ fn a_lost_device_is_an_error() {
         ..Default::default()
     }))
     .unwrap();
-    let mut gpu = GpuRenderer::with_device(device.clone(), queue, blueprint.visual().unwrap()).unwrap();
+    let mut gpu = GpuRenderer::with_device(device.clone(), queue, blueprint.scenery().unwrap()).unwrap();
     let shots = [shot(&environments[0], "corner", 40, 40)];
     let pending = gpu.begin::<Rgb>(&shots).unwrap();
     assert_alike(

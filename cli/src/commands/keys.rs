@@ -37,6 +37,9 @@ fn values(key: &Key) -> String {
     };
     match key.kind {
         KeyKind::Choice(choices) => names(choices),
+        KeyKind::ChoiceOrFile { names: known, ending } => {
+            format!("{}, or a path that ends in `{ending}`", names(known))
+        }
         KeyKind::List(choices) => format!("list of {}", names(choices)),
         KeyKind::Text => "text".to_string(),
         _ => key.kind.expected(),

@@ -9,7 +9,9 @@ mod render;
 mod replay;
 mod report;
 mod run;
+mod scene;
 mod score;
+mod simulate;
 mod test_installation;
 mod train;
 
@@ -43,6 +45,10 @@ enum Command {
     Inspect(inspect::Inspect),
     /// Draw the scene, or the view of an eye
     Render(render::Render),
+    /// Write a scene of one's own to start from, or check one
+    Scene(scene::Scene),
+    /// Simulate any MJCF model, with or without an infant, and write what it does as arrays or a video
+    Simulate(simulate::Simulate),
     /// Replay a recording (.npz) from its start with its actions
     Replay(replay::ReplayArgs),
     /// Check that everything works here, and write a scene, a log and a short video
@@ -113,7 +119,7 @@ impl Source {
         };
         let built = Blueprint::with(config, options);
         // a texture that cannot be read is the fault of the folder, whenever it is drawn
-        let checked = built.and_then(|blueprint| blueprint.visual().map(|_| blueprint));
+        let checked = built.and_then(|blueprint| blueprint.scenery().map(|_| blueprint));
         Ok(checked.map_err(|e| format!("--assets {}: {e}", dir.display()))?)
     }
 
@@ -158,6 +164,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         Command::Run(c) => c.run(),
         Command::Inspect(c) => c.run(),
         Command::Render(c) => c.run(),
+        Command::Scene(c) => c.run(),
+        Command::Simulate(c) => c.run(),
         Command::Replay(c) => c.run(),
         Command::TestInstallation(c) => c.run(),
         Command::Train(c) => c.run(),

@@ -7,7 +7,7 @@ use babybench::config::{Compat, RendererKind};
 use babybench::env::{ViewFrom, Viewer};
 use babybench::formats::npz::Npz;
 use babybench::formats::png::write_png;
-use babybench::mimo::build_model;
+use babybench::mimo::{build_model, scene_assets};
 use babybench::report::ages::draw_ages;
 use babybench::{Config, Model};
 use clap::Args;
@@ -90,13 +90,14 @@ impl Render {
 
     /// Draws a row of infants.
     fn draw_ages(&self) -> Result<(), Box<dyn Error>> {
-        let (config, assets) = (self.source.read(Compat::Api)?, self.source.assets()?);
+        let config = self.source.read(Compat::Api)?;
+        let (given, assets) = (self.source.assets()?, scene_assets(&config, self.source.assets()?)?);
         let grown = |&age: &f64| -> Result<(f64, Model), Box<dyn Error>> {
             let config = Config {
                 age: Some(age),
                 ..config.clone()
             };
-            Ok((age, build_model(&config, &*assets)?))
+            Ok((age, build_model(&config, &*given)?))
         };
         let models = self.age.iter().map(grown).collect::<Result<Vec<_>, _>>()?;
         let infants: Vec<(f64, &Model)> = models.iter().map(|(age, model)| (*age, model)).collect();

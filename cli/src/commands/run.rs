@@ -173,7 +173,7 @@ fn description(env: &Env) -> String {
         config.behavior,
         config.actuation_model,
         env.senses().proprioception().joints().len(),
-        env.model().nu(),
+        env.actuation().actuators().len(),
         spaces.iter().map(|s| s.shape.iter().product::<usize>()).sum::<usize>(),
     )
 }

@@ -155,7 +155,7 @@ const DOCUMENTS: &[(&str, &str)] = &[
     ),
     ("negative time step", "<mujoco><option timestep='-1'/></mujoco>"),
     ("no time step", "<mujoco><option timestep='0'/></mujoco>"),
-    ("unknown integrator", "<mujoco><option integrator='RK4'/></mujoco>"),
+    ("unknown integrator", "<mujoco><option integrator='Verlet'/></mujoco>"),
     ("other cone", "<mujoco><option cone='round'/></mujoco>"),
     (
         "iterations without end",

@@ -18,6 +18,10 @@ pub fn cases() -> Vec<Case> {
         let call = "run --config c.yml --assets assets --steps 1 --quiet";
         quick(format!("file: assets: {name}"), call)
     };
+    let room = |name: &str| {
+        Case::new(format!("file: room: {name}"), "run --config c.yml --steps 1 --quiet")
+            .file("c.yml", "scene: room.xml\n")
+    };
     vec![
         configuration("a pipe", Content::Pipe),
         configuration("a device", Content::Link("/dev/zero")),
@@ -32,6 +36,21 @@ pub fn cases() -> Vec<Case> {
         scene("a folder", Content::Folder),
         scene("8 GiB of zeros", Content::Zeros(8 << 30)),
         scene("a link out of the run", Content::Link("/etc/passwd")),
+        room("not there"),
+        room("a folder").file("room.xml", Content::Folder),
+        room("a pipe").file("room.xml", Content::Pipe),
+        room("a device").file("room.xml", Content::Link("/dev/zero")),
+        room("empty").file("room.xml", ""),
+        room("no MIMo").file("room.xml", "<mujoco/>"),
+        room("itself").file("room.xml", "<mujoco><include file='room.xml'/></mujoco>"),
+        room("a file of the system").file("room.xml", "<mujoco><include file='../../etc/passwd'/></mujoco>"),
+        room("an absolute path").file("room.xml", "<mujoco><include file='/etc/passwd'/></mujoco>"),
+        room("a link out of the folder")
+            .file("room.xml", "<mujoco><include file='walls.xml'/></mujoco>")
+            .file("walls.xml", Content::Link("/etc/passwd")),
+        room("the library's name")
+            .file("room.xml", "<mujoco><include file='mimo.xml'/></mujoco>")
+            .file("mimo.xml", "<mujoco/>"),
         assets("not there"),
         assets("a file").file("assets", ""),
         assets("an empty folder").file("assets", Content::Folder),

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use babybench::Model;
 use babybench::assets::MemoryAssets;
 use babybench::mjcf_loader::{LoadError, load_str};
+use babybench::model::IntegratorType;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
 
 use super::dice::numbers;
 use super::matrix::scaled_condition;
-use super::measured::{Measured, measure};
+use super::measured::{Measured, QACC, activations, advanced, measure};
 use super::state::Recipe;
 use crate::loading::{deliberate, distances};
 use crate::measure::{max_abs, relative};
@@ -20,6 +21,9 @@ const CONDITION: f64 = 1e8;
 
 /// Regularisation of a constraint row below which they are, too.
 const REGULARISATION: f64 = 1e-13;
+
+/// Largest position and velocity that MuJoCo goes on from.
+const MAX_VALUE: f64 = 1e10;
 
 /// Times that MuJoCo is stepped from nearly the same state where the sides differ.
 const NUDGES: u64 = 8;
@@ -38,11 +42,11 @@ pub enum Taken {
 
 /// What became of a state.
 pub enum Stepped {
-    /// MuJoCo gives up or warns, as where numbers are no longer finite.
+    /// MuJoCo gives up or warns, as where numbers are no longer finite, or will in the next step.
     Diverged,
     /// MuJoCo's own numbers are noise there: an inertia that is nearly singular, hardly any regularisation.
     Noise,
-    /// The quantities of both sides; whether MuJoCo jumps as far by itself, when the last bits of the positions change.
+    /// The quantities of both sides; whether MuJoCo jumps as far by itself, when the last bits of positions and velocities change.
     Compared {
         /// All quantities.
         measured: Vec<Measured>,
@@ -71,6 +75,8 @@ impl Sides {
         let theirs = Simulation::new(api, "m.xml", &[("m.xml", text.as_bytes())]);
         match (ours, theirs) {
             (Err(e), Err(_)) => Taken::Refused(e.to_string()),
+            // what MuJoCo's own solver cannot handle while it compiles
+            (Ok(_), Err(e)) if e.contains("engine error") => Taken::Refused(e),
             (Ok(_), Err(e)) => Taken::ByOne(Measured::new(
                 "taken",
                 1.0,
@@ -146,6 +152,18 @@ impl Sides {
     pub fn step_from(&mut self, start: &State) -> Stepped {
         let mut state = self.engine.new_state();
         state.copy_dynamic_from(start);
+        // Where a step evaluates several states, what is computed shows at its start: later ones have the rounding errors of the
+        // first, as much greater as the forces are stiff.
+        let evaluations = self.model.opt.integrator != IntegratorType::Euler;
+        let mut computed = None;
+        if evaluations {
+            self.simulation.reset();
+            self.simulation.set_state(&self.model, start);
+            if self.simulation.try_forward().is_ok() && self.engine.forward(&mut state).is_ok() {
+                computed = Some(measure(&self.model, &state, &self.simulation));
+            }
+            state.copy_dynamic_from(start);
+        }
         let ours = self.engine.step(&mut state);
         if !self.step_mujoco(start) {
             return Stepped::Diverged;
@@ -154,6 +172,11 @@ impl Sides {
         let condition = scaled_condition(&theirs.full_inertia(), self.model.nv);
         if condition > CONDITION || self.condition > CONDITION {
             return Stepped::Noise;
+        }
+        // MuJoCo looks for these at the start of the next step
+        let beyond = |values: &[f64]| values.iter().any(|v| v.abs() > 1e10);
+        if ours.is_err() && (beyond(theirs.qpos()) || beyond(theirs.qvel())) {
+            return Stepped::Diverged;
         }
         if let Err(e) = ours {
             let measured = vec![Measured::new("steps", 1.0, 0.0, format!("ours fails: {e}"))];
@@ -168,7 +191,16 @@ impl Sides {
         if theirs.efc_R().iter().any(|&r| r < REGULARISATION) {
             return Stepped::Noise;
         }
-        let measured = measure(&state, theirs, self.model.opt.tolerance);
+        let measured = match computed {
+            Some(mut measured) => {
+                if measured.iter().all(Measured::agrees) {
+                    measured.extend(advanced(&state, theirs, 1e-6));
+                    measured.push(activations(&state, theirs));
+                }
+                measured
+            }
+            None => measure(&self.model, &state, theirs),
+        };
         let (contacts, rows) = (theirs.ncon(), theirs.nefc());
         let wrong: Vec<Measured> = measured.iter().filter(|m| !m.agrees()).cloned().collect();
         let jump = !wrong.is_empty() && self.jumps(start, &wrong);
@@ -180,38 +212,43 @@ impl Sides {
         }
     }
 
-    /// Steps MuJoCo from a state of ours; returns whether it neither gave up nor warned.
+    /// Steps MuJoCo from a state of ours; returns whether it neither gave up nor warned, nor will at the beginning of the next
+    /// step, where it looks at positions and velocities.
     pub fn step_mujoco(&mut self, start: &State) -> bool {
         self.simulation.reset();
         self.simulation.set_state(&self.model, start);
-        self.simulation.try_step().is_ok() && self.simulation.warnings() == 0
+        let stepped = self.simulation.try_step().is_ok() && self.simulation.warnings() == 0;
+        let mut next = self.simulation.qpos().iter().chain(self.simulation.qvel());
+        stepped && next.all(|v| v.abs() <= MAX_VALUE)
     }
 
-    /// Tells whether MuJoCo is as far from itself, when the last bits of the positions change, as ours is from it: then the
+    /// Tells whether MuJoCo is as far from itself, when the last bits of positions and velocities change, as ours is from it: then the
     /// geometry of a contact jumps there, or the solver stops elsewhere.
     fn jumps(&mut self, start: &State, wrong: &[Measured]) -> bool {
         let qacc = self.simulation.qacc().to_vec();
         let contacts = self.simulation.contacts();
-        let (mut moved, mut other) = (0.0_f64, false);
+        let (qvel, qpos) = (self.simulation.qvel().to_vec(), self.simulation.qpos().to_vec());
+        let (mut moved, mut farther, mut other) = (0.0_f64, 0.0_f64, false);
         let mut rng = fastrand::Rng::with_seed(1);
         let mut nudged = self.engine.new_state();
         for _ in 0..NUDGES {
             nudged.copy_dynamic_from(start);
-            let bits = |v: &mut f64| *v *= 1.0 + f64::EPSILON * f64::from(rng.i8(-1..=1));
-            nudged.qpos.iter_mut().for_each(bits);
+            // a coordinate that is 0 is the difference of some that are not
+            let bits = |v: &mut f64| *v += f64::EPSILON * v.abs().max(1.0) * f64::from(rng.i8(-1..=1));
+            nudged.qpos.iter_mut().chain(&mut nudged.qvel).for_each(bits);
             if !self.step_mujoco(&nudged) {
                 return true;
             }
             moved = moved.max(relative(self.simulation.qacc(), &qacc));
+            farther = farther.max(relative(self.simulation.qvel(), &qvel));
+            farther = farther.max(relative(self.simulation.qpos(), &qpos));
             let now = self.simulation.contacts();
             other |= now.len() != contacts.len() || contacts.iter().zip(&now).any(|(a, b)| differ(a, b));
         }
-        wrong.iter().all(|m| {
-            if m.quantity == "qacc" {
-                m.error <= 3.0 * moved
-            } else {
-                other
-            }
+        wrong.iter().all(|m| match m.quantity {
+            QACC => m.error <= 3.0 * moved,
+            "qvel after the step" | "qpos after the step" => m.error <= 30.0 * farther,
+            _ => other,
         })
     }
 }
@@ -232,6 +269,7 @@ pub fn describe_state(model: &Arc<Model>, recipe: &Recipe) -> String {
         ("qpos", &state.qpos[..]),
         ("qvel", &state.qvel),
         ("ctrl", &state.ctrl),
+        ("act", &state.act),
         ("qfrc_applied", &state.qfrc_applied),
         ("xfrc_applied", state.xfrc_applied.as_flattened()),
         ("qacc_warmstart", &state.qacc_warmstart),

@@ -17,6 +17,13 @@ const DEPTH: usize = 5;
 struct JointName {
     name: String,
     scalar: bool,
+    /// Whether it has a limit of its own.
+    limited: bool,
+}
+
+/// Tells whether a joint or a tendon gives itself a limit.
+fn has_limit(node: &Node) -> bool {
+    node.get("range").is_some() && node.get("limited") != Some("false")
 }
 
 /// Writes one document.
@@ -33,6 +40,9 @@ struct Writer<'a> {
     joints: Vec<JointName>,
     geoms: Vec<String>,
     sites: Vec<String>,
+    tendons: Vec<String>,
+    limited_tendons: Vec<String>,
+    actuators: Vec<String>,
     named: usize,
 }
 
@@ -51,6 +61,9 @@ pub fn document(language: &Language, seed: u64) -> Node {
         joints: Vec::new(),
         geoms: Vec::new(),
         sites: Vec::new(),
+        tendons: Vec::new(),
+        limited_tendons: Vec::new(),
+        actuators: Vec::new(),
         named: 0,
     };
     writer.root(degree)
@@ -88,6 +101,21 @@ impl Writer<'_> {
             Self::sensor,
         ] {
             let section = section(self);
+            let names = || {
+                section
+                    .children
+                    .iter()
+                    .filter_map(|node| node.get("name").map(str::to_owned))
+            };
+            match section.name.as_str() {
+                "tendon" => {
+                    self.tendons = names().collect();
+                    let limited = section.children.iter().filter(|node| has_limit(node));
+                    self.limited_tendons = limited.filter_map(|node| node.get("name").map(str::to_owned)).collect();
+                }
+                "actuator" => self.actuators = names().collect(),
+                _ => {}
+            }
             root.push_section(section);
         }
         root
@@ -103,12 +131,13 @@ impl Writer<'_> {
         // Where the solvers are cut off, their steps are compared; elsewhere, where they end.
         let cut_off = self.dice.chance(0.1);
         let option = Node::new("option").with("tolerance", if cut_off { "1e-8" } else { "1e-14" });
-        let (iterations, searches) = match cut_off {
-            true => (
+        let (iterations, searches) = if cut_off {
+            (
                 self.dice.pick(&["1", "2", "3", "100"]),
                 self.dice.pick(&["0", "1", "2", "3", "5", "50"]),
-            ),
-            false => ("300", "200"),
+            )
+        } else {
+            ("300", "200")
         };
         let mut option = option.with("iterations", iterations).with("ls_iterations", searches);
         option.set(
@@ -120,6 +149,11 @@ impl Writer<'_> {
             },
         );
         self.language.dress(&mut option, "option", false, &mut self.dice);
+        if self.dice.chance(0.2) {
+            let mut flag = Node::new("flag");
+            self.language.dress(&mut flag, "option/flag", false, &mut self.dice);
+            option.children.push(flag);
+        }
         option
     }
 
@@ -130,23 +164,32 @@ impl Writer<'_> {
             class.set("class", name.as_str());
             self.classes.push(name);
         }
-        const HOLDS: [(&str, &str); 8] = [
+        const HOLDS: [(&str, &str); 13] = [
             ("joint", "worldbody/body/joint"),
             ("geom", "worldbody/body/geom"),
             ("site", "worldbody/body/site"),
             ("pair", "contact/pair"),
             ("equality", "equality/joint"),
             ("tendon", "tendon/fixed"),
+            ("general", "actuator/general"),
             ("motor", "actuator/motor"),
             ("position", "actuator/position"),
+            ("velocity", "actuator/velocity"),
+            ("intvelocity", "actuator/intvelocity"),
+            ("damper", "actuator/damper"),
+            ("cylinder", "actuator/cylinder"),
         ];
         for (name, path) in HOLDS {
-            if self
-                .dice
-                .chance(if ["joint", "geom"].contains(&name) { 0.6 } else { 0.2 })
-            {
+            // actuators share one default, of which each decides a part
+            let odds = match name {
+                "joint" | "geom" => 0.6,
+                _ if path.starts_with("actuator") => 0.07,
+                _ => 0.2,
+            };
+            if self.dice.chance(odds) {
                 let mut node = Node::new(name);
                 self.language.dress(&mut node, path, true, &mut self.dice);
+                self.fit_actuator(&mut node, true);
                 if !self.autolimits {
                     self.decide_limits(&mut node);
                 }
@@ -163,13 +206,21 @@ impl Writer<'_> {
 
     /// Says of each range whether it limits, where MuJoCo asks for that.
     fn decide_limits(&mut self, node: &mut Node) {
-        const RANGES: [(&str, &str); 3] = [
+        const RANGES: [(&str, &str); 5] = [
             ("range", "limited"),
             ("ctrlrange", "ctrllimited"),
+            ("inheritrange", "ctrllimited"),
             ("forcerange", "forcelimited"),
+            ("actrange", "actlimited"),
         ];
         for (range, limited) in RANGES {
-            if node.get(range).is_some() && (!self.autolimits || self.dice.chance(0.2)) {
+            // the others are limited by their kind
+            let always = match limited {
+                "ctrllimited" => node.name == "damper",
+                "actlimited" => node.name != "general",
+                _ => false,
+            };
+            if !always && node.get(range).is_some() && (!self.autolimits || self.dice.chance(0.2)) {
                 let word = self.dice.pick(&["true", "true", "false"]);
                 node.set(limited, word);
             }
@@ -260,9 +311,10 @@ impl Writer<'_> {
     fn joints(&mut self, body: &mut Node, depth: usize) -> bool {
         if depth == 0 && self.dice.chance(0.35) {
             let name = self.name("j");
-            let mut joint = match self.dice.chance(0.5) {
-                true => Node::new("freejoint").with("name", name.as_str()),
-                false => Node::new("joint").with("name", name.as_str()).with("type", "free"),
+            let mut joint = if self.dice.chance(0.5) {
+                Node::new("freejoint").with("name", name.as_str())
+            } else {
+                Node::new("joint").with("name", name.as_str()).with("type", "free")
             };
             if joint.name == "joint" {
                 self.class(&mut joint, "class");
@@ -270,7 +322,11 @@ impl Writer<'_> {
                     .dress(&mut joint, "worldbody/body/joint", false, &mut self.dice);
                 self.decide_limits(&mut joint);
             }
-            self.joints.push(JointName { name, scalar: false });
+            self.joints.push(JointName {
+                name,
+                scalar: false,
+                limited: false,
+            });
             body.children.push(joint);
             return true;
         }
@@ -284,7 +340,12 @@ impl Writer<'_> {
                 .dress(&mut joint, "worldbody/body/joint", false, &mut self.dice);
             self.dice.angle = self.radian;
             self.decide_limits(&mut joint);
-            self.joints.push(JointName { name, scalar: true });
+            let limited = has_limit(&joint);
+            self.joints.push(JointName {
+                name,
+                scalar: true,
+                limited,
+            });
             body.children.push(joint);
         }
         n > 0

@@ -81,12 +81,13 @@ impl Language {
             }
             known.push((element.path, attributes));
         }
-        match missing.is_empty() {
-            true => Ok(Self { elements: known }),
-            false => Err(format!(
+        if missing.is_empty() {
+            Ok(Self { elements: known })
+        } else {
+            Err(format!(
                 "conformance/src/differential/rules.rs does not say how these are drawn: {}",
                 missing.join(", ")
-            )),
+            ))
         }
     }
 

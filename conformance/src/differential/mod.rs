@@ -15,6 +15,7 @@ pub mod node;
 pub mod reduce;
 pub mod rules;
 pub mod single;
+mod slack;
 pub mod state;
 pub mod table;
 
@@ -77,16 +78,17 @@ fn one(api: &'static Mujoco, language: &Language, seed: u64, tally: &mut Tally) 
     tally.count("documents that both take");
     tally.add(&Measured::taken(), &document, None);
     for measured in sides.arrays() {
-        match measured.agrees() {
-            true => tally.add(
+        if measured.agrees() {
+            tally.add(
                 &Measured {
                     quantity: "compiled arrays",
                     ..measured
                 },
                 &document,
                 None,
-            ),
-            false => tally.add(&measured, &document, None),
+            )
+        } else {
+            tally.add(&measured, &document, None)
         }
     }
     for k in 0..STATES {

@@ -23,10 +23,14 @@ use How::{Drawn, Nothing, Placed, Word};
 pub type Rule = (&'static str, How);
 
 /// Attributes of which an element may have one at most.
-pub const RIVALS: [&[&str]; 3] = [
+pub const RIVALS: [&[&str]; 7] = [
     &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
     &["pos", "fromto"],
     &["diaginertia", "fullinertia"],
+    &["joint", "jointinparent"],
+    &["kv", "dampratio"],
+    &["ctrlrange", "inheritrange"],
+    &["actrange", "inheritrange"],
 ];
 
 const CLASS: &[Rule] = &[("class", Placed(&["stiff"]))];
@@ -48,7 +52,7 @@ const FRAME: &[Rule] = &[
     ("pos", Drawn(0.6, |d| d.reals(3, 0.3))),
 ];
 
-const LOOKS: &[Rule] = &[("group", Nothing), ("rgba", Nothing), ("material", Nothing)];
+const LOOKS: &[Rule] = &[("rgba", Nothing), ("material", Nothing), ("user", Nothing)];
 
 const COMPILER: &[Rule] = &[
     ("angle", Placed(&[])),
@@ -60,7 +64,23 @@ const COMPILER: &[Rule] = &[
     ),
     ("inertiafromgeom", Drawn(0.2, |d| d.pick(&["true", "auto"]).to_owned())),
     ("autolimits", Placed(&[])),
+    (
+        "inertiagrouprange",
+        Drawn(0.15, |d| d.pick(&["0 5", "0 2", "1 3", "2 2", "3 0"]).to_owned()),
+    ),
+    ("balanceinertia", Word(0.2)),
+    ("boundmass", Drawn(0.1, |d| d.log(0.05, 20.0))),
+    ("boundinertia", Drawn(0.1, |d| d.log(1e-4, 0.05))),
+    ("settotalmass", Drawn(0.15, |d| d.log(0.5, 50.0))),
     ("texturedir", Nothing),
+    ("strippath", Nothing),
+    ("assetdir", Nothing),
+    ("meshdir", Nothing),
+    ("fitaabb", Nothing),
+    ("usethread", Nothing),
+    ("fusestatic", Nothing),
+    ("discardvisual", Nothing),
+    ("alignfree", Nothing),
     ("coordinate", Nothing),
 ];
 
@@ -77,10 +97,49 @@ const OPTION: &[Rule] = &[
         Drawn(0.05, |d| d.pick(&["1", "4", "20", "200"]).to_owned()),
     ),
     ("ccd_tolerance", Drawn(0.1, |d| d.log(1e-10, 1e-4))),
-    ("integrator", Word(0.2)),
+    ("integrator", Word(0.3)),
+    ("density", Drawn(0.08, |d| d.log(0.5, 2000.0))),
+    ("viscosity", Drawn(0.08, |d| d.log(1e-3, 2.0))),
+    ("wind", Drawn(0.08, |d| d.reals(3, 3.0))),
+    ("noslip_iterations", Nothing),
+    ("noslip_tolerance", Nothing),
+    ("apirate", Nothing),
+    ("magnetic", Nothing),
+    ("o_margin", Nothing),
+    ("o_solref", Nothing),
+    ("o_solimp", Nothing),
+    ("o_friction", Nothing),
+    ("sdf_iterations", Nothing),
+    ("sdf_initpoints", Nothing),
     ("cone", Word(0.7)),
     ("jacobian", Word(0.3)),
-    ("solver", Word(0.2)),
+    ("solver", Word(0.15)),
+];
+
+const FLAG: &[Rule] = &[
+    ("constraint", Word(0.04)),
+    ("equality", Word(0.08)),
+    ("frictionloss", Word(0.08)),
+    ("limit", Word(0.08)),
+    ("contact", Word(0.04)),
+    ("passive", Word(0.1)),
+    ("gravity", Word(0.1)),
+    ("clampctrl", Word(0.2)),
+    ("warmstart", Word(0.2)),
+    ("filterparent", Word(0.2)),
+    ("actuation", Word(0.1)),
+    ("refsafe", Word(0.1)),
+    ("sensor", Word(0.05)),
+    ("eulerdamp", Word(0.2)),
+    ("midphase", Word(0.1)),
+    ("autoreset", Nothing),
+    ("energy", Nothing),
+    ("fwdinv", Nothing),
+    ("invdiscrete", Nothing),
+    ("nativeccd", Nothing),
+    ("override", Nothing),
+    ("multiccd", Nothing),
+    ("island", Nothing),
 ];
 
 const STATISTIC: &[Rule] = &[
@@ -110,6 +169,7 @@ const JOINT: &[Rule] = &[
     ("solimplimit", Drawn(0.15, Dice::solimp)),
     ("solreffriction", Drawn(0.15, Dice::solref)),
     ("solimpfriction", Drawn(0.15, Dice::solimp)),
+    ("user", Nothing),
 ];
 
 const GEOM: &[Rule] = &[
@@ -132,11 +192,13 @@ const GEOM: &[Rule] = &[
     ("gap", Drawn(0.1, |d| d.log(0.001, 0.05))),
     ("mass", Drawn(0.12, |d| d.log(0.01, 5.0))),
     ("density", Drawn(0.12, |d| d.log(100.0, 5000.0))),
+    ("group", Drawn(0.15, |d| d.rng.usize(0..=5).to_string())),
 ];
 
 const SITE: &[Rule] = &[
     ("name", Placed(&[])),
     ("type", Nothing),
+    ("group", Nothing),
     ("size", Nothing),
     ("fromto", Placed(&[])),
 ];
@@ -185,6 +247,12 @@ const JOINT_EQUALITY: &[Rule] = &[
     ),
 ];
 
+const CONNECT: &[Rule] = &[
+    ("body1", Placed(&["ball"])),
+    ("body2", Placed(&["ball"])),
+    ("anchor", Drawn(1.0, |d| d.reals(3, 0.2))),
+];
+
 const WELD: &[Rule] = &[
     ("body1", Placed(&["ball"])),
     ("body2", Placed(&["ball"])),
@@ -211,6 +279,11 @@ const TENDON: &[Rule] = &[
     ),
     ("stiffness", Drawn(0.5, |d| d.log(0.1, 50.0))),
     ("damping", Drawn(0.4, |d| d.log(0.01, 5.0))),
+    ("user", Nothing),
+    ("group", Nothing),
+    ("width", Nothing),
+    ("rgba", Nothing),
+    ("material", Nothing),
 ];
 
 const WRAP: &[Rule] = &[
@@ -221,20 +294,95 @@ const WRAP: &[Rule] = &[
 const ACTUATOR: &[Rule] = &[
     ("name", Placed(&[])),
     ("joint", Placed(&["slider", "lower"])),
-    ("ctrllimited", Placed(&[])),
+    ("jointinparent", Placed(&["slider", "lower"])),
     ("forcelimited", Placed(&[])),
     ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
     ("forcerange", Drawn(0.4, |d| d.range(2.0))),
     ("gear", Drawn(0.5, |d| d.reals(1, 5.0))),
+    ("lengthrange", Drawn(0.1, |d| d.range(1.0))),
     ("user", Nothing),
+    ("group", Nothing),
+];
+
+const CONTROL: &[Rule] = &[("ctrllimited", Placed(&[]))];
+
+const ACTIVATION: &[Rule] = &[("actrange", Drawn(0.3, |d| d.range(1.0)))];
+
+const LAW: &[Rule] = &[
+    ("dyntype", Word(0.6)),
+    ("gaintype", Word(0.5)),
+    ("biastype", Word(0.5)),
+    (
+        "dynprm",
+        Drawn(0.5, |d| {
+            if d.chance(0.05) {
+                "0".to_owned()
+            } else {
+                format!("{} {}", d.log(0.001, 1.0), d.reals(2, 1.0))
+            }
+        }),
+    ),
+    ("gainprm", Drawn(0.6, |d| parameters(d, 5.0))),
+    ("biasprm", Drawn(0.5, |d| parameters(d, 5.0))),
+    ("actlimited", Placed(&[])),
+    ("actearly", Word(0.3)),
+    ("actdim", Placed(&["1", "2"])),
 ];
 
 const SERVO: &[Rule] = &[
     ("kp", Drawn(0.7, |d| d.log(0.1, 100.0))),
     ("kv", Drawn(0.5, |d| d.log(0.01, 5.0))),
+    ("dampratio", Drawn(0.2, |d| d.log(0.1, 2.0))),
+    ("inheritrange", Drawn(0.08, |d| d.log(0.3, 1.5))),
 ];
 
-const SENSOR: &[Rule] = &[("name", Nothing), ("site", Placed(&["tip"]))];
+const FILTER: &[Rule] = &[("timeconst", Drawn(0.3, timeconst))];
+
+const SPEED: &[Rule] = &[("kv", Drawn(0.8, |d| d.log(0.01, 5.0)))];
+
+const CYLINDER: &[Rule] = &[
+    ("timeconst", Drawn(0.6, timeconst)),
+    ("area", Drawn(0.5, |d| d.log(0.1, 5.0))),
+    ("diameter", Drawn(0.3, |d| d.log(0.1, 3.0))),
+    ("bias", Drawn(0.4, |d| d.reals(3, 2.0))),
+];
+
+/// Writes one to ten parameters of an actuator, of which three have a meaning.
+fn parameters(d: &mut Dice, size: f64) -> String {
+    let n = d.pick(&[1, 2, 3, 3, 3, 10]);
+    d.reals(n, size)
+}
+
+/// Writes the time constant of a filter, at times none.
+fn timeconst(d: &mut Dice) -> String {
+    if d.chance(0.1) {
+        "0".to_owned()
+    } else {
+        d.log(0.001, 1.0)
+    }
+}
+
+const SENSOR: &[Rule] = &[
+    ("name", Nothing),
+    ("user", Nothing),
+    ("noise", Nothing),
+    ("cutoff", Drawn(0.3, |d| d.log(1e-4, 5.0))),
+];
+/// Sensors whose values have no cutoff, and the clock, which stands at 0 where it is compared.
+const UNIT_SENSOR: &[Rule] = &[
+    ("name", Nothing),
+    ("user", Nothing),
+    ("noise", Nothing),
+    ("cutoff", Nothing),
+];
+const ON_SITE: &[Rule] = &[("site", Placed(&["tip"]))];
+const OF_JOINT: &[Rule] = &[("joint", Placed(&["slider"]))];
+const OF_LIMIT: &[Rule] = &[("joint", Placed(&["lower"]))];
+const OF_TENDON: &[Rule] = &[("tendon", Placed(&["pull"]))];
+const OF_ACTUATOR: &[Rule] = &[("actuator", Placed(&["hold"]))];
+const OF_SUBTREE: &[Rule] = &[("body", Placed(&["hand"]))];
+const OF_FRAME: &[Rule] = &[("objtype", Placed(&["xbody"])), ("objname", Placed(&["hand"]))];
+const IN_FRAME: &[Rule] = &[("reftype", Placed(&["xbody"])), ("refname", Placed(&["child"]))];
 
 /// Elements none of whose attributes changes physics.
 pub const WITHOUT_PHYSICS: &[&str] = &[
@@ -242,6 +390,8 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
     "size",
     "visual",
     "asset",
+    "custom",
+    "keyframe",
     "worldbody/body/camera",
     "worldbody/body/light",
 ];
@@ -250,13 +400,19 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
 pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("compiler", &[COMPILER]),
     ("option", &[OPTION]),
+    ("option/flag", &[FLAG]),
     ("statistic", &[STATISTIC]),
     ("default", &[&[("class", Nothing)]]),
     ("worldbody", &[]),
     (
         "worldbody/body",
         &[
-            &[("name", Placed(&["named"])), ("childclass", Placed(&["stiff"]))],
+            &[
+                ("name", Placed(&["named"])),
+                ("childclass", Placed(&["stiff"])),
+                ("user", Nothing),
+                ("gravcomp", Drawn(0.05, |d| d.log(0.1, 2.0))),
+            ],
             FRAME,
         ],
     ),
@@ -273,17 +429,55 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("contact/exclude", &[EXCLUDE]),
     ("equality", &[]),
     ("equality/joint", &[CLASS, JOINT_EQUALITY, EQUALITY]),
+    ("equality/connect", &[CLASS, CONNECT, EQUALITY]),
     ("equality/weld", &[CLASS, WELD, EQUALITY]),
     ("tendon", &[]),
     ("tendon/fixed", &[CLASS, TENDON]),
     ("tendon/fixed/joint", &[WRAP]),
     ("actuator", &[]),
-    ("actuator/motor", &[CLASS, ACTUATOR]),
-    ("actuator/position", &[CLASS, ACTUATOR, SERVO]),
+    ("actuator/general", &[CLASS, ACTUATOR, CONTROL, ACTIVATION, LAW]),
+    ("actuator/motor", &[CLASS, ACTUATOR, CONTROL]),
+    ("actuator/position", &[CLASS, ACTUATOR, CONTROL, SERVO, FILTER]),
+    ("actuator/velocity", &[CLASS, ACTUATOR, CONTROL, SPEED]),
+    ("actuator/intvelocity", &[CLASS, ACTUATOR, CONTROL, ACTIVATION, SERVO]),
+    ("actuator/damper", &[CLASS, ACTUATOR, SPEED]),
+    ("actuator/cylinder", &[CLASS, ACTUATOR, CONTROL, CYLINDER]),
     ("sensor", &[]),
-    ("sensor/accelerometer", &[SENSOR]),
-    ("sensor/gyro", &[SENSOR]),
-    ("sensor/torque", &[SENSOR]),
+    ("sensor/touch", &[ON_SITE, SENSOR]),
+    ("sensor/accelerometer", &[ON_SITE, SENSOR]),
+    ("sensor/velocimeter", &[ON_SITE, SENSOR]),
+    ("sensor/gyro", &[ON_SITE, SENSOR]),
+    ("sensor/force", &[ON_SITE, SENSOR]),
+    ("sensor/torque", &[ON_SITE, SENSOR]),
+    ("sensor/magnetometer", &[ON_SITE, SENSOR]),
+    ("sensor/rangefinder", &[ON_SITE, SENSOR]),
+    ("sensor/jointpos", &[OF_JOINT, SENSOR]),
+    ("sensor/jointvel", &[OF_JOINT, SENSOR]),
+    ("sensor/jointactuatorfrc", &[OF_JOINT, SENSOR]),
+    ("sensor/jointlimitpos", &[OF_LIMIT, SENSOR]),
+    ("sensor/jointlimitvel", &[OF_LIMIT, SENSOR]),
+    ("sensor/jointlimitfrc", &[OF_LIMIT, SENSOR]),
+    ("sensor/tendonpos", &[OF_TENDON, SENSOR]),
+    ("sensor/tendonvel", &[OF_TENDON, SENSOR]),
+    ("sensor/tendonlimitpos", &[OF_TENDON, SENSOR]),
+    ("sensor/tendonlimitvel", &[OF_TENDON, SENSOR]),
+    ("sensor/tendonlimitfrc", &[OF_TENDON, SENSOR]),
+    ("sensor/actuatorpos", &[OF_ACTUATOR, SENSOR]),
+    ("sensor/actuatorvel", &[OF_ACTUATOR, SENSOR]),
+    ("sensor/actuatorfrc", &[OF_ACTUATOR, SENSOR]),
+    ("sensor/framepos", &[OF_FRAME, IN_FRAME, SENSOR]),
+    ("sensor/framelinvel", &[OF_FRAME, IN_FRAME, SENSOR]),
+    ("sensor/frameangvel", &[OF_FRAME, IN_FRAME, SENSOR]),
+    ("sensor/framequat", &[OF_FRAME, IN_FRAME, UNIT_SENSOR]),
+    ("sensor/framexaxis", &[OF_FRAME, IN_FRAME, UNIT_SENSOR]),
+    ("sensor/frameyaxis", &[OF_FRAME, IN_FRAME, UNIT_SENSOR]),
+    ("sensor/framezaxis", &[OF_FRAME, IN_FRAME, UNIT_SENSOR]),
+    ("sensor/framelinacc", &[OF_FRAME, SENSOR]),
+    ("sensor/frameangacc", &[OF_FRAME, SENSOR]),
+    ("sensor/subtreecom", &[OF_SUBTREE, SENSOR]),
+    ("sensor/subtreelinvel", &[OF_SUBTREE, SENSOR]),
+    ("sensor/subtreeangmom", &[OF_SUBTREE, SENSOR]),
+    ("sensor/clock", &[UNIT_SENSOR]),
 ];
 
 /// Tells whether an element, or the section that it stands in, is said to change no physics.

@@ -99,6 +99,17 @@ fn set(node: &mut Node, name: &str, value: &str) {
     node.set(name, value);
 }
 
+/// Gives a body principal moments that no body can have, which one attribute is about.
+fn unbalance(document: &mut Node) {
+    for k in 0..document.count() {
+        if let Some(node) = document.nth_mut(k)
+            && node.get("diaginertia").is_some()
+        {
+            node.set("diaginertia", "0.003 0.004 0.02");
+        }
+    }
+}
+
 /// Lists the documents of all attributes.
 ///
 /// # Errors
@@ -129,6 +140,9 @@ pub fn singles(language: &Language) -> Result<Vec<Single>, String> {
                 let mut document = base.clone();
                 if let Some(node) = document.nth_mut(*at) {
                     set(node, name, &value);
+                }
+                if name == "balanceinertia" {
+                    unbalance(&mut document);
                 }
                 all.push(Single {
                     what: format!("{path}@{name}=\"{value}\""),

@@ -15,7 +15,7 @@ pub struct Recipe {
     pub apart: f64,
     /// Largest speed, m/s or rad/s.
     pub speed: f64,
-    /// Largest control.
+    /// Largest control and activation.
     pub control: f64,
     /// Largest generalised force applied from outside.
     pub force: f64,
@@ -88,6 +88,11 @@ impl Recipe {
         }
         for (name, ctrl) in model.actuator_name.iter().zip(&mut state.ctrl) {
             draw("ctrl", name, std::slice::from_mut(ctrl), self.control);
+        }
+        for (name, address) in model.actuator_name.iter().zip(&model.actuator_actadr) {
+            if let Some(k) = *address {
+                draw("act", name, std::slice::from_mut(&mut state.act[k]), self.control);
+            }
         }
         for (name, wrench) in model.body_name.iter().zip(&mut state.xfrc_applied).skip(1) {
             draw("wrench", name, wrench, self.wrench);

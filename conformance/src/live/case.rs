@@ -79,8 +79,9 @@ impl Case {
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for behavior in [Behavior::None, Behavior::HandRegard] {
-            for &scene in Scene::ALL {
+            for scene in Scene::ALL.iter().cloned() {
                 let (act, lock) = (BodyParts::all(true), BodyParts::all(false));
+                let name = format!("{}_{scene}", Version::of(behavior).name());
                 let config = Config {
                     behavior,
                     scene,
@@ -88,7 +89,7 @@ impl Case {
                     lock,
                     ..Config::default()
                 };
-                all.push(Self::new(format!("{}_{scene}", Version::of(behavior).name()), config));
+                all.push(Self::new(name, config));
             }
         }
         all
@@ -100,16 +101,17 @@ impl Case {
     pub fn examples() -> Vec<Self> {
         let mut all = Vec::new();
         for (_, example) in example_configs() {
-            for &scene in Scene::ALL {
+            for scene in Scene::ALL.iter().cloned() {
                 let version = Version::of(example.behavior);
                 if version == Version::V1 && (example.scene == Scene::Base) != (scene == Scene::Base) {
                     continue;
                 }
+                let name = format!("{}_{scene}", version.name());
                 let config = Config {
                     scene,
                     ..example.clone()
                 };
-                all.push(Self::new(format!("{}_{scene}", version.name()), config));
+                all.push(Self::new(name, config));
             }
         }
         all

@@ -124,9 +124,13 @@ fn controls(drive: &mut Drive, batch: usize, ctrl: &mut [Vec<f64>]) {
     }
 }
 
-/// Copies positions, velocities and warm start from MuJoCo, for our engine to go on from.
+/// Copies positions, velocities, activations and warm start from MuJoCo, for our engine to go on from.
 pub fn copy_motion(simulation: &Simulation, state: &mut State) {
     state.qpos.copy_from_slice(simulation.qpos());
     state.qvel.copy_from_slice(simulation.qvel());
+    // where MuJoCo has none, those of the state are MIMo's muscles'
+    if !simulation.act().is_empty() {
+        state.act.copy_from_slice(simulation.act());
+    }
     state.qacc_warmstart.copy_from_slice(simulation.qacc_warmstart());
 }

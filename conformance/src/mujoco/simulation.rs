@@ -102,6 +102,10 @@ data! {
     qvel,
     /// Controls.
     ctrl,
+    /// Activations.
+    act,
+    /// Rates of the activations.
+    act_dot,
     /// Accelerations.
     qacc,
     /// Start of the solver.
@@ -363,6 +367,9 @@ impl Simulation {
     pub fn set_state(&mut self, model: &babybench::Model, s: &State) {
         self.set_motion(&s.qpos, &s.qvel);
         self.set_ctrl(&s.ctrl);
+        if model.na > 0 {
+            self.data_mut(field(DATA, "act")).copy_from_slice(&s.act);
+        }
         self.set_warmstart(&s.qacc_warmstart);
         self.data_mut(field(DATA, "qfrc_applied"))
             .copy_from_slice(&s.qfrc_applied);

@@ -46,7 +46,7 @@ fn every_attribute_of_the_loader_is_drawn_or_changes_no_physics() {
 fn generated_documents_use_every_element_and_attribute() {
     let language = Language::new().unwrap_or_else(|e| panic!("{e}"));
     let mut seen: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for seed in 0..600 {
+    for seed in 0..1500 {
         let document = document(&language, seed);
         document.visit(&mut Vec::new(), &mut |above, node| {
             let names = seen

@@ -256,7 +256,7 @@ fn no_age_floats_or_sinks() {
                     age,
                     vision_active: false,
                     touch_active: false,
-                    ..at(behavior, scene, 0.0)
+                    ..at(behavior, scene.clone(), 0.0)
                 };
                 let blueprint = Blueprint::new(config).expect("MIMo grows");
                 let mut env = blueprint.env().expect("an environment");

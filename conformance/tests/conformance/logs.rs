@@ -191,7 +191,7 @@ fn mujoco_loads_our_scenes() {
         for scene in [Scene::Base, Scene::Crib, Scene::Cubes] {
             let config = Config {
                 behavior,
-                scene,
+                scene: scene.clone(),
                 ..Config::default()
             };
             let path = write_scene(&config, &folder).expect("a folder");

@@ -7,7 +7,7 @@ use babybench::env::BlueprintOptions;
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::load_str;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
-use babybench::render::{CpuRenderer, Poses, View, Visual};
+use babybench::render::{CpuRenderer, Poses, Scenery, View};
 use babybench::{Blueprint, Env};
 use conformance::data;
 use conformance::measure::only_print;
@@ -31,7 +31,7 @@ pub fn trials() -> Vec<Trial> {
 struct Stage {
     engine: SoftEngine,
     state: State,
-    visual: Visual,
+    scenery: Scenery,
     renderer: CpuRenderer,
     picture: Vec<u8>,
 }
@@ -39,12 +39,12 @@ struct Stage {
 impl Stage {
     fn new(config: &Config, assets: &dyn AssetSource) -> Self {
         let model = build_model(config, assets).expect("the scene compiles");
-        let visual = Visual::new(&model, assets).expect("the textures load");
+        let scenery = Scenery::new(&model, assets).expect("the textures load");
         let engine = SoftEngine::new(model.into(), SoftOptions::default());
         Self {
             state: engine.new_state(),
             engine,
-            visual,
+            scenery,
             renderer: CpuRenderer::new(),
             picture: Vec::new(),
         }
@@ -64,15 +64,15 @@ impl Stage {
         };
         self.picture.resize(view.rgb_len(), 0);
         self.renderer
-            .rgb(&self.visual, &Poses::from(&self.state), &view, &mut self.picture)
+            .rgb(&self.scenery, &Poses::from(&self.state), &view, &mut self.picture)
             .expect("the view is fine");
         &self.picture
     }
 }
 
 fn eyes_and_room_cameras_show_what_mujoco_draws() {
-    for &scene in Scene::ALL {
-        let config = config(scene);
+    for scene in Scene::ALL {
+        let config = config(scene.clone());
         let npz = data::npz(&format!("render_{scene}.npz"));
         let mut stage = Stage::new(&config, &embedded());
         let qpos = npz.get_f64("qpos").expect("committed data");
@@ -119,7 +119,7 @@ fn transparent_things_look_as_mujoco_draws_them() {
     let model = load_str(&text, "glass.xml", &MemoryAssets::new())
         .and_then(compile)
         .expect("the scene compiles");
-    let visual = Visual::new(&model, &MemoryAssets::new()).expect("textures are procedures");
+    let scenery = Scenery::new(&model, &MemoryAssets::new()).expect("textures are procedures");
     let mut engine = SoftEngine::new(model.into(), SoftOptions::default());
     let mut state = engine.new_state();
     engine.forward(&mut state).expect("positions are finite");
@@ -130,7 +130,7 @@ fn transparent_things_look_as_mujoco_draws_them() {
         let view = View { camera, width, height };
         let mut ours = vec![0; view.rgb_len()];
         renderer
-            .rgb(&visual, &Poses::from(&state), &view, &mut ours)
+            .rgb(&scenery, &Poses::from(&state), &view, &mut ours)
             .expect("the view is fine");
         let mut difference = Difference::default();
         difference.add(&ours, expect, width);
@@ -157,7 +157,7 @@ fn recorded_eyes_with_the_original_files() {
         };
         let blueprint = Blueprint::with(config, BlueprintOptions::default().with_assets(assets.clone()))
             .expect("the original files load");
-        let bytes = blueprint.visual().expect("textures").texture_bytes();
+        let bytes = blueprint.scenery().expect("textures").texture_bytes();
         assert!(bytes < 128 << 20, "{bytes} bytes of textures");
         let mut env: Env = blueprint.env().expect("the environment builds");
         let nq = env.model().nq;

@@ -6,7 +6,7 @@ use babybench::mjcf_loader::load_str;
 use babybench::model::Model;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
 use babybench::render::gpu::{GpuError, GpuRenderer, Rgb};
-use babybench::render::{Poses, RenderRequest, View, Visual};
+use babybench::render::{Poses, RenderRequest, Scenery, View};
 use conformance::data;
 use conformance::measure::only_print;
 use conformance::pictures::{Difference, config, pictures};
@@ -26,18 +26,18 @@ const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
 });
 
 /// What BabyBench's scenes do not have: transparent geoms, a plane seen from below.
-fn glass() -> (Model, Visual) {
+fn glass() -> (Model, Scenery) {
     let model = load_str(&data::text("glass.xml"), "glass.xml", &embedded())
         .and_then(compile)
         .expect("the scene compiles");
-    let visual = Visual::new(&model, &embedded()).expect("the textures load");
-    (model, visual)
+    let scenery = Scenery::new(&model, &embedded()).expect("the textures load");
+    (model, scenery)
 }
 
 /// A renderer, and an engine to place the scene.
 fn open(model: Model) -> (GpuRenderer, SoftEngine) {
-    let visual = Visual::new(&model, &embedded()).expect("the textures load");
-    let gpu = GpuRenderer::new(visual.into()).expect("a renderer");
+    let scenery = Scenery::new(&model, &embedded()).expect("the textures load");
+    let gpu = GpuRenderer::new(scenery.into()).expect("a renderer");
     show!("{}", gpu.adapter());
     (gpu, SoftEngine::new(model.into(), SoftOptions::default()))
 }
@@ -81,8 +81,8 @@ fn total(parts: &[Difference]) -> Difference {
 }
 
 fn eyes_and_room_cameras_show_what_mujoco_draws() {
-    for &scene in Scene::ALL {
-        let config = config(scene);
+    for scene in Scene::ALL {
+        let config = config(scene.clone());
         let npz = data::npz(&format!("render_{scene}.npz"));
         let model = build_model(&config, &embedded()).expect("the scene compiles");
         let (mut gpu, mut engine) = open(model);

@@ -3,8 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use babybench::eval::{Plan, run_episodes};
-use babybench::formats::avi::DEFAULT_FPS;
+use babybench::eval::{DEFAULT_FPS, Plan, run_episodes};
 use babybench::policy::{Policy, PolicyError, RandomPolicy};
 use babybench::{Blueprint, Env, Info};
 

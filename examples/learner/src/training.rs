@@ -1,9 +1,8 @@
 //! Training in many environments at once, and the random policies to compare with.
 
-use babybench::env::Info;
 use babybench::eval::Score;
 use babybench::runs::RunVector;
-use babybench::{Blueprint, VectorOptions};
+use babybench::{Blueprint, Info, VectorOptions};
 
 use crate::Error;
 use crate::mind::{HOLD, Mind};

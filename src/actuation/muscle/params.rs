@@ -2,7 +2,7 @@
 
 use crate::actuation::ActuationError;
 use crate::actuation::curves::{force_length, force_velocity, passive};
-use crate::model::{BiasType, Model};
+use crate::model::{BiasType, DynType, GainType, Model};
 
 /// Lengths of a muscle, in optimal lengths, at the two ends of its joint's range.
 const LENGTH_RANGE: [f64; 2] = [0.75, 1.05];
@@ -51,7 +51,10 @@ impl MuscleParams {
     /// An actuator that is not a motor, a number that is not allowed.
     pub fn of_actuator(model: &Model, actuator: usize) -> Result<Self, ActuationError> {
         let name = || model.actuator_name[actuator].clone();
-        if model.actuator_biastype[actuator] != BiasType::None {
+        let motor = model.actuator_biastype[actuator] == BiasType::None
+            && model.actuator_gaintype[actuator] == GainType::Fixed
+            && model.actuator_dyntype[actuator] == DynType::None;
+        if !motor {
             return Err(ActuationError::Kind {
                 actuator: name(),
                 model: "muscle",

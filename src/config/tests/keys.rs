@@ -76,6 +76,16 @@ fn values(kind: KeyKind) -> Values {
             let bad = ["nonsense", "1", "true", "''"].map(String::from).to_vec();
             (good.collect(), &["[none]"], bad)
         }
+        KeyKind::ChoiceOrFile { names, ending } => {
+            let path = format!("rooms/mine{ending}");
+            let good = names.iter().map(|name| name.to_string());
+            let bad = ["nonsense", "1", "true", "''", "rooms/mine", "\"a\\nb.xml\""];
+            (
+                good.chain([format!("'{path}'"), path]).collect(),
+                &["[none]"],
+                bad.map(String::from).to_vec(),
+            )
+        }
         KeyKind::List(names) => {
             let all = format!("[{}]", names.join(", "));
             let good = names

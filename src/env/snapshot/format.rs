@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::config::{Config, Delays, Key};
+use crate::config::{Config, Delays, Key, Scene};
 use crate::model::Model;
 use crate::sensors::transform::Sense;
 
@@ -15,7 +15,7 @@ pub(super) const HEADER: usize = 32;
 
 /// An environment at one moment: [`Env::snapshot`](crate::Env::snapshot) takes it, [`Env::restore`](crate::Env::restore) goes back to it.
 ///
-/// It holds positions, velocities, controls, muscles, applied forces, the start of the solver, all parameters with the
+/// It holds positions, velocities, controls, activations, applied forces, the start of the solver, all parameters with the
 /// locks, the random generator, the goals and the memory of the task, the information and counters of the episode, the vectors
 /// of the senses that report plain numbers, such as `observation` and `vestibular`, and what delays, pain and other transforms remember. A continuation from it has the
 /// same bits as the original, in the same environment or
@@ -91,6 +91,7 @@ impl Snapshot {
     /// assert_eq!((info.steps, info.seed, info.ready), (1, 7, true));
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn info(&self) -> SnapshotInfo {
         // a snapshot has its header and its whole numbers, or it would not be one
         let mut header = Reader(self.bytes.get(MAGIC.len()..HEADER).unwrap_or_default());
@@ -169,8 +170,8 @@ const EARLY: [&str; 5] = [
     "vision_active",
 ];
 
-/// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, and the keys that shape an
-/// environment's memory.
+/// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, all of a scene of one's own, and
+/// the keys that shape an environment's memory.
 pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
     let mut bytes = Vec::new();
     for names in [
@@ -185,12 +186,21 @@ pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
         }
         bytes.push(1);
     }
+    // the number of activations, only where there are any, so that older snapshots stay readable
+    if model.na > 0 {
+        bytes.extend_from_slice(&(model.na as u64).to_le_bytes());
+    }
     for v in model.qpos0.iter().chain(&model.body_mass) {
         bytes.extend_from_slice(&v.to_le_bytes());
     }
+    let own = match &config.scene {
+        // wherever it lies: the room itself counts
+        Scene::File(_) => Some(format!("{:016x}", content(model))),
+        _ => None,
+    };
     for name in [
         config.behavior.name(),
-        config.scene.name(),
+        own.as_deref().unwrap_or(config.scene.name()),
         config.actuation_model.name(),
         config.compat.name(),
         config.engine.name(),
@@ -213,6 +223,11 @@ pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
         bytes.push(0);
     }
     checksum(&bytes)
+}
+
+/// Computes a hash of everything in a model.
+fn content(model: &Model) -> u64 {
+    checksum(format!("{model:?}").as_bytes())
 }
 
 /// A reader that takes numbers from the front of bytes.

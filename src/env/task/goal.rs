@@ -76,15 +76,16 @@ pub(in crate::env) fn rewards(
     let rows = out.len();
     let check = |what, values: &[f64], expected: usize| {
         let found = values.len();
-        match found == rows * expected {
-            true => Ok(()),
-            false => Err(GoalError {
+        if found == rows * expected {
+            Ok(())
+        } else {
+            Err(GoalError {
                 what,
                 found,
                 task: task.name().to_string(),
                 rows,
                 expected,
-            }),
+            })
         }
     };
     check("achieved", all.achieved, sizes.goal)?;

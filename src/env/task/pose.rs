@@ -39,12 +39,13 @@ pub(super) fn address(model: &Model, name: &str, purpose: &'static str) -> Resul
 pub(super) fn free_address(model: &Model, body: usize, purpose: &'static str) -> Result<usize, EnvError> {
     let joint = model.body_jntadr[body];
     let free = model.body_jntnum[body] > 0 && model.jnt_type[joint] == JointType::Free;
-    match free {
-        true => Ok(model.jnt_qposadr[joint]),
-        false => Err(EnvError::Missing {
+    if free {
+        Ok(model.jnt_qposadr[joint])
+    } else {
+        Err(EnvError::Missing {
             what: "free joint",
             name: model.body_name[body].clone(),
             purpose,
-        }),
+        })
     }
 }

@@ -164,9 +164,12 @@ impl Task for SelfBody {
             .map(|(name, _)| body(model, name, PURPOSE))
             .collect::<Result<_, _>>()?;
         self.reference = config.compat == Compat::Reference;
-        let aim = |&body: &usize| match self.reference {
-            true => model.geom_bodyid.get(body).copied().unwrap_or(body),
-            false => body,
+        let aim = |&body: &usize| {
+            if self.reference {
+                model.geom_bodyid.get(body).copied().unwrap_or(body)
+            } else {
+                body
+            }
         };
         self.aims = self.targets().iter().map(aim).collect();
         Ok(TaskSizes {

@@ -160,7 +160,7 @@ pub(super) fn shaken_start(scene: &mut TaskScene<'_>, base: usize) -> Result<(),
 /// cost of the actuation model, scaled to as many squares; under `compat: reference` it is constant.
 pub(super) fn control_cost(view: &TaskView<'_>, reference: bool) -> f64 {
     let state = view.state;
-    if state.act.is_empty() || reference {
+    if state.muscle_torque.is_empty() || reference {
         return COST * state.ctrl.iter().map(|u| u * u).sum::<f64>();
     }
     let muscles = state.act.len() as f64;

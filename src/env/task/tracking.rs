@@ -55,9 +55,10 @@ impl HeadTracking {
         let [x, y, z] = sub(point, scene.state.xpos[self.head]);
         let eyes = norm([x, y, z]) - EYE_FORWARD;
         let up = z - EYE_HEIGHT;
-        let [swivel, tilt] = match scene.follows_reference() {
-            true => [pxfm::f_atan(y / x), pxfm::f_atan(-up / x)],
-            false => [pxfm::f_atan2(y, x), pxfm::f_atan2(-up, x.abs())],
+        let [swivel, tilt] = if scene.follows_reference() {
+            [pxfm::f_atan(y / x), pxfm::f_atan(-up / x)]
+        } else {
+            [pxfm::f_atan2(y, x), pxfm::f_atan2(-up, x.abs())]
         };
         let qpos = &mut scene.state.qpos;
         (qpos[self.swivel], qpos[self.tilt]) = (swivel, tilt);

@@ -4,7 +4,7 @@
 use crate::env::room_camera;
 use crate::math::{Mat3, Vec3, add};
 use crate::model::Model;
-use crate::render::{CpuRenderer, Poses, RenderError, View, Visual, luma};
+use crate::render::{CpuRenderer, Poses, RenderError, Scenery, View, luma};
 
 /// An error in composing a frame.
 #[derive(Debug, thiserror::Error)]
@@ -103,20 +103,26 @@ impl FrameComposer {
     ///
     /// # Errors
     /// A picture or buffer of wrong size, a binocular panel for a model without eyes.
-    pub fn compose(&mut self, visual: &Visual, poses: &Poses, panel: Panel, out: &mut [u8]) -> Result<(), FrameError> {
+    pub fn compose(
+        &mut self,
+        scenery: &Scenery,
+        poses: &Poses,
+        panel: Panel,
+        out: &mut [u8],
+    ) -> Result<(), FrameError> {
         let expected = 3 * FRAME_WIDTH * FRAME_HEIGHT;
         if out.len() != expected {
             let found = out.len();
             return Err(FrameError::Size { found, expected });
         }
-        self.draw(visual, poses, self.corner)?;
+        self.draw(scenery, poses, self.corner)?;
         let rows = self.picture.chunks_exact(3 * FRAME_HEIGHT);
         for (line, row) in out.chunks_exact_mut(3 * FRAME_WIDTH).zip(rows) {
             line[..3 * FRAME_HEIGHT].copy_from_slice(row);
         }
         match panel {
-            Panel::Side => self.half(visual, poses, self.side)?,
-            Panel::Binocular => self.binocular(visual, poses)?,
+            Panel::Side => self.half(scenery, poses, self.side)?,
+            Panel::Binocular => self.binocular(scenery, poses)?,
             Panel::Picture(rgb) => {
                 let expected = 3 * PANEL * PANEL;
                 if rgb.len() != expected {
@@ -129,22 +135,22 @@ impl FrameComposer {
         if !matches!(panel, Panel::Picture(_)) {
             place(&self.half, out, 0);
         }
-        self.half(visual, poses, self.top)?;
+        self.half(scenery, poses, self.top)?;
         place(&self.half, out, PANEL);
         Ok(())
     }
 
-    fn draw(&mut self, visual: &Visual, poses: &Poses, from: Spot) -> Result<(), FrameError> {
+    fn draw(&mut self, scenery: &Scenery, poses: &Poses, from: Spot) -> Result<(), FrameError> {
         let (poses, camera) = self.stand(poses, from);
-        Ok(self.renderer.rgb(visual, &poses, &view(camera), &mut self.picture)?)
+        Ok(self.renderer.rgb(scenery, &poses, &view(camera), &mut self.picture)?)
     }
 
     /// Draws a panel of half the size: every second pixel of every second row.
-    fn half(&mut self, visual: &Visual, poses: &Poses, from: Spot) -> Result<(), FrameError> {
+    fn half(&mut self, scenery: &Scenery, poses: &Poses, from: Spot) -> Result<(), FrameError> {
         let (poses, camera) = self.stand(poses, from);
         Ok(self
             .renderer
-            .rgb_halved(visual, &poses, &view(camera), &mut self.half)?)
+            .rgb_halved(scenery, &poses, &view(camera), &mut self.half)?)
     }
 
     /// Returns the poses and the camera of a spot.
@@ -160,11 +166,11 @@ impl FrameComposer {
         }
     }
 
-    fn binocular(&mut self, visual: &Visual, poses: &Poses) -> Result<(), FrameError> {
+    fn binocular(&mut self, scenery: &Scenery, poses: &Poses) -> Result<(), FrameError> {
         let [left, right] = self.eyes.ok_or(FrameError::Camera("eye_left"))?;
-        self.half(visual, poses, Spot::Camera(left))?;
+        self.half(scenery, poses, Spot::Camera(left))?;
         std::mem::swap(&mut self.half, &mut self.other);
-        self.half(visual, poses, Spot::Camera(right))?;
+        self.half(scenery, poses, Spot::Camera(right))?;
         for (right, left) in self.half.chunks_exact_mut(3).zip(self.other.chunks_exact(3)) {
             let cyan = luma([right[0], right[1], right[2]]);
             right.copy_from_slice(&[luma([left[0], left[1], left[2]]), cyan, cyan]);

@@ -11,7 +11,7 @@ use crate::config::Behavior;
 use crate::env::Env;
 use crate::files::{sweep, unfinished};
 use crate::formats::avi::{AviWriter, DEFAULT_FPS};
-use crate::render::{Poses, Visual};
+use crate::render::{Poses, Scenery};
 
 /// A film of the room, the view from above and the behavior's subject, in `.avi` files.
 ///
@@ -20,7 +20,7 @@ use crate::render::{Poses, Visual};
 pub struct RoomFilm {
     composer: FrameComposer,
     skin: SkinPanel,
-    visual: Arc<Visual>,
+    scenery: Arc<Scenery>,
     folder: PathBuf,
     frame: Vec<u8>,
     fps: u32,
@@ -48,7 +48,7 @@ impl RoomFilm {
         Ok(Self {
             composer: FrameComposer::new(env.model())?,
             skin: SkinPanel::new(),
-            visual: env.blueprint().visual()?,
+            scenery: env.blueprint().scenery()?,
             folder,
             frame: vec![0; 3 * FRAME_WIDTH * FRAME_HEIGHT],
             fps: DEFAULT_FPS,
@@ -85,7 +85,7 @@ impl Film for RoomFilm {
         };
         let composed = self
             .composer
-            .compose(&self.visual, &Poses::from(env.state()), panel, &mut self.frame);
+            .compose(&self.scenery, &Poses::from(env.state()), panel, &mut self.frame);
         let written = match composed {
             Ok(()) => taken.1.frame(&self.frame).map_err(FilmError::from),
             Err(e) => Err(e.into()),

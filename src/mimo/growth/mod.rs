@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use crate::config::{Compat, Config, MAX_AGE};
 use crate::math::Vec3;
-use crate::mimo::{JOINT_PREFIX, Version};
+use crate::mimo::{JOINT_PREFIX, ROOT, Version};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
 use lengths::Lengths;
@@ -170,7 +170,11 @@ impl Growth {
                 *grown.size = old;
             }
         }
-        for actuator in draft.actuators() {
+        let own = draft.joints_below(ROOT);
+        for actuator in draft
+            .actuators()
+            .filter(|actuator| own.iter().any(|joint| joint == actuator.joint))
+        {
             let Some((body, index)) = carrier(actuator.name, self.version) else {
                 continue;
             };

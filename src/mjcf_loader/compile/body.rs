@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::context::{Context, Ids, user_length};
+use super::context::{Context, Ids, User};
 use super::geometry::{
     EPS, Solid, bounding_radius, inertia, merge, normalize, orientation, principal, segment, size_count, volume,
 };
@@ -10,22 +10,26 @@ use crate::math::{MINVAL, QUAT_ID, Quat, Vec3};
 use crate::mjcf_loader::document::{Body, Camera, Document, Frame, Geom, Joint, Light, Orientation, Site, Tri};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::settings::single;
-use crate::model::{self, Arrays, CameraMode, GeomType, JointType};
+use crate::model::{self, Arrays, CamLight, GeomType, JointType};
 
 /// Compiles all bodies in order, so that ids are grouped by body.
 pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
     let mut last_dof = Vec::with_capacity(document.bodies.len());
-    let cameras = document.bodies.iter().flat_map(|body| &body.cameras);
-    let nuser_cam = user_length(document.size.nuser_cam, cameras.map(|camera| &camera.user));
+    let users = Users::new(document);
     let limits = &context.tree.limits;
     for (id, body) in document.bodies.iter().enumerate() {
         context.within(body.at, "bodies", limits.bodies, id + 1)?;
         frame(context, body, id, arrays)?;
+        let user = users.body.of(context, body.at, &body.user)?;
+        arrays.body_user.push(user);
+        arrays.body_gravcomp.push(body.gravcomp);
         arrays.body_jntadr.push(arrays.jnt_name.len());
         arrays.body_dofadr.push(arrays.nv);
         let mut dof = last_dof.get(body.parent).copied().flatten();
         for joint in &body.joints {
             compile_joint(context, joint, body, id, &mut dof, arrays)?;
+            let user = users.jnt.of(context, joint.at, &joint.user)?;
+            arrays.jnt_user.push(user);
         }
         last_dof.push(dof);
         arrays.body_jntnum.push(body.joints.len());
@@ -44,21 +48,71 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         let mut solids = Vec::with_capacity(body.geoms.len());
         for geom in &body.geoms {
             context.within(geom.at, "geoms", limits.geoms, arrays.geom_name.len() + 1)?;
-            solids.push(compile_geom(context, geom, id, ids, arrays)?);
+            let solid = compile_geom(context, geom, id, ids, arrays)?;
+            // the others are only drawn, or only collide
+            let [lowest, highest] = context.compiler.inertiagrouprange;
+            if (lowest..=highest).contains(&(geom.group as f64)) {
+                solids.push(solid);
+            }
+            let user = users.geom.of(context, geom.at, &geom.user)?;
+            arrays.geom_user.push(user);
         }
         inertial(context, body, id, &solids, arrays)?;
         for site in &body.sites {
             compile_site(context, site, id, ids, arrays)?;
+            let user = users.site.of(context, site.at, &site.user)?;
+            arrays.site_user.push(user);
         }
         for camera in &body.cameras {
-            compile_camera(context, camera, id, nuser_cam, ids, arrays)?;
+            compile_camera(context, camera, id, ids, arrays)?;
+            let user = users.cam.of(context, camera.at, &camera.user)?;
+            arrays.cam_user.push(user);
         }
         for light in &body.lights {
             arrays.lights.push(compile_light(context, light, id, ids)?);
         }
     }
+    scale_masses(context, arrays);
     subtree_masses(arrays);
     check_moving_masses(context, document, arrays)
+}
+
+/// The lengths of user data on bodies.
+struct Users {
+    body: User,
+    jnt: User,
+    geom: User,
+    site: User,
+    cam: User,
+}
+
+impl Users {
+    fn new(document: &Document) -> Self {
+        let (size, bodies) = (&document.size, &document.bodies);
+        Self {
+            body: User::new("nuser_body", size.nuser_body, bodies.iter().map(|b| &b.user)),
+            jnt: User::new(
+                "nuser_jnt",
+                size.nuser_jnt,
+                bodies.iter().flat_map(|b| &b.joints).map(|j| &j.user),
+            ),
+            geom: User::new(
+                "nuser_geom",
+                size.nuser_geom,
+                bodies.iter().flat_map(|b| &b.geoms).map(|g| &g.user),
+            ),
+            site: User::new(
+                "nuser_site",
+                size.nuser_site,
+                bodies.iter().flat_map(|b| &b.sites).map(|s| &s.user),
+            ),
+            cam: User::new(
+                "nuser_cam",
+                size.nuser_cam,
+                bodies.iter().flat_map(|b| &b.cameras).map(|c| &c.user),
+            ),
+        }
+    }
 }
 
 fn frame(context: &Context, body: &Body, id: usize, arrays: &mut Arrays) -> Result<(), LoadError> {
@@ -280,9 +334,18 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays:
         }
         _ => {}
     }
+    if id > 0 {
+        solid.mass = solid.mass.max(context.compiler.boundmass);
+        solid.inertia = solid.inertia.map(|moment| moment.max(context.compiler.boundinertia));
+    }
     let [a, b, c] = solid.inertia;
     if a + b < c || a + c < b || b + c < a {
-        return Err(invalid("the principal moments must satisfy A + B >= C"));
+        if !context.compiler.balanceinertia {
+            return Err(invalid(
+                "the principal moments must satisfy A + B >= C; correct them, or set balanceinertia in <compiler>",
+            ));
+        }
+        solid.inertia = [(a + b + c) / 3.0; 3];
     }
     arrays.body_ipos.push(solid.pos);
     arrays.body_iquat.push(solid.quat);
@@ -311,18 +374,9 @@ fn compile_camera(
     context: &Context,
     camera: &Camera,
     body: usize,
-    nuser: usize,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
-    let mode = match (&camera.target, camera.targets) {
-        (Some(name), true) => CameraMode::TargetBody(ids.body.find(context.tree, camera.at, "target", name)?),
-        (None, true) => return Err(context.error(camera.at, ErrorKind::MissingAttribute("target"))),
-        (Some(_), false) => {
-            return Err(context.invalid(camera.at, "only a camera with mode=\"targetbody\" has a target"));
-        }
-        (None, false) => CameraMode::Fixed,
-    };
     if camera.fovy >= 180.0 {
         let want = "below 180 degrees";
         return Err(context.error(
@@ -334,16 +388,22 @@ fn compile_camera(
             },
         ));
     }
+    let aims = matches!(camera.mode, CamLight::TargetBody | CamLight::TargetBodyCom);
+    if aims && camera.target.is_none() {
+        // MuJoCo leaves such a camera at the origin of the world
+        return Err(context.error(camera.at, ErrorKind::MissingAttribute("target")));
+    }
+    let find = |name: &String| ids.body.find(context.tree, camera.at, "target", name);
     arrays.cam_name.push(camera.name.clone());
-    arrays.cam_mode.push(mode);
+    arrays.cam_mode.push(camera.mode);
+    // kept whatever the mode: the distance that `trackcom` keeps is measured from it
+    arrays
+        .cam_targetbodyid
+        .push(camera.target.as_ref().map(find).transpose()?);
     arrays.cam_bodyid.push(body);
     arrays.cam_pos.push(camera.frame.pos);
     arrays.cam_quat.push(quat_of(context, camera.at, &camera.frame)?);
     arrays.cam_fovy.push(camera.fovy);
-    let excess = "user has more values than nuser_cam";
-    arrays
-        .cam_user
-        .push(context.user(camera.at, &camera.user, nuser, excess)?);
     Ok(())
 }
 
@@ -372,6 +432,20 @@ fn compile_light(context: &Context, light: &Light, body: usize, ids: &Ids) -> Re
         cutoff: single(light.cutoff),
         exponent: single(light.exponent),
     })
+}
+
+/// Scales all masses and inertias so that the bodies weigh `settotalmass` together, if it is given.
+fn scale_masses(context: &Context, arrays: &mut Arrays) {
+    let wanted = context.compiler.settotalmass;
+    if wanted <= 0.0 {
+        return;
+    }
+    let total: f64 = arrays.body_mass.iter().skip(1).sum();
+    let scale = (wanted / total.max(MINVAL)).max(MINVAL);
+    for (mass, inertia) in arrays.body_mass.iter_mut().zip(&mut arrays.body_inertia).skip(1) {
+        *mass *= scale;
+        *inertia = inertia.map(|moment| moment * scale);
+    }
 }
 
 fn subtree_masses(arrays: &mut Arrays) {

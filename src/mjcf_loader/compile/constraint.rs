@@ -1,10 +1,10 @@
 //! Compiles contact pairs, equalities and tendons.
 
-use super::context::{Context, Ids};
+use super::context::{Context, Ids, User};
 use crate::math::quat_normalize;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::relation::{Equality, Held, JointEquality, Tendon, WeldEquality, Wrap};
+use crate::mjcf_loader::relation::{ConnectEquality, Equality, Held, JointEquality, Tendon, WeldEquality, Wrap};
 use crate::model::{Arrays, EqualityKind};
 
 /// Compiles explicit pairs and excludes, both sorted by the pair of bodies.
@@ -57,6 +57,25 @@ pub(super) fn compile_contacts(
     Ok(())
 }
 
+/// Finds the two bodies of an equality, the second of which is the world if it is not named.
+fn two_bodies(
+    context: &Context,
+    at: usize,
+    body1: &str,
+    body2: Option<&String>,
+    ids: &Ids,
+) -> Result<[usize; 2], LoadError> {
+    let body1 = ids.body.find(context.tree, at, "body1", body1)?;
+    let body2 = match body2 {
+        Some(name) => ids.body.find(context.tree, at, "body2", name)?,
+        None => 0,
+    };
+    if body1 == body2 {
+        return Err(context.invalid(at, "a body cannot be held by itself"));
+    }
+    Ok([body1, body2])
+}
+
 /// Compiles an equality. A weld without a pose of its own gets it at `qpos0`, which needs kinematics; until then its
 /// quaternion is zero.
 pub(super) fn compile_equality(
@@ -86,6 +105,17 @@ pub(super) fn compile_equality(
                 polycoef: *polycoef,
             }
         }
+        Held::Connect(ConnectEquality { body1, body2, anchor }) => {
+            let [body1, body2] = two_bodies(context, at, body1, body2.as_ref(), ids)?;
+            // where it is in body 2 follows from the poses at qpos0
+            let (anchor1, anchor2) = (*anchor, [0.0; 3]);
+            EqualityKind::Connect {
+                body1,
+                body2,
+                anchor1,
+                anchor2,
+            }
+        }
         Held::Weld(WeldEquality {
             body1,
             body2,
@@ -93,14 +123,7 @@ pub(super) fn compile_equality(
             anchor,
             torquescale,
         }) => {
-            let body1 = ids.body.find(context.tree, at, "body1", body1)?;
-            let body2 = match body2 {
-                Some(name) => ids.body.find(context.tree, at, "body2", name)?,
-                None => 0,
-            };
-            if body1 == body2 {
-                return Err(context.invalid(at, "a body cannot be welded to itself"));
-            }
+            let [body1, body2] = two_bodies(context, at, body1, body2.as_ref(), ids)?;
             let [x, y, z, quat @ ..] = *relpose;
             let (relpos, relquat) = match quat {
                 [0.0, 0.0, 0.0, 0.0] => ([0.0; 3], quat),
@@ -131,6 +154,7 @@ const JOINT_TWICE: &str = "the tendon names this joint twice";
 pub(super) fn compile_tendon(
     context: &Context,
     tendon: &Tendon,
+    user: &User,
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
@@ -145,6 +169,7 @@ pub(super) fn compile_tendon(
         }
         wrap.push((joint, *coef));
     }
+    arrays.tendon_user.push(user.of(context, tendon.at, &tendon.user)?);
     arrays.tendon_name.push(tendon.name.clone());
     arrays.tendon_wrap.push(wrap);
     arrays

@@ -57,31 +57,43 @@ pub(super) struct Context<'a> {
     pub compiler: &'a Compiler,
 }
 
-/// Returns the length of all user data of a kind: the length that is given, else that of the longest.
-pub fn user_length<'a>(given: Option<usize>, users: impl Iterator<Item = &'a Vec<f64>>) -> usize {
-    given.unwrap_or_else(|| users.map(Vec::len).max().unwrap_or(0))
+/// The length that user data have on all elements of a kind.
+pub(super) struct User {
+    /// The attribute of `<size>` that says it.
+    attribute: &'static str,
+    length: usize,
+}
+
+impl User {
+    /// Takes the length that is given, else that of the longest of `users`.
+    pub fn new<'a>(attribute: &'static str, given: Option<usize>, users: impl Iterator<Item = &'a Vec<f64>>) -> Self {
+        let length = given.unwrap_or_else(|| users.map(Vec::len).max().unwrap_or(0));
+        Self { attribute, length }
+    }
+
+    /// Returns user data at that length, with zeros behind them; more is an error.
+    pub fn of(&self, context: &Context, at: usize, user: &[f64]) -> Result<Vec<f64>, LoadError> {
+        if user.len() > self.length {
+            let (attribute, count) = (self.attribute, user.len());
+            return Err(context.error(at, ErrorKind::UserExcess { attribute, count }));
+        }
+        let mut user = user.to_vec();
+        user.resize(self.length, 0.0);
+        Ok(user)
+    }
 }
 
 impl Context<'_> {
-    /// Returns user data at the length of all of their kind; more is an error with the message `excess`.
-    pub fn user(&self, at: usize, user: &[f64], length: usize, excess: &'static str) -> Result<Vec<f64>, LoadError> {
-        if user.len() > length {
-            return Err(self.invalid(at, excess));
-        }
-        let mut user = user.to_vec();
-        user.resize(length, 0.0);
-        Ok(user)
-    }
-
     pub fn error(&self, at: usize, kind: impl Into<ErrorKind>) -> LoadError {
         self.tree.error(at, kind)
     }
 
     /// Checks the number of elements of a kind so far, the last of which is at `at`.
     pub fn within(&self, at: usize, what: &'static str, limit: usize, found: usize) -> Result<(), LoadError> {
-        match found > limit {
-            true => Err(self.error(at, ErrorKind::TooMuch { what, limit })),
-            false => Ok(()),
+        if found > limit {
+            Err(self.error(at, ErrorKind::TooMuch { what, limit }))
+        } else {
+            Ok(())
         }
     }
 
@@ -119,6 +131,7 @@ impl Context<'_> {
                 match attribute {
                     "ctrlrange" => "a ctrlrange is given, but autolimits is off: set ctrllimited to true or false",
                     "forcerange" => "a forcerange is given, but autolimits is off: set forcelimited to true or false",
+                    "actrange" => "an actrange is given, but autolimits is off: set actlimited to true or false",
                     _ => "a range is given, but autolimits is off: set limited to true or false",
                 },
             )),
@@ -134,6 +147,9 @@ pub(super) struct Ids {
     pub site: Names,
     pub texture: Names,
     pub material: Names,
+    pub camera: Names,
+    pub tendon: Names,
+    pub actuator: Names,
 }
 
 impl Ids {
@@ -144,6 +160,7 @@ impl Ids {
         let joints = bodies.iter().flat_map(|b| &b.joints).map(|j| (j.at, &j.name));
         let geoms = bodies.iter().flat_map(|b| &b.geoms).map(|g| (g.at, &g.name));
         let sites = bodies.iter().flat_map(|b| &b.sites).map(|s| (s.at, &s.name));
+        let cameras = bodies.iter().flat_map(|b| &b.cameras).map(|c| (c.at, &c.name));
         let textures = textures.iter().zip(&arrays.textures).map(|(t, m)| (t.at, &m.name));
         Ok(Ids {
             body: Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name)))?,
@@ -151,6 +168,9 @@ impl Ids {
             geom: Names::new(tree, "geom", geoms)?,
             site: Names::new(tree, "site", sites)?,
             texture: Names::new(tree, "texture", textures)?,
+            camera: Names::new(tree, "camera", cameras)?,
+            tendon: Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?,
+            actuator: Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?,
             material: Names::new(tree, "material", document.materials.iter().map(|m| (m.at, &m.name)))?,
         })
     }
@@ -174,15 +194,14 @@ impl Ids {
 
 /// Refuses a name that is used twice by elements to which nothing refers.
 fn check_unreferenced(tree: &Tree, document: &Document) -> Result<(), LoadError> {
-    let cameras = document.bodies.iter().flat_map(|b| &b.cameras).map(|c| (c.at, &c.name));
     let lights = document.bodies.iter().flat_map(|b| &b.lights).map(|l| (l.at, &l.name));
-    Names::new(tree, "camera", cameras)?;
     Names::new(tree, "light", lights)?;
     Names::new(tree, "equality", document.equalities.iter().map(|e| (e.at, &e.name)))?;
-    Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?;
-    Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?;
     Names::new(tree, "sensor", document.sensors.iter().map(|s| (s.at, &s.name)))?;
     Names::new(tree, "pair", document.pairs.iter().map(|p| (p.at, &p.name)))?;
     Names::new(tree, "exclude", document.excludes.iter().map(|e| (e.at, &e.name)))?;
+    Names::new(tree, "numeric", document.numerics.iter().map(|n| (n.at, &n.name)))?;
+    Names::new(tree, "text", document.texts.iter().map(|t| (t.at, &t.name)))?;
+    Names::new(tree, "key", document.keys.iter().map(|k| (k.at, &k.name)))?;
     Ok(())
 }

@@ -4,18 +4,20 @@ mod actuator;
 mod body;
 mod constraint;
 mod context;
+mod custom;
 mod geometry;
+mod sensor;
 mod surface;
 
-use context::{Context, Ids};
+use context::{Context, Ids, User};
 pub(crate) use geometry::bounding_radius;
 pub(super) use geometry::volume;
 
 use super::document::Document;
-use super::error::LoadError;
+use super::error::{ErrorKind, LoadError};
 use super::xml::Tree;
 use crate::assets::AssetSource;
-use crate::model::{Arrays, SameFrame};
+use crate::model::{Arrays, ConeType, SameFrame, SolverType};
 
 /// Compiles the document into everything but what needs dynamics. Images are looked up in `source`, relative to `dir`, and
 /// not decoded.
@@ -27,6 +29,10 @@ pub(super) fn compile(
 ) -> Result<Arrays, LoadError> {
     let (name, opt) = (document.model.clone(), document.option.clone());
     let (vis, stat) = (document.visual.clone(), document.statistic.clone());
+    if opt.solver == SolverType::Pgs && opt.cone == ConeType::Elliptic {
+        let reason = "solver=\"PGS\" has pyramidal cones only; use solver=\"Newton\", which finds the same minimum";
+        return Err(tree.error(0, ErrorKind::Invalid(reason)));
+    }
     let mut arrays = Arrays::without_elements(name, opt, vis, stat);
     let context = Context {
         tree,
@@ -47,11 +53,15 @@ pub(super) fn compile(
     for equality in &document.equalities {
         constraint::compile_equality(&context, equality, &ids, &mut arrays)?;
     }
+    let users = document.tendons.iter().map(|tendon| &tendon.user);
+    let user = User::new("nuser_tendon", document.size.nuser_tendon, users);
     for tendon in &document.tendons {
-        constraint::compile_tendon(&context, tendon, &ids, &mut arrays)?;
+        constraint::compile_tendon(&context, tendon, &user, &ids, &mut arrays)?;
     }
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
-    actuator::compile_sensors(&context, document, &ids, &mut arrays)?;
+    sensor::compile_sensors(&context, document, &ids, &mut arrays)?;
+    custom::compile_custom(&context, document, &mut arrays)?;
+    custom::compile_keys(&context, document, &mut arrays)?;
     Ok(arrays)
 }
 

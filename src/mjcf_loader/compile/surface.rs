@@ -59,6 +59,11 @@ fn image_path(
     source: &dyn AssetSource,
     dir: &str,
 ) -> Result<String, LoadError> {
+    let file = if context.compiler.strippath {
+        file.rsplit(['/', '\\']).next().unwrap_or(file)
+    } else {
+        file
+    };
     let file = match context.compiler.texturedir.trim_end_matches('/') {
         "" => file.to_owned(),
         texturedir => format!("{texturedir}/{file}"),

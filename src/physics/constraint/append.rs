@@ -136,7 +136,7 @@ impl Rows<'_> {
     /// error). Returns its damping.
     #[inline(always)]
     pub(super) fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
-        let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.timestep);
+        let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.least_timeconst());
         let r = ((1.0 - i.imp) / i.imp * spec.diag).max(MINVAL);
         let k = if self.block_mut().kind == ConstraintType::FrictionDof {
             0.0

@@ -28,12 +28,12 @@ pub(super) fn is_solref(solref: [f64; 2]) -> bool {
 }
 
 /// Computes the impedance of a row. `solref` is (time constant, damping ratio), or, when neither is positive, (-stiffness,
-/// -damping); where only one of the two is positive it counts as (0.02, 1), MuJoCo's default. A time constant below two
-/// time steps counts as two time steps. `solimp` is (dmin, dmax, width, midpoint,
+/// -damping); where only one of the two is positive it counts as (0.02, 1), MuJoCo's default. A time constant below `least`
+/// counts as `least`, s. `solimp` is (dmin, dmax, width, midpoint,
 /// power): the impedance grows from dmin to dmax as `|pos|` goes from 0 to width, along two power curves that meet at
 /// the midpoint. `pos` is the violation, m or rad.
 #[inline(always)]
-pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, timestep: f64) -> Impedance {
+pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, least: f64) -> Impedance {
     let mixed = (solref[0] > 0.0) != (solref[1] > 0.0);
     let solref = if mixed { DEFAULT_SOLREF } else { solref };
     let dmin = solimp[0].clamp(MINIMP, MAXIMP);
@@ -42,7 +42,7 @@ pub fn impedance(solref: [f64; 2], solimp: [f64; 5], pos: f64, timestep: f64) ->
     let midpoint = solimp[3].clamp(MINIMP, MAXIMP);
     let power = solimp[4].max(1.0);
     let (k, b) = if solref[0] > 0.0 {
-        let timeconst = solref[0].max(2.0 * timestep);
+        let timeconst = solref[0].max(least);
         let ratio = solref[1];
         (
             1.0 / (dmax * dmax * timeconst * timeconst * ratio * ratio).max(MINVAL),
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn impedance_runs_from_dmin_to_dmax() {
         let solimp = [0.9, 0.95, 0.001, 0.5, 2.0];
-        let at = |pos| impedance([0.02, 1.0], solimp, pos, 0.005).imp;
+        let at = |pos| impedance([0.02, 1.0], solimp, pos, 0.01).imp;
         assert_eq!(at(0.0), 0.9);
         assert!((at(0.0005) - 0.925).abs() < 1e-15);
         assert_eq!(at(-0.001), 0.95);
@@ -151,10 +151,10 @@ mod tests {
     }
 
     #[test]
-    fn time_constants_below_two_steps_count_as_two_steps() {
+    fn time_constants_below_the_least_count_as_the_least() {
         let solimp = [0.95, 0.99, 0.001, 0.5, 1.0];
-        let short = impedance([0.005, 1.0], solimp, 0.0, 0.005);
-        assert_eq!(short, impedance([0.01, 1.0], solimp, 0.0, 0.005));
+        let short = impedance([0.005, 1.0], solimp, 0.0, 0.01);
+        assert_eq!(short, impedance([0.01, 1.0], solimp, 0.0, 0.01));
         assert!((short.b - 2.0 / (0.99 * 0.01)).abs() < 1e-10);
     }
 }

@@ -9,6 +9,8 @@
 
 mod append;
 mod cone;
+mod contact_force;
+mod dual;
 mod hessian;
 mod impedance;
 mod island;
@@ -21,13 +23,15 @@ mod scalar_rows;
 mod view;
 mod weld;
 
+pub use contact_force::contact_forces;
+pub use dual::GaussSeidel;
 pub use impedance::impedance;
 pub use newton::Newton;
 pub use rows::RowBuilder;
 pub use view::EfcRow;
 #[cfg(feature = "rapier")]
 pub use weld::Weld;
-pub use weld::weld_points;
+pub use weld::{connected_points, weld_points};
 
 use crate::physics::tiles::Lanes;
 use crate::physics::topology::Topology;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::math::MINVAL;
-use crate::model::{ConeType, Model};
+use crate::model::Model;
 use crate::physics::constraint::cone::Cone;
 use crate::physics::constraint::hessian::Hessian;
 use crate::physics::constraint::island::Island;
@@ -78,16 +78,6 @@ impl Newton {
                 self.solve_island(model, topology, blocks, &mut efc, s);
             }
             s.efc = efc;
-        }
-        for c in &mut s.contact {
-            c.force = [0.0; 6];
-            match c.efc_address {
-                Some(row) if model.opt.cone == ConeType::Pyramidal && c.dim > 1 => {
-                    c.force = decode_pyramid(&s.efc.force[row..row + 2 * (c.dim - 1)], &c.friction);
-                }
-                Some(row) => c.force[..c.dim].copy_from_slice(&s.efc.force[row..row + c.dim]),
-                None => {}
-            }
         }
         s.qacc_warmstart.copy_from_slice(&s.qacc);
     }
@@ -164,7 +154,12 @@ impl Newton {
             #[inline(always)]
             || island.load(topology, trees, blocks, efc, s),
         );
-        let (mut cost, length) = island.start(topology, &s.qacc_warmstart, efc);
+        let warm = if model.opt.flags.warmstart {
+            &s.qacc_warmstart
+        } else {
+            &s.qacc_smooth
+        };
+        let (mut cost, length) = island.start(topology, warm, efc);
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
         // what rests needs no step: the Hessian exceeds the inertia, so its steps are bounded by the inertia's inverse
         let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(&s.params, t)).sum();
@@ -245,17 +240,6 @@ const FEW_ITERATIONS: usize = 20;
 /// constraints too, as they start from the last acceleration, and searched as MuJoCo does it: so it stops where MuJoCo stops.
 fn cut_off(model: &Model) -> bool {
     model.opt.iterations < FEW_ITERATIONS || model.opt.ls_iterations < FEW_ITERATIONS
-}
-
-/// Returns the force and torque in the frame of a contact that the forces along the edges of its pyramid add up to
-/// (MuJoCo's `mju_decodePyramid`).
-fn decode_pyramid(edges: &[f64], friction: &[f64; 5]) -> [f64; 6] {
-    let mut force = [0.0; 6];
-    for (k, (edge, f)) in edges.chunks_exact(2).zip(friction).enumerate() {
-        force[0] += edge[0] + edge[1];
-        force[k + 1] = (edge[0] - edge[1]) * f;
-    }
-    force
 }
 
 /// Finds the root of a tree's island, with path halving.

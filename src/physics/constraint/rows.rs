@@ -4,7 +4,7 @@ use crate::math::*;
 use crate::model::{ConeType, EqualityKind, Model};
 use crate::physics::constraint::append::{Rows, Spec};
 use crate::physics::constraint::impedance::is_solref;
-use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS, impedance, weld_points};
+use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS, connected_points, impedance, weld_points};
 use crate::physics::dynamics::tendon_length;
 use crate::physics::state::{Contact, State};
 use crate::physics::tiles::{Lanes, total};
@@ -55,16 +55,27 @@ impl RowBuilder {
     pub fn build(&mut self, model: &Model, topology: &Topology, s: &mut State) {
         let mut efc = std::mem::take(&mut s.efc);
         efc.clear();
+        let flags = &model.opt.flags;
+        if !flags.constraint {
+            s.efc = efc;
+            return;
+        }
         topology.to_lanes(&s.qvel, &mut self.qvel);
         let mut rows = Rows {
             model,
             topology,
             efc: &mut efc,
         };
-        equalities(&mut rows, s);
-        self.add_friction(rows.efc, s);
-        joint_limits(&mut rows, s);
-        tendon_limits(&mut rows, s);
+        if flags.equality {
+            equalities(&mut rows, s);
+        }
+        if flags.frictionloss {
+            self.add_friction(rows.efc, s);
+        }
+        if flags.limit {
+            joint_limits(&mut rows, s);
+            tendon_limits(&mut rows, s);
+        }
         for i in 0..s.contact.len() {
             contact(&mut rows, s, i);
         }
@@ -150,6 +161,7 @@ fn equalities(rows: &mut Rows, s: &State) {
                 joint2,
                 polycoef,
             } => joint_equality(rows, s, id, (joint1, joint2), polycoef),
+            EqualityKind::Connect { body1, body2, .. } => connect_equality(rows, s, id, [body1, body2]),
             EqualityKind::Weld { body1, body2, .. } => weld_equality(rows, s, id, [body1, body2]),
         }
     }
@@ -207,6 +219,28 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
             out.extend_from_slice(&rates);
         },
     );
+    hold(rows, s, id, [body1, body2], &weld.error);
+}
+
+/// Appends the three rows of a connection of two points.
+fn connect_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2]) {
+    let Some([point1, point2]) = connected_points(rows.model, s, id) else {
+        return;
+    };
+    rows.relative(
+        (ConstraintType::Equality, id, 3),
+        s,
+        (body2, point2),
+        (body1, point1),
+        #[inline(always)]
+        |translation, _, out| out.extend_from_slice(translation),
+    );
+    hold(rows, s, id, [body1, body2], &sub(point1, point2));
+}
+
+/// Gives the last block its rows, which hold two bodies: those of translation first, then those of rotation.
+fn hold(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2], error: &[f64]) {
+    let model = rows.model;
     // MuJoCo drops an equality that no degree of freedom can do anything about, which it sees only where the Jacobian is
     // dense: the forces of rows that it keeps move nothing, but torque sensors feel them
     let block = *rows.block_mut();
@@ -217,8 +251,8 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
         return;
     }
     let (w1, w2) = (s.params.body_invweight0[body1], s.params.body_invweight0[body2]);
-    let norm = weld.error.iter().map(|e| e * e).sum::<f64>().sqrt();
-    for (k, &pos) in weld.error.iter().enumerate() {
+    let norm = error.iter().map(|e| e * e).sum::<f64>().sqrt();
+    for (k, &pos) in error.iter().enumerate() {
         let spec = Spec {
             solref: model.eq_solref[id],
             solimp: model.eq_solimp[id],
@@ -349,7 +383,7 @@ fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
     let mut damping = rows.row(c.dist, c.includemargin, c.dist - c.includemargin, spec);
     if c.dim > 1 {
         if is_solref(c.solreffriction) {
-            damping = impedance(c.solreffriction, c.solimp, 0.0, model.opt.timestep).b;
+            damping = impedance(c.solreffriction, c.solimp, 0.0, model.opt.least_timeconst()).b;
         }
         let normal = rows.efc.r[first];
         let sliding = normal / model.opt.impratio.max(MINVAL);

@@ -65,13 +65,20 @@ impl ScalarRows {
         for k in 0..4 {
             let pull = self.d[k] * self.jar[k];
             let clamped = clamp(pull, self.low[k], self.high[k]);
-            // beyond a bound the cost is linear
-            self.weight[k] = if clamped == pull { self.d[k] } else { 0.0 };
+            // from a bound on the cost is linear: a row that neither pulls nor is pulled, as where nothing moves yet and
+            // `aref` is 0, must not stiffen the Hessian, or the first search goes elsewhere than MuJoCo's
+            self.weight[k] = if self.between(k, pull) { self.d[k] } else { 0.0 };
             self.force[k] = -clamped;
             // d jar^2 / 2 between the bounds and its tangent beyond them (Huber's function) in one expression, as 1 = r d
             cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
         }
         cost
+    }
+
+    /// Tells whether a pull is strictly between the bounds of row `k`.
+    #[inline(always)]
+    fn between(&self, k: usize, pull: f64) -> bool {
+        (self.low[k] < pull) & (pull < self.high[k])
     }
 
     /// Returns the cost at `jar + alpha jv`.
@@ -93,7 +100,7 @@ impl ScalarRows {
             let clamped = clamp(pull, self.low[k], self.high[k]);
             let curvature = self.d[k] * self.jv[k] * self.jv[k];
             first[k] += clamped * self.jv[k];
-            second[k] += if clamped == pull { curvature } else { 0.0 };
+            second[k] += if self.between(k, pull) { curvature } else { 0.0 };
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The pose error of a weld, and how its rows act.
+//! The points of a connection; the pose error of a weld, and how its rows act.
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
@@ -34,6 +34,22 @@ impl Weld {
             dot(self.rotation_rate(axis), f)
         })
     }
+}
+
+/// Returns the points that connection `id` holds together, as bodies 1 and 2 carry them, world, m; `None` when that equality is
+/// not a connection.
+pub fn connected_points(model: &Model, s: &State, id: usize) -> Option<[Vec3; 2]> {
+    let EqualityKind::Connect {
+        body1,
+        body2,
+        anchor1,
+        anchor2,
+    } = model.eq_kind[id]
+    else {
+        return None;
+    };
+    let carried = |body: usize, anchor: Vec3| add(mat_vec(&s.xmat[body], anchor), s.xpos[body]);
+    Some([carried(body1, anchor1), carried(body2, anchor2)])
 }
 
 /// Returns the current state of weld `id`; `None` when that equality is not a weld.

@@ -21,7 +21,8 @@
 //!
 //! Planes touch no planes.
 //!
-//! ```
+#![cfg_attr(feature = "internals", doc = "```")]
+#![cfg_attr(not(feature = "internals"), doc = "```ignore")]
 //! use babybench::math::MAT3_ID;
 //! use babybench::model::GeomType;
 //! use babybench::physics::contact::{ContactOptions, PlacedGeom, Scratch, collide};

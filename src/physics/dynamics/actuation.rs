@@ -1,36 +1,49 @@
 //! From controls to joint forces and unconstrained acceleration.
 
-use crate::model::{BiasType, Model};
+use crate::model::{BiasType, GainType, Model};
+use crate::physics::dynamics::activation;
 use crate::physics::dynamics::applied::xfrc_accumulate;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::state::State;
 
-/// Computes `actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
+/// Computes `act_dot, actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
 ///
 /// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint; its length and velocity are gear times
-/// those of the joint. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
+/// those of the joint. Where it has an activation, that takes the place of the control. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
 /// of range are clamped. `bodies` must be up to date.
 #[inline(always)]
 pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
     s.qfrc_actuator.fill(0.0);
-    for i in 0..model.nu() {
+    let acting = if model.opt.flags.actuation { model.nu() } else { 0 };
+    s.actuator_force[acting..].fill(0.0);
+    for i in 0..acting {
         let j = model.actuator_trnid[i];
         let (d, q) = (model.jnt_dofadr[j], model.jnt_qposadr[j]);
+        // muscles take the place of motors; a servo beside them is a servo still
         let muscle = s.muscle_torque.get(i).copied();
+        let muscle = muscle.filter(|_| model.actuator_biastype[i] == BiasType::None);
         let gear = if muscle.is_some() {
             1.0
         } else {
             s.params.actuator_gear[i]
         };
         let mut ctrl = s.ctrl[i];
-        if model.actuator_ctrllimited[i] {
+        if model.actuator_ctrllimited[i] && model.opt.flags.clampctrl {
             let [lo, hi] = model.actuator_ctrlrange[i];
             ctrl = ctrl.max(lo).min(hi);
         }
-        let mut force = model.actuator_gainprm[i][0] * ctrl;
+        if let Some(k) = model.actuator_actadr[i] {
+            s.act_dot[k] = activation::rate(model, i, s.act[k], ctrl);
+            ctrl = activation::acting(model, i, s.act[k], s.act_dot[k]);
+        }
+        let affine = |p: [f64; 3]| p[0] + p[1] * (gear * s.qpos[q]) + p[2] * (gear * s.qvel[d]);
+        let gain = match model.actuator_gaintype[i] {
+            GainType::Fixed => model.actuator_gainprm[i][0],
+            GainType::Affine => affine(model.actuator_gainprm[i]),
+        };
+        let mut force = gain * ctrl;
         if model.actuator_biastype[i] == BiasType::Affine {
-            let p = model.actuator_biasprm[i];
-            force += p[0] + p[1] * (gear * s.qpos[q]) + p[2] * (gear * s.qvel[d]);
+            force += affine(model.actuator_biasprm[i]);
         }
         if let Some(torque) = muscle {
             force *= torque;

@@ -18,16 +18,29 @@ pub(super) fn applied(s: &State) -> impl Iterator<Item = (usize, Vec3, Vec3)> {
 pub fn xfrc_accumulate(model: &Model, s: &mut State) {
     let mut smooth = std::mem::take(&mut s.qfrc_smooth);
     for (body, force, torque) in applied(s) {
-        let offset = sub(s.xipos[body], s.subtree_com[model.body_rootid[body]]);
-        let mut b = body;
-        while b > 0 {
-            for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
-                let velocity = velocity_at(&s.cdof[d], offset);
-                smooth[d] += dot(velocity, force);
-                smooth[d] += dot(angular(&s.cdof[d]), torque);
-            }
-            b = model.body_parentid[b];
-        }
+        let wrench = (body, force, torque, s.xipos[body]);
+        add_force(model, &s.cdof, &s.subtree_com, wrench, &mut smooth);
     }
     s.qfrc_smooth = smooth;
+}
+
+/// Adds to generalised forces `qfrc` (nv) what a force and a torque on a body do that act at a point, all in the world frame
+/// (MuJoCo's `mj_applyFT`).
+pub(super) fn add_force(
+    model: &Model,
+    cdof: &[Spatial],
+    subtree_com: &[Vec3],
+    (body, force, torque, point): (usize, Vec3, Vec3, Vec3),
+    qfrc: &mut [f64],
+) {
+    let offset = sub(point, subtree_com[model.body_rootid[body]]);
+    let mut b = body;
+    while b > 0 {
+        for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
+            let velocity = velocity_at(&cdof[d], offset);
+            qfrc[d] += dot(velocity, force);
+            qfrc[d] += dot(angular(&cdof[d]), torque);
+        }
+        b = model.body_parentid[b];
+    }
 }

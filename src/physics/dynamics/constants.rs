@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use crate::math::*;
 use crate::model::{
-    Arrays, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
+    Arrays, CameraPose, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
 };
 use crate::physics::MAXVAL;
+use crate::physics::dynamics::kinematics::local_to_global;
 use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendon_length};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
@@ -28,11 +29,29 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
         dof_invweight0: weights.dofs(),
         tendon_lengthspring: (0..model.ntendon()).map(|t| slack(model, t)).collect(),
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
+        actuator_biasprm: (0..model.nu()).map(|i| bias(model, i, &dof_m0)).collect(),
         stat: statistics(model, &s, &dof_m0),
         weld_poses: weld_poses(model, &s),
+        connect_anchors: connect_anchors(model, &s),
+        camera_poses: camera_poses(model, &s),
         light_poses: light_poses(model, &s),
         dof_m0,
     }
+}
+
+/// Returns the bias of an actuator, with the damping that its damping ratio asks for.
+///
+/// That of a servo with gain `k` on a mass `m` is `2 ratio sqrt(k m)`; the mass is that of the joint at `qpos0`, seen through the
+/// gear.
+fn bias(model: &Arrays, actuator: usize, dof_m0: &[f64]) -> [f64; 3] {
+    let ([k, ..], [constant, stiffness, ratio]) = (model.actuator_gainprm[actuator], model.actuator_biasprm[actuator]);
+    if k != -stiffness || ratio <= 0.0 {
+        return model.actuator_biasprm[actuator];
+    }
+    let gear = model.actuator_gear[actuator].powi(2);
+    let inertia = dof_m0[model.jnt_dofadr[model.actuator_trnid[actuator]]];
+    let mass = if gear > MINVAL { inertia / gear } else { 0.0 };
+    [constant, stiffness, -(ratio * 2.0 * (k * mass).sqrt())]
 }
 
 /// Returns the lengths between which a tendon's spring is slack: as given, else that in the springs' rest configuration.
@@ -66,6 +85,21 @@ fn weld_poses(model: &Arrays, s: &State) -> Vec<WeldPose> {
         }
     }
     poses
+}
+
+/// Computes where the points of connections are in their second bodies at `qpos0`.
+fn connect_anchors(model: &Arrays, s: &State) -> Vec<(usize, Vec3)> {
+    let kinds = model.eq_kind.iter().enumerate();
+    let connections = kinds.filter_map(|(equality, kind)| match *kind {
+        EqualityKind::Connect {
+            body1, body2, anchor1, ..
+        } => {
+            let point = add(mat_vec(&s.xmat[body1], anchor1), s.xpos[body1]);
+            Some((equality, mat_t_vec(&s.xmat[body2], sub(point, s.xpos[body2]))))
+        }
+        _ => None,
+    });
+    connections.collect()
 }
 
 /// Largest inverse weight of a degree of freedom, times its inertia, of a model that is taken. It is 1 where the others hold
@@ -179,6 +213,20 @@ impl<'a> Weights<'a> {
     }
 }
 
+/// Returns the poses at `qpos0` that cameras keep which do not turn with their body.
+fn camera_poses(model: &Arrays, s: &State) -> Vec<CameraPose> {
+    let pose = |c: usize| {
+        let b = model.cam_bodyid[c];
+        let (pos, mat0) = local_to_global(s, b, model.cam_pos[c], model.cam_quat[c], SameFrame::None);
+        CameraPose {
+            pos0: sub(pos, s.xpos[b]),
+            poscom0: sub(pos, s.subtree_com[model.cam_targetbodyid[c].unwrap_or(b)]),
+            mat0,
+        }
+    };
+    (0..model.ncam()).map(pose).collect()
+}
+
 /// Returns the poses at `qpos0` that lights keep which do not turn with their body.
 fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
     let pose = |light: &Light| {
@@ -280,6 +328,10 @@ fn bounds(model: &Arrays, s: &State) -> (Vec3, Vec3) {
     if low[0] > high[0] {
         // an empty world
         return ([-1.0; 3], [1.0; 3]);
+    }
+    if (0..3).all(|k| high[k] - low[k] < MINVAL) {
+        // a single point: MuJoCo gives it a cube of 2 m, as it does to nothing at all
+        return (low.map(|v| v - 1.0), high.map(|v| v + 1.0));
     }
     (low, high)
 }

@@ -1,7 +1,8 @@
-//! Semi-implicit Euler with implicit joint damping.
+//! Integration: semi-implicit Euler with implicit joint damping, and Runge and Kutta's method; activations of actuators.
 
 use crate::math::{axis_angle_to_quat, quat_mul, quat_normalize, unit};
 use crate::model::{JointType, Model};
+use crate::physics::dynamics::activation;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::state::State;
 
@@ -13,12 +14,13 @@ pub struct Integrator {
 }
 
 impl Integrator {
-    /// Advances `qpos, qvel, time`: `v+ = v + h (M + h D)^-1 (qfrc_smooth + qfrc_constraint)`, then `q+ = q (+) h v+`;
+    /// Advances `act, qpos, qvel, time`: `v+ = v + h (M + h D)^-1 (qfrc_smooth + qfrc_constraint)`, then `q+ = q (+) h v+`;
     /// without damping `v+ = v + h qacc`. `bodies` must be up to date.
     #[inline(always)]
     pub fn advance(&mut self, model: &Model, bodies: &mut Articulated, s: &mut State) {
         let h = model.opt.timestep;
-        if s.params.dof_damping.iter().any(|&d| d > 0.0) {
+        activation::advance(model, &mut s.act, &s.act_dot);
+        if model.opt.flags.eulerdamp && s.params.dof_damping.iter().any(|&d| d > 0.0) {
             self.acc.resize(model.nv, 0.0);
             self.force.clear();
             let forces = s.qfrc_smooth.iter().zip(&s.qfrc_constraint);
@@ -36,6 +38,96 @@ impl Integrator {
         integrate_pos(model, qpos, qvel, h);
         s.time += h;
         s.step += 1;
+    }
+}
+
+/// The fourth-order method of Runge and Kutta: the states that are evaluated on the way, and what each gives.
+#[derive(Clone, Debug, Default)]
+pub struct RungeKutta {
+    qpos: Vec<f64>,
+    /// Velocities and accelerations at the evaluations so far, one after another (4 nv each).
+    qvel: Vec<f64>,
+    qacc: Vec<f64>,
+    /// Their weighted sums (nv).
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+    /// Activations at the start (na), and the weighted sum of their rates so far.
+    act: Vec<f64>,
+    act_dot: Vec<f64>,
+    sensordata: Vec<f64>,
+}
+
+/// How far the evaluations after the first are from the start: each follows the slope of the one before it.
+const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
+/// The weights of the slopes in the step.
+const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+
+impl RungeKutta {
+    /// Advances `qpos, qvel, time` from a state that `evaluate` has computed already. `evaluate` computes accelerations from
+    /// positions and velocities.
+    ///
+    /// As in MuJoCo, all computed quantities are those of the last evaluation afterwards, but for the sensors, which stay those
+    /// of the start.
+    pub fn advance<E>(
+        &mut self,
+        model: &Model,
+        s: &mut State,
+        mut evaluate: impl FnMut(&mut State) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (h, nv, start) = (model.opt.timestep, model.nv, s.time);
+        self.qpos.clone_from(&s.qpos);
+        self.act.clone_from(&s.act);
+        self.act_dot.clear();
+        self.act_dot.extend(s.act_dot.iter().map(|rate| WEIGHTS[0] * rate));
+        self.sensordata.clone_from(&s.sensordata);
+        self.qvel.clear();
+        self.qacc.clear();
+        self.velocity.resize(nv, 0.0);
+        self.acceleration.resize(nv, 0.0);
+        for (stage, weight) in STAGES.into_iter().zip(&WEIGHTS[1..]) {
+            self.qvel.extend_from_slice(&s.qvel);
+            self.qacc.extend_from_slice(&s.qacc);
+            for d in 0..nv {
+                self.velocity[d] = stage * s.qvel[d];
+                self.acceleration[d] = stage * s.qacc[d];
+            }
+            self.set(model, s, h);
+            // on the way activations go straight on, without limits: those are for the end
+            for ((act, from), rate) in s.act.iter_mut().zip(&self.act).zip(&s.act_dot) {
+                *act = from + stage * h * rate;
+            }
+            s.time = start + stage * h;
+            evaluate(s)?;
+            for (sum, rate) in self.act_dot.iter_mut().zip(&s.act_dot) {
+                *sum += weight * rate;
+            }
+        }
+        self.qvel.extend_from_slice(&s.qvel);
+        self.qacc.extend_from_slice(&s.qacc);
+        self.velocity.fill(0.0);
+        self.acceleration.fill(0.0);
+        for (k, weight) in WEIGHTS.into_iter().enumerate() {
+            for d in 0..nv {
+                self.velocity[d] += weight * self.qvel[k * nv + d];
+                self.acceleration[d] += weight * self.qacc[k * nv + d];
+            }
+        }
+        self.set(model, s, h);
+        s.act.clone_from(&self.act);
+        activation::advance(model, &mut s.act, &self.act_dot);
+        s.sensordata.clone_from(&self.sensordata);
+        s.time = start + h;
+        s.step += 1;
+        Ok(())
+    }
+
+    /// Sets positions and velocities to those of the start, moved for `h` with the sums.
+    fn set(&self, model: &Model, s: &mut State, h: f64) {
+        s.qpos.clone_from(&self.qpos);
+        integrate_pos(model, &mut s.qpos, &self.velocity, h);
+        for (d, v) in s.qvel.iter_mut().enumerate() {
+            *v = self.qvel[d] + h * self.acceleration[d];
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! geometry is discontinuous in them.
 
 use crate::math::*;
-use crate::model::{Arrays, CameraMode, JointType, Model, SameFrame};
+use crate::model::{Arrays, CamLight, JointType, Model, SameFrame};
 use crate::physics::spatial::spatial;
 use crate::physics::state::State;
 
@@ -67,7 +67,7 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
 
 /// Returns the world pose of something fixed in a body. A frame that is known already is copied.
 #[inline(always)]
-fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
+pub(super) fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
     let world_pos = match same {
         SameFrame::Body => s.xpos[body],
         SameFrame::Inertia => s.xipos[body],
@@ -81,22 +81,31 @@ fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFram
     (world_pos, world_mat)
 }
 
-/// Computes `cam_xpos, cam_xmat` from body poses. A targeting camera has its -z towards the target and its x axis
-/// horizontal.
+/// Computes `cam_xpos, cam_xmat` from body poses and centres of mass. A camera that aims at something has its -z towards it
+/// and its x axis horizontal.
 #[doc(alias = "mj_camlight")]
 #[inline(always)]
 pub fn cameras(model: &Model, s: &mut State) {
     for c in 0..model.ncam() {
         let (b, p, q) = (model.cam_bodyid[c], model.cam_pos[c], model.cam_quat[c]);
-        let (pos, mut mat) = local_to_global(s, b, p, q, SameFrame::None);
-        if let CameraMode::TargetBody(target) = model.cam_mode[c] {
-            let z = unit(sub(pos, s.xpos[target])).0;
-            let x = unit(cross([0.0, 0.0, 1.0], z)).0;
-            let y = unit(cross(z, x)).0;
-            mat = [x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]];
-        }
-        (s.cam_xpos[c], s.cam_xmat[c]) = (pos, mat);
+        let fixed = |s: &State| local_to_global(s, b, p, q, SameFrame::None);
+        (s.cam_xpos[c], s.cam_xmat[c]) = match (model.cam_mode[c], model.cam_targetbodyid[c]) {
+            (CamLight::Track, _) => (add(s.xpos[b], model.cam_pos0[c]), model.cam_mat0[c]),
+            (CamLight::TrackCom, _) => (add(s.subtree_com[b], model.cam_poscom0[c]), model.cam_mat0[c]),
+            (CamLight::TargetBody, Some(target)) => aimed(fixed(s).0, s.xpos[target]),
+            (CamLight::TargetBodyCom, Some(target)) => aimed(fixed(s).0, s.subtree_com[target]),
+            _ => fixed(s),
+        };
     }
+}
+
+/// Returns a pose at a position, with -z towards a target and the x axis horizontal.
+#[inline(always)]
+fn aimed(pos: Vec3, target: Vec3) -> (Vec3, Mat3) {
+    let z = unit(sub(pos, target)).0;
+    let x = unit(cross([0.0, 0.0, 1.0], z)).0;
+    let y = unit(cross(z, x)).0;
+    (pos, [x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]])
 }
 
 /// Computes `subtree_com, cinert, cdof` from poses.

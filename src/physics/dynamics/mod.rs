@@ -3,10 +3,12 @@
 //! Each function computes one group of quantities of [`crate::physics::State`] from the ones before it, in the order in
 //! which [`crate::physics::SoftEngine`] calls them.
 
+mod activation;
 mod actuation;
 mod applied;
 mod articulated;
 mod constants;
+mod fluid;
 mod inertia;
 mod integrate;
 mod kinematics;
@@ -15,15 +17,13 @@ mod sensor;
 mod velocity;
 
 pub use actuation::fwd_actuation;
-pub use articulated::Articulated;
-#[cfg(feature = "rapier")]
-pub use articulated::Damping;
+pub use articulated::{Articulated, Damping};
 pub(in crate::physics) use constants::{MAX_WEIGHT, constants};
 pub use inertia::crb;
 #[cfg(any(test, feature = "rapier"))]
 pub use inertia::mul_m;
-pub use integrate::Integrator;
+pub use integrate::{Integrator, RungeKutta};
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;
-pub use sensor::sensors;
+pub use sensor::{SubtreeScratch, sensors};
 pub use velocity::{BiasScratch, fwd_velocity, tendon_length};

@@ -2,7 +2,7 @@
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::{ConstraintType, weld_points};
+use crate::physics::constraint::{ConstraintType, connected_points, weld_points};
 use crate::physics::dynamics::applied::applied;
 use crate::physics::spatial::*;
 use crate::physics::state::State;
@@ -10,7 +10,7 @@ use crate::physics::state::State;
 /// Computes `cacc, cfrc_ext, cfrc_int` from `qacc` and the constraint forces (recursive Newton-Euler with the joint
 /// accelerations known).
 ///
-/// `cfrc_ext` holds contacts, welds and the forces that a caller applies to bodies; joint limits, friction loss, springs and actuators act inside joints and so show
+/// `cfrc_ext` holds contacts, connections, welds and the forces that a caller applies to bodies; joint limits, friction loss, springs and actuators act inside joints and so show
 /// in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
 /// although their Jacobian is about half the angular one: the wrench is then about twice the true one.
 #[inline(always)]
@@ -35,7 +35,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
             apply(model, s, model.geom_bodyid[g], torque, force, pos, sign);
         }
     }
-    apply_welds(model, s, double_weld_torque);
+    apply_equalities(model, s, double_weld_torque);
     let g = s.params.gravity;
     s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     s.cfrc_int[0] = [0.0; 6];
@@ -61,12 +61,19 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
     }
 }
 
-/// Adds the wrenches of welds to `cfrc_ext`.
-fn apply_welds(model: &Model, s: &mut State, double_weld_torque: bool) {
+/// Adds the wrenches of connections and welds to `cfrc_ext`.
+fn apply_equalities(model: &Model, s: &mut State, double_weld_torque: bool) {
     for k in 0..s.efc.blocks.len() {
         let block = s.efc.blocks[k];
-        if block.kind != ConstraintType::Equality || block.dim != 6 {
+        if block.kind != ConstraintType::Equality {
             continue;
+        }
+        if let EqualityKind::Connect { body1, body2, .. } = model.eq_kind[block.id]
+            && let Some([point1, point2]) = connected_points(model, s, block.id)
+        {
+            let force = std::array::from_fn(|r| s.efc.force[block.row + r]);
+            apply(model, s, body1, [0.0; 3], force, point1, 1.0);
+            apply(model, s, body2, [0.0; 3], force, point2, -1.0);
         }
         let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[block.id] else {
             continue;

@@ -2,6 +2,7 @@
 
 use crate::math::{quat_at, quat_normalize, rotation_between};
 use crate::model::{Arrays, JointType, Model};
+use crate::physics::dynamics::fluid::{gravity_compensation, medium};
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
@@ -74,6 +75,18 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
     }
     for d in 0..model.nv {
         s.qfrc_bias[d] = dot6(&s.cdof[d], &scratch.force[model.dof_bodyid[d]]);
+    }
+    if model.opt.flags.passive {
+        passive(model, s);
+    } else {
+        s.qfrc_passive.fill(0.0);
+    }
+}
+
+/// Computes `qfrc_passive`: springs and dampers of joints and tendons, compensated gravity, the medium.
+#[inline(always)]
+fn passive(model: &Model, s: &mut State) {
+    for d in 0..model.nv {
         s.qfrc_passive[d] = -s.params.dof_damping[d] * s.qvel[d];
     }
     for j in 0..model.njnt() {
@@ -99,6 +112,8 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
     for t in 0..model.ntendon() {
         pull(model, s, t);
     }
+    gravity_compensation(model, s);
+    medium(model, s);
 }
 
 /// Adds the force of a tendon's spring and damper to `qfrc_passive`.

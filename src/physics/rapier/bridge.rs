@@ -41,6 +41,7 @@ pub struct Bridge {
     aims: ContactAims,
     integrator: Integrator,
     bias: BiasScratch,
+    subtrees: SubtreeScratch,
     builder: RowBuilder,
     inertia: Articulated,
     force: Vec<f64>,
@@ -84,6 +85,7 @@ impl Bridge {
             aims: ContactAims::default(),
             integrator: Integrator::default(),
             bias: BiasScratch::default(),
+            subtrees: SubtreeScratch::default(),
             builder: RowBuilder::new(&model, &topology),
             inertia: Articulated::default(),
             force: Vec::with_capacity(model.nv),
@@ -104,11 +106,13 @@ impl Bridge {
     }
 
     /// Returns the topology of the model's kinematic tree.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn topology(&self) -> &Topology {
         &self.topology
     }
 
     /// Returns the geom pairs that may touch, in contact order.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn pairs(&self) -> &PairTable {
         &self.pairs
     }
@@ -127,6 +131,7 @@ impl Bridge {
 
     /// Chooses the geom that stands in `State::contacts` for colliders that are not the model's: by default the first
     /// of the world's. Without one, such contacts act but are not sensed.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_stranger(&mut self, geom: Option<usize>) {
         self.stranger = geom.filter(|&g| g < self.model.ngeom());
     }
@@ -206,12 +211,13 @@ impl Bridge {
         check_motion(model, s)?;
         stage(Stage::Kinematics);
         kinematics(model, s);
-        cameras(model, s);
         com_pos(model, s);
+        cameras(model, s);
         crb(model, topology, s);
         self.inertia.update(model, s);
         stage(Stage::Collision);
-        if self.options.disable_contacts {
+        let flags = &model.opt.flags;
+        if self.options.disable_contacts || !flags.contact || !flags.constraint {
             s.contact.clear();
         } else {
             self.sweep.contacts(model, &self.pairs, s)?;
@@ -260,7 +266,9 @@ impl Bridge {
         read_contacts(&self.hooks(), model, narrow, s, self.stranger);
         read_welds(&self.rig, model, s, sets);
         rne_post_constraint(model, s, self.options.double_weld_torque);
-        sensors(model, s);
+        if model.opt.flags.sensor {
+            sensors(model, s, &mut self.subtrees);
+        }
         check_output(model, s)?;
         check_contacts(model, s)
     }

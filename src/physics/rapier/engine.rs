@@ -9,7 +9,7 @@ use rapier3d_f64::geometry::{BroadPhaseBvh, ColliderSet};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::PhysicsPipeline;
 
-use crate::model::Model;
+use crate::model::{IntegratorType, Model};
 use crate::physics::engine::{Engine, EngineError, Probe, Stage};
 use crate::physics::rapier::bridge::Bridge;
 use crate::physics::rapier::rig::Rig;
@@ -56,6 +56,13 @@ impl RapierModel {
     /// # Errors
     /// Fails if the model has elements that Rapier's multibodies cannot represent.
     pub fn new(model: Arc<Model>, options: RapierOptions) -> Result<Self, RapierError> {
+        if model.opt.integrator != IntegratorType::Euler {
+            return Err(RapierError::unsupported(
+                "option",
+                "integrator",
+                "Rapier steps by Euler's method",
+            ));
+        }
         let topology = Topology::new(&model);
         let mut pristine = OwnedSets::default();
         let rig = Rig::insert(&model, &topology, &mut pristine.sets())?;

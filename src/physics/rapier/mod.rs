@@ -41,8 +41,9 @@ use thiserror::Error;
 
 pub use bridge::Bridge;
 pub use contacts::ContactHooks;
-pub use dispatcher::ContactDispatcher;
-pub use engine::{RapierEngine, RapierModel};
+internals!(use dispatcher::ContactDispatcher);
+pub use engine::RapierEngine;
+internals!(use engine::RapierModel);
 /// Rapier, as it is part of this interface: [`rapier3d_f64::parry`] is the Parry beneath it.
 pub use rapier3d_f64;
 pub use rig::Rig;

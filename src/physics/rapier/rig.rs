@@ -143,6 +143,10 @@ impl Rig {
         rig.settle(model, sets);
         rig.insert_colliders(model, sets);
         for e in 0..model.neq() {
+            if let EqualityKind::Connect { .. } = model.eq_kind[e] {
+                let what = "connections of two points are not translated";
+                return Err(RapierError::unsupported("equality", &model.eq_name[e], what));
+            }
             if let EqualityKind::Weld { body1, body2, .. } = model.eq_kind[e] {
                 let (b1, b2) = (rig.body[body1], rig.body[body2]);
                 if b1 != b2 {
@@ -194,9 +198,10 @@ impl Rig {
         for j in joints {
             let local = pose(model.jnt_pos[j], x_to(model.jnt_axis[j]));
             let frame = reach * local;
-            let (handle, end) = match j == last {
-                true => (self.body[b], own * local),
-                false => (sets.bodies.insert(dynamic(b)), local),
+            let (handle, end) = if j == last {
+                (self.body[b], own * local)
+            } else {
+                (sets.bodies.insert(dynamic(b)), local)
             };
             link(sets, parent, handle, hinge(frame, end))
                 .ok_or_else(|| RapierError::unsupported("joint", &model.jnt_name[j], "Rapier rejects its link"))?;

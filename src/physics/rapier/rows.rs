@@ -135,9 +135,10 @@ impl RapierRows {
             let rows = self.dofs[link.dof];
             let free = s.qvel[link.dof] + h * s.qacc_smooth[link.dof];
             // softness is relative to the effective mass
-            let inverse_inertia = match rows.lock.is_some() || rows.limit.is_some() {
-                true => self.quadratic(model, inertia, s, &[(link.dof, 1.0)]),
-                false => 1.0,
+            let inverse_inertia = if rows.lock.is_some() || rows.limit.is_some() {
+                self.quadratic(model, inertia, s, &[(link.dof, 1.0)])
+            } else {
+                1.0
             };
             let setting = rows.setting(free, inverse_inertia, h);
             if let Some(id) = sets.multibody_joints.rigid_body_link(link.handle).copied()

@@ -14,7 +14,7 @@ use rapier3d_f64::pipeline::{
 
 use crate::math::{Quat, Vec3};
 use crate::model::{GeomType, Model};
-use crate::physics::contact::Quirks;
+use crate::physics::Quirks;
 use crate::physics::engine::EngineError;
 use crate::physics::rapier::ContactDispatcher;
 use crate::physics::state::State;
@@ -59,12 +59,12 @@ pub struct SceneContact {
 /// ```
 /// use std::sync::Arc;
 ///
-/// use babybench::config::Config;
 /// use babybench::mimo::{build_model, embedded};
-/// use babybench::physics::contact::Quirks;
+/// use babybench::physics::Quirks;
 /// use babybench::physics::rapier::RapierScene;
 /// use babybench::physics::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
 /// use babybench::physics::{Engine, SoftEngine, SoftOptions};
+/// use babybench::Config;
 ///
 /// let model = Arc::new(build_model(&Config::default(), &embedded())?);
 /// let mut scene = RapierScene::new(model.clone(), Quirks::default());

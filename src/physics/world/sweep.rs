@@ -224,9 +224,10 @@ impl Sweep {
 
 /// Checks a number against its limit.
 fn within(limit: usize, found: usize, what: &'static str, step: u64) -> Result<(), EngineError> {
-    match found > limit {
-        true => Err(EngineError::TooMany { step, what, limit }),
-        false => Ok(()),
+    if found > limit {
+        Err(EngineError::TooMany { step, what, limit })
+    } else {
+        Ok(())
     }
 }
 

@@ -3,8 +3,8 @@
 
 use crate::math::{MAT3_ID, Mat3, Vec3, column};
 use crate::render::mesh::MeshPart;
+use crate::render::scenery::Scenery;
 use crate::render::view::{Poses, View};
-use crate::render::visual::Visual;
 
 pub type V3 = [f32; 3];
 /// Coefficients of x, y, z and the constant.
@@ -60,7 +60,7 @@ pub struct Eye {
 }
 
 impl Eye {
-    pub fn new(visual: &Visual, poses: &Poses, view: &View) -> Self {
+    pub fn new(scenery: &Scenery, poses: &Poses, view: &View) -> Self {
         let (place, mat) = poses.camera(view.camera).unwrap_or(([0.0; 3], MAT3_ID));
         let mat = &mat;
         let aside = column(mat, 0);
@@ -76,8 +76,8 @@ impl Eye {
         let forward = unit(single(ahead));
         let right = unit(cross(forward, single(upward)));
         let up = unit(cross(right, forward));
-        let (near, far) = (visual.near as f32, visual.far as f32);
-        let tangent = pxfm::f_tan(visual.fovy_of(view.camera) * std::f64::consts::PI / 360.0);
+        let (near, far) = (scenery.near as f32, scenery.far as f32);
+        let tangent = pxfm::f_tan(scenery.fovy_of(view.camera) * std::f64::consts::PI / 360.0);
         let top = (f64::from(near) * tangent) as f32;
         let half_width = 0.5 * view.width as f32 / view.height as f32 * (top + top);
         let back = forward.map(|v| -v);

@@ -9,8 +9,8 @@ use super::target::{Target, Triangle};
 use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
 use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
+use crate::render::scenery::Scenery;
 use crate::render::view::{Poses, View};
-use crate::render::visual::Visual;
 
 /// The geometry of an image.
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ pub struct Frame {
     pub waiting: Waiting,
     /// Vertices made by clipping.
     pub points: Vec<ClipPoint>,
-    /// Everything that is drawn, indexed like the drawables of the visual.
+    /// Everything that is drawn, indexed like the drawables of the scenery.
     pub draws: Vec<PlacedDrawable>,
     /// Distance and index of the opaque drawables in view.
     opaque: Vec<(f32, u32)>,
@@ -112,11 +112,17 @@ pub fn pose(drawable: &Drawable, poses: &Poses) -> (Vec3, Mat3) {
 
 impl Frame {
     /// Begins an image: finds what is in view.
-    pub fn begin(&mut self, visual: &Visual, poses: &Poses, view: &View, targets: Targets) -> Result<Eye, RenderError> {
-        visual.check(poses, view)?;
-        let eye = Eye::new(visual, poses, view);
-        self.clear(visual, view, targets);
-        for (i, drawable) in visual.drawables.iter().enumerate() {
+    pub fn begin(
+        &mut self,
+        scenery: &Scenery,
+        poses: &Poses,
+        view: &View,
+        targets: Targets,
+    ) -> Result<Eye, RenderError> {
+        scenery.check(poses, view)?;
+        let eye = Eye::new(scenery, poses, view);
+        self.clear(scenery, view, targets);
+        for (i, drawable) in scenery.drawables.iter().enumerate() {
             let drawable = &drawable.sized(poses);
             let (pos, mat) = pose(drawable, poses);
             let [x, y, z] = eye.locate(single(pos));
@@ -137,27 +143,27 @@ impl Frame {
     }
 
     /// Finds what is seen of opaque drawables at each sample.
-    pub fn draw_opaque(&mut self, visual: &Visual, poses: &Poses, eye: &Eye) {
+    pub fn draw_opaque(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye) {
         for k in 0..self.opaque.len() {
-            self.place(visual, poses, eye, self.opaque[k].1 as usize, false);
+            self.place(scenery, poses, eye, self.opaque[k].1 as usize, false);
         }
     }
 
     /// Adds transparent drawables: their fragments for colours and, if `hiding`, to the centres of pixels as if they were
     /// opaque.
-    pub fn draw_transparent(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, hiding: bool) {
+    pub fn draw_transparent(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye, hiding: bool) {
         self.targets.centre &= hiding;
         if self.targets == Targets::default() {
             return;
         }
         for k in 0..self.transparent.len() {
             let start = self.colour.fragments.len();
-            self.place(visual, poses, eye, self.transparent[k].1 as usize, true);
+            self.place(scenery, poses, eye, self.transparent[k].1 as usize, true);
             self.layers.push(start..self.colour.fragments.len());
         }
     }
 
-    fn clear(&mut self, visual: &Visual, view: &View, targets: Targets) {
+    fn clear(&mut self, scenery: &Scenery, view: &View, targets: Targets) {
         self.targets = targets;
         self.size = [view.width, view.height];
         for (target, wanted) in [(&mut self.colour, targets.colour), (&mut self.centre, targets.centre)] {
@@ -171,7 +177,7 @@ impl Frame {
         self.sides.clear();
         self.points.clear();
         self.draws.clear();
-        self.draws.resize(visual.drawables.len(), PlacedDrawable::HIDDEN);
+        self.draws.resize(scenery.drawables.len(), PlacedDrawable::HIDDEN);
         self.opaque.clear();
         self.transparent.clear();
         self.layers.clear();
@@ -202,8 +208,8 @@ impl Frame {
     }
 
     /// Draws a drawable unless it is hidden.
-    fn place(&mut self, visual: &Visual, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
-        let drawable = &visual.drawables[index].sized(poses);
+    fn place(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
+        let drawable = &scenery.drawables[index].sized(poses);
         let (pos, mat) = pose(drawable, poses);
         if self.hidden(drawable, eye, single(pos)) {
             return;
@@ -213,13 +219,13 @@ impl Frame {
             mat: mat.map(|v| v as f32),
             rows: eye.model(pos, &mat, drawable.size),
             base: self.vertices.len(),
-            end: self.vertices.len() + visual.meshes[drawable.shape as usize].x.len(),
+            end: self.vertices.len() + scenery.meshes[drawable.shape as usize].x.len(),
             points: self.points.len(),
             transparent,
             ..self.draws[index]
         };
         self.placed.push(index as u32);
-        self.add(visual, drawable, eye, index);
+        self.add(scenery, drawable, eye, index);
     }
 
     /// Writes the distance (m) from the camera's plane to the surface at the centre of each pixel, rows from the top;

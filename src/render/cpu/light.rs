@@ -8,8 +8,8 @@ use super::lanes::{four, three};
 use crate::math::{Vec3, add, mat_vec, sub};
 use crate::render::drawable::Drawable;
 use crate::render::mesh::MeshPart;
+use crate::render::scenery::{Aim, LightSource, Scenery};
 use crate::render::view::Poses;
-use crate::render::visual::{Aim, Light, Visual};
 
 /// Weakest highlight that is computed.
 const FAINT: f32 = 1e-4;
@@ -33,9 +33,9 @@ pub struct PlacedLight {
 }
 
 /// Places the lights of a scene, the headlight first.
-pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLight>) {
+pub fn place(scenery: &Scenery, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLight>) {
     out.clear();
-    if let Some([ambient, diffuse, specular]) = visual.headlight {
+    if let Some([ambient, diffuse, specular]) = scenery.headlight {
         out.push(PlacedLight {
             pos: None,
             dir: eye.forward,
@@ -48,7 +48,7 @@ pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLigh
             shines: specular != [0.0; 3],
         });
     }
-    out.extend(visual.lights.iter().map(|l: &Light| {
+    out.extend(scenery.lights.iter().map(|l: &LightSource| {
         let (pos, dir) = pose(l, poses);
         PlacedLight {
             pos: pos.map(single),
@@ -65,7 +65,7 @@ pub fn place(visual: &Visual, poses: &Poses, eye: &Eye, out: &mut Vec<PlacedLigh
 }
 
 /// Returns the position of a light (`None` if it is directional) and its direction, in the world.
-fn pose(light: &Light, poses: &Poses) -> (Option<Vec3>, Vec3) {
+fn pose(light: &LightSource, poses: &Poses) -> (Option<Vec3>, Vec3) {
     let (xpos, xmat) = (poses.xpos[light.body], &poses.xmat[light.body]);
     let in_world = |pos| add(xpos, mat_vec(xmat, pos));
     let (pos, dir) = match light.aim {
@@ -310,7 +310,7 @@ mod tests {
                 [0.0, 2.3, 0.4],
             ],
         };
-        let light = Light {
+        let light = LightSource {
             body: 1,
             pos: Some([0.1, 0.2, 0.3]),
             dir: [0.0, half, -half],

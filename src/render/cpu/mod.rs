@@ -37,8 +37,8 @@ use shade::{Pixels, Shader};
 
 use crate::render::RenderError;
 use crate::render::drawable::Element;
+use crate::render::scenery::Scenery;
 use crate::render::view::{ImageBuffers, Poses, View, fits};
-use crate::render::visual::Visual;
 
 /// A renderer on the CPU. It keeps its buffers, so that drawing allocates nothing once the largest image has been
 /// drawn.
@@ -67,7 +67,7 @@ impl CpuRenderer {
     /// Fails if the camera does not exist, the size is not allowed, or poses or a buffer have the wrong length.
     pub fn draw(
         &mut self,
-        visual: &Visual,
+        scenery: &Scenery,
         poses: &Poses,
         view: &View,
         images: ImageBuffers<'_>,
@@ -85,15 +85,15 @@ impl CpuRenderer {
             colour: rgb.is_some() || gray.is_some(),
             centre: depth.is_some() || segmentation.is_some(),
         };
-        let eye = frame.begin(visual, poses, view, targets)?;
-        frame.draw_opaque(visual, poses, &eye);
+        let eye = frame.begin(scenery, poses, view, targets)?;
+        frame.draw_opaque(scenery, poses, &eye);
         if let Some(out) = depth {
             // before transparent drawables are added: depth does not show them, segmentation does
             frame.distances(out);
         }
-        frame.draw_transparent(visual, poses, &eye, segmentation.is_some());
+        frame.draw_transparent(scenery, poses, &eye, segmentation.is_some());
         if let Some(out) = segmentation {
-            frame.elements(out, |index| match visual.drawables[index].element {
+            frame.elements(out, |index| match scenery.drawables[index].element {
                 Element::Geom(geom) => geom as i32,
                 Element::Site(_) => -1,
             });
@@ -107,7 +107,7 @@ impl CpuRenderer {
                 }
             };
             self.shader
-                .resolve(frame, visual, poses, &eye, Pixels::All, &mut *colours);
+                .resolve(frame, scenery, poses, &eye, Pixels::All, &mut *colours);
             for (gray, pixel) in gray.into_iter().flatten().zip(colours.as_chunks().0) {
                 *gray = luma(*pixel);
             }
@@ -124,8 +124,8 @@ impl CpuRenderer {
     ///
     /// # Errors
     /// Fails like [`CpuRenderer::draw`].
-    pub fn rgb(&mut self, visual: &Visual, poses: &Poses, view: &View, out: &mut [u8]) -> Result<(), RenderError> {
-        self.draw(visual, poses, view, ImageBuffers::rgb(out))
+    pub fn rgb(&mut self, scenery: &Scenery, poses: &Poses, view: &View, out: &mut [u8]) -> Result<(), RenderError> {
+        self.draw(scenery, poses, view, ImageBuffers::rgb(out))
     }
 
     /// Draws every second pixel of every second row of an image, the first ones included: the same as those of
@@ -135,7 +135,7 @@ impl CpuRenderer {
     /// Fails like [`CpuRenderer::rgb`].
     pub fn rgb_halved(
         &mut self,
-        visual: &Visual,
+        scenery: &Scenery,
         poses: &Poses,
         view: &View,
         out: &mut [u8],
@@ -152,10 +152,10 @@ impl CpuRenderer {
         };
         self.passes += 1;
         let frame = &mut self.frame;
-        let eye = frame.begin(visual, poses, view, targets)?;
-        frame.draw_opaque(visual, poses, &eye);
-        frame.draw_transparent(visual, poses, &eye, false);
-        self.shader.resolve(frame, visual, poses, &eye, Pixels::Second, out);
+        let eye = frame.begin(scenery, poses, view, targets)?;
+        frame.draw_opaque(scenery, poses, &eye);
+        frame.draw_transparent(scenery, poses, &eye, false);
+        self.shader.resolve(frame, scenery, poses, &eye, Pixels::Second, out);
         Ok(())
     }
 
@@ -166,7 +166,7 @@ impl CpuRenderer {
     /// Fails like [`CpuRenderer::rgb`].
     pub fn gray(
         &mut self,
-        visual: &Visual,
+        scenery: &Scenery,
         poses: &Poses,
         view: &View,
         rgb: &mut [u8],
@@ -176,7 +176,7 @@ impl CpuRenderer {
             rgb: Some(rgb),
             ..ImageBuffers::gray(out)
         };
-        self.draw(visual, poses, view, images)
+        self.draw(scenery, poses, view, images)
     }
 
     /// Draws depth: the distance (m) from the camera's plane to the surface at the centre of each pixel, rows from the top;
@@ -184,8 +184,8 @@ impl CpuRenderer {
     ///
     /// # Errors
     /// Fails like [`CpuRenderer::rgb`].
-    pub fn depth(&mut self, visual: &Visual, poses: &Poses, view: &View, out: &mut [f32]) -> Result<(), RenderError> {
-        self.draw(visual, poses, view, ImageBuffers::depth(out))
+    pub fn depth(&mut self, scenery: &Scenery, poses: &Poses, view: &View, out: &mut [f32]) -> Result<(), RenderError> {
+        self.draw(scenery, poses, view, ImageBuffers::depth(out))
     }
 
     /// Draws geom ids: the geom at the centre of each pixel, rows from the top; -1 where there is none. Sites occlude
@@ -195,12 +195,12 @@ impl CpuRenderer {
     /// Fails like [`CpuRenderer::rgb`].
     pub fn segmentation(
         &mut self,
-        visual: &Visual,
+        scenery: &Scenery,
         poses: &Poses,
         view: &View,
         out: &mut [i32],
     ) -> Result<(), RenderError> {
-        self.draw(visual, poses, view, ImageBuffers::segmentation(out))
+        self.draw(scenery, poses, view, ImageBuffers::segmentation(out))
     }
 }
 

@@ -11,12 +11,12 @@ use super::raster::LIMIT;
 use crate::render::drawable::Drawable;
 use crate::render::mesh::{Band, LANES, Mesh};
 use crate::render::patch::ALL;
-use crate::render::visual::Visual;
+use crate::render::scenery::Scenery;
 
 impl Frame {
     /// Projects and draws a drawable, of which the index is given, too.
-    pub fn add(&mut self, visual: &Visual, drawable: &Drawable, eye: &Eye, index: usize) {
-        let mesh = &visual.meshes[drawable.shape as usize];
+    pub fn add(&mut self, scenery: &Scenery, drawable: &Drawable, eye: &Eye, index: usize) {
+        let mesh = &scenery.meshes[drawable.shape as usize];
         let draw = self.draws[index];
         self.vertices.resize(draw.end, Vertex::default());
         self.x.resize(draw.end, 0.0);

@@ -8,7 +8,7 @@ use super::flat;
 use super::lanes::{four, three};
 use super::light::Vectors;
 use crate::render::plain::SETTLED;
-use crate::render::texture::{Level, Texture};
+use crate::render::texture::{Level, TexturePixels};
 
 /// The mip levels to blend at each pixel of a block, and their blend weights.
 #[derive(Clone, Copy, Debug)]
@@ -48,13 +48,13 @@ impl MipLevels {
 /// Texture coordinates of a block of 2 x 2 pixels, the lower two first.
 pub type Coordinates = [f32x4; 3];
 
-impl Texture {
+impl TexturePixels {
     /// Returns the colours (red, green, blue; 0..1) at those pixels of a block that are `wanted`. Flat textures have one
     /// level of detail for the whole block, cube maps one for each pixel.
     pub(super) fn sample(&self, at: &Coordinates, wanted: [bool; 4]) -> Vectors {
         let colours = match self {
-            Texture::Flat(face) => flat::colours(face, at),
-            Texture::Cube(faces) => CubePoints::new(faces, at).colours(faces, wanted),
+            TexturePixels::Flat(face) => flat::colours(face, at),
+            TexturePixels::Cube(faces) => CubePoints::new(faces, at).colours(faces, wanted),
         };
         three(|k| colours[k] * (1.0 / 255.0))
     }

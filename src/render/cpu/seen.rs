@@ -10,8 +10,8 @@ use super::shade::Pixels;
 use super::target::{NONE, Target};
 use crate::render::drawable::Drawable;
 use crate::render::mesh::Mesh;
+use crate::render::scenery::Scenery;
 use crate::render::view::Poses;
-use crate::render::visual::Visual;
 
 /// The triangles and vertices that an image shows.
 #[derive(Debug, Default)]
@@ -82,8 +82,8 @@ impl Seen {
     }
 
     /// Finds the triangles that some pixels of a frame show, and numbers them; lights their vertices.
-    pub fn find(&mut self, frame: &mut Frame, visual: &Visual, poses: &Poses, eye: &Eye, pixels: Pixels) {
-        light::place(visual, poses, eye, &mut self.lights);
+    pub fn find(&mut self, frame: &mut Frame, scenery: &Scenery, poses: &Poses, eye: &Eye, pixels: Pixels) {
+        light::place(scenery, poses, eye, &mut self.lights);
         // what is seen grows with what is drawn, not later; a sample shows one triangle
         let samples = 4 * frame.colour.ids.len() + frame.colour.fragments.capacity();
         self.triangles.clear();
@@ -102,7 +102,7 @@ impl Seen {
             }
         }
         self.mark(frame);
-        self.light(frame, visual, poses, eye);
+        self.light(frame, scenery, poses, eye);
         self.between(frame);
     }
 
@@ -188,13 +188,13 @@ impl Seen {
     }
 
     /// Lights the vertices of meshes.
-    fn light(&mut self, frame: &Frame, visual: &Visual, poses: &Poses, eye: &Eye) {
+    fn light(&mut self, frame: &Frame, scenery: &Scenery, poses: &Poses, eye: &Eye) {
         const STRIDE: usize = 8;
         self.lit.clear();
         for &index in &frame.placed {
             let draw = &frame.draws[index as usize];
-            let drawable = &visual.drawables[index as usize].sized(poses);
-            let mesh = &visual.meshes[drawable.shape as usize];
+            let drawable = &scenery.drawables[index as usize].sized(poses);
+            let mesh = &scenery.meshes[drawable.shape as usize];
             let (mut batch, mut count) = ([0; 4], 0);
             for first in (draw.base..draw.end).step_by(STRIDE) {
                 // bands are filled up with vertices, so that their number is a multiple

@@ -10,9 +10,9 @@ use super::plane::{Basis, Planes};
 use super::sample::channels;
 use super::seen::Seen;
 use super::target::{NONE, Triangle};
-use crate::render::texture::Texture;
+use crate::render::scenery::Scenery;
+use crate::render::texture::TexturePixels;
 use crate::render::view::Poses;
-use crate::render::visual::Visual;
 
 /// Computes the colours of a frame.
 #[derive(Debug, Default)]
@@ -74,7 +74,7 @@ struct Setup {
 /// The inputs of shading.
 #[derive(Clone, Copy)]
 struct Inputs<'a> {
-    visual: &'a Visual,
+    scenery: &'a Scenery,
     eye: &'a Eye,
     /// Factor from pixels to half images.
     step: [f32; 2],
@@ -85,22 +85,22 @@ impl Shader {
     pub fn resolve(
         &mut self,
         frame: &mut Frame,
-        visual: &Visual,
+        scenery: &Scenery,
         poses: &Poses,
         eye: &Eye,
         pixels: Pixels,
         out: &mut [u8],
     ) {
-        self.seen.find(frame, visual, poses, eye, pixels);
+        self.seen.find(frame, scenery, poses, eye, pixels);
         let (w, h) = (frame.size[0], frame.size[1]);
         let inputs = Inputs {
-            visual,
+            scenery,
             eye,
             step: [2.0 / w as f32, 2.0 / h as f32],
         };
         self.setups.clear();
         for &id in &self.seen.triangles {
-            let setup = Setup::new(frame, visual, &self.seen, &frame.colour.records[id as usize]);
+            let setup = Setup::new(frame, scenery, &self.seen, &frame.colour.records[id as usize]);
             self.setups.push(setup);
         }
         if !frame.layers.is_empty() {
@@ -219,7 +219,7 @@ impl Shader {
             return inputs.sky(x, y, wanted);
         }
         let index = frame.colour.records[id as usize].setup;
-        self.setups[index as usize].colours(inputs.visual, x, y, wanted)
+        self.setups[index as usize].colours(inputs.scenery, x, y, wanted)
     }
 }
 
@@ -256,7 +256,7 @@ fn blend(under: f32x4, over: f32x4, alpha: f32) -> f32x4 {
 }
 
 impl Setup {
-    fn new(frame: &Frame, visual: &Visual, seen: &Seen, record: &Triangle) -> Self {
+    fn new(frame: &Frame, scenery: &Scenery, seen: &Seen, record: &Triangle) -> Self {
         let lit = three(|k| seen.lit(record.vertices[k]));
         let vertices = three(|k| &frame.vertices[record.vertices[k] as usize]);
         let basis = Basis::new(vertices);
@@ -270,10 +270,10 @@ impl Setup {
             tint: [1.0; 3],
             image: NONE,
         };
-        let Some(image) = visual.drawables[record.draw as usize].texture else {
+        let Some(image) = scenery.drawables[record.draw as usize].texture else {
             return setup;
         };
-        if let Texture::Flat(face) = &visual.textures[image]
+        if let TexturePixels::Flat(face) = &scenery.textures[image]
             // a texture of one colour is a factor, with no coordinates to interpolate
             && face[0].has_one_colour()
         {
@@ -288,7 +288,7 @@ impl Setup {
 
     /// Returns the colours of a block of 2 x 2 pixels.
     #[inline(always)]
-    fn colours(&self, visual: &Visual, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
+    fn colours(&self, scenery: &Scenery, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
         let [r, g, b, w] = f32x4::transpose(self.colour.block(x, y));
         let w = f32x4::ONE / w;
         let colours = [r * w, g * w, b * w];
@@ -296,7 +296,7 @@ impl Setup {
             return three(|k| colours[k] * self.tint[k]);
         }
         let [s, t, u, _] = f32x4::transpose(self.texture.block(x, y));
-        let texels = visual.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
+        let texels = scenery.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
         three(|k| colours[k] * texels[k])
     }
 }
@@ -305,7 +305,7 @@ impl Inputs<'_> {
     /// Returns the background: a cube map turned by 90 degrees about x, seen in the directions of the pixels of a
     /// block.
     fn sky(&self, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
-        let Some(sky) = self.visual.sky else {
+        let Some(sky) = self.scenery.sky else {
             return [f32x4::ZERO; 3];
         };
         let Eye { forward, right, up, .. } = self.eye;
@@ -313,6 +313,6 @@ impl Inputs<'_> {
         let across = ray([x, x + 1.0, x, x + 1.0], 0);
         let upward = ray([y, y, y + 1.0, y + 1.0], 1);
         let along = |k: usize| forward[k] + right[k] * across + up[k] * upward;
-        self.visual.textures[sky].sample(&[along(0), along(2), -along(1)], wanted)
+        self.scenery.textures[sky].sample(&[along(0), along(2), -along(1)], wanted)
     }
 }

@@ -6,7 +6,7 @@ use super::scene::{GpuScene, LIGHTS};
 use crate::render::RenderRequest;
 use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, pose, single};
 use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
-use crate::render::visual::Visual;
+use crate::render::scenery::Scenery;
 
 /// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
 pub const INSTANCE: usize = 44;
@@ -64,7 +64,7 @@ pub struct Frame {
 /// A scene with the images to draw of it.
 #[derive(Clone, Copy)]
 pub struct Submission<'a> {
-    pub visual: &'a Visual,
+    pub scenery: &'a Scenery,
     pub scene: &'a GpuScene,
     pub requests: &'a [RenderRequest<'a>],
     pub atlas: &'a Atlas,
@@ -96,7 +96,7 @@ impl Frame {
             let end = r.atlas.tiles.partition_point(|t| t.chunk <= chunk);
             for view in first..end {
                 let request = &r.requests[view];
-                let eye = Eye::new(r.visual, &request.poses, &request.view);
+                let eye = Eye::new(r.scenery, &request.poses, &request.view);
                 self.eyes.push(eye);
                 self.place(r, view, &eye);
                 self.sort(r, view, &eye);
@@ -123,7 +123,7 @@ impl Frame {
     /// Writes the texels of a view.
     fn place(&mut self, r: &Submission, view: usize, eye: &Eye) {
         let request = &r.requests[view];
-        place_lights(r.visual, &request.poses, eye, &mut self.lights);
+        place_lights(r.scenery, &request.poses, eye, &mut self.lights);
         let [width, _] = views_size(r.requests.len());
         let start = view % VIEW_ROWS * width + view / VIEW_ROWS * VIEW_TEXELS;
         let texels = &mut self.views[start..start + VIEW_TEXELS];
@@ -153,12 +153,12 @@ impl Frame {
 
     /// Culls and sorts the drawables of a view.
     fn sort(&mut self, r: &Submission, view: usize, eye: &Eye) {
-        for (i, drawable) in r.visual.drawables.iter().enumerate() {
+        for (i, drawable) in r.scenery.drawables.iter().enumerate() {
             let drawable = &drawable.sized(&r.requests[view].poses);
             let (pos, mat) = pose(drawable, &r.requests[view].poses);
             let at = eye.locate(single(pos));
             // drawables inside their image need no clipping at its border, so those of all views share one call
-            let Some(whole) = seen(eye, at, drawable.radius, r.visual.far as f32) else {
+            let Some(whole) = seen(eye, at, drawable.radius, r.scenery.far as f32) else {
                 continue;
             };
             // depth and segmentation have no blending: transparent drawables are drawn like the others
@@ -166,7 +166,7 @@ impl Frame {
             if blended && r.output == Output::Colour {
                 // a plane's centre says nothing of its distance; it goes behind the rest
                 let key = if drawable.shape == Shape::Plane {
-                    1e10
+                    f32::INFINITY
                 } else {
                     dot(at, at).sqrt() - drawable.radius
                 };
@@ -218,8 +218,8 @@ impl Frame {
             let (start, view) = (self.calls.len(), of_view[0].0);
             for &(_, _, drawable) in of_view.iter().chain(of_view.iter().rev()) {
                 let poses = &r.requests[view].poses;
-                let (pos, mat) = pose(&r.visual.drawables[drawable], poses);
-                let class = if behind(&self.eyes[view], &r.visual.drawables[drawable], single(pos), &mat) {
+                let (pos, mat) = pose(&r.scenery.drawables[drawable], poses);
+                let class = if behind(&self.eyes[view], &r.scenery.drawables[drawable], single(pos), &mat) {
                     r.scene.class_behind[drawable]
                 } else {
                     r.scene.class_of[drawable]
@@ -242,7 +242,7 @@ impl Frame {
             Some(call) if call.class == class => call.count += 1,
             _ => self.calls.push(Call { class, first, count: 1 }),
         }
-        let instance = instance(r, &self.eyes[view], view, &r.visual.drawables[drawable], own);
+        let instance = instance(r, &self.eyes[view], view, &r.scenery.drawables[drawable], own);
         self.instances.push(instance);
     }
 }

@@ -1,17 +1,17 @@
 //! Rendering on a GPU, many images at once: any number of views of any number of environments in one submission and
 //! one transfer (cargo feature `wgpu`).
 //!
-//! ```no_run
-//! use babybench::config::Config;
+#![cfg_attr(feature = "internals", doc = "```no_run")]
+#![cfg_attr(not(feature = "internals"), doc = "```ignore")]
 //! use babybench::render::gpu::{GpuRenderer, Rgb};
-//! use babybench::{Blueprint, Env};
+//! use babybench::{Blueprint, Config, Env};
 //!
 //! let blueprint = Blueprint::new(Config { vision_active: true, ..Config::default() })?;
 //! let mut environments: Vec<Env> = (0..64).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
 //! for env in &mut environments {
 //!     env.reset(None)?;
 //! }
-//! let mut gpu = GpuRenderer::new(blueprint.visual()?)?;
+//! let mut gpu = GpuRenderer::new(blueprint.scenery()?)?;
 //! let requests: Vec<_> = environments.iter().filter_map(|e| Some(e.senses().vision()?.requests(e.state()))).flatten().collect();
 //! let pending = gpu.begin::<Rgb>(&requests)?; // the device works; so may we
 //! let images = pending.wait()?; // 128 x 64 x 64 x 3
@@ -55,7 +55,7 @@ use pipelines::{Layouts, Output, Pipelines, Style};
 use scene::GpuScene;
 use target::Target;
 
-use crate::render::{RenderError, RenderRequest, Visual};
+use crate::render::{RenderError, RenderRequest, Scenery};
 
 /// Format of colours: linear, without gamma.
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -65,7 +65,7 @@ const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 #[derive(Debug)]
 pub struct GpuRenderer {
     gpu: Gpu,
-    visual: Arc<Visual>,
+    scenery: Arc<Scenery>,
     layouts: Layouts,
     pipelines: Pipelines,
     scene: GpuScene,
@@ -85,16 +85,16 @@ impl GpuRenderer {
     /// # Errors
     /// Fails if there is no adapter, or the scene does not fit on the device.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn new(visual: Arc<Visual>) -> Result<Self, GpuError> {
-        pollster::block_on(Self::open(visual))
+    pub fn new(scenery: Arc<Scenery>) -> Result<Self, GpuError> {
+        pollster::block_on(Self::open(scenery))
     }
 
     /// Opens the best adapter without blocking, as browsers need; see [`GpuRenderer::new`].
     ///
     /// # Errors
     /// Fails like [`GpuRenderer::new`].
-    pub async fn open(visual: Arc<Visual>) -> Result<Self, GpuError> {
-        Self::on(Gpu::open().await?, visual)
+    pub async fn open(scenery: Arc<Scenery>) -> Result<Self, GpuError> {
+        Self::on(Gpu::open().await?, scenery)
     }
 
     /// Uses a device that the application has opened, with at least the limits
@@ -103,13 +103,13 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// Fails if the scene does not fit on the device.
-    pub fn with_device(device: wgpu::Device, queue: wgpu::Queue, visual: Arc<Visual>) -> Result<Self, GpuError> {
-        Self::on(Gpu::new(device, queue), visual)
+    pub fn with_device(device: wgpu::Device, queue: wgpu::Queue, scenery: Arc<Scenery>) -> Result<Self, GpuError> {
+        Self::on(Gpu::new(device, queue), scenery)
     }
 
-    fn on(gpu: Gpu, visual: Arc<Visual>) -> Result<Self, GpuError> {
+    fn on(gpu: Gpu, scenery: Arc<Scenery>) -> Result<Self, GpuError> {
         let layouts = Layouts::new(&gpu);
-        let scene = GpuScene::new(&gpu, &layouts, &visual);
+        let scene = GpuScene::new(&gpu, &layouts, &scenery);
         let renderer = Self {
             pipelines: Pipelines::new(&gpu),
             frame: Frame::default(),
@@ -119,7 +119,7 @@ impl GpuRenderer {
             apart: gpu.software,
             submissions: 0,
             gpu,
-            visual,
+            scenery,
             layouts,
             scene,
         };
@@ -145,8 +145,8 @@ impl GpuRenderer {
     }
 
     /// Returns the scene that is drawn.
-    pub fn visual(&self) -> &Arc<Visual> {
-        &self.visual
+    pub fn scenery(&self) -> &Arc<Scenery> {
+        &self.scenery
     }
 
     /// Returns the number of submissions to the device so far.
@@ -162,7 +162,7 @@ impl GpuRenderer {
     pub fn begin<C: Channel>(&mut self, requests: &[RenderRequest]) -> Result<Pending<C>, RenderError> {
         self.gpu.check()?;
         for request in requests {
-            self.visual.check(&request.poses, &request.view)?;
+            self.scenery.check(&request.poses, &request.view)?;
         }
         if requests.is_empty() {
             return Ok(Pending::none(&self.gpu));
@@ -177,7 +177,7 @@ impl GpuRenderer {
         fits("the pictures, in bytes,", bytes, limits.max_buffer_size)?;
         let size = self.target(C::OUTPUT, &atlas);
         self.frame.build(&Submission {
-            visual: &self.visual,
+            scenery: &self.scenery,
             scene: &self.scene,
             requests,
             atlas: &atlas,
@@ -335,7 +335,7 @@ impl Pass<'_, '_> {
         self.calls(&chunk.shared, opaque);
         self.own(&chunk.own, tiles, opaque);
         // after the opaque drawables, so that it is shaded only where nothing else is
-        if let (Output::Colour, Some(sky)) = (output, r.visual.sky) {
+        if let (Output::Colour, Some(sky)) = (output, r.scenery.sky) {
             self.everywhere(size);
             self.pass.set_vertex_buffer(0, r.buffers.counting.slice(..));
             self.style(Style::Sky);

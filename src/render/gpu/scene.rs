@@ -9,8 +9,8 @@ use super::device::Gpu;
 use super::pipelines::Layouts;
 use crate::render::drawable::{Drawable, Shape};
 use crate::render::mesh::{Mesh, MeshPart};
-use crate::render::texture::{Face, Level, Texture};
-use crate::render::visual::Visual;
+use crate::render::scenery::Scenery;
+use crate::render::texture::{Face, Level, TexturePixels};
 
 /// Number of lights in the shader.
 pub const LIGHTS: usize = 8;
@@ -43,23 +43,23 @@ pub struct GpuScene {
     pub class_of: Vec<usize>,
     /// Class of each drawable seen from behind; differs for planes.
     pub class_behind: Vec<usize>,
-    /// Bind groups of the textures of the visual.
+    /// Bind groups of the textures of the scenery.
     pub textures: Vec<wgpu::BindGroup>,
     pub lights: wgpu::Buffer,
 }
 
 impl GpuScene {
-    pub fn new(gpu: &Gpu, layouts: &Layouts, visual: &Visual) -> Self {
-        let (vertices, indices, ranges) = geometry(visual);
+    pub fn new(gpu: &Gpu, layouts: &Layouts, scenery: &Scenery) -> Self {
+        let (vertices, indices, ranges) = geometry(scenery);
         let buffer = |label, contents: &[u8], usage| {
             let label = Some(label);
             gpu.device
                 .create_buffer_init(&wgpu::util::BufferInitDescriptor { label, contents, usage })
         };
-        let paint = |d: &Drawable| match d.texture.map(|t| &visual.textures[t]) {
+        let paint = |d: &Drawable| match d.texture.map(|t| &scenery.textures[t]) {
             None => ColourSource::Plain,
-            Some(Texture::Flat(_)) => ColourSource::Image,
-            Some(Texture::Cube(_)) => ColourSource::Cube,
+            Some(TexturePixels::Flat(_)) => ColourSource::Image,
+            Some(TexturePixels::Cube(_)) => ColourSource::Cube,
         };
         let behind = |shape: Shape| match shape {
             Shape::Plane => Shape::ALL.len(),
@@ -68,7 +68,7 @@ impl GpuScene {
         // keys in drawing order
         let keys = |mesh: &dyn Fn(Shape) -> usize| -> Vec<_> {
             let key = |d: &Drawable| (paint(d), d.texture, mesh(d.shape));
-            visual.drawables.iter().map(key).collect()
+            scenery.drawables.iter().map(key).collect()
         };
         let (front, back) = (keys(&|s| s as usize), keys(&behind));
         let mut index: BTreeMap<_, usize> = front.iter().chain(&back).map(|&k| (k, 0)).collect();
@@ -88,10 +88,10 @@ impl GpuScene {
             classes,
             class_of: front.iter().map(|k| index[k]).collect(),
             class_behind: back.iter().map(|k| index[k]).collect(),
-            textures: visual.textures.iter().map(|t| upload(gpu, layouts, t)).collect(),
+            textures: scenery.textures.iter().map(|t| upload(gpu, layouts, t)).collect(),
             lights: buffer(
                 "lights",
-                bytemuck::cast_slice(lights(visual).as_flattened()),
+                bytemuck::cast_slice(lights(scenery).as_flattened()),
                 wgpu::BufferUsages::UNIFORM,
             ),
         }
@@ -99,8 +99,8 @@ impl GpuScene {
 }
 
 /// Lists vertices (position and part, normal), indices, and the range of indices of each mesh: those of
-/// [`Visual::meshes`], then the plane seen from behind.
-fn geometry(visual: &Visual) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
+/// [`Scenery::meshes`], then the plane seen from behind.
+fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
     let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
     let mut first = 0;
     let mut add = |mesh: &Mesh, flipped: bool| {
@@ -120,10 +120,10 @@ fn geometry(visual: &Visual) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
         ranges.push(start..indices.len() as u32);
         first += mesh.x.len() as u16;
     };
-    for mesh in &visual.meshes {
+    for mesh in &scenery.meshes {
         add(mesh, false);
     }
-    add(&visual.meshes[Shape::Plane as usize], true);
+    add(&scenery.meshes[Shape::Plane as usize], true);
     // a copy of whole words needs an even number
     if indices.len() % 2 == 1 {
         indices.push(0);
@@ -132,10 +132,10 @@ fn geometry(visual: &Visual) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
 }
 
 /// Fills the uniform block `Scene` of the shader.
-fn lights(visual: &Visual) -> [[f32; 4]; 4 * LIGHTS + 1] {
+fn lights(scenery: &Scenery) -> [[f32; 4]; 4 * LIGHTS + 1] {
     let mut block = [[0.0; 4]; 4 * LIGHTS + 1];
     let with = |[a, b, c]: [f32; 3], w: f32| [a, b, c, w];
-    let head = visual.headlight.map(|[ambient, diffuse, specular]| {
+    let head = scenery.headlight.map(|[ambient, diffuse, specular]| {
         let attenuation = [1.0, 0.0, 0.0, 0.0];
         [
             with(ambient, 0.0),
@@ -144,7 +144,7 @@ fn lights(visual: &Visual) -> [[f32; 4]; 4 * LIGHTS + 1] {
             attenuation,
         ]
     });
-    let others = visual.lights.iter().map(|l| {
+    let others = scenery.lights.iter().map(|l| {
         let attenuation = with(l.attenuation, l.exponent);
         [
             with(l.ambient, 0.0),
@@ -199,15 +199,15 @@ fn sampler(gpu: &Gpu, wrap: wgpu::AddressMode) -> wgpu::Sampler {
 }
 
 /// Uploads a texture, and binds it with its sampler.
-fn upload(gpu: &Gpu, layouts: &Layouts, texture: &Texture) -> wgpu::BindGroup {
+fn upload(gpu: &Gpu, layouts: &Layouts, texture: &TexturePixels) -> wgpu::BindGroup {
     let (faces, dimension, wrap, layout): (&[Face], _, _, _) = match texture {
-        Texture::Flat(face) => (
+        TexturePixels::Flat(face) => (
             std::slice::from_ref(face),
             wgpu::TextureViewDimension::D2,
             wgpu::AddressMode::Repeat,
             &layouts.image,
         ),
-        Texture::Cube(faces) => (
+        TexturePixels::Cube(faces) => (
             faces,
             wgpu::TextureViewDimension::Cube,
             wgpu::AddressMode::ClampToEdge,

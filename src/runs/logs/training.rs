@@ -240,6 +240,7 @@ impl TrainingLog {
     }
 
     /// Returns the last records, at most [`TrainingLog::RECENT`], and the number of all.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn recent(&self) -> RecentRecords {
         RecentRecords {
             total: self.totals.records,

@@ -9,7 +9,7 @@ use super::hull::Hull;
 use super::points::{estimate, surface_points};
 use crate::config::{Compat, Config};
 use crate::math::*;
-use crate::mimo::body_kind;
+use crate::mimo::{MimoBodies, body_kind};
 use crate::model::Model;
 
 /// Distance (m) from the hull of another geom below which a sensor counts as inside and is left out.
@@ -70,6 +70,7 @@ pub struct SkinBody {
     /// Index of its first sensor, counted over all bodies.
     pub offset: usize,
     /// Its geoms, in id order.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geoms: Vec<SkinGeom>,
     pub(super) positions: Vec<Vec3>,
     pub(super) grid: Grid,
@@ -92,6 +93,7 @@ impl SkinBody {
     }
 
     /// Returns the index in [`Self::geoms`] of the geom that carries a sensor (counted within the body).
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn geom_of(&self, sensor: usize) -> usize {
         self.geoms.iter().position(|g| sensor < g.sensors.end).unwrap_or(0)
     }
@@ -117,8 +119,9 @@ impl SkinLayout {
     /// # Errors
     /// Fails if `touch_scale` would give no or too many sensors.
     pub fn new(model: &Model, config: &Config) -> Result<Self, SkinError> {
-        Self::with_spacing(model, |body| {
-            let body = body_kind(body)?;
+        let mimo = MimoBodies::of(model);
+        Self::place(model, |body| {
+            let body = body_kind(&model.body_name[body]).filter(|_| mimo.contains(body))?;
             let known = !body.only_v2 || config.compat == Compat::Api;
             (known && config.touch.get(body.part)).then_some(body.touch_spacing * config.touch_scale)
         })
@@ -130,6 +133,11 @@ impl SkinLayout {
     /// # Errors
     /// Fails if a distance is not finite and positive, or so small that there are more than [`MAX_SENSORS`].
     pub fn with_spacing(model: &Model, spacing: impl Fn(&str) -> Option<f64>) -> Result<Self, SkinError> {
+        Self::place(model, |body| spacing(&model.body_name[body]))
+    }
+
+    /// Places the sensors of a skin: `spacing` returns the distance between the sensors (m) of a body by its id.
+    fn place(model: &Model, spacing: impl Fn(usize) -> Option<f64>) -> Result<Self, SkinError> {
         let mut layout = Self {
             bodies: Vec::new(),
             of_body: vec![0; model.nbody()],
@@ -138,7 +146,7 @@ impl SkinLayout {
         let mut expected = 0.0;
         for body in 0..model.nbody() {
             let name = model.body_name[body].clone();
-            let Some(spacing) = spacing(&name) else { continue };
+            let Some(spacing) = spacing(body) else { continue };
             if !(spacing.is_finite() && spacing > 0.0) {
                 return Err(SkinError::Spacing { body: name, spacing });
             }
@@ -191,6 +199,7 @@ impl SkinLayout {
     }
 
     /// Returns the index in [`Self::bodies`] of a body of the model; `None` if it has no sensors.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn index(&self, body: usize) -> Option<usize> {
         (*self.of_body.get(body)? as usize).checked_sub(1)
     }

@@ -40,11 +40,13 @@ mod values;
 use std::sync::Arc;
 
 pub(crate) use contact::MIN_FORCE;
-pub use contact::{TouchContact, touch_contacts};
-pub use hull::Hull;
-pub use layout::{MAX_SENSORS, SkinBody, SkinError, SkinGeom, SkinLayout};
-pub use points::surface_points;
-pub use pooled::{POOLED, TouchPool};
+pub use contact::TouchContact;
+internals!(use contact::touch_contacts);
+internals!(use hull::Hull);
+pub use layout::{SkinBody, SkinError, SkinLayout};
+internals!(use layout::{MAX_SENSORS, SkinGeom});
+internals!(use points::surface_points);
+internals!(use pooled::{POOLED, TouchPool});
 pub use values::SkinValues;
 
 use crate::config::{Compat, Config, TouchFunction, TouchResponse};

@@ -36,11 +36,11 @@ mod fourier;
 mod foveation;
 mod noise;
 
-pub use acuity::{Acuity, AcuityOptions, acuity_cutoff};
+internals!(use acuity::{Acuity, AcuityOptions, acuity_cutoff});
 pub(super) use delay::Waiting;
-pub use delay::{Delay, DelayLine};
-pub use foveation::Foveation;
-pub use noise::Noise;
+internals!(use delay::{Delay, DelayLine});
+internals!(use foveation::Foveation);
+internals!(use noise::Noise);
 
 pub use crate::sensors::sense::Sense;
 use crate::sensors::{EyeImages, SkinValues};

@@ -198,7 +198,7 @@ fn a_restored_state_repeats_the_past() {
 #[test]
 fn a_step_with_frame_skip_equals_that_many_steps() {
     for (behavior, scene) in [(Behavior::None, Scene::Base), (Behavior::SelfTouch, Scene::Crib)] {
-        let config = free(behavior, scene);
+        let config = free(behavior, scene.clone());
         let mut single = env(config.clone());
         let mut skipping = env(Config {
             frame_skip: 4,

@@ -17,7 +17,7 @@ fn ten_start_actions_take_50_ms_except_for_behavior_none() {
         for frame_skip in [1, 3] {
             let mut env = env(Config {
                 frame_skip,
-                ..free(behavior, scene)
+                ..free(behavior, scene.clone())
             });
             env.reset(Some(0)).expect("no divergence");
             let (steps, time) = if behavior == Behavior::None {

@@ -59,7 +59,7 @@ fn torque_residuals(model: &Model, engine: &dyn Engine, s: &State) -> Vec<[f64; 
 fn torque_sensors_feel_exactly_what_acts_through_the_joint() {
     let mut failed = Vec::new();
     for (behavior, scene) in MODELS {
-        let mut env = env(free(behavior, scene));
+        let mut env = env(free(behavior, scene.clone()));
         env.reset(Some(0)).expect("no divergence");
         let model = env.model().clone();
         let hinge: Vec<bool> = model

@@ -27,7 +27,7 @@ const SIZES: [([usize; 5], [usize; 2]); 6] = [
 #[test]
 fn invariant_1_sizes_and_candidate_pairs_equal_mujocos() {
     for ((behavior, scene), (sizes, pairs)) in MODELS.into_iter().zip(SIZES) {
-        let m = model(&free(behavior, scene));
+        let m = model(&free(behavior, scene.clone()));
         let found = [m.nq, m.nv, m.nbody(), m.ngeom(), m.neq()];
         assert_eq!(found, sizes, "{behavior} {scene}: nq, nv, nbody, ngeom, neq");
         let table = PairTable::new(&m);
@@ -46,7 +46,7 @@ fn invariant_1_sizes_and_candidate_pairs_equal_mujocos() {
 #[test]
 fn invariant_1_geom_body_and_joint_ids_equal_mujocos() {
     for (behavior, scene) in MODELS {
-        let m = model(&free(behavior, scene));
+        let m = model(&free(behavior, scene.clone()));
         let v1 = behavior == Behavior::None;
         let (hip, last, torques) = (
             m.body("hip").expect("MIMo has a hip"),

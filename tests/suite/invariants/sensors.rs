@@ -16,7 +16,7 @@ use crate::common::*;
 fn sensors(model: &Model, s: &State, pick: impl Fn(SensorType) -> bool) -> Vec<f64> {
     (0..model.nsensor())
         .filter(|&i| pick(model.sensor_type[i]))
-        .flat_map(|i| s.sensordata[3 * i..3 * i + 3].iter().copied())
+        .flat_map(|i| s.sensordata[model.sensor_adr[i]..][..3].iter().copied())
         .collect()
 }
 

@@ -202,18 +202,10 @@ fn invariant_7_unsupported_mjcf_is_an_error_that_names_the_element() {
             "ball",
             r#"<mujoco><worldbody><body><joint type="ball"/><geom size=".1"/></body></worldbody></mujoco>"#,
         ),
-        (
-            "connect",
-            r#"<mujoco><worldbody><body name="a"><freejoint/><geom size=".1"/></body></worldbody><equality><connect body1="a" anchor="0 0 0"/></equality></mujoco>"#,
-        ),
         ("spatial", r#"<mujoco><tendon><spatial name="a"/></tendon></mujoco>"#),
         (
             "extension",
             r#"<mujoco><extension><plugin plugin="a"/></extension></mujoco>"#,
-        ),
-        (
-            "framepos",
-            r#"<mujoco><sensor><framepos objtype="body" objname="world"/></sensor></mujoco>"#,
         ),
         (
             "colour",

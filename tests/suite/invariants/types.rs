@@ -8,7 +8,7 @@ use babybench::physics::{Engine, EngineError, Params, SoftEngine, State};
 #[cfg(feature = "rapier")]
 use babybench::physics::{RapierEngine, RapierModel, RapierScene};
 use babybench::policy::PolicyError;
-use babybench::render::{CpuRenderer, RenderError, Renderer, Visual};
+use babybench::render::{CpuRenderer, RenderError, Renderer, Scenery};
 use babybench::runs::LogError;
 use babybench::sensors::transform::Transform;
 use babybench::sensors::{Pain, Proprioception, SkinLayout, SkinValues, Touch, Vestibular, Vision};
@@ -47,7 +47,7 @@ fn what_environments_share_is_shared_between_threads() {
     is_shared::<Info>();
     is_shared::<BoxSpace>();
     is_shared::<NumpyRng>();
-    is_shared::<Visual>();
+    is_shared::<Scenery>();
     is_shared::<CpuRenderer>();
     is_shared::<Renderer>();
     is_shared::<Proprioception>();

@@ -283,7 +283,6 @@ fn resets_steps_and_receipts_write_only_what_is_touched_where_the_caller_keeps_i
 fn scenes_may_differ_where_the_spaces_do_not() {
     let of = |scene| {
         blueprint(Config {
-            scene,
             max_episode_steps: 3,
             ..free(Behavior::SelfTouch, scene)
         })

@@ -7,7 +7,7 @@ use babybench::config::Part;
 use babybench::env::{Snapshot, ViewFrom, Viewer, draw_eyes};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
-use babybench::render::{FreeCamera, Visual};
+use babybench::render::{FreeCamera, Scenery};
 use babybench::sensors::{ObservationEntry, Touch};
 use babybench::spaces::Values;
 use wasm_bindgen::prelude::*;
@@ -22,7 +22,7 @@ use crate::scene;
 #[wasm_bindgen]
 pub struct Core {
     pub(crate) env: Env,
-    visual: Option<Arc<Visual>>,
+    scenery: Option<Arc<Scenery>>,
     viewer: Option<Viewer>,
     frame: Frame,
     /// The last random action, and where the caller may write the next one.
@@ -35,7 +35,7 @@ impl Core {
         let env = blueprint.env().map_err(|e| js::env_error(&e))?;
         Ok(Self {
             action: vec![0.0; env.action_space().len()],
-            visual: None,
+            scenery: None,
             viewer: None,
             frame: Frame::default(),
             env,
@@ -123,9 +123,9 @@ impl Core {
 
     /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`.
     pub fn update(&mut self) -> Result<(), JsValue> {
-        let visual = self.visual()?;
+        let scenery = self.scenery()?;
         let touch = self.env.senses().touch();
-        self.frame.update(self.env.model(), &visual, self.env.state(), touch);
+        self.frame.update(self.env.model(), &scenery, self.env.state(), touch);
         Ok(())
     }
 
@@ -136,15 +136,15 @@ impl Core {
 
     /// Describes what is drawn, and the light.
     pub fn look(&mut self) -> Result<JsValue, JsValue> {
-        let visual = self.visual()?;
-        Ok(scene::look(self.env.model(), &visual))
+        let scenery = self.scenery()?;
+        Ok(scene::look(self.env.model(), &scenery))
     }
 
     /// Returns where the pixels of an image of a texture stand: address and length in bytes, red, green, blue and 255.
     #[wasm_bindgen(js_name = texturePixels)]
     pub fn texture_pixels(&mut self, texture: usize, face: usize) -> Result<Option<Vec<u32>>, JsValue> {
-        let visual = self.visual()?;
-        let faces = visual.textures.get(texture).map(scene::faces);
+        let scenery = self.scenery()?;
+        let faces = scenery.textures.get(texture).map(scene::faces);
         let level = faces.and_then(|f| f.get(face)).and_then(|levels| levels.first());
         Ok(level.map(|l| place(Values::U8(l.pixels.as_flattened())).to_vec()))
     }
@@ -317,12 +317,12 @@ impl Core {
 
 impl Core {
     /// Returns the look of the scene, made when it is first needed.
-    fn visual(&mut self) -> Result<Arc<Visual>, JsValue> {
-        if let Some(visual) = &self.visual {
-            return Ok(visual.clone());
+    fn scenery(&mut self) -> Result<Arc<Scenery>, JsValue> {
+        if let Some(scenery) = &self.scenery {
+            return Ok(scenery.clone());
         }
-        let visual = self.env.blueprint().visual().map_err(|e| js::env_error(&e))?;
-        Ok(self.visual.insert(visual).clone())
+        let scenery = self.env.blueprint().scenery().map_err(|e| js::env_error(&e))?;
+        Ok(self.scenery.insert(scenery).clone())
     }
 
     /// Takes the viewer out, made when it is first needed.

@@ -3,7 +3,7 @@
 use babybench::math::mat_t_vec;
 use babybench::model::Model;
 use babybench::physics::State;
-use babybench::render::{Element, Poses, Visual};
+use babybench::render::{Element, Poses, Scenery};
 use babybench::sensors::Touch;
 
 /// Poses, feelings and contacts of one moment.
@@ -22,10 +22,10 @@ pub struct Frame {
 
 impl Frame {
     /// Takes the poses at the start of the last physics step, and what was felt there.
-    pub fn update(&mut self, model: &Model, visual: &Visual, s: &State, touch: Option<&Touch>) {
+    pub fn update(&mut self, model: &Model, scenery: &Scenery, s: &State, touch: Option<&Touch>) {
         self.poses.clear();
         let placed = Poses::from(s);
-        for d in &visual.drawables {
+        for d in &scenery.drawables {
             let (pos, mat) = match d.element {
                 Element::Geom(g) => (&s.geom_xpos[g], &s.geom_xmat[g]),
                 Element::Site(i) => (&s.site_xpos[i], &s.site_xmat[i]),

@@ -3,7 +3,7 @@
 use babybench::Env;
 use babybench::mimo::joint_part;
 use babybench::model::{JointType, Model};
-use babybench::render::{Drawable, Element, Face, Light, Shape, Texture, Visual};
+use babybench::render::{Drawable, Element, Face, LightSource, Scenery, Shape, TexturePixels};
 use wasm_bindgen::JsValue;
 
 use crate::js::{id, list, numbers, object, optional};
@@ -64,9 +64,9 @@ fn joint(m: &Model, j: usize) -> JsValue {
 /// Describes each number of an action; those of muscles come in two blocks of all actuators.
 fn actions(env: &Env) -> JsValue {
     let (m, space) = (env.model(), env.action_space());
-    let names = env.actuation().action_names(m);
+    let (names, driven) = (env.actuation().action_names(m), env.actuation().actuators());
     let entries = names.iter().enumerate().map(|(k, name)| {
-        let actuator = k % m.nu().max(1);
+        let actuator = driven[k % driven.len().max(1)];
         let joint = m.actuator_trnid[actuator];
         object([
             ("name", name.as_str().into()),
@@ -85,7 +85,7 @@ fn part(m: &Model, joint: usize) -> JsValue {
 }
 
 /// Describes what is drawn, in the order of the poses, and the light.
-pub fn look(m: &Model, v: &Visual) -> JsValue {
+pub fn look(m: &Model, v: &Scenery) -> JsValue {
     object([
         ("drawables", list(v.drawables.iter().map(|d| drawable(m, d)))),
         ("textures", list(v.textures.iter().map(texture))),
@@ -135,20 +135,20 @@ fn drawable(m: &Model, d: &Drawable) -> JsValue {
 }
 
 /// Lists the images of a texture: one, or six sides of a cube.
-fn texture(texture: &Texture) -> JsValue {
+fn texture(texture: &TexturePixels) -> JsValue {
     let faces = faces(texture).iter().filter_map(|face| face.first());
     list(faces.map(|level| object([("width", id(level.width)), ("height", id(level.height))])))
 }
 
 /// Returns the images of a texture.
-pub fn faces(texture: &Texture) -> &[Face] {
+pub fn faces(texture: &TexturePixels) -> &[Face] {
     match texture {
-        Texture::Flat(face) => std::slice::from_ref(face),
-        Texture::Cube(faces) => faces,
+        TexturePixels::Flat(face) => std::slice::from_ref(face),
+        TexturePixels::Cube(faces) => faces,
     }
 }
 
-fn light(light: &Light) -> JsValue {
+fn light(light: &LightSource) -> JsValue {
     object([
         ("body", id(light.body)),
         ("pos", optional(light.pos, |p| numbers(&p))),

@@ -1,6 +1,9 @@
 //! The sections that name bodies, joints, geoms and sites.
 
-use super::Writer;
+use babybench::model::SensorType;
+
+use super::{Dice, Writer};
+use crate::differential::dice::numbers;
 use crate::differential::node::Node;
 
 impl Writer<'_> {
@@ -63,7 +66,7 @@ impl Writer<'_> {
                 node
             } else if bodies.len() > 1 {
                 let [body1, body2] = self.two(&bodies);
-                let node = Node::new("weld").with("body1", body1);
+                let node = Node::new(self.dice.pick(&["weld", "connect"])).with("body1", body1);
                 if self.dice.chance(0.7) {
                     node.with("body2", body2)
                 } else {
@@ -113,26 +116,124 @@ impl Writer<'_> {
         } else {
             self.dice.rng.usize(1..5)
         } {
-            let (kind, name) = (self.dice.pick(&["motor", "position"]), self.name("a"));
+            const KINDS: [&str; 9] = [
+                "general",
+                "general",
+                "general",
+                "motor",
+                "position",
+                "velocity",
+                "intvelocity",
+                "damper",
+                "cylinder",
+            ];
+            let (kind, name) = (self.dice.pick(&KINDS), self.name("a"));
             let joint = joints[self.dice.rng.usize(..joints.len())].as_str();
-            let mut node = Node::new(kind).with("name", name).with("joint", joint);
+            let target = self.dice.pick(&["joint", "joint", "joint", "jointinparent"]);
+            let mut node = Node::new(kind).with("name", name).with(target, joint);
             self.class(&mut node, "class");
             self.language
                 .dress(&mut node, &format!("actuator/{kind}"), false, &mut self.dice);
+            self.fit_actuator(&mut node, false);
             self.decide_limits(&mut node);
             section.children.push(node);
         }
         section
     }
 
+    /// Gives an actuator the ranges and numbers that its kind must have, and takes off those that it may not have.
+    pub(super) fn fit_actuator(&mut self, node: &mut Node, in_default: bool) {
+        match node.name.as_str() {
+            "damper" => {
+                let ends = [self.dice.uniform(0.0, 0.5), self.dice.uniform(0.5, 2.0)];
+                node.set("ctrlrange", numbers(&ends));
+            }
+            "intvelocity" if !in_default && node.get("actrange").is_none() && node.get("inheritrange").is_none() => {
+                node.set("actrange", self.dice.range(1.0));
+            }
+            "general" if !in_default => {
+                let stateful = node.get("dyntype").is_some_and(|kind| kind != "none");
+                if !stateful && self.dice.chance(0.95) {
+                    node.unset("actrange");
+                }
+                if self.dice.chance(0.1) {
+                    node.set("actdim", if stateful { "1" } else { "0" });
+                }
+            }
+            _ => {}
+        }
+    }
+
     pub(super) fn sensor(&mut self) -> Node {
         let mut section = Node::new("sensor");
-        for site in self.sites.clone() {
-            let kind = self.dice.pick(&["accelerometer", "gyro", "torque"]);
-            if self.dice.chance(0.7) {
-                section.children.push(Node::new(kind).with("site", site));
+        let (joints, some) = (self.scalar_joints(), self.dice.chance(0.6));
+        // without a limit neither side takes a sensor of it
+        let limited = self.joints.iter().filter(|joint| joint.limited);
+        let limited: Vec<String> = limited.map(|joint| joint.name.clone()).collect();
+        for _ in 0..if some { self.dice.rng.usize(1..8) } else { 0 } {
+            let k = self.dice.rng.usize(..SensorType::ALL.len());
+            let kind = SensorType::ALL[k].name();
+            let mut node = Node::new(kind);
+            let of_limit = kind.contains("limit");
+            let attribute = match kind {
+                "clock" => None,
+                _ if kind.starts_with("frame") => Some("objname"),
+                _ if kind.starts_with("subtree") => Some("body"),
+                _ if kind.starts_with("joint") => Some("joint"),
+                _ if kind.starts_with("tendon") => Some("tendon"),
+                _ if kind.starts_with("actuator") => Some("actuator"),
+                _ => Some("site"),
+            };
+            let objects = match attribute {
+                Some("joint") if of_limit => limited.clone(),
+                Some("joint") => joints.clone(),
+                Some("tendon") if of_limit => self.limited_tendons.clone(),
+                Some("tendon") => self.tendons.clone(),
+                Some("actuator") => self.actuators.clone(),
+                Some("body") => self.bodies.clone(),
+                _ => self.sites.clone(),
+            };
+            match attribute {
+                None => {}
+                Some("objname") if self.framed(&mut node) => {}
+                Some("objname") => continue,
+                Some(_) if objects.is_empty() => continue,
+                Some(attribute) => {
+                    let object = objects[self.dice.rng.usize(..objects.len())].as_str();
+                    node.set(attribute, object);
+                }
             }
+            self.language
+                .dress(&mut node, &format!("sensor/{kind}"), false, &mut self.dice);
+            section.children.push(node);
         }
         section
+    }
+
+    /// Draws the object of a sensor of a frame, and at times that in whose frame it measures; returns whether there is one.
+    fn framed(&mut self, node: &mut Node) -> bool {
+        let kinds = [
+            ("body", self.bodies.clone()),
+            ("xbody", self.bodies.clone()),
+            ("geom", self.geoms.clone()),
+            ("site", self.sites.clone()),
+        ];
+        let kinds: Vec<_> = kinds.into_iter().filter(|(_, names)| !names.is_empty()).collect();
+        if kinds.is_empty() {
+            return false;
+        }
+        let draw = |dice: &mut Dice| {
+            let (kind, names) = &kinds[dice.rng.usize(..kinds.len())];
+            (*kind, names[dice.rng.usize(..names.len())].clone())
+        };
+        let (kind, name) = draw(&mut self.dice);
+        node.set("objtype", kind);
+        node.set("objname", name);
+        if !node.name.ends_with("acc") && self.dice.chance(0.5) {
+            let (kind, name) = draw(&mut self.dice);
+            node.set("reftype", kind);
+            node.set("refname", name);
+        }
+        true
     }
 }

@@ -18,6 +18,10 @@ struct Geom {
 /// Which geoms of a model may touch; see [`super::PairTable`].
 #[derive(Clone, Debug)]
 pub struct ContactRules {
+    /// Whether geoms of a body pass through those of its parent.
+    filterparent: bool,
+    /// Whether contacts of two bodies are listed by the types of the geoms.
+    midphase: bool,
     geoms: Vec<Geom>,
     /// Body pairs that are excluded, the lower first, sorted.
     excludes: Vec<[u32; 2]>,
@@ -51,6 +55,8 @@ impl ContactRules {
         let mut explicit: Vec<_> = numbered.map(|(p, &[a, b])| (sorted(a, b), p as u32)).collect();
         explicit.sort_unstable();
         Self {
+            filterparent: model.opt.flags.filterparent,
+            midphase: model.opt.flags.midphase,
             geoms: (0..model.ngeom()).map(geom).collect(),
             excludes,
             explicit,
@@ -109,7 +115,14 @@ impl ContactRules {
     /// Returns the place in contact order of two geoms that are no explicit pair, if they may touch.
     pub(super) fn dynamic_order(&self, a: usize, b: usize) -> Option<Order> {
         self.collide(a, b).then(|| {
-            let ([lo, hi], [x, y]) = (self.bodies(a, b), self.ordered(a, b));
+            let [lo, hi] = self.bodies(a, b);
+            let [x, y] = if self.midphase {
+                self.ordered(a, b)
+            } else if self.geoms[a].body == lo {
+                [a, b]
+            } else {
+                [b, a]
+            };
             (lo, hi, true, x as u32, y as u32)
         })
     }
@@ -136,7 +149,7 @@ impl ContactRules {
         if x.weld == y.weld {
             return false;
         }
-        if x.weld != 0 && y.weld != 0 && (x.weld == y.weld_parent || y.weld == x.weld_parent) {
+        if self.filterparent && x.weld != 0 && y.weld != 0 && (x.weld == y.weld_parent || y.weld == x.weld_parent) {
             return false;
         }
         self.excludes.binary_search(&self.bodies(a, b)).is_err()

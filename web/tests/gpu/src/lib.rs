@@ -28,7 +28,7 @@ pub async fn draw(canvas: web_sys::OffscreenCanvas, side: usize) -> Result<Array
     };
     let mut env = Env::new(config).map_err(error)?;
     env.reset(Some(0)).map_err(error)?;
-    let visual = env.blueprint().visual().map_err(error)?;
+    let scenery = env.blueprint().scenery().map_err(error)?;
 
     let mut description = InstanceDescriptor::new_without_display_handle();
     description.backends = Backends::GL;
@@ -46,7 +46,7 @@ pub async fn draw(canvas: web_sys::OffscreenCanvas, side: usize) -> Result<Array
         ..Default::default()
     };
     let (device, queue) = adapter.request_device(&description).await.map_err(error)?;
-    let mut renderer = GpuRenderer::with_device(device, queue, visual).map_err(error)?;
+    let mut renderer = GpuRenderer::with_device(device, queue, scenery).map_err(error)?;
 
     let camera = env.model().camera(CAMERA).ok_or_else(|| error("no such camera"))?;
     let view = View {

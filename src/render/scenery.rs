@@ -2,11 +2,11 @@
 
 use crate::assets::AssetSource;
 use crate::math::{Vec3, unit};
-use crate::model::{LightMode, Model, TextureType};
+use crate::model::{CamLight, Model, TextureType};
 use crate::render::RenderError;
 use crate::render::drawable::{Drawable, Element, material};
 use crate::render::mesh::Mesh;
-use crate::render::texture::{Loader, Texture};
+use crate::render::texture::{Loader, TexturePixels};
 use crate::render::view::{Poses, View};
 
 /// Groups of geoms and sites that are visible.
@@ -16,7 +16,7 @@ const MAX_LIGHTS: usize = 8;
 
 /// A light, as the model has it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Light {
+pub struct LightSource {
     /// Body that carries it, by id.
     pub body: usize,
     /// Position in the body, m; `None` for directional light.
@@ -39,7 +39,7 @@ pub struct Light {
     pub exponent: f32,
 }
 
-/// The way a light follows its body or another, as its [`LightMode`] says.
+/// The way a light follows its body or another, as its [`CamLight`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
     /// Moves and turns with its body.
@@ -84,32 +84,42 @@ pub struct Camera {
 /// The look of a model: immutable, and shared by the environments of one blueprint in an [`std::sync::Arc`].
 #[doc(alias = "mjvScene")]
 #[derive(Clone, Debug)]
-pub struct Visual {
+pub struct Scenery {
     /// Visible geoms and sites, in the order of the model.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub drawables: Vec<Drawable>,
     /// Meshes, in the order of [`Shape::ALL`](crate::render::Shape::ALL).
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub meshes: [Mesh; 5],
     /// Textures in use.
-    pub textures: Vec<Texture>,
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub textures: Vec<TexturePixels>,
     /// Index of the background in `textures`.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub sky: Option<usize>,
     /// Lights; the headlight, if it is on, is not among them.
-    pub lights: Vec<Light>,
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub lights: Vec<LightSource>,
     /// Ambient, diffuse and specular colour of the headlight, which shines along every camera; `None` if it is off.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub headlight: Option<[[f32; 3]; 3]>,
     /// Vertical field of view of the free camera, degrees.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fovy: f64,
     /// Cameras of the model.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cameras: Vec<Camera>,
     /// Distance of the near plane, m.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub near: f64,
     /// Distance of the far plane, m.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub far: f64,
     /// Numbers of geoms, sites and bodies that poses must have.
     sizes: [usize; 3],
 }
 
-impl Visual {
+impl Scenery {
     /// Decodes the textures that visible geoms use, from `assets`.
     ///
     /// # Errors
@@ -131,7 +141,7 @@ impl Visual {
     fn build(model: &Model, mut loader: Option<Loader>) -> Result<Self, RenderError> {
         let mut textures = Vec::new();
         let mut index = vec![None; model.textures.len()];
-        let mut use_texture = |id: usize, textures: &mut Vec<Texture>| -> Result<Option<usize>, RenderError> {
+        let mut use_texture = |id: usize, textures: &mut Vec<TexturePixels>| -> Result<Option<usize>, RenderError> {
             let (Some(recipe), Some(loader)) = (model.textures.get(id), &mut loader) else {
                 return Ok(None);
             };
@@ -178,7 +188,7 @@ impl Visual {
             ],
             textures,
             sky,
-            lights: model.lights.iter().take(room).map(Light::new).collect(),
+            lights: model.lights.iter().take(room).map(LightSource::new).collect(),
             headlight,
             fovy: vis.fovy,
             cameras: model.cam_fovy.iter().map(|&fovy| Camera { fovy }).collect(),
@@ -194,13 +204,14 @@ impl Visual {
     }
 
     /// Returns the memory used by all textures, bytes.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn texture_bytes(&self) -> usize {
         let mut faces: Vec<_> = self
             .textures
             .iter()
             .flat_map(|t| match t {
-                Texture::Flat(f) => std::slice::from_ref(f),
-                Texture::Cube(f) => f.as_slice(),
+                TexturePixels::Flat(f) => std::slice::from_ref(f),
+                TexturePixels::Cube(f) => f.as_slice(),
             })
             .collect();
         // images are shared between textures, and count once
@@ -259,23 +270,23 @@ impl Aim {
     fn new(light: &crate::model::Light) -> Self {
         let (pos, dir) = (light.pos, light.dir0);
         match (light.mode, light.targetbodyid) {
-            (LightMode::Track, _) => Self::Track {
+            (CamLight::Track, _) => Self::Track {
                 offset: light.pos0,
                 dir,
             },
-            (LightMode::TrackCom, _) => Self::TrackCom {
+            (CamLight::TrackCom, _) => Self::TrackCom {
                 offset: light.poscom0,
                 dir,
             },
-            (LightMode::TargetBody, Some(body)) => Self::Target { body, pos },
-            (LightMode::TargetBodyCom, Some(body)) => Self::TargetCom { body, pos },
+            (CamLight::TargetBody, Some(body)) => Self::Target { body, pos },
+            (CamLight::TargetBodyCom, Some(body)) => Self::TargetCom { body, pos },
             // Without a target a light shines along its frame.
-            (LightMode::Fixed | LightMode::TargetBody | LightMode::TargetBodyCom, _) => Self::Body,
+            (CamLight::Fixed | CamLight::TargetBody | CamLight::TargetBodyCom, _) => Self::Body,
         }
     }
 }
 
-impl Light {
+impl LightSource {
     fn new(light: &crate::model::Light) -> Self {
         let all_round = light.directional || light.cutoff >= 180.0;
         Self {

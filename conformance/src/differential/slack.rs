@@ -1,0 +1,101 @@
+//! How far apart two solvers may be that both stop by the same rule.
+//!
+//! Newton's method stops where a step lowers the cost by less than `E = tolerance * meaninertia * nv`. The cost is at least as
+//! curved as the inertia `M`, so accelerations `d` away from its minimum cost at least `d' M d / 2` more than that. The steps that
+//! are not taken gain less than the last one, so each solver ends within `E` of the minimum, `d' M d / 2 <= E`; by the triangle
+//! inequality two solvers are within `(sqrt(E) + sqrt(E))^2 = 4 E` of each other. This decides nothing but where accelerations are
+//! small: a relative limit asks there for more than either solver was told to find.
+
+use babybench::Model;
+
+use super::measured::Measured;
+
+/// Multiples of the cost at which one solver stops that two may be apart.
+const APART: f64 = 4.0;
+
+/// What solvers leave undone in a state.
+pub(super) struct Slack {
+    /// Cost at which a solver stops.
+    cost: f64,
+    /// Inertia (nv, nv).
+    inertia: Vec<f64>,
+}
+
+impl Slack {
+    /// Derives it from the options of a model and its inertia.
+    pub fn new(model: &Model, inertia: Vec<f64>) -> Self {
+        let cost = model.opt.tolerance * model.stat.meaninertia * model.nv.max(1) as f64;
+        Self { cost, inertia }
+    }
+
+    /// Measures accelerations by the cost; `None` where they are further apart than the rule explains.
+    pub fn accelerations(&self, ours: &[f64], theirs: &[f64]) -> Option<Measured> {
+        self.within("qacc: by the cost at which solvers stop", ours, theirs, 1.0)
+    }
+
+    /// Measures velocities by the cost of the accelerations over a time step `h`: implicit damping makes differences smaller.
+    pub fn velocities(&self, ours: &[f64], theirs: &[f64], h: f64) -> Option<Measured> {
+        self.within(
+            "qvel after the step: by the cost at which solvers stop",
+            ours,
+            theirs,
+            h,
+        )
+    }
+
+    fn within(&self, quantity: &'static str, ours: &[f64], theirs: &[f64], h: f64) -> Option<Measured> {
+        let n = ours.len();
+        if n != theirs.len() || n * n != self.inertia.len() {
+            return None;
+        }
+        let apart: Vec<f64> = ours.iter().zip(theirs).map(|(a, b)| (a - b) / h).collect();
+        let momentum = |row: &[f64]| row.iter().zip(&apart).map(|(m, d)| m * d).sum::<f64>();
+        let rows = self.inertia.chunks_exact(n.max(1));
+        let cost = 0.5 * rows.zip(&apart).map(|(row, d)| d * momentum(row)).sum::<f64>();
+        let measured = Measured::new(
+            quantity,
+            cost / self.cost,
+            APART,
+            format!("{ours:?}, MuJoCo {theirs:?}"),
+        );
+        measured.agrees().then_some(measured)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Slack;
+
+    #[test]
+    fn accelerations_agree_up_to_four_times_the_cost_and_no_further() {
+        let slack = Slack {
+            cost: 1e-8,
+            inertia: vec![2.0, 0.5, 0.5, 1.0],
+        };
+        // d' M d / 2 = s^2 (2 + 2 * 0.5 * 2 + 4) / 2 = 4 s^2 for d = s (1, 2)
+        let at = |s: f64| slack.accelerations(&[3.0 + s, 7.0 + 2.0 * s], &[3.0, 7.0]);
+        assert!(at(0.0).is_some());
+        assert!((at(0.5e-4).expect("a measure").error - 1.0).abs() < 1e-6);
+        assert!(at(0.99e-4).is_some());
+        assert!(at(1.01e-4).is_none());
+        assert!(at(f64::NAN).is_none());
+        // the same over a time step of 2 ms
+        let at = |s: f64| slack.velocities(&[0.002 * s, 0.004 * s], &[0.0, 0.0], 0.002);
+        assert!(at(0.99e-4).is_some() && at(1.01e-4).is_none());
+        // a side that is only heavy: the same distance costs more
+        let heavy = Slack {
+            cost: 1e-8,
+            inertia: vec![200.0, 0.0, 0.0, 1.0],
+        };
+        assert!(heavy.accelerations(&[0.99e-4, 0.0], &[0.0, 0.0]).is_none());
+    }
+
+    #[test]
+    fn a_document_that_asks_for_no_tolerance_gets_none() {
+        let slack = Slack {
+            cost: 0.0,
+            inertia: vec![1.0],
+        };
+        assert!(slack.accelerations(&[1e-30], &[0.0]).is_none());
+    }
+}

@@ -1,0 +1,93 @@
+//! The surroundings of MIMo: those of the library by name, or a document of one's own by its path.
+
+use std::fmt;
+use std::path::Path;
+
+/// The surroundings of MIMo (`scene`).
+///
+/// ```
+/// use babybench::config::Scene;
+///
+/// assert_eq!(Scene::from_name("crib"), Some(Scene::Crib));
+/// assert_eq!(Scene::from_name("rooms/mine.xml"), Some(Scene::File("rooms/mine.xml".to_string())));
+/// assert_eq!(Scene::from_name("nursery"), None);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Scene {
+    /// The bare floor; MIMo is free.
+    #[default]
+    Base,
+    /// The mattress of a crib, with MIMo lying on it, the lower body fixed.
+    Crib,
+    /// Loose cubes and balls, with MIMo sitting among them.
+    Cubes,
+    /// An MJCF document of one's own, in which MIMo is included: a path that ends in `.xml`, which starts at the working directory
+    /// unless it is absolute. Where a [`Blueprint`](crate::Blueprint) is given assets, the document may be one of them.
+    File(String),
+}
+
+impl Scene {
+    /// The scenes of the library, in the order of the documentation.
+    pub const ALL: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
+    /// The names of [`Self::ALL`] in a configuration file.
+    pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes"];
+    /// How the path of a document ends.
+    pub const ENDING: &'static str = ".xml";
+
+    /// Returns the name in a configuration: that of a scene of the library, or a path.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Base => "base",
+            Self::Crib => "crib",
+            Self::Cubes => "cubes",
+            Self::File(path) => path,
+        }
+    }
+
+    /// Returns the scene of the library with this name, or else the document at this path; `None` if it is neither the one nor ends in
+    /// `.xml`.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let known = Self::ALL.iter().find(|scene| scene.name() == name);
+        let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));
+        known.cloned().or_else(file)
+    }
+
+    /// Lets the path of a document start at a folder instead of the working directory. Absolute paths stay; `None` if the folder's
+    /// name is not UTF-8.
+    pub(super) fn starting_at(&self, folder: &Path) -> Option<Self> {
+        match self {
+            Self::File(path) if folder.components().next().is_some() => {
+                folder.join(path).to_str().map(|path| Self::File(path.to_string()))
+            }
+            _ => Some(self.clone()),
+        }
+    }
+}
+
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Scene {
+    /// Serializes the name.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Scene {
+    /// Deserializes a scene from its name.
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = <String as serde::Deserialize>::deserialize(deserializer)?;
+        Self::from_name(&name).ok_or_else(|| {
+            let names = Self::NAMES.join(", ");
+            serde::de::Error::custom(format!(
+                "unknown scene `{name}`, expected one of {names}, or a path that ends in .xml"
+            ))
+        })
+    }
+}

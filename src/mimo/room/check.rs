@@ -1,0 +1,110 @@
+//! What the document of a scene of one's own may say, before it is compiled.
+
+use super::{FOLDER, PARTS, Room, RoomError};
+use crate::assets::AssetSource;
+use crate::limits::Limits;
+use crate::mimo::ROOT;
+use crate::mimo::scene::{MIMO, SceneError, Source};
+use crate::mjcf_loader::{Node, Tree};
+
+/// Settings of `<compiler>` that would read MIMo's own documents in another way, each with its only value.
+const COMPILER: [(&str, &str, &str); 3] = [
+    ("angle", "degree", "write degrees"),
+    ("eulerseq", "xyz", "write angles about x, y and z, or use quat"),
+    (
+        "texturedir",
+        "",
+        "write the folder in front of the name of each texture",
+    ),
+];
+
+/// The time step of all scenes, s.
+const TIMESTEP: f64 = 0.005;
+
+impl<A: AssetSource> Room<A> {
+    /// Checks that the document has a whole MIMo, at his place, and no setting that would change him.
+    pub fn check(&self, source: &Source<'_>) -> Result<(), SceneError> {
+        let read = Tree::read(source.document, source.path, source.assets, &Limits::default());
+        let (tree, _) = read.map_err(|e| self.localized_load(e))?;
+        for (file, place, what) in PARTS {
+            if !tree.files().contains(&format!("{FOLDER}{file}")) {
+                let path = self.path.clone();
+                return Err(RoomError::Lacks {
+                    path,
+                    file,
+                    place,
+                    what,
+                }
+                .into());
+            }
+        }
+        self.check_place(&tree)?;
+        let own = |at: &usize| {
+            let file = tree.file(*at);
+            file != source.path && file.strip_prefix(FOLDER).is_some_and(|name| !self.library(name))
+        };
+        for at in (0..tree.nodes.len()).filter(own) {
+            if let Some(reason) = fault(&tree, at) {
+                return Err(self.at(&tree, at, reason).into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that MIMo hangs on the body that is called after his place.
+    fn check_place(&self, tree: &Tree) -> Result<(), RoomError> {
+        let hip = |at: &usize| tree.nodes[*at].name == "body" && tree.nodes[*at].attribute("name") == Some(ROOT);
+        let around = |node: &Node| node.children.iter().any(hip);
+        let Some(at) = tree.nodes.iter().position(around) else {
+            return Ok(()); // the assets have a MIMo of their own
+        };
+        let node = &tree.nodes[at];
+        if node.name == "body" && node.attribute("name") == Some(MIMO) {
+            return Ok(());
+        }
+        let reason = format!(
+            "MIMo is included in <{}>; include mimo.xml in a body of its own, <body name=\"{MIMO}\" pos=\"0 0 0.1\" \
+             euler=\"0 -90 0\">, with <freejoint name=\"{MIMO}\"/> if he is free to move",
+            node.name
+        );
+        Err(self.at(tree, at, reason))
+    }
+
+    fn at(&self, tree: &Tree, at: usize, reason: String) -> RoomError {
+        let mut place = tree.place(at);
+        if let Some(name) = place.file.strip_prefix(FOLDER) {
+            place.file = self.shown(name);
+        }
+        RoomError::At {
+            place: Box::new(place),
+            reason,
+        }
+    }
+}
+
+/// Says what is wrong with an element of one's own.
+fn fault(tree: &Tree, at: usize) -> Option<String> {
+    let node = &tree.nodes[at];
+    match node.name.as_str() {
+        "compiler" => COMPILER.iter().find_map(|(name, only, remedy)| {
+            let text = node.attribute(name).filter(|text| text != only)?;
+            Some(format!(
+                "{name}=\"{text}\" would be a setting of MIMo's documents, too; {remedy}"
+            ))
+        }),
+        "option" => {
+            let text = node.attribute("timestep")?;
+            let same = text.trim().parse() == Ok(TIMESTEP);
+            (!same).then(|| format!("timestep=\"{text}\": physics steps have {TIMESTEP} s; leave timestep out"))
+        }
+        "texture" => {
+            let named = node.attributes.iter().filter(|(name, _)| name.starts_with("file"));
+            let mut outside = named.filter(|(_, path)| path.split('/').next() == Some(".."));
+            let (name, path) = outside.next()?;
+            Some(format!(
+                "{name}=\"{path}\" lies outside of the folder of the document; move it there"
+            ))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,71 @@
+//! Faults of a scene of one's own.
+
+use thiserror::Error;
+
+use crate::config::Scene;
+use crate::mjcf_loader::Place;
+use crate::text::quoted;
+
+/// A fault of a scene of one's own, with its remedy.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RoomError {
+    /// The document cannot be read.
+    #[error(
+        "`scene` is {}: {reason}; `scene` is one of {}, or the path of an MJCF document, which starts at the folder of the \
+         configuration file, or else at the working directory",
+        quoted(.path), Scene::NAMES.join(", ")
+    )]
+    NoDocument {
+        /// Its path.
+        path: String,
+        /// Description of the fault.
+        reason: String,
+    },
+    /// The document has the name of a file of the library.
+    #[error("`scene` is {}: the library has a file called {name} itself, which documents include by that name; rename yours", quoted(.path))]
+    Shadowed {
+        /// Its path.
+        path: String,
+        /// Its name.
+        name: String,
+    },
+    /// The document lacks a part of MIMo.
+    #[error("{}: <include file=\"{file}\"/> is missing {place}: it has {what}", quoted(.path))]
+    Lacks {
+        /// Path of the document.
+        path: String,
+        /// What it should include.
+        file: &'static str,
+        /// Where.
+        place: &'static str,
+        /// What that has.
+        what: &'static str,
+    },
+    /// An element that no scene of one's own may have, or not like this.
+    #[error("{place}: {reason}")]
+    At {
+        /// Place of the element.
+        place: Box<Place>,
+        /// Description of the fault, and its remedy.
+        reason: String,
+    },
+    /// The document changes MIMo.
+    #[error(
+        "{}: this makes another MIMo: {part} has {field} {found} instead of {expected}; a <default> without a class, or a \
+         <compiler>, reaches him: put <include file=\"mimo_settings.xml\"/> before it, or give your elements a class of their own",
+        quoted(.path)
+    )]
+    Changed {
+        /// Path of the document.
+        path: String,
+        /// What is changed: its kind and name.
+        part: String,
+        /// Which of its numbers, by the name of MuJoCo's array.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// The library's value.
+        expected: String,
+    },
+}

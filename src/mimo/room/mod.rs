@@ -1,0 +1,254 @@
+//! A scene of one's own: an MJCF document in which MIMo is included.
+//!
+//! The document is read as if it lay among the documents of the library, so that it can include them by name, beside its own files. The
+//! library adds three that depend on the configuration: MIMo, his settings and his actuators ([`PARTS`]).
+
+mod check;
+mod error;
+mod same;
+mod unused;
+
+pub use error::RoomError;
+pub use unused::{Unused, unused_attributes};
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
+use crate::config::{Config, Scene};
+use crate::mimo::embedded;
+use crate::mimo::scene::{SceneError, Version, actuators, include};
+use crate::mjcf_loader::{ErrorKind, LoadError};
+
+/// Folder of the library's documents, in which a scene of one's own is read.
+const FOLDER: &str = "babybench/";
+/// Folder of the library's textures.
+const TEXTURES: &str = "tex/";
+/// The library's settings, which several documents include.
+const SETTINGS: &str = "babybench/settings.xml";
+/// The same under another name: a document may include both [`PARTS`] and `base.xml`, and no file twice.
+const SETTINGS_AGAIN: &str = "mimo_options.xml";
+
+/// What a scene of one's own includes: file, where it belongs, and what it has.
+pub const PARTS: [(&str, &str, &str); 3] = [
+    ("mimo.xml", "in <body name=\"mimo_location\">", "MIMo's body"),
+    (
+        "mimo_settings.xml",
+        "in <mujoco>",
+        "his looks, his senses, his locks and the settings of the simulation",
+    ),
+    ("mimo_actuators.xml", "in <mujoco>", "his actuators"),
+];
+
+/// Where the document and its files are.
+enum Own {
+    /// In this folder of the assets.
+    Given(String),
+    /// In this folder of the file system.
+    Disk { files: DirAssets, folder: PathBuf },
+}
+
+/// The assets of a scene of one's own: its files over the library's, which keep their names.
+pub(super) struct Room<A> {
+    given: A,
+    own: Own,
+    /// Path of the document, as the configuration has it.
+    path: String,
+    /// The files that depend on the configuration.
+    written: Vec<(&'static str, String)>,
+}
+
+/// Returns what the scene of a configuration is built from: `assets`, or for a scene of one's own ([`Scene::File`]) its files over them.
+///
+/// The document is one of `assets`, if they have its path; otherwise it is a file of the system, whose folder then has its textures and
+/// includes, and nothing outside of that folder is read. Documents of the library are found beside them, even if `assets` lack those.
+///
+/// # Errors
+/// A document that does not exist, or has the name of a file of the library.
+pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc<dyn AssetSource>, SceneError> {
+    Ok(match Room::open(config, assets.clone())? {
+        Some(room) => Arc::new(room),
+        None => assets,
+    })
+}
+
+/// Returns the assets of a scene of one's own over some that are borrowed; `None` if the scene is one of the library.
+#[cfg(feature = "eval")]
+pub(crate) fn open_room<'a>(
+    config: &Config,
+    assets: &'a dyn AssetSource,
+) -> Result<Option<impl AssetSource + use<'a>>, RoomError> {
+    Room::open(config, assets)
+}
+
+/// Returns the last part of a path.
+pub(super) fn file_name(path: &str) -> &str {
+    let name = Path::new(path).file_name().and_then(|name| name.to_str());
+    name.unwrap_or(path)
+}
+
+impl<A: AssetSource> Room<A> {
+    /// Finds the document of a configuration; `None` if its scene is one of the library.
+    pub fn open(config: &Config, given: A) -> Result<Option<Self>, RoomError> {
+        let Scene::File(path) = &config.scene else {
+            return Ok(None);
+        };
+        let no_document = |reason: String| RoomError::NoDocument {
+            path: path.clone(),
+            reason,
+        };
+        // the library's own documents are no rooms: a path that is also one of theirs is a file of the system
+        let among = resolve("", path).ok();
+        let among = among.filter(|path| !embedded().contains(path) && given.contains(path));
+        let own = if let Some(path) = among {
+            Own::Given(directory(&path).to_string())
+        } else if cfg!(all(target_family = "wasm", target_os = "unknown")) {
+            let reason = "it is not among the assets, and there is no file system here".to_string();
+            return Err(no_document(reason));
+        } else {
+            let folder = Path::new(path).parent().filter(|folder| *folder != Path::new(""));
+            let folder = folder.unwrap_or(Path::new(".")).to_path_buf();
+            let files = DirAssets::new(&folder).map_err(|e| no_document(e.to_string()))?;
+            let file = files.read(file_name(path));
+            file.map_err(|e| no_document(e.to_string()))?;
+            Own::Disk { files, folder }
+        };
+        let room = Self {
+            given,
+            own,
+            path: path.clone(),
+            written: written(config),
+        };
+        if room.library(file_name(path)) {
+            Err(RoomError::Shadowed {
+                path: path.clone(),
+                name: file_name(path).to_string(),
+            })
+        } else {
+            Ok(Some(room))
+        }
+    }
+
+    /// Returns whether the library has a document of this name.
+    fn library(&self, name: &str) -> bool {
+        let path = format!("{FOLDER}{name}");
+        let beside = matches!(&self.own, Own::Given(folder) if format!("{folder}/") == FOLDER);
+        name == SETTINGS_AGAIN
+            || self.written.iter().any(|(written, _)| *written == name)
+            || embedded().contains(&path)
+            || !beside && self.given.contains(&path)
+    }
+
+    /// Reads a file of the library: the given one, if the assets replace it.
+    fn read_library(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        match self.given.read(path) {
+            Err(AssetError::NotFound(_)) => Ok(Cow::Owned(embedded().read(path)?.into_owned())),
+            answer => answer,
+        }
+    }
+
+    /// Reads a file from the folder of the document.
+    fn read_own(&self, name: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        let shown = || self.shown(name);
+        let answer = match &self.own {
+            Own::Given(folder) => resolve(folder, name).and_then(|path| self.given.read(&path)),
+            Own::Disk { files, .. } => files.read(name),
+        };
+        answer.map_err(|e| match e {
+            AssetError::NotFound(_) => AssetError::NotFound(shown()),
+            AssetError::TooLarge { limit, .. } => AssetError::TooLarge { path: shown(), limit },
+            AssetError::Io { message, .. } => AssetError::Io { path: shown(), message },
+            other => other,
+        })
+    }
+
+    /// Returns whether the folder of the document has a file that is not the library's.
+    fn has_own(&self, name: &str) -> bool {
+        match &self.own {
+            // what lies among the library's documents replaces them
+            Own::Given(folder) if format!("{folder}/") == FOLDER => {
+                !embedded().contains(&format!("{FOLDER}{name}")) && self.read_own(name).is_ok()
+            }
+            Own::Given(_) => self.read_own(name).is_ok(),
+            Own::Disk { files, .. } => files.contains(name),
+        }
+    }
+
+    /// Returns the path of a file beside the document, as the document's path is given.
+    fn shown(&self, name: &str) -> String {
+        match &self.own {
+            Own::Given(folder) if folder.is_empty() => name.to_string(),
+            Own::Given(folder) => format!("{folder}/{name}"),
+            Own::Disk { folder, .. } if folder == Path::new(".") && !self.path.starts_with('.') => name.to_string(),
+            Own::Disk { folder, .. } => folder.join(name).display().to_string(),
+        }
+    }
+
+    /// Names files as the user knows them, instead of by their place among the library's.
+    fn localized_load(&self, mut error: LoadError) -> LoadError {
+        let shown = |path: &str| {
+            let own = path.strip_prefix(FOLDER).filter(|name| !self.library(name));
+            own.map(|name| self.shown(name))
+        };
+        if let Some(file) = shown(&error.place.file) {
+            error.place.file = file;
+        }
+        if let ErrorKind::RepeatedInclude(path) | ErrorKind::Asset(AssetError::NotFound(path)) = &mut error.kind
+            && let Some(name) = path.strip_prefix(FOLDER)
+        {
+            *path = shown(path).unwrap_or_else(|| name.to_string());
+        }
+        error
+    }
+
+    /// Names files as the user knows them.
+    pub fn localized(&self, error: SceneError) -> SceneError {
+        match error {
+            SceneError::Load(error) => self.localized_load(error).into(),
+            other => other,
+        }
+    }
+}
+
+impl<A: AssetSource> AssetSource for Room<A> {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        let path = resolve("", path)?;
+        let Some(name) = path.strip_prefix(FOLDER) else {
+            return if path.starts_with(TEXTURES) {
+                self.read_library(&path)
+            } else {
+                Err(AssetError::Outside {
+                    path: format!("../{path}"),
+                    folder: self.shown("."),
+                })
+            };
+        };
+        if !self.library(name) {
+            return self.read_own(name);
+        }
+        if self.has_own(name) {
+            return Err(AssetError::Shadowed(self.shown(name)));
+        }
+        match self.written.iter().find(|(written, _)| *written == name) {
+            Some((_, text)) => Ok(Cow::Borrowed(text.as_bytes())),
+            None if name == SETTINGS_AGAIN => self.read_library(SETTINGS),
+            None => self.read_library(&path),
+        }
+    }
+}
+
+/// Writes the files that depend on the configuration.
+fn written(config: &Config) -> Vec<(&'static str, String)> {
+    let version = Version::of(config.behavior).name();
+    let settings = SETTINGS_AGAIN.trim_end_matches(".xml");
+    let texts = [
+        include(&format!("mimo_{version}")),
+        include(settings) + &include(&format!("meta_{version}")),
+        actuators(config),
+    ];
+    let named = PARTS.iter().zip(texts);
+    named
+        .map(|((name, ..), text)| (*name, format!("<mujocoinclude>\n{text}</mujocoinclude>\n")))
+        .collect()
+}

@@ -1,0 +1,67 @@
+//! What a document says to no effect.
+
+use super::{FOLDER, Room};
+use crate::assets::AssetSource;
+use crate::config::Config;
+use crate::limits::Limits;
+use crate::mimo::scene::{SceneError, document_path, scene_xml};
+use crate::mjcf_loader::{Place, Tree, elements};
+
+/// An attribute of a scene of one's own that changes nothing here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unused {
+    /// Place of the element.
+    pub place: Place,
+    /// The attribute.
+    pub attribute: String,
+    /// What it would mean, and why it changes nothing.
+    pub meaning: &'static str,
+}
+
+/// Lists the attributes in the files of a scene of one's own that change nothing here; none for a scene of the library.
+///
+/// Everything else that a document says has its effect, as what is not understood is an error.
+///
+/// # Errors
+/// A document that cannot be read.
+pub fn unused_attributes(config: &Config, assets: &dyn AssetSource) -> Result<Vec<Unused>, SceneError> {
+    let Some(room) = Room::open(config, assets)? else {
+        return Ok(Vec::new());
+    };
+    let top = document_path(config);
+    let read = Tree::read(&scene_xml(config), top, &room, &Limits::default());
+    let (tree, _) = read.map_err(|e| room.localized_load(e))?;
+    let known = elements();
+    let meaning = |element: &str, attribute: &str| {
+        let mut found = known
+            .iter()
+            .filter(|e| e.path.rsplit('/').next() == Some(element))
+            .flat_map(|e| &e.attributes);
+        let attribute = found.find(|a| a.name == attribute)?;
+        let idle = ["Ignored", "not drawn"]
+            .iter()
+            .any(|word| attribute.meaning.contains(word));
+        idle.then_some(attribute.meaning)
+    };
+    let mut unused = Vec::new();
+    for (at, node) in tree.nodes.iter().enumerate() {
+        let own = tree.file(at).strip_prefix(FOLDER).filter(|name| !room.library(name));
+        let Some(name) = own.filter(|_| tree.file(at) != top) else {
+            continue;
+        };
+        for (attribute, _) in &node.attributes {
+            if let Some(meaning) = meaning(&node.name, attribute) {
+                let place = Place {
+                    file: room.shown(name),
+                    ..tree.place(at)
+                };
+                unused.push(Unused {
+                    place,
+                    attribute: attribute.clone(),
+                    meaning,
+                });
+            }
+        }
+    }
+    Ok(unused)
+}

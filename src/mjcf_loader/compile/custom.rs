@@ -1,0 +1,96 @@
+//! Compiles custom data and keyframes.
+
+use super::context::Context;
+use crate::math::{quat_at, quat_normalize};
+use crate::mjcf_loader::custom::Key;
+use crate::mjcf_loader::document::Document;
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::model::{Arrays, JointType, Keyframe};
+
+/// Compiles `<custom>`: numbers and texts for programs.
+pub(super) fn compile_custom(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
+    for numeric in &document.numerics {
+        let mut data = numeric.data.clone();
+        let size = numeric.size.unwrap_or(data.len());
+        if size < data.len() {
+            return Err(context.invalid(numeric.at, "data has more values than size"));
+        }
+        if size == 0 {
+            return Err(context.invalid(numeric.at, "a numeric needs data or a size"));
+        }
+        data.resize(size, 0.0);
+        arrays.numeric_name.push(numeric.name.clone());
+        arrays.numeric_data.push(data);
+    }
+    for text in &document.texts {
+        if text.data.is_empty() {
+            return Err(context.invalid(text.at, "data is empty"));
+        }
+        arrays.text_name.push(text.name.clone());
+        arrays.text_data.push(text.data.clone());
+    }
+    Ok(())
+}
+
+/// Compiles the keyframes, after everything that has coordinates or controls.
+pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
+    let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu();
+    let (limit, most) = (
+        context.tree.limits.key_numbers,
+        document.size.nkey.max(document.keys.len()),
+    );
+    if most.saturating_mul(numbers) > limit {
+        let at = document.keys.last().map_or(0, |key| key.at);
+        let what = "numbers in keyframes";
+        return Err(context.error(at, ErrorKind::TooMuch { what, limit }));
+    }
+    for key in &document.keys {
+        let key = compile_key(context, key, arrays)?;
+        arrays.keys.push(key);
+    }
+    let reference = Keyframe {
+        name: String::new(),
+        time: 0.0,
+        qpos: arrays.qpos0.clone(),
+        qvel: vec![0.0; arrays.nv],
+        act: vec![0.0; arrays.na],
+        ctrl: vec![0.0; arrays.nu()],
+    };
+    let missing = document.size.nkey.saturating_sub(arrays.keys.len());
+    arrays.keys.extend(std::iter::repeat_n(reference, missing));
+    Ok(())
+}
+
+fn compile_key(context: &Context, key: &Key, arrays: &Arrays) -> Result<Keyframe, LoadError> {
+    let sized = |given: &Vec<f64>, attribute: &'static str, default: &[f64]| match given.len() {
+        0 => Ok(default.to_vec()),
+        found if found == default.len() => Ok(given.clone()),
+        found => {
+            let (min, max) = (default.len(), default.len());
+            Err(context.error(
+                key.at,
+                ErrorKind::WrongCount {
+                    attribute,
+                    found,
+                    min,
+                    max,
+                },
+            ))
+        }
+    };
+    let mut qpos = sized(&key.qpos, "qpos", &arrays.qpos0)?;
+    for (kind, &adr) in arrays.jnt_type.iter().zip(&arrays.jnt_qposadr) {
+        if *kind == JointType::Free {
+            let quat = quat_normalize(quat_at(&qpos, adr + 3));
+            qpos[adr + 3..adr + 7].copy_from_slice(&quat);
+        }
+    }
+    Ok(Keyframe {
+        name: key.name.clone(),
+        time: key.time,
+        qpos,
+        qvel: sized(&key.qvel, "qvel", &vec![0.0; arrays.nv])?,
+        act: sized(&key.act, "act", &vec![0.0; arrays.na])?,
+        ctrl: sized(&key.ctrl, "ctrl", &vec![0.0; arrays.nu()])?,
+    })
+}

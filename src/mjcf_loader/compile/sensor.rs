@@ -1,0 +1,110 @@
+//! Compiles sensors.
+
+use super::context::{Context, Ids, User};
+use crate::mjcf_loader::document::Document;
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::sensor::{FrameOf, InFrame, Object, OfFrame, Sensor};
+use crate::model::{Arrays, DataType, ObjType, SensorType};
+
+/// Compiles the sensors, whose values follow one another.
+pub(super) fn compile_sensors(
+    context: &Context,
+    document: &Document,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    let users = document.sensors.iter().map(|sensor| &sensor.user);
+    let users = User::new("nuser_sensor", document.size.nuser_sensor, users);
+    let mut adr = 0;
+    for sensor in &document.sensors {
+        let user = users.of(context, sensor.at, &sensor.user)?;
+        let axis = matches!(sensor.kind.datatype(), DataType::Axis | DataType::Quaternion);
+        if axis && sensor.cutoff > 0.0 {
+            return Err(context.invalid(sensor.at, "an axis or a quaternion has no cutoff; remove it"));
+        }
+        let (object, reference) = sensed(context, sensor, ids, arrays)?;
+        arrays.sensor_name.push(sensor.name.clone());
+        arrays.sensor_type.push(sensor.kind);
+        arrays.sensor_objtype.push(object.0);
+        arrays.sensor_objid.push(object.1);
+        arrays.sensor_reftype.push(reference.0);
+        arrays.sensor_refid.push(reference.1);
+        arrays.sensor_cutoff.push(sensor.cutoff);
+        arrays.sensor_noise.push(sensor.noise);
+        arrays.sensor_adr.push(adr);
+        arrays.sensor_user.push(user);
+        adr += sensor.kind.dim();
+    }
+    Ok(())
+}
+
+/// An object by kind and id.
+type Sensed = (ObjType, Option<usize>);
+
+const NOTHING: Sensed = (ObjType::Unknown, None);
+
+/// Finds what a sensor measures, and in which frame.
+fn sensed(context: &Context, sensor: &Sensor, ids: &Ids, arrays: &Arrays) -> Result<(Sensed, Sensed), LoadError> {
+    let (tree, at) = (context.tree, sensor.at);
+    let object = match &sensor.object {
+        Object::Nothing => NOTHING,
+        Object::Site(name) => (ObjType::Site, Some(ids.site.find(tree, at, "site", name)?)),
+        Object::Subtree(name) => (ObjType::Body, Some(ids.body.find(tree, at, "body", name)?)),
+        Object::Joint(name) => (ObjType::Joint, Some(joint(context, sensor, name, ids, arrays)?)),
+        Object::Tendon(name) => {
+            let tendon = ids.tendon.find(tree, at, "tendon", name)?;
+            let of_limit = matches!(
+                sensor.kind,
+                SensorType::TendonLimitPos | SensorType::TendonLimitVel | SensorType::TendonLimitFrc
+            );
+            if of_limit && !arrays.tendon_limited[tendon] {
+                return Err(context.invalid(at, "the tendon has no limit; give it a range"));
+            }
+            (ObjType::Tendon, Some(tendon))
+        }
+        Object::Actuator(name) => (ObjType::Actuator, Some(ids.actuator.find(tree, at, "actuator", name)?)),
+        Object::Frame(of, within) => return frames(context, at, of, within, ids),
+    };
+    Ok((object, NOTHING))
+}
+
+/// Finds the joint of a sensor, which has one coordinate, and a limit if the sensor is about that.
+fn joint(context: &Context, sensor: &Sensor, name: &str, ids: &Ids, arrays: &Arrays) -> Result<usize, LoadError> {
+    let joint = ids.scalar_joint(context, arrays, sensor.at, "joint", name)?;
+    let of_limit = matches!(
+        sensor.kind,
+        SensorType::JointLimitPos | SensorType::JointLimitVel | SensorType::JointLimitFrc
+    );
+    if of_limit && !arrays.jnt_limited[joint] {
+        return Err(context.invalid(sensor.at, "the joint has no limit; give it a range"));
+    }
+    Ok(joint)
+}
+
+/// Finds the object of a sensor of a frame, and that in whose frame it measures.
+fn frames(
+    context: &Context,
+    at: usize,
+    of: &OfFrame,
+    within: &InFrame,
+    ids: &Ids,
+) -> Result<(Sensed, Sensed), LoadError> {
+    let find = |kind, attribute, name: &str| {
+        let tree = context.tree;
+        Ok::<_, LoadError>(match kind {
+            FrameOf::Body => (ObjType::Body, Some(ids.body.find(tree, at, attribute, name)?)),
+            FrameOf::XBody => (ObjType::XBody, Some(ids.body.find(tree, at, attribute, name)?)),
+            FrameOf::Geom => (ObjType::Geom, Some(ids.geom.find(tree, at, attribute, name)?)),
+            FrameOf::Site => (ObjType::Site, Some(ids.site.find(tree, at, attribute, name)?)),
+            FrameOf::Camera => (ObjType::Camera, Some(ids.camera.find(tree, at, attribute, name)?)),
+        })
+    };
+    let object = find(of.objtype, "objname", &of.objname)?;
+    let reference = match (within.reftype, &within.refname) {
+        (Some(kind), Some(name)) => find(kind, "refname", name)?,
+        (None, None) => NOTHING,
+        (Some(_), None) => return Err(context.error(at, ErrorKind::MissingAttribute("refname"))),
+        (None, Some(_)) => return Err(context.error(at, ErrorKind::MissingAttribute("reftype"))),
+    };
+    Ok((object, reference))
+}

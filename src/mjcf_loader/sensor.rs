@@ -1,0 +1,155 @@
+//! Tables of sensors: what all have, and what each kind refers to.
+
+use crate::model::SensorType;
+
+use super::attribute::Sign::NonNegative;
+use super::attribute::{Attr, Kind, TEXT, Words, real, words};
+use super::schema::Element;
+use super::table::{Table, table};
+
+/// A kind of object that has a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FrameOf {
+    Body,
+    XBody,
+    Geom,
+    Site,
+    Camera,
+}
+
+const FRAMES: Words<FrameOf> = words! {
+    "body" => FrameOf::Body,
+    "xbody" => FrameOf::XBody,
+    "geom" => FrameOf::Geom,
+    "site" => FrameOf::Site,
+    "camera" => FrameOf::Camera,
+};
+
+table! {
+    /// Attributes of all sensors.
+    element Sensor {
+        also kind: SensorType = SensorType::Clock;
+        also object: Object = Object::Nothing;
+        "name" name: String = String::new(), TEXT, own, "Name.";
+        "cutoff" cutoff: f64 = 0.0, real(NonNegative), "Bound of the values; 0 for none.";
+        "noise" noise: f64 = 0.0, real(NonNegative), "Standard deviation of noise, for programs: sensors are exact.";
+        "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+    }
+}
+
+table! {
+    /// What a sensor on a site refers to.
+    group OnSite {
+        "site" site: String = String::new(), TEXT, required, "Site that it sits on.";
+    }
+}
+
+table! {
+    /// What a sensor of a joint refers to.
+    group OfJoint {
+        "joint" joint: String = String::new(), TEXT, required, "Joint that it measures.";
+    }
+}
+
+table! {
+    /// What a sensor of a tendon refers to.
+    group OfTendon {
+        "tendon" tendon: String = String::new(), TEXT, required, "Tendon that it measures.";
+    }
+}
+
+table! {
+    /// What a sensor of an actuator refers to.
+    group OfActuator {
+        "actuator" actuator: String = String::new(), TEXT, required, "Actuator that it measures.";
+    }
+}
+
+table! {
+    /// What a sensor of a body and those below it refers to.
+    group OfSubtree {
+        "body" body: String = String::new(), TEXT, required, "Body that it measures, with all below it.";
+    }
+}
+
+table! {
+    /// What a sensor of a frame refers to.
+    group OfFrame {
+        "objtype" objtype: FrameOf = FrameOf::Body, FRAMES, required, "Kind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
+        "objname" objname: String = String::new(), TEXT, required, "Name of the object.";
+    }
+}
+
+table! {
+    /// In which frame a sensor of a frame measures.
+    group InFrame {
+        "reftype" reftype: Option<FrameOf> = None, FRAMES, "Kind of the object in whose frame it measures; else in that of the world.";
+        "refname" refname: Option<String> = None, TEXT, "Name of that object.";
+    }
+}
+
+/// What a sensor refers to, by name.
+#[derive(Clone)]
+pub(super) enum Object {
+    Nothing,
+    Site(String),
+    Joint(String),
+    Tendon(String),
+    Actuator(String),
+    Subtree(String),
+    Frame(OfFrame, InFrame),
+}
+
+/// The groups of attributes of a table.
+type Groups = &'static [&'static [Attr]];
+
+/// Returns the tables of a kind of sensor, its own attributes first.
+pub(super) const fn tables(kind: SensorType) -> &'static [Groups] {
+    use SensorType::*;
+    match kind {
+        Touch | Accelerometer | Velocimeter | Gyro | Force | Torque | Magnetometer | RangeFinder => {
+            &[OnSite::ATTRIBUTES, Sensor::ATTRIBUTES]
+        }
+        JointPos | JointVel | JointActFrc | JointLimitPos | JointLimitVel | JointLimitFrc => {
+            &[OfJoint::ATTRIBUTES, Sensor::ATTRIBUTES]
+        }
+        TendonPos | TendonVel | TendonLimitPos | TendonLimitVel | TendonLimitFrc => {
+            &[OfTendon::ATTRIBUTES, Sensor::ATTRIBUTES]
+        }
+        ActuatorPos | ActuatorVel | ActuatorFrc => &[OfActuator::ATTRIBUTES, Sensor::ATTRIBUTES],
+        FramePos | FrameQuat | FrameXAxis | FrameYAxis | FrameZAxis | FrameLinVel | FrameAngVel => {
+            &[OfFrame::ATTRIBUTES, InFrame::ATTRIBUTES, Sensor::ATTRIBUTES]
+        }
+        FrameLinAcc | FrameAngAcc => &[OfFrame::ATTRIBUTES, Sensor::ATTRIBUTES],
+        SubtreeCom | SubtreeLinVel | SubtreeAngMom => &[OfSubtree::ATTRIBUTES, Sensor::ATTRIBUTES],
+        Clock => &[Sensor::ATTRIBUTES],
+    }
+}
+
+impl Sensor {
+    /// Reads a sensor of any kind; its attributes tell what it refers to.
+    pub fn of(e: &Element) -> Self {
+        let named = |attribute: &str| e.text(attribute).map(str::to_owned);
+        let kind = SensorType::ALL.iter().find(|kind| kind.name() == e.name);
+        let object = if let Some(site) = named("site") {
+            Object::Site(site)
+        } else if let Some(joint) = named("joint") {
+            Object::Joint(joint)
+        } else if let Some(tendon) = named("tendon") {
+            Object::Tendon(tendon)
+        } else if let Some(actuator) = named("actuator") {
+            Object::Actuator(actuator)
+        } else if let Some(body) = named("body") {
+            Object::Subtree(body)
+        } else if named("objname").is_some() {
+            Object::Frame(OfFrame::read(e), InFrame::read(e))
+        } else {
+            Object::Nothing
+        };
+        Self {
+            kind: kind.copied().unwrap_or(SensorType::Clock),
+            object,
+            ..Self::read(e)
+        }
+    }
+}

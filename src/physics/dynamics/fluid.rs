@@ -1,0 +1,83 @@
+//! Forces of a medium on bodies, and of compensated gravity.
+
+use std::f64::consts::PI;
+
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::dynamics::applied::add_force;
+use crate::physics::spatial::*;
+use crate::physics::state::State;
+
+/// Adds to `qfrc_passive` what a medium does to bodies that move in it: viscous resistance of a sphere and drag of a box, both of
+/// the size of the box that has the body's mass and inertia ("inertia-based model" in MuJoCo's documentation).
+pub(super) fn medium(model: &Model, s: &mut State) {
+    let opt = &model.opt;
+    if opt.density == 0.0 && opt.viscosity == 0.0 {
+        return;
+    }
+    for b in 1..model.nbody() {
+        if s.params.body_mass[b] < MINVAL {
+            continue;
+        }
+        let offset = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
+        let axes = &s.ximat[b];
+        let turning = mat_t_vec(axes, angular(&s.cvel[b]));
+        let moving = mat_t_vec(axes, velocity_at(&s.cvel[b], offset));
+        let moving = sub(moving, mat_t_vec(axes, opt.wind));
+        let (torque, force) = resistance(box_of(s, b), turning, moving, opt.density, opt.viscosity);
+        let (torque, force) = (mat_vec(axes, torque), mat_vec(axes, force));
+        let point = s.xipos[b];
+        let State {
+            qfrc_passive,
+            cdof,
+            subtree_com,
+            ..
+        } = s;
+        add_force(model, cdof, subtree_com, (b, force, torque, point), qfrc_passive);
+    }
+}
+
+/// Returns the sides of the box with the mass and the principal moments of a body, m.
+fn box_of(s: &State, b: usize) -> Vec3 {
+    let ([x, y, z], mass) = (s.params.body_inertia[b], s.params.body_mass[b]);
+    let side = |a: f64, b: f64, c: f64| ((a + b - c).max(MINVAL) / mass * 6.0).sqrt();
+    [side(y, z, x), side(x, z, y), side(x, y, z)]
+}
+
+/// Returns the torque, N m, and the force, N, of a medium on a box, along the axes of which it turns, rad/s, and moves, m/s.
+fn resistance(size: Vec3, turning: Vec3, moving: Vec3, density: f64, viscosity: f64) -> (Vec3, Vec3) {
+    let (mut torque, mut force) = ([0.0; 3], [0.0; 3]);
+    if viscosity > 0.0 {
+        let diameter = (size[0] + size[1] + size[2]) / 3.0;
+        torque = scale(turning, -PI * diameter * diameter * diameter * viscosity);
+        force = scale(moving, -3.0 * PI * diameter * viscosity);
+    }
+    if density > 0.0 {
+        let fourth = |v: f64| v * v * v * v;
+        for k in 0..3 {
+            let (a, b) = (size[(k + 1) % 3], size[(k + 2) % 3]);
+            force[k] -= 0.5 * density * a * b * moving[k].abs() * moving[k];
+            torque[k] -= density * size[k] * (fourth(a) + fourth(b)) * turning[k].abs() * turning[k] / 64.0;
+        }
+    }
+    (torque, force)
+}
+
+/// Adds to `qfrc_passive` what holds up the part of the weight of each body that is compensated.
+pub(super) fn gravity_compensation(model: &Model, s: &mut State) {
+    for b in 1..model.nbody() {
+        let part = model.body_gravcomp[b];
+        if part == 0.0 {
+            continue;
+        }
+        let force = scale(s.params.gravity, -s.params.body_mass[b] * part);
+        let point = s.xipos[b];
+        let State {
+            qfrc_passive,
+            cdof,
+            subtree_com,
+            ..
+        } = s;
+        add_force(model, cdof, subtree_com, (b, force, [0.0; 3], point), qfrc_passive);
+    }
+}

@@ -1,0 +1,127 @@
+//! MuJoCo's `sensordata`: the values of the model's sensors.
+
+mod frame;
+mod subtree;
+mod touch;
+
+use crate::math::*;
+use crate::model::{DataType, Model, SensorType};
+use crate::physics::constraint::ConstraintType;
+use crate::physics::dynamics::tendon_length;
+use crate::physics::ray::nearest_geom;
+use crate::physics::spatial::{angular, linear, torque_at};
+use crate::physics::state::State;
+
+use frame::{frame, spatial_acceleration, spatial_velocity};
+pub use subtree::SubtreeScratch;
+
+/// Computes `sensordata` from everything else. `scratch` keeps its memory between steps.
+pub fn sensors(model: &Model, s: &mut State, scratch: &mut SubtreeScratch) {
+    let needs_subtrees = |kind: &SensorType| matches!(kind, SensorType::SubtreeLinVel | SensorType::SubtreeAngMom);
+    if model.sensor_type.iter().any(needs_subtrees) {
+        scratch.update(model, s);
+    }
+    let mut data = std::mem::take(&mut s.sensordata);
+    for sensor in 0..model.nsensor() {
+        let (kind, adr, cutoff) = (
+            model.sensor_type[sensor],
+            model.sensor_adr[sensor],
+            model.sensor_cutoff[sensor],
+        );
+        let values = &mut data[adr..adr + kind.dim()];
+        values.copy_from_slice(&value(model, s, scratch, sensor)[..kind.dim()]);
+        if cutoff > 0.0 {
+            match kind.datatype() {
+                DataType::Real => values.iter_mut().for_each(|v| *v = v.clamp(-cutoff, cutoff)),
+                DataType::Positive => values.iter_mut().for_each(|v| *v = v.min(cutoff)),
+                DataType::Axis | DataType::Quaternion => {}
+            }
+        }
+    }
+    s.sensordata = data;
+}
+
+/// Returns the value of one sensor, with zeros behind it; [`SensorType`] tells the quantities.
+fn value(model: &Model, s: &State, scratch: &SubtreeScratch, sensor: usize) -> [f64; 4] {
+    use SensorType::*;
+    // the clock alone measures no object
+    let id = model.sensor_objid[sensor].unwrap_or(0);
+    let kind = model.sensor_type[sensor];
+    match kind {
+        Touch | Accelerometer | Velocimeter | Gyro | Force | Torque | Magnetometer | RangeFinder => {
+            on_site(model, s, kind, id)
+        }
+        JointPos => scalar(s.qpos[model.jnt_qposadr[id]]),
+        JointVel => scalar(s.qvel[model.jnt_dofadr[id]]),
+        JointActFrc => scalar(s.qfrc_actuator[model.jnt_dofadr[id]]),
+        TendonPos => scalar(tendon_length(model, &s.qpos, id)),
+        TendonVel => scalar(tendon_velocity(model, s, id)),
+        ActuatorPos => scalar(actuator_gear(s, id) * s.qpos[model.jnt_qposadr[model.actuator_trnid[id]]]),
+        // as in MuJoCo, which leaves the rates of the lengths out with the forces
+        ActuatorVel if !model.opt.flags.actuation => scalar(0.0),
+        ActuatorVel => scalar(actuator_gear(s, id) * s.qvel[model.jnt_dofadr[model.actuator_trnid[id]]]),
+        ActuatorFrc => scalar(s.actuator_force[id]),
+        JointLimitPos | JointLimitVel | JointLimitFrc => scalar(limit(s, ConstraintType::LimitJoint, kind, id)),
+        TendonLimitPos | TendonLimitVel | TendonLimitFrc => scalar(limit(s, ConstraintType::LimitTendon, kind, id)),
+        FramePos | FrameQuat | FrameXAxis | FrameYAxis | FrameZAxis | FrameLinVel | FrameAngVel | FrameLinAcc
+        | FrameAngAcc => frame(model, s, sensor),
+        SubtreeCom => vector(s.subtree_com[id]),
+        SubtreeLinVel => vector(scratch.linvel[id]),
+        SubtreeAngMom => vector(scratch.angmom[id]),
+        Clock => scalar(s.time),
+    }
+}
+
+fn scalar(v: f64) -> [f64; 4] {
+    [v, 0.0, 0.0, 0.0]
+}
+
+fn vector([x, y, z]: Vec3) -> [f64; 4] {
+    [x, y, z, 0.0]
+}
+
+/// Returns the value of a sensor that sits on a site, in the frame of the site.
+fn on_site(model: &Model, s: &State, kind: SensorType, site: usize) -> [f64; 4] {
+    let body = model.site_bodyid[site];
+    let (pos, mat) = (s.site_xpos[site], &s.site_xmat[site]);
+    let offset = sub(pos, s.subtree_com[model.body_rootid[body]]);
+    let world = match kind {
+        SensorType::Accelerometer => linear(&spatial_acceleration(s, body, offset)),
+        SensorType::Velocimeter => linear(&spatial_velocity(s, body, offset)),
+        SensorType::Gyro => angular(&s.cvel[body]),
+        SensorType::Force => linear(&s.cfrc_int[body]),
+        SensorType::Torque => torque_at(&s.cfrc_int[body], offset),
+        SensorType::Magnetometer => model.opt.magnetic,
+        SensorType::RangeFinder => {
+            return scalar(nearest_geom(model, s, pos, column(mat, 2), body).map_or(-1.0, |(_, distance)| distance));
+        }
+        _ => return scalar(touch::touch(model, s, site)),
+    };
+    vector(mat_t_vec(mat, world))
+}
+
+/// Returns the gear by which an actuator's length follows from its joint. Muscles act on joints themselves.
+fn actuator_gear(s: &State, actuator: usize) -> f64 {
+    if s.muscle_torque.is_empty() {
+        s.params.actuator_gear[actuator]
+    } else {
+        1.0
+    }
+}
+
+fn tendon_velocity(model: &Model, s: &State, tendon: usize) -> f64 {
+    let wrap = model.tendon_wrap[tendon].iter();
+    wrap.map(|&(j, coef)| coef * s.qvel[model.jnt_dofadr[j]]).sum()
+}
+
+/// Returns what a sensor of a limit reads from the first of its rows; 0 where there is none.
+fn limit(s: &State, rows: ConstraintType, kind: SensorType, id: usize) -> f64 {
+    let Some(block) = s.efc.blocks.iter().find(|b| b.kind == rows && b.id == id) else {
+        return 0.0;
+    };
+    match kind {
+        SensorType::JointLimitPos | SensorType::TendonLimitPos => s.efc.pos[block.row] - s.efc.margin[block.row],
+        SensorType::JointLimitVel | SensorType::TendonLimitVel => s.efc.vel[block.row],
+        _ => s.efc.force[block.row],
+    }
+}

@@ -1,0 +1,27 @@
+//! Touch sensors.
+
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::ray::ray_shape;
+use crate::physics::state::State;
+
+/// Returns the sum of the normal forces of contacts of the site's body whose line of force, from the contact into the body, meets
+/// the volume of the site, N.
+pub(super) fn touch(model: &Model, s: &State, site: usize) -> f64 {
+    let body = model.site_bodyid[site];
+    let mut sum = 0.0;
+    for c in s.contact.iter().filter(|c| c.efc_address.is_some()) {
+        let [b1, b2] = c.geom.map(|g| model.geom_bodyid[g]);
+        if (b1 != body && b2 != body) || c.force[0] <= 0.0 {
+            continue;
+        }
+        let along = unit(scale(row(&c.frame, 0), c.force[0])).0;
+        // the normal points into the second body
+        let into = if b2 == body { scale(along, -1.0) } else { along };
+        let (pos, mat, size) = (s.site_xpos[site], &s.site_xmat[site], model.site_size[site]);
+        if ray_shape(model.site_type[site], size, pos, mat, c.pos, into).is_some() {
+            sum += c.force[0];
+        }
+    }
+    sum
+}
