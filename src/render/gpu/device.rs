@@ -26,9 +26,7 @@ struct Faults {
 impl Gpu {
     /// Opens the best adapter: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` narrow the choice.
     pub async fn open() -> Result<Self, GpuError> {
-        let description = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        let backends = description.backends;
-        let instance = wgpu::Instance::new(description);
+        let (instance, backends) = instance();
         let mut tried = vec![format!("looked for {}", names(backends))];
         for adapter in adapters(&instance, backends).await {
             let name = describe(&adapter.get_info());
@@ -103,6 +101,28 @@ impl Gpu {
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Returns the door to the system's graphics drivers, and which of them are looked for.
+///
+/// There is one in a process: drivers, above all those of OpenGL, are not made to be opened in one thread while they are closed in
+/// another, and opening them is most of the time that a renderer takes to start.
+#[cfg(not(target_arch = "wasm32"))]
+fn instance() -> (wgpu::Instance, wgpu::Backends) {
+    static SHARED: std::sync::OnceLock<(wgpu::Instance, wgpu::Backends)> = std::sync::OnceLock::new();
+    SHARED.get_or_init(new_instance).clone()
+}
+
+/// As above. In browsers there is nothing to open, and an instance does not leave its thread.
+#[cfg(target_arch = "wasm32")]
+fn instance() -> (wgpu::Instance, wgpu::Backends) {
+    new_instance()
+}
+
+fn new_instance() -> (wgpu::Instance, wgpu::Backends) {
+    let description = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    let backends = description.backends;
+    (wgpu::Instance::new(description), backends)
 }
 
 /// Lists all adapters, the best first.
