@@ -100,8 +100,12 @@ class VecEnv(BaseVecEnv):
         return self.envs.render() or [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
-        """Returns an attribute of the vector, once for each environment."""
-        return [getattr(self.envs, attr_name) for _ in self._get_indices(indices)]
+        """Returns an attribute of each environment (see :meth:`babybench.VectorEnv.get_attr`), or one of the vector for each."""
+        try:
+            values = self.envs.get_attr(attr_name)
+        except AttributeError:
+            values = (getattr(self.envs, attr_name),) * self.num_envs
+        return [values[env] for env in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
         """Refuses: environments of a vector have no attributes of their own."""

@@ -81,24 +81,15 @@ class Proprioception:
         hints.refuse(self, name, hints.PROPRIOCEPTION)
 
 
-class Touch:
-    """The entry ``touch``: thousands of sensors all over the skin, of which few feel anything at a time.
+class TouchLayout:
+    """What stands where in the entry ``touch``: thousands of sensors all over the skin.
 
     Sensors are ordered by body, and each has ``width`` numbers, in N: one (normal force) or three (a vector, in the
     frame that ``touch_function`` names).
-
-    Example:
-        >>> import babybench
-        >>> env = babybench.make("self_touch", vision_active=False)
-        >>> observation, info = env.reset(seed=0)
-        >>> sensors, forces = env.touch.sparse()
-        >>> bool(abs(forces).sum() == abs(observation["touch"]).sum())
-        True
     """
 
     def __init__(self, core: _native.Env) -> None:
         """Describes what an environment feels."""
-        self._core = core
         self._layout = core.touch_layout()
         self.width: int = core.touch_width
         """Numbers of each sensor: 1 or 3."""
@@ -133,6 +124,24 @@ class Touch:
         axes = [""] if self.width == 1 else [f".{axis}" for axis in "xyz"]
         bodies = ((body["name"], len(body["positions"])) for body in self._layout)
         return [f"{name}[{k}]{axis}" for name, count in bodies for k in range(count) for axis in axes]
+
+
+class Touch(TouchLayout):
+    """The entry ``touch`` of one environment, and touch beyond the vector: few sensors feel anything at a time.
+
+    Example:
+        >>> import babybench
+        >>> env = babybench.make("self_touch", vision_active=False)
+        >>> observation, info = env.reset(seed=0)
+        >>> sensors, forces = env.touch.sparse()
+        >>> bool(abs(forces).sum() == abs(observation["touch"]).sum())
+        True
+    """
+
+    def __init__(self, core: _native.Env) -> None:
+        """Describes what an environment feels."""
+        super().__init__(core)
+        self._core = core
 
     def sparse(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]:
         """Returns the sensors that contacts reach, ascending (K), and what they feel, (K, width), N; all others feel 0."""

@@ -16,6 +16,7 @@ from gymnasium.vector.utils import batch_space
 from babybench_core import _native, locks, scenes, spaces
 from babybench_core.goals import Infos, compute_reward
 from babybench_core.records import LockReport
+from babybench_core.senses import Proprioception, TouchLayout
 
 try:
     from gymnasium.vector import AutoresetMode
@@ -43,6 +44,20 @@ _MODES = {
 }
 # before 1.0 every vector of Gymnasium's resets in the same step
 _USUAL = AutoresetMode.NEXT_STEP if hasattr(gymnasium.vector, "AutoresetMode") else AutoresetMode.SAME_STEP
+
+
+_EACH = ("array", "compute_reward", "info", "lock", "restore", "snapshot", "unlock")
+"""Methods that take the number of an environment first."""
+
+_SINGLE = {
+    "action_space": "single_action_space",
+    "observation_space": "single_observation_space",
+    "proprioception": "proprioception",
+    "render_mode": "render_mode",
+    "spec": "spec",
+    "touch": "touch",
+}
+"""Attributes that environments of a vector have in common, and what they are of the vector."""
 
 
 class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ignore]
@@ -115,17 +130,17 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             raise ValueError(f"render_mode is {render_mode!r}, expected None or rgb_array")
         mode = _USUAL if autoreset_mode is None else AutoresetMode(autoreset_mode)
         full = [scenes.read_config(one, **keys) for one in configs]
-        blueprints = [scenes.blueprint(one, assets) for one in full]
         self.config: dict[str, Any] = full[0]
         """The configuration of the first environment."""
-        if len(blueprints) < num_envs:
-            blueprints *= num_envs
-        self._core = _native.VectorEnv(blueprints, _MODES[mode], threads, max_memory)
-        self._blueprints = tuple(blueprints)  # as long as this lives, others may share them
+        self.configs: tuple[dict[str, Any], ...] = tuple(full) if len(full) == num_envs else (full[0],) * num_envs
+        """The configurations of all environments."""
+        self._assets = None if assets is None else os.fspath(assets)
+        self._limits = (threads, max_memory)
         self._copy = copy
-        self._camera = scenes.camera_of(blueprints[0], camera)
-        self._everyone: Mask = np.ones(num_envs, np.bool_)
         self.autoreset_mode = mode
+        self._build()
+        self._camera = scenes.camera_of(self._blueprints[0], camera)
+        self._everyone: Mask = np.ones(num_envs, np.bool_)
         self.num_envs = num_envs
         self.render_mode = render_mode
         low, high = self._core.action_bounds
@@ -137,6 +152,15 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self.spec = None
         self.closed = False
         self._sent: Optional[npt.NDArray[np.float32]] = None
+
+    def _build(self) -> None:
+        """Builds the environments; those of one configuration share a scene."""
+        made: dict[int, _native.Blueprint] = {}
+        for config in self.configs:
+            if id(config) not in made:
+                made[id(config)] = scenes.blueprint(config, self._assets)
+        self._blueprints = tuple(made[id(config)] for config in self.configs)
+        self._core = _native.VectorEnv(self._blueprints, _MODES[self.autoreset_mode], *self._limits)
 
     # --- Gymnasium ---
 
@@ -246,6 +270,69 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         received, rewards, terminated, truncated, ids = self._core.recv(wanted, self._copy)
         return received, *self._given(rewards, terminated, truncated), self._infos(ids)
 
+    # --- what the numbers are ---
+
+    @functools.cached_property
+    def proprioception(self) -> Proprioception:
+        """What stands where in a row of ``observation``."""
+        return Proprioception(_native.Env(self._blueprints[0], False))
+
+    @functools.cached_property
+    def touch(self) -> TouchLayout:
+        """What stands where in a row of ``touch``.
+
+        Raises:
+            ValueError: Touch is off.
+        """
+        return TouchLayout(_native.Env(self._blueprints[0], False))
+
+    # --- each environment ---
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """Calls a method of one environment (``info``, ``snapshot``, ``lock``, ...) for each of them, as Gymnasium's vectors do.
+
+        An attribute that is no method is returned, once for each environment.
+
+        Example:
+            >>> import babybench
+            >>> envs = babybench.VectorEnv("self_touch", num_envs=2, vision_active=False)
+            >>> observations, infos = envs.reset(seed=0)
+            >>> [round(float(state[2]), 2) for state in envs.call("array", "qpos")]
+            [0.11, 0.11]
+
+        Raises:
+            AttributeError: There is no such method or attribute.
+        """
+        values = self.get_attr(name)
+        return tuple(value(*args, **kwargs) if callable(value) else value for value in values)
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """Returns an attribute of one environment for each of them: ``config``, ``action_space``, or a method such as ``info``.
+
+        Raises:
+            AttributeError: There is no such attribute.
+        """
+        if name in _EACH:
+            method = getattr(self, name)
+            return tuple(functools.partial(method, env) for env in range(self.num_envs))
+        if name == "config":
+            return self.configs
+        if name in _SINGLE:
+            return (getattr(self, _SINGLE[name]),) * self.num_envs
+        known = ", ".join(sorted([*_EACH, *_SINGLE, "config"]))
+        raise AttributeError(f"environments of a vector have no {name!r}; they have {known}")
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Refuses: environments of a vector have no attributes to be changed.
+
+        Raises:
+            AttributeError: Always.
+        """
+        raise AttributeError(
+            f"cannot set {name!r}: environments of a vector have no attributes of their own; their configurations can differ "
+            "(a list of them), and lock, restore and reset take the number of an environment"
+        )
+
     # --- one environment ---
 
     def info(self, env: int) -> dict[str, Any]:
@@ -319,6 +406,29 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         for key in ("final_obs", "final_observation"):
             infos.update(_sparse(key, rows, observations))
         infos.update(_sparse("final_info", rows, details))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Returns what a copy needs to go on with the same bits.
+
+        Raises:
+            RuntimeError: Environments are under way.
+        """
+        state = self.__dict__.copy()
+        for made in ("_core", "_blueprints", "proprioception", "touch"):
+            state.pop(made, None)
+        state["_snapshots"] = None if self.closed else self.call("snapshot")
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Builds the copy."""
+        snapshots = state.pop("_snapshots")
+        self.__dict__.update(state)
+        self._build()
+        if snapshots is None:
+            self._core.close()
+        else:
+            for env, snapshot in enumerate(snapshots):
+                self._core.restore(env, snapshot)
 
     def __repr__(self) -> str:
         return f"<babybench.VectorEnv of {self.num_envs}>"

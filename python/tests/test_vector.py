@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import pickle
 import sys
 import types
 
@@ -199,6 +200,54 @@ def test_snapshots_fit_vectors_and_single_environments():
         np.testing.assert_array_equal(observations["touch"][i], one["touch"])
     assert envs.lock(0, "head")["changed"]
     assert envs.array(0, "qpos").shape == env.array("qpos").shape
+
+
+def test_what_the_numbers_are_is_that_of_one_environment():
+    envs, env = babybench.VectorEnv(SMALL, 2), babybench.Env(SMALL)
+    observations, _ = envs.reset(seed=0)
+    env.reset(seed=1)
+    assert envs.proprioception.names == env.proprioception.names
+    assert envs.touch.names == env.touch.names
+    assert envs.touch.sensors * envs.touch.width == observations["touch"].shape[1]
+    hand = envs.touch.slices["right_hand"]
+    np.testing.assert_array_equal(observations["touch"][1, hand], env.touch.of("right_hand").ravel())
+
+
+def test_attributes_and_methods_of_each_environment():
+    envs = babybench.VectorEnv([{**SMALL, "age": age} for age in (6, 12)], act_fingers=False)
+    envs.reset(seed=0)
+    assert [config["age"] for config in envs.get_attr("config")] == [6, 12]
+    assert envs.get_attr("action_space") == (envs.single_action_space,) * 2
+    assert envs.call("info") == (envs.info(0), envs.info(1))
+    masses = envs.call("array", "qpos")
+    assert not np.array_equal(masses[0], masses[1])
+    assert all(report["changed"] for report in envs.call("lock", "head", angle=0.1))
+    for name in ("no_such_thing", "step", "_core"):
+        with pytest.raises(AttributeError, match="they have .*snapshot"):
+            envs.call(name)
+    with pytest.raises(AttributeError, match="cannot set"):
+        envs.set_attr("config", {})
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_copy_goes_on_with_the_same_bits(mode):
+    envs = babybench.VectorEnv({**SMALL, "max_episode_steps": 3}, 2, autoreset_mode=mode, threads=1)
+    script = actions_of(envs, 8)
+    envs.reset(seed=3)
+    for k, actions in enumerate(script):
+        copy = pickle.loads(pickle.dumps(envs))
+        assert (copy.num_envs, copy.autoreset_mode, copy.configs) == (2, mode, envs.configs)
+        if mode is AutoresetMode.DISABLED and k % 3 == 0:
+            results = [e.reset() for e in (envs, copy)]
+        results = [e.step(actions) for e in (envs, copy)]
+        for key in results[0][0]:
+            np.testing.assert_array_equal(results[0][0][key], results[1][0][key], err_msg=f"step {k}: {key}")
+        for one, other in zip(results[0][1:4], results[1][1:4]):
+            np.testing.assert_array_equal(one, other)
+        copy.close()
+    envs.close()
+    with pytest.raises(RuntimeError, match="closed"):
+        pickle.loads(pickle.dumps(envs)).reset()
 
 
 def test_pictures_of_all():
