@@ -40,6 +40,14 @@ pub fn png() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// Returns a parser of file names that end in `.png` or `.svg`.
+pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.extension() {
+        Some(end) if ["png", "svg"].iter().any(|known| end.eq_ignore_ascii_case(known)) => Ok(path),
+        _ => Err("expected a name that ends in .png, or in .svg with --age"),
+    })
+}
+
 /// Quotes a path so that it is one word of a command line.
 pub fn word(path: impl Display) -> String {
     let mut path = path.to_string();

@@ -77,7 +77,7 @@ fn wrong_options_say_what_is_expected() {
         ("evaluate", "--fps", ["0", "-1", "1001"], "from 1 to 1000"),
         ("evaluate", "--policy-timeout", ["0", "-1", "inf"], "expected seconds"),
         ("render", "--size", ["0", "-4", "big"], "whole number of at least 1"),
-        ("render", "--out", ["a.jpg", "a", "png"], "ends in .png"),
+        ("render", "--out", ["a.jpg", "a", "png"], "ends in .png, or in .svg"),
         ("inspect", "--touch", ["a.jpg", "a", "png"], "ends in .png"),
         (
             "replay",
@@ -224,6 +224,29 @@ fn many_environments_at_once_say_how_fast_they_are() {
         &["run", "--config", &config, "--threads", "2"],
         &["--envs"],
     );
+}
+
+/// A noise moves him in a vector as alone, and far enough to touch himself.
+#[test]
+fn babbling_in_many_environments_is_that_of_one() {
+    let folder = Folder::new("babbling");
+    let touched = |name: &str, rest: &[&str]| {
+        let keys = format!(
+            "behavior: self_touch\nscene: crib\nvision_active: false\ntouch_active: false\nmax_episode_steps: 400\nsave_dir: {name}\n"
+        );
+        let config = folder.file(&format!("{name}.yml"), keys).display().to_string();
+        let train = ["train", "--config", &config, "--train-for", "800", "--quiet", "--noise"];
+        let out = babybench(folder.path(), &[&train[..], rest].concat());
+        assert!(out.status.success(), "{}", text(&out));
+        let records = read_training(folder.path().join(name)).expect("a log");
+        let touches = records.iter().filter_map(|record| record.behavior.touches());
+        touches.map(|hands| hands.map(<[usize]>::to_vec)).collect::<Vec<_>>()
+    };
+    let alone = touched("alone", &["held"]);
+    assert_eq!(alone.len(), 2);
+    assert!(alone.iter().all(|hands| !hands.concat().is_empty()), "{alone:?}");
+    assert_eq!(touched("vector", &["held", "--envs", "1"]), alone);
+    assert_ne!(touched("pink", &["pink"]), alone);
 }
 
 #[test]

@@ -29,6 +29,48 @@ fn refused(folder: &Folder, arguments: &[&str], parts: &[&str]) {
     }
 }
 
+/// What the eyes observe is drawn as observed: in their resolution, and blurred as the configuration says.
+#[test]
+fn what_he_observes_is_drawn_as_he_sees_it() {
+    let folder = Folder::new("observed");
+    let picture = |name: &str, keys: &str| {
+        let config = folder.file(
+            name,
+            format!("scene: cubes\ntouch_active: false\nvision_resolution: 32\n{keys}"),
+        );
+        let out = format!("{name}.png");
+        let arguments = [
+            "render",
+            "--config",
+            &config.display().to_string(),
+            "--observed",
+            "--out",
+            &out,
+        ];
+        let result = babybench(folder.path(), &arguments);
+        (
+            result.status.success(),
+            text(&result),
+            std::fs::read(folder.path().join(out)).ok(),
+        )
+    };
+    let (fine, said, sharp) = picture("sharp", "");
+    assert!(
+        fine && said.contains("64 x 32 pixels, left and right eye as observed"),
+        "{said}"
+    );
+    let sharp = sharp.expect("a picture");
+    let size = [&sharp[16..20], &sharp[20..24]].map(|bytes| u32::from_be_bytes(bytes.try_into().expect("four bytes")));
+    assert_eq!(size, [64, 32]);
+    let blurred = picture("blurred", "age: 0\nvision_acuity: true\n")
+        .2
+        .expect("a picture");
+    let grown = picture("grown", "age: 0\n").2.expect("a picture");
+    assert_ne!(blurred, grown, "a newborn sees sharply");
+    let (fine, said, _) = picture("blind", "vision_active: false\n");
+    assert!(!fine && said.contains("it needs vision_active: true"), "{said}");
+}
+
 #[test]
 fn a_new_room_is_checked_drawn_run_trained_in_and_reported() {
     let folder = Folder::new("new_room");
@@ -60,7 +102,7 @@ fn a_new_room_is_checked_drawn_run_trained_in_and_reported() {
     done(&folder, &with("run", &["--quiet"]));
     done(&folder, &with("inspect", &[]));
     done(&folder, &with("render", &["--size", "32", "--out", "room.png"]));
-    done(&folder, &with("render", &["--age", "0,12", "--out", "ages.png"]));
+    done(&folder, &with("render", &["--age", "0,12", "--out", "ages.svg"]));
     done(&folder, &with("train", &["--train-for", "10", "--quiet"]));
     done(&folder, &["report", "run"]);
     let page = std::fs::read_to_string(folder.path().join("run/report.html")).expect("the page");

@@ -127,7 +127,7 @@ macro_rules! config {
         $($name:ident: $type:ty = $default:expr, $kind:expr, $doc:literal $(+ $more:literal)?;)*
         $(@group $group:ident: $Group:ident, $group_doc:literal, $about:literal {
             $($field:ident as $key:ident: $field_type:ty = $field_default:expr, $field_kind:expr, $field_doc:literal;)*
-        })?
+        })*
         $(@parts $parts:ident = $parts_default:expr, $parts_doc:literal {
             $($part:ident as $part_key:ident, $part_doc:literal;)*
         })?
@@ -140,7 +140,7 @@ macro_rules! config {
         pub struct Config {
             $(
                 $(#[doc = $doc] $(#[doc = "\n\n"] #[doc = $more])? pub $name: $type,)*
-                $(#[doc = $group_doc] pub $group: $Group,)?
+                $(#[doc = $group_doc] pub $group: $Group,)*
                 $(#[doc = $parts_doc] pub $parts: BodyParts<bool>,)?
             )*
         }
@@ -151,7 +151,7 @@ macro_rules! config {
                 Self {
                     $(
                         $($name: $default,)*
-                        $($group: $Group::default(),)?
+                        $($group: $Group::default(),)*
                         $($parts: $parts_default,)?
                     )*
                 }
@@ -171,11 +171,11 @@ macro_rules! config {
                     Self { $($field: $field_default,)* }
                 }
             }
-        )?)*
+        )*)*
 
         pub(super) static KEYS: &[Key] = &[$(
             $(config!(@key $section, $name, $kind, $doc, $name),)*
-            $($(config!(@key $section, $key, $field_kind, $field_doc, $group.$field),)*)?
+            $($(config!(@key $section, $key, $field_kind, $field_doc, $group.$field),)*)*
             $($(config!(@key $section, $part_key, KeyKind::Bool, $part_doc, $parts.$part),)*)?
         )*];
     };

@@ -51,7 +51,7 @@ pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
 pub use scene::Scene;
 internals!(use table::Config);
-pub use table::{Delays, EyeOptions, MAX_AGE, Measurements, NoiseLevels, PainOptions};
+pub use table::{CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, NoiseLevels, PainOptions, RollOverOptions};
 
 use std::path::Path;
 

@@ -73,10 +73,14 @@ config! {
     }
     "Tasks" {
         done_active: bool = true, Bool, "Success and failure of a task terminate the episode.";
-        action_penalty: bool = true, Bool, "The task catch subtracts the cost of an action from the reward.";
-        jitter: bool = false, Bool, "The task catch disturbs actions, by factors that change now and then.";
-        position_inaccurate: bool = false, Bool, "The eyes of the task catch follow a point beside the ball.";
-        starting_position: StartingPosition = StartingPosition::Supine, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
+        @group catch: CatchOptions, "Options of the task catch.", "Options of the task `catch`." {
+            action_penalty as action_penalty: bool = true, Bool, "The task catch subtracts the cost of an action from the reward.";
+            jitter as jitter: bool = false, Bool, "The task catch disturbs actions, by factors that change now and then.";
+            position_inaccurate as position_inaccurate: bool = false, Bool, "The eyes of the task catch follow a point beside the ball.";
+        }
+        @group roll_over: RollOverOptions, "Options of the task roll_over.", "Options of the task `roll_over`." {
+            starting_position as starting_position: StartingPosition = StartingPosition::Supine, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
+        }
     }
     GROWTH {
         age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the proportions of the original.";

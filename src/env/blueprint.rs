@@ -302,6 +302,11 @@ impl Blueprint {
         &self.config
     }
 
+    /// Returns the time between two steps of an environment, s: the model's timestep times `frame_skip`.
+    pub fn dt(&self) -> f64 {
+        self.model.opt.timestep * f64::from(self.config.frame_skip)
+    }
+
     /// Returns the compiled scene.
     pub fn model(&self) -> &Arc<Model> {
         &self.model

@@ -495,6 +495,11 @@ impl Env {
         self.actuation.action_space().sample(&mut self.rng, action);
     }
 
+    /// Draws a seed from the generator of [`Env::sample_action`], so that what is made with it follows from the environment's seed.
+    pub(crate) fn draw_seed(&mut self) -> u64 {
+        self.rng.word()
+    }
+
     /// Seeds the generator of [`Env::sample_action`] and of start actions.
     pub fn seed_action_space(&mut self, seed: u64) {
         self.rng = NumpyRng::seed(seed);

@@ -156,7 +156,7 @@ fn episodes(
     while let Some(episode) = (schedule.next)() {
         let seed = blueprint.config().seed.wrapping_add(episode);
         env.reset(Some(seed)).map_err(env_error(episode))?;
-        policy.begin(&mut env)?;
+        policy.begin(&mut env, episode)?;
         evaluation.reset();
         for _ in 0..plan.duration {
             policy.act(&mut env, &mut action)?;

@@ -49,6 +49,9 @@ pub struct Score {
     pub episodes: usize,
     /// Number of steps in these records.
     pub steps: u64,
+    /// Mean number of parts that both hands touch in an episode, each hand's counted for itself; none for `hand_regard`. The score is
+    /// the union of all episodes, which a rare touch of chance raises as much as a habit; this is not.
+    pub parts_per_episode: Option<f64>,
     /// The parts of the score.
     pub parts: ScoreParts,
 }
@@ -106,6 +109,7 @@ impl Score {
             value,
             episodes,
             steps,
+            parts_per_episode: parts_per_episode(chosen),
             parts,
         })
     }
@@ -152,7 +156,11 @@ impl Score {
     pub fn to_text(&self, skin: Option<&Touchables>) -> String {
         let mut out = format!("{self}\n");
         // writing to a string cannot fail
-        let _ = writeln!(out, "  {} episodes, {} steps count", self.episodes, self.steps);
+        let _ = write!(out, "  {} episodes, {} steps count", self.episodes, self.steps);
+        if let Some(number) = self.parts_per_episode {
+            let _ = write!(out, "; {number:.1} parts touched in an episode");
+        }
+        out.push('\n');
         match &self.parts {
             ScoreParts::SelfTouch { touched } => {
                 let hands = ["right hand", "left hand"].into_iter().zip(touched.each_ref());
@@ -198,6 +206,14 @@ impl Score {
 fn of_touched(touched: &PerHand<Vec<usize>>) -> f64 {
     let number: usize = touched.each_ref().iter().map(|t| t.len().min(PARTS)).sum();
     number as f64 / (2 * PARTS) as f64
+}
+
+/// Returns the mean number of parts that both hands touch in an episode; `None` if there are no episodes of `self_touch`.
+fn parts_per_episode(records: &[Info]) -> Option<f64> {
+    let touches = records.iter().filter_map(|r| r.behavior.touches());
+    let numbers = touches.map(|t| t.each_ref().iter().map(|geoms| geoms.len().min(PARTS)).sum::<usize>());
+    let (episodes, sum) = numbers.fold((0_usize, 0_usize), |(n, sum), number| (n + 1, sum + number));
+    (episodes > 0).then(|| sum as f64 / episodes as f64)
 }
 
 /// Returns the number of steps in records.

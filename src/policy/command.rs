@@ -23,7 +23,7 @@ const UNASKED: &str = "more lines came than observations went, so that its answe
 /// A policy in another program, in any language: a line of JSON with the observation goes to its standard input, a line
 /// with a JSON list of numbers, the action, comes back from its standard output. Its standard error is passed through.
 ///
-/// The line is an object with the number of the `episode` and of the `step` in it (both from 0), and the keys of the
+/// The line is an object with the number of the `episode` in the evaluation and of the `step` in it (both from 0), and the keys of the
 /// observation ([`ObservationEntry`](crate::sensors::ObservationEntry)): `observation`, `touch` and all others but images are
 /// flat lists of numbers, `eye_left` and `eye_right` are objects `{"shape": [height, width, 3], "data": "..."}` with the bytes of the image in base64 (red, green, blue of each
 /// pixel, rows from the top), and what else `vision_outputs` asks for, such as `eye_left_depth`, are objects `{"shape":
@@ -100,7 +100,7 @@ impl CommandPolicy {
             )
         })?;
         let (name, arguments) = words.split_first().ok_or_else(|| {
-            malformed("it is empty; a policy is random, zero, an .onnx file, or a command with its arguments")
+            malformed("it is empty; a policy is random, zero, held, ou, pink, oscillators, an .onnx file, or a command with its arguments")
         })?;
         let mut program = Command::new(name);
         program.args(arguments);
@@ -125,6 +125,9 @@ impl CommandPolicy {
             source,
         };
         program.stdin(Stdio::piped()).stdout(Stdio::piped());
+        // a group of its own, so that a program that does not end takes what it started with it
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut program, 0);
         let mut child = program.spawn().map_err(failed)?;
         let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(failed(std::io::Error::other("no pipe")));
@@ -281,11 +284,8 @@ fn start(text: &str) -> String {
 }
 
 impl Policy for CommandPolicy {
-    fn begin(&mut self, _: &mut Env) -> Result<(), PolicyError> {
-        if self.now.step > 0 {
-            self.now.episode += 1;
-        }
-        self.now.step = 0;
+    fn begin(&mut self, _: &mut Env, episode: u64) -> Result<(), PolicyError> {
+        self.now = Moment { episode, step: 0 };
         Ok(())
     }
 
@@ -311,11 +311,26 @@ impl Drop for CommandPolicy {
         // the end of its input tells the program to end
         self.observations = None;
         if wait(&mut self.child, FAREWELL).is_none() {
+            kill_group(&self.child);
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
     }
 }
+
+/// Kills a program that has not been waited for, and all that it started and that has not left its group.
+#[cfg(unix)]
+fn kill_group(child: &Child) {
+    let group = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw);
+    if let Some(group) = group {
+        // one that has just ended is no error
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    }
+}
+
+/// Elsewhere only the program itself can be killed.
+#[cfg(not(unix))]
+fn kill_group(_: &Child) {}
 
 #[cfg(test)]
 mod tests {

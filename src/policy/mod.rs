@@ -17,6 +17,7 @@ pub use onnx::{OnnxError, OnnxPolicy};
 use thiserror::Error;
 
 use crate::env::Env;
+use crate::spaces::{ActionNoise, Noise};
 
 /// An error of a policy.
 #[derive(Debug, Error)]
@@ -24,8 +25,8 @@ use crate::env::Env;
 pub enum PolicyError {
     /// The command cannot be started.
     #[error(
-        "cannot start the policy {command:?}: {source}; a policy is random, zero, an .onnx file, or a command with its \
-         arguments"
+        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, oscillators, an .onnx file, or a \
+         command with its arguments"
     )]
     Start {
         /// The command.
@@ -106,7 +107,7 @@ pub enum PolicyError {
 /// A moment of an evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moment {
-    /// Episodes before this one, of this policy.
+    /// Number of the episode in the evaluation, from 0.
     pub episode: u64,
     /// Steps before this one in the episode.
     pub step: u64,
@@ -114,18 +115,19 @@ pub struct Moment {
 
 impl std::fmt::Display for Moment {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "at step {} of its episode {}", self.step, self.episode)
+        write!(f, "at step {} of episode {}", self.step, self.episode)
     }
 }
 
 /// Chooses actions.
 pub trait Policy: Send {
-    /// Begins an episode; the environment has been reset.
+    /// Begins an episode; the environment has been reset. `episode` is its number in the evaluation, from 0: where episodes run in
+    /// parallel, a policy meets only some of them.
     ///
     /// # Errors
     /// The policy cannot go on.
-    fn begin(&mut self, env: &mut Env) -> Result<(), PolicyError> {
-        let _ = env;
+    fn begin(&mut self, env: &mut Env, episode: u64) -> Result<(), PolicyError> {
+        let _ = (env, episode);
         Ok(())
     }
 
@@ -159,14 +161,54 @@ impl Policy for ZeroPolicy {
     }
 }
 
+/// A policy that moves without looking: an [`ActionNoise`] whose seed is drawn from the environment's generator at the start of an
+/// episode.
+#[derive(Clone, Debug)]
+pub struct NoisePolicy {
+    noise: Noise,
+    running: Option<ActionNoise>,
+}
+
+impl NoisePolicy {
+    /// Creates the policy of a noise.
+    pub fn new(noise: Noise) -> Self {
+        Self { noise, running: None }
+    }
+}
+
+impl Policy for NoisePolicy {
+    fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
+        let seed = env.draw_seed();
+        self.running = Some(ActionNoise::new(
+            self.noise,
+            env.action_space(),
+            env.blueprint().dt(),
+            seed,
+        ));
+        Ok(())
+    }
+
+    fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
+        if self.running.is_none() {
+            self.begin(env, 0)?;
+        }
+        if let Some(running) = &mut self.running {
+            running.sample(action);
+        }
+        Ok(())
+    }
+}
+
 /// A policy as the command line names it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), doc(hidden))]
 pub enum PolicySource {
     /// `random`
     Random,
     /// `zero`
     Zero,
+    /// A noise that lasts: `held`, `ou`, `pink` or `oscillators`.
+    Noise(Noise),
     /// A file that ends in `.onnx`.
     Onnx(PathBuf),
     /// Anything else.
@@ -178,6 +220,13 @@ impl PolicySource {
     /// if it has spaces; otherwise it is a command with a model among its arguments.
     pub fn new(text: &str) -> Self {
         let text = text.trim();
+        if let Ok(noise) = text.parse() {
+            return if noise == Noise::White {
+                Self::Random
+            } else {
+                Self::Noise(noise)
+            };
+        }
         let model = |name: &str| name.to_ascii_lowercase().ends_with(".onnx");
         match text {
             "random" => Self::Random,
@@ -198,6 +247,7 @@ impl PolicySource {
         Ok(match self {
             Self::Random => Box::new(RandomPolicy),
             Self::Zero => Box::new(ZeroPolicy),
+            Self::Noise(noise) => Box::new(NoisePolicy::new(*noise)),
             #[cfg(feature = "onnx")]
             Self::Onnx(path) => Box::new(OnnxPolicy::open(path)?),
             #[cfg(not(feature = "onnx"))]

@@ -404,13 +404,13 @@ fn name(model: &Model, id: NodeId) -> String {
 }
 
 impl Policy for OnnxPolicy {
-    fn begin(&mut self, env: &mut Env) -> Result<(), PolicyError> {
+    fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
         self.connect(&env.observation_space())
     }
 
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
         if self.inputs.is_empty() {
-            self.begin(env)?;
+            self.connect(&env.observation_space())?;
         }
         self.decide(&env.observation(), env.action_space(), action)
     }

@@ -250,7 +250,9 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
                 text class="tick" x=(left - 6.0) y=(format!("{:.1}", y(v) + 4.0)) text-anchor="end" { (tidy(v)) }
             }
             @for v in marks(last, 6.0).filter(whole) {
-                text class="tick" x=(format!("{:.1}", x(v))) y=(SIZE[1] - bottom + 16.0) text-anchor="middle" { (v) }
+                // centred under the right edge, a number of four figures would be cut off
+                @let anchor = if x(v) > SIZE[0] - right - 10.0 { "end" } else { "middle" };
+                text class="tick" x=(format!("{:.1}", x(v))) y=(SIZE[1] - bottom + 16.0) text-anchor=(anchor) { (v) }
             }
             text class="tick" x=(left + 0.5 * inner[0]) y=(SIZE[1] - 2.0) text-anchor="middle" { "episode" }
             text class="tick" x=(left) y="13" { (chart.unit) }

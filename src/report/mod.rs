@@ -8,7 +8,6 @@ mod ages;
 mod curve;
 mod doll;
 mod gaze;
-mod lettering;
 mod page;
 mod run;
 #[cfg(feature = "internals")]

@@ -16,6 +16,7 @@ use crate::config::{Behavior, Compat, Config, Scene};
 use crate::env::{EYE_HAND_PAIRS, Info, Outcome, TaskInfo};
 use crate::eval::{Score, ScoreParts};
 use crate::mimo::Version;
+use crate::text::quoted;
 
 const STYLE: &str = include_str!("style.css");
 /// The hands: name, class, colour.
@@ -24,7 +25,7 @@ const HANDS: [(&str, &str, [f32; 3]); 2] = [
     ("left hand", "left", [0.18, 0.525, 0.87]),
 ];
 /// Returns a file as a `data:` address.
-fn embed(kind: &str, bytes: &[u8]) -> String {
+pub(super) fn embed(kind: &str, bytes: &[u8]) -> String {
     let mut out = format!("data:image/{kind};base64,");
     STANDARD.encode_string(bytes, &mut out);
     out
@@ -77,7 +78,7 @@ fn title(run: &Run) -> String {
         Scene::Crib => "in the crib".to_string(),
         Scene::Cubes => "among the cubes".to_string(),
         Scene::Base => "on the floor".to_string(),
-        Scene::File(path) => format!("in {path}"),
+        Scene::File(path) => format!("in {}", quoted(path)),
     };
     match config.age {
         Some(age) => format!("{behavior} {place}, at {age} months"),
@@ -144,7 +145,8 @@ fn header(run: &Run) -> Markup {
         header {
             p.over { "BabyBench report" }
             h1 { (title(run)) }
-            p.under { (run.dir.display()) @if let Some(about) = about { " · " (about) } }
+            // a name may hold characters that turn what stands around it
+            p.under { (quoted(&run.dir.display().to_string())) @if let Some(about) = about { " · " (about) } }
         }
     }
 }
@@ -172,6 +174,9 @@ fn score_section(run: &Run) -> Markup {
                     b { (format!("{:.3}", score.value)) }
                     div.bar { i style=(format!("width:{:.1}%", 100.0 * (score.value / best).min(1.0))) {} }
                     span { "of " (format!("{best:.3}")) " at best" }
+                }
+                @if let Some(number) = score.parts_per_episode {
+                    (card(&format!("{number:.1}"), "parts touched in an episode"))
                 }
                 (card(&grouped(score.episodes as u64), "episodes counted"))
                 (card(&grouped(score.steps), "steps"))

@@ -89,11 +89,11 @@ impl RunVector {
     }
 
     /// Logs the episodes that are over, in the order of their environments, and starts the next ones. What they begin with
-    /// is in [`VectorEnv::batch`].
+    /// is in [`VectorEnv::batch`]. Returns for each environment whether it began an episode.
     ///
     /// # Errors
     /// As [`VectorEnv::reset`]; a log that cannot be written.
-    pub fn start_episodes(&mut self) -> Result<(), RunError> {
+    pub fn start_episodes(&mut self) -> Result<&[bool], RunError> {
         for env in 0..self.vector.len() {
             self.mask[env] = self.over(env)?;
             if self.mask[env] {
@@ -103,7 +103,7 @@ impl RunVector {
         if self.mask.contains(&true) {
             self.vector.reset_where(&self.mask, None)?;
         }
-        Ok(())
+        Ok(&self.mask)
     }
 
     /// Applies an action in each of the first environments, as many as there are actions , (n, len).

@@ -1,9 +1,11 @@
 //! Action and observation spaces, as in Gymnasium.
 
+mod noise;
 mod normal;
 mod rng;
 mod values;
 
+pub use noise::{ActionNoise, Noise, NoiseError};
 pub use rng::NumpyRng;
 pub(crate) use values::Number;
 pub use values::Values;

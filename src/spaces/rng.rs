@@ -61,7 +61,8 @@ impl NumpyRng {
         normal::normal(|| self.word())
     }
 
-    fn word(&mut self) -> u64 {
+    /// Draws 64 random bits.
+    pub(crate) fn word(&mut self) -> u64 {
         self.drawn = self.drawn.wrapping_add(1);
         self.generator.next_u64()
     }

@@ -6,6 +6,7 @@
 use super::slot::{Order, Slot};
 use super::{Batch, Buffers, Failure, Seeds, VectorEnv, VectorError, of};
 use crate::env::draw_eyes;
+use crate::spaces::ActionNoise;
 
 impl VectorEnv {
     /// Starts an episode in all environments. With one seed, environment i gets `seed + i`.
@@ -223,6 +224,21 @@ impl VectorEnv {
             let Slot { env, action, .. } = &mut **slot;
             env.sample_action(action);
             actions.extend_from_slice(action);
+        }
+        Ok(())
+    }
+
+    /// Begins a noise anew for each environment (where `mask` is true), with a seed drawn from that environment's generator of
+    /// [`VectorEnv::sample_actions`].
+    ///
+    /// # Errors
+    /// Environments in flight.
+    pub fn start_noises(&mut self, noises: &mut [ActionNoise], mask: Option<&[bool]>) -> Result<(), VectorError> {
+        self.check_home()?;
+        for (i, (noise, slot)) in noises.iter_mut().zip(self.slots.iter_mut().flatten()).enumerate() {
+            if mask.is_none_or(|mask| mask.get(i) == Some(&true)) {
+                noise.reset(slot.env.draw_seed());
+            }
         }
         Ok(())
     }

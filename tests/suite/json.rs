@@ -184,11 +184,16 @@ fn scores_are_json_whatever_they_hold() {
             value: source.number(),
             episodes: source.below(1000),
             steps: source.below(2) as u64 * source.whole(),
+            parts_per_episode: (source.below(2) == 0).then(|| source.number()),
             parts,
         };
         let (line, plain) = (score.to_json(Some(&skin)), json(&score.to_json(None)));
         let named = json(&line);
         assert!(same(&named["score"], score.value), "{line}");
+        match score.parts_per_episode {
+            Some(number) => assert!(same(&named["parts_per_episode"], number), "{line}"),
+            None => assert_eq!(named.get("parts_per_episode"), None),
+        }
         assert_eq!(plain, serde_json::to_value(&score).expect("JSON"));
         keys_in_order(&line, &["behavior", "score", "episodes", "steps"]);
         match &score.parts {

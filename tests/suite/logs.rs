@@ -218,7 +218,13 @@ fn scores_are_those_of_the_specification() {
         ..Info::default()
     };
     let records = [touch(&[1, 2, 3], &[9]), touch(&[5, 6], &[7]), touch(&[6], &[])];
-    assert_eq!(Score::new(&records).expect("a score").value, 3.0 / 68.0);
+    let score = Score::new(&records).expect("a score");
+    assert_eq!((score.value, score.parts_per_episode), (3.0 / 68.0, Some(2.0)));
+    assert!(
+        score
+            .to_text(None)
+            .contains("2 episodes, 2000 steps count; 2.0 parts touched in an episode")
+    );
     assert_eq!(Score::new(&records[..1]).expect("a score").value, 0.0);
     let regard = |n, steps| Info {
         steps,
@@ -228,7 +234,7 @@ fn scores_are_those_of_the_specification() {
         ..Info::default()
     };
     let score = Score::new(&[regard(100, 100), regard(3, 10), regard(1, 30)]).expect("a score");
-    assert_eq!(score.value, 0.1);
+    assert_eq!((score.value, score.parts_per_episode), (0.1, None));
     assert_eq!(score.fractions(), Some([0.1; 4].into()));
     // of more than 10,001 records the last 10,000 count
     let mut many = vec![touch(&[1, 2], &[3]); 5];

@@ -11,6 +11,7 @@ use babybench::eval::{EpisodeError, Plan, run_episodes};
 use babybench::policy::PolicySource;
 use babybench::runs::EvaluationLog;
 use babybench::runs::logs::evaluation_path;
+use babybench::spaces::Noise;
 
 /// Steps of an episode.
 const DURATION: u64 = 6;
@@ -70,6 +71,10 @@ fn a_policy_has_a_name() {
     for (text, source) in [
         ("random", PolicySource::Random),
         (" zero ", PolicySource::Zero),
+        ("white", PolicySource::Random),
+        ("pink", PolicySource::Noise(Noise::Pink)),
+        (" held:0.1 ", PolicySource::Noise(Noise::Held { seconds: 0.1 })),
+        ("held:never", PolicySource::Command("held:never".into())),
         ("a/c.ONNX", PolicySource::Onnx("a/c.ONNX".into())),
         ("'a b/c.onnx'", PolicySource::Onnx("a b/c.onnx".into())),
         (
@@ -89,6 +94,27 @@ fn a_policy_has_a_name() {
         PolicySource::new(&model.display().to_string()),
         PolicySource::Onnx(model)
     );
+}
+
+#[test]
+fn noises_move_him_each_in_its_way_whatever_the_number_of_jobs() {
+    let folder = Folder::new("noises");
+    let blueprint = small(&folder, false);
+    let mut all = Vec::new();
+    for noise in ["random", "held:0.05", "ou", "pink", "oscillators"] {
+        evaluate(&blueprint, noise, 1).expect("episodes");
+        let alone = logs(&folder);
+        evaluate(&blueprint, noise, 2).expect("episodes");
+        assert_eq!(alone, logs(&folder), "{noise}");
+        assert_ne!(alone[0].qpos, alone[1].qpos, "{noise}: both episodes are alike");
+        all.push(alone);
+    }
+    for (k, one) in all.iter().enumerate() {
+        assert!(
+            all[..k].iter().all(|other| other != one),
+            "noise {k} moves him as another does"
+        );
+    }
 }
 
 #[cfg(unix)]
@@ -113,6 +139,20 @@ mod commands {
         let piped = logs(&folder);
         assert_eq!(evaluate(&blueprint, "zero", 1).expect("episodes"), infos);
         assert_eq!(piped, logs(&folder));
+    }
+
+    /// A policy that goes by the number of the episode, in one program for both episodes and in one for each.
+    #[test]
+    fn the_number_of_an_episode_does_not_depend_on_the_number_of_jobs() {
+        let folder = Folder::new("numbers");
+        let blueprint = small(&folder, false);
+        let body = r#"case "$line" in *'"episode": 1,'*) a=1;; *) a=-1;; esac; echo "[$a, $a, $a, $a, $a, $a]""#;
+        let policy = script(&folder, "numbers.sh", body);
+        evaluate(&blueprint, &policy, 1).expect("episodes");
+        let alone = logs(&folder);
+        assert_ne!(alone[0], alone[1]);
+        evaluate(&blueprint, &policy, 2).expect("episodes");
+        assert_eq!(alone, logs(&folder));
     }
 
     #[test]
@@ -177,6 +217,29 @@ mod commands {
         }
     }
 
+    /// A program that goes on after the end of its input is killed, and with it what it has started.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_program_that_is_killed_takes_its_children_with_it() {
+        let folder = Folder::new("children");
+        let blueprint = small(&folder, false);
+        let pid = folder.path().join("pid");
+        let body = "while read -r line; do echo '[0, 0, 0, 0, 0, 0]'; done";
+        let text = format!("sleep 1000 & echo $! > '{}'\n{body}\nsleep 1000\n", pid.display());
+        let program = folder.file("parent.sh", text);
+        evaluate(&blueprint, &format!("sh '{}'", program.display()), 1).expect("episodes");
+        let pid = std::fs::read_to_string(pid).expect("a process").trim().to_string();
+        let stat = std::path::Path::new("/proc").join(&pid).join("stat");
+        // a zombie is dead, though nobody has asked how it ended
+        let lives =
+            || std::fs::read_to_string(&stat).is_ok_and(|stat| stat.contains("(sleep)") && !stat.contains(") Z"));
+        let asked = std::time::Instant::now();
+        while lives() && asked.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        assert!(!lives(), "process {pid} outlives the policy that started it");
+    }
+
     #[test]
     fn broken_programs_are_named() {
         let folder = Folder::new("broken");
@@ -191,13 +254,13 @@ mod commands {
             "sh 'my script.sh",
             &["cannot start", "a quote is not closed", "'my policy.py'"],
         );
-        refused("true", &["ended (exit status: 0) at step 0 of its episode 0"]);
+        refused("true", &["ended (exit status: 0) at step 0 of episode"]);
         refused("cat", &["answered \"{", "not a list", "list of 6 numbers"]);
         refused("sleep 30", &["no action within 1 s at step 0", "--policy-timeout"]);
         let third = "n=$((n + 1)); [ $n = 4 ] && exit 3; echo '[0,0,0,0,0,0]'";
         refused(
             &script(&folder, "crash.sh", third),
-            &["ended (exit status: 3) at step 3 of its episode 0"],
+            &["ended (exit status: 3) at step 3 of episode"],
         );
         refused(&script(&folder, "short.sh", "echo '[1, 2]'"), &["it has 2 numbers"]);
         refused(
@@ -239,7 +302,7 @@ mod onnx {
         let mut policy = OnnxPolicy::open(model(name)).expect("a model");
         let mut action = Vec::new();
         env.reset(Some(0)).expect("no divergence");
-        policy.begin(&mut env).expect("a fitting model");
+        policy.begin(&mut env, 0).expect("a fitting model");
         let (mut different, mut told) = (0.0_f32, false);
         for _ in 0..10 {
             policy.act(&mut env, &mut action).expect("an action");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use babybench::assets::MemoryAssets;
-use babybench::config::{Behavior, Compat, Config, Example, StartingPosition};
+use babybench::config::{Behavior, Compat, Config, Example, RollOverOptions, StartingPosition};
 use babybench::env::{BehaviorInfo, Goal, Outcome};
 use babybench::mjcf_loader::load_str;
 use babybench::physics::{Engine, EngineError, FreeBody, SoftEngine, SoftOptions, compile};
@@ -286,7 +286,7 @@ fn mimo_sits_as_he_is_locked() {
 fn mimo_lies_on_his_back_or_on_his_belly() {
     for (starting_position, up) in [(StartingPosition::Supine, 1.0), (StartingPosition::Prone, -1.0)] {
         let mut env = env(Config {
-            starting_position,
+            roll_over: RollOverOptions { starting_position },
             ..Config::of(Behavior::RollOver)
         });
         env.reset(Some(0)).expect("no divergence");

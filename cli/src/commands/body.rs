@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use babybench::mimo::{BodyFigures, Version};
 use babybench::{Env, Model};
 
-/// Ages of the published figures, months.
+/// Ages of the authors' figures, months.
 const AGES: [f64; 9] = [0.0, 1.0, 3.0, 6.0, 9.0, 12.0, 17.5, 18.0, 24.0];
 
-/// A published figure at [`AGES`] (MIMo's authors, arXiv 2509.09805).
+/// A figure at [`AGES`] by the formulas of MIMo's authors (arXiv 2509.09805), who print none themselves.
 type Row = [f64; AGES.len()];
 
 const STATURE: Row = [
@@ -81,7 +81,7 @@ const GEARS: [(&str, Option<Version>, Row); 8] = [
     ),
 ];
 
-/// Writes stature, mass, centre of mass and strength of the MIMo of an environment beside the published values.
+/// Writes stature, mass, centre of mass and strength of the MIMo of an environment beside those of the authors' formulas.
 pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
     let (model, config) = (env.model(), env.config());
     let Some(figures) = BodyFigures::of(model) else {
@@ -90,11 +90,11 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
     let version = Version::of(config.behavior);
     let strength_age = config.strength_age.unwrap_or(age);
     writeln!(out, "\nMIMo {} at {age} months", version.name())?;
-    let (here, there) = ("here", "published (arXiv 2509.09805)");
+    let (here, there) = ("here", "by the authors' formulas (arXiv 2509.09805)");
     writeln!(out, "  {:27} {here:>9}  {there}", "")?;
     let mut line = |what: &str, value: f64, age: f64, row: Option<&Row>, unit: &str| {
-        let published = row.map_or_else(String::new, |row| published(row, age));
-        writeln!(out, "  {what:27} {value:>9.5}  {published} {unit}")
+        let expected = row.map_or_else(String::new, |row| expected(row, age));
+        writeln!(out, "  {what:27} {value:>9.5}  {expected} {unit}")
     };
     line("stature", figures.stature, age, Some(&STATURE), "m")?;
     // the authors' v2 has a lighter chest than BabyBench's
@@ -118,8 +118,8 @@ fn geom_radius(model: &Model, body: &str) -> Option<f64> {
     model.geom_size.get(geom).map(|size| size[0])
 }
 
-/// Returns the published value of an age, or those of the ages around it.
-fn published(row: &Row, age: f64) -> String {
+/// Returns the authors' value of an age, or those of the ages around it.
+fn expected(row: &Row, age: f64) -> String {
     let above = AGES.partition_point(|a| *a < age).min(AGES.len() - 1);
     if AGES[above] == age || above == 0 {
         format!("{}", row[above])

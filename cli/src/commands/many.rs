@@ -1,5 +1,8 @@
-//! Arguments of commands that run many environments at once.
+//! Arguments of commands that run environments with random actions, also many at once.
 
+use babybench::policy::{NoisePolicy, Policy, RandomPolicy};
+use babybench::spaces::{ActionNoise, Noise};
+use babybench::vector::VectorError;
 use babybench::{AutoresetMode, VectorEnv, VectorOptions};
 use clap::Args;
 
@@ -37,5 +40,64 @@ impl Many {
 pub fn say_threads(envs: &VectorEnv) {
     if let Some(clipped) = envs.clipped_threads() {
         note!("note: {clipped}");
+    }
+}
+
+/// The kind of random actions.
+#[derive(Args)]
+pub struct Babbling {
+    /// Random actions: white (new at every step), held (for 0.5 s; held:0.1 for 0.1 s), ou (Ornstein-Uhlenbeck; ou:0.2 with a
+    /// correlation of 0.2 s), pink, or oscillators (coupled, of 1 Hz on average; oscillators:2 of 2 Hz)
+    #[arg(long, value_name = "NOISE", default_value = "white")]
+    noise: Noise,
+}
+
+impl Babbling {
+    /// Returns the policy of one environment.
+    pub fn policy(&self) -> Box<dyn Policy> {
+        match self.noise {
+            Noise::White => Box::new(RandomPolicy),
+            noise => Box::new(NoisePolicy::new(noise)),
+        }
+    }
+
+    /// Returns the random actions of many environments.
+    pub fn many(&self, envs: &VectorEnv) -> Result<ManyBabbling, VectorError> {
+        let (space, dt) = (envs.single_action_space(), envs.env(0)?.blueprint().dt());
+        let noises = match self.noise {
+            Noise::White => Vec::new(),
+            noise => vec![ActionNoise::new(noise, space, dt, 0); envs.len()],
+        };
+        Ok(ManyBabbling {
+            noises,
+            action: Vec::new(),
+        })
+    }
+}
+
+/// Random actions of many environments, in each the same as alone.
+pub struct ManyBabbling {
+    /// None if actions are white.
+    noises: Vec<ActionNoise>,
+    action: Vec<f32>,
+}
+
+impl ManyBabbling {
+    /// Begins anew in the environments that began an episode: all, or where `mask` is true.
+    pub fn begin(&mut self, envs: &mut VectorEnv, mask: Option<&[bool]>) -> Result<(), VectorError> {
+        envs.start_noises(&mut self.noises, mask)
+    }
+
+    /// Fills `actions`, (N, len).
+    pub fn sample(&mut self, envs: &mut VectorEnv, actions: &mut Vec<f32>) -> Result<(), VectorError> {
+        if self.noises.is_empty() {
+            return envs.sample_actions(actions);
+        }
+        actions.clear();
+        for noise in &mut self.noises {
+            noise.sample(&mut self.action);
+            actions.extend_from_slice(&self.action);
+        }
+        Ok(())
     }
 }

@@ -9,11 +9,11 @@ use babybench::formats::npz::Npz;
 use babybench::formats::png::write_png;
 use babybench::mimo::{build_model, scene_assets};
 use babybench::report::ages::draw_ages;
-use babybench::{Config, Model};
+use babybench::{Config, Env, Model};
 use clap::Args;
 
 use super::Source;
-use crate::arguments::{age, count, number, png};
+use crate::arguments::{age, count, number, picture};
 use crate::print::say;
 
 /// Arguments of `render`.
@@ -21,7 +21,8 @@ use crate::print::say;
 pub struct Render {
     #[command(flatten)]
     source: Source,
-    /// Camera: corner, top, side1, side2, closeup, eye_left or eye_right
+    /// Camera: corner, top, side1, side2, closeup, eye_left or eye_right. Cameras see sharply, those of the eyes, too; what MIMo sees at
+    /// his age is --observed
     #[arg(long, value_name = "NAME", default_value = "corner")]
     camera: String,
     /// Width and height in pixels; render_size of the configuration by default
@@ -30,12 +31,16 @@ pub struct Render {
     /// Renderer: cpu, or wgpu (cargo feature wgpu); overrides the configuration
     #[arg(long, value_name = "WHICH", value_parser = parse_renderer)]
     renderer: Option<RendererKind>,
+    /// Draw what MIMo observes with both eyes instead, left and right side by side: in his resolution, with the acuity of his age and
+    /// with foveation
+    #[arg(long, conflicts_with_all = ["camera", "size"])]
+    observed: bool,
     /// Draw MIMo alone at these ages instead (months, separated by commas), side by side on the same scale
     #[arg(long, value_name = "MONTHS", value_delimiter = ',', allow_negative_numbers = true, value_parser = age,
-        conflicts_with_all = ["camera", "size", "renderer", "state"])]
+        conflicts_with_all = ["camera", "size", "renderer", "state", "observed"])]
     age: Vec<f64>,
-    /// PNG image to write
-    #[arg(long, value_name = "FILE", value_parser = png())]
+    /// File to write: a PNG image, or with --age an SVG drawing
+    #[arg(long, value_name = "FILE", value_parser = picture())]
     out: PathBuf,
     /// Draw a state of this recording (its rows of qpos and qvel) instead of the settled one
     #[arg(long, value_name = "FILE")]
@@ -51,8 +56,12 @@ fn parse_renderer(text: &str) -> Result<RendererKind, String> {
 
 impl Render {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
-        if !self.age.is_empty() {
-            return self.draw_ages();
+        let drawing = self.out.extension().is_some_and(|end| end.eq_ignore_ascii_case("svg"));
+        match (self.age.is_empty(), drawing) {
+            (false, true) => return self.draw_ages(),
+            (false, false) => return Err("--age draws an SVG: choose a name for --out that ends in .svg".into()),
+            (true, true) => return Err("an image is a PNG file: choose a name for --out that ends in .png".into()),
+            (true, false) => {}
         }
         let mut env = self.source.blueprint_with(Compat::Api, self.renderer)?.env()?;
         let from = ViewFrom::room(&env, &self.camera);
@@ -76,6 +85,9 @@ impl Render {
                 env.reset_to(blueprint.init_qpos(), blueprint.init_qvel())?;
             }
         }
+        if self.observed {
+            return self.draw_observed(&env);
+        }
         let size = self.size.unwrap_or(env.config().render_size as usize);
         let mut viewer = Viewer::new(env.blueprint())?;
         let picture = viewer.draw(&env, ViewFrom::room(&env, &self.camera), size, size)?;
@@ -84,6 +96,25 @@ impl Render {
             "{}: {size} x {size} pixels from camera {}",
             self.out.display(),
             self.camera
+        )?;
+        Ok(())
+    }
+
+    /// Draws the images of both eyes in the observation.
+    fn draw_observed(&self, env: &Env) -> Result<(), Box<dyn Error>> {
+        let observation = env.observation();
+        let (Some(left), Some(right)) = (observation.eye_left, observation.eye_right) else {
+            let off = "--observed: the configuration observes no colour images; it needs vision_active: true and vision_outputs with rgb";
+            return Err(off.into());
+        };
+        let size = env.config().vision_resolution as usize;
+        let rows = left.chunks_exact(3 * size).zip(right.chunks_exact(3 * size));
+        let picture: Vec<u8> = rows.flat_map(|(left, right)| [left, right].concat()).collect();
+        write_png(&self.out, &picture, 2 * size, size)?;
+        say!(
+            "{}: {} x {size} pixels, left and right eye as observed",
+            self.out.display(),
+            2 * size
         )?;
         Ok(())
     }
@@ -102,14 +133,8 @@ impl Render {
         let models = self.age.iter().map(grown).collect::<Result<Vec<_>, _>>()?;
         let infants: Vec<(f64, &Model)> = models.iter().map(|(age, model)| (*age, model)).collect();
         let picture = draw_ages(&infants, &*assets).ok_or("--age: the assets have no MIMo")?;
-        write_png(&self.out, &picture.rgb, picture.width, picture.height)?;
-        say!(
-            "{}: {} x {} pixels, {} infants",
-            self.out.display(),
-            picture.width,
-            picture.height,
-            infants.len()
-        )?;
+        std::fs::write(&self.out, picture).map_err(|e| format!("{}: {e}", self.out.display()))?;
+        say!("{}: {} infants", self.out.display(), infants.len())?;
         Ok(())
     }
 

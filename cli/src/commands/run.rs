@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 
 use babybench::config::Compat;
 use babybench::env::EnvStage;
-use babybench::{AutoresetMode, Blueprint, Env, EnvError, VectorEnv};
+use babybench::policy::Policy;
+use babybench::{AutoresetMode, Blueprint, Env, VectorEnv};
 use clap::Args;
 use indicatif::ProgressBar;
 
-use super::many::{Many, say_threads};
+use super::many::{Babbling, Many, say_threads};
 use super::{Source, progress_bar};
 use crate::arguments::{count, number};
 use crate::print::say;
@@ -30,6 +31,8 @@ pub struct Run {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
+    #[command(flatten)]
+    babbling: Babbling,
     #[command(flatten)]
     many: Many,
     /// Do not show a progress bar
@@ -91,15 +94,16 @@ impl Run {
         let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;
         let mut seed = self.seed;
         let mut tally = Tally::default();
+        let mut policy = self.babbling.policy();
         for episode in 0..self.episodes {
             env.reset(seed.take())?;
-            tally.episode(&mut env, length, &clock, &bar)?;
+            policy.begin(&mut env, episode)?;
+            tally.episode(&mut env, &mut *policy, length, &clock, &bar)?;
             bar.suspend(|| say!("episode {episode}: {}", env.info().to_json()))?;
         }
         bar.finish_and_clear();
         say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
-        let step = env.model().opt.timestep * f64::from(config.frame_skip);
-        tally.print(step, &lock(&clock).spent)?;
+        tally.print(blueprint.dt(), &lock(&clock).spent)?;
         say_peak_memory()
     }
 
@@ -119,12 +123,13 @@ impl Run {
             self.quiet,
         )?;
         envs.seed_action_spaces(self.seed.unwrap_or(config.seed))?;
-        let mut actions = Vec::new();
+        let (mut babbling, mut actions) = (self.babbling.many(&envs)?, Vec::new());
         let (mut steps, mut stepping) = (0, Duration::ZERO);
         for episode in 0..self.episodes {
             envs.reset(None)?;
+            babbling.begin(&mut envs, None)?;
             for k in 1..=length {
-                envs.sample_actions(&mut actions)?;
+                babbling.sample(&mut envs, &mut actions)?;
                 let before = Instant::now();
                 let batch = envs.step(&actions)?;
                 stepping += before.elapsed();
@@ -143,16 +148,13 @@ impl Run {
         }
         bar.finish_and_clear();
         say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
-        let (seconds, step) = (
-            stepping.as_secs_f64(),
-            envs.env(0)?.model().opt.timestep * f64::from(config.frame_skip),
-        );
+        let seconds = stepping.as_secs_f64();
         let per_second = steps as f64 / seconds;
         say!(
             "{steps} steps of {n} environments on {} threads in {seconds:.2} s: {:.0} us per step, {:.1} times real time",
             envs.threads(),
             1e6 / per_second,
-            per_second * step
+            per_second * blueprint.dt()
         )?;
         say!("environment steps per second: {per_second:.0}")?;
         say_peak_memory()
@@ -188,11 +190,18 @@ fn say_peak_memory() -> Result<(), Box<dyn Error>> {
 
 impl Tally {
     /// Steps through an episode with random actions.
-    fn episode(&mut self, env: &mut Env, length: u64, clock: &Mutex<Clock>, bar: &ProgressBar) -> Result<(), EnvError> {
+    fn episode(
+        &mut self,
+        env: &mut Env,
+        policy: &mut dyn Policy,
+        length: u64,
+        clock: &Mutex<Clock>,
+        bar: &ProgressBar,
+    ) -> Result<(), Box<dyn Error>> {
         let mut action = Vec::new();
         lock(clock).enter(None);
         for k in 0..length {
-            env.sample_action(&mut action);
+            policy.act(env, &mut action)?;
             let before = Instant::now();
             env.step(&action)?;
             lock(clock).enter(None);

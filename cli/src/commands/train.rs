@@ -11,7 +11,7 @@ use babybench::{AutoresetMode, Config};
 use clap::Args;
 use indicatif::ProgressBar;
 
-use super::many::{Many, say_threads};
+use super::many::{Babbling, Many, say_threads};
 use super::{Source, progress_bar};
 use crate::arguments::{count, number, word};
 use crate::interrupt::{Interrupt, Interrupted};
@@ -34,6 +34,8 @@ pub struct Train {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
+    #[command(flatten)]
+    babbling: Babbling,
     #[command(flatten)]
     many: Many,
     /// Do not show a progress bar
@@ -58,12 +60,13 @@ impl Train {
         let (seed, done, bar) = self.begin(env.log(), config)?;
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
-        let mut action = Vec::new();
+        let (mut policy, mut action) = (self.babbling.policy(), Vec::new());
         while steps < self.train_for && !interrupt.wanted() {
             if over {
                 env.reset(None)?;
+                policy.begin(env.env_mut(), 0)?;
             }
-            env.sample_action(&mut action);
+            policy.act(env.env_mut(), &mut action)?;
             env.step(&action)?;
             over = env.over();
             steps += 1;
@@ -90,10 +93,12 @@ impl Train {
         let (seed, done, bar) = self.begin(Some(envs.log()), config)?;
         envs.vector_mut().seed_action_spaces(seed)?;
         let (mut steps, mut saved) = (done, Instant::now());
-        let mut actions = Vec::new();
+        let (mut babbling, mut actions, mut begun) = (self.babbling.many(&envs)?, Vec::new(), Vec::new());
         while steps < self.train_for && !interrupt.wanted() {
-            envs.start_episodes()?;
-            envs.vector_mut().sample_actions(&mut actions)?;
+            begun.clear();
+            begun.extend_from_slice(envs.start_episodes()?);
+            babbling.begin(envs.vector_mut(), Some(&begun))?;
+            babbling.sample(envs.vector_mut(), &mut actions)?;
             // the last steps are those of the first environments
             let n = usize::try_from(self.train_for - steps).map_or(envs.len(), |rest| rest.min(envs.len()));
             actions.truncate(n * envs.single_action_space().len());

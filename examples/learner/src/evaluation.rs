@@ -30,7 +30,7 @@ impl Learned {
 }
 
 impl Policy for Learned {
-    fn begin(&mut self, env: &mut Env) -> Result<(), PolicyError> {
+    fn begin(&mut self, env: &mut Env, _episode: u64) -> Result<(), PolicyError> {
         self.touched.fill(false);
         // the noise follows from the seed of the episode, whoever runs it
         let mut action = Vec::new();

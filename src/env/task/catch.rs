@@ -209,8 +209,8 @@ impl Task for Catch {
         self.own = model.geom_bodyid.iter().map(|b| skin.contains(b)).collect();
         self.reference = config.compat == Compat::Reference;
         self.head = HeadTracking::new(model, false, PURPOSE)?;
-        (self.jitter, self.inaccurate) = (config.jitter, config.position_inaccurate);
-        self.penalty = config.action_penalty;
+        (self.jitter, self.inaccurate) = (config.catch.jitter, config.catch.position_inaccurate);
+        self.penalty = config.catch.action_penalty;
         self.memory.factors = vec![1.0; if self.jitter { 2 * model.nu() } else { 0 }];
         Ok(TaskSizes {
             goal: 0,

@@ -61,7 +61,7 @@ impl Task for RollOver {
             .iter()
             .map(|name| body(model, name, PURPOSE))
             .collect::<Result<_, _>>()?;
-        self.supine = config.starting_position == StartingPosition::Supine;
+        self.supine = config.roll_over.starting_position == StartingPosition::Supine;
         Ok(TaskSizes {
             goal: 1,
             terms: 1,

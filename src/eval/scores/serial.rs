@@ -45,6 +45,9 @@ impl Serialize for Described<'_> {
         map.serialize_entry("score", &score.value)?;
         map.serialize_entry("episodes", &score.episodes)?;
         map.serialize_entry("steps", &score.steps)?;
+        if let Some(number) = score.parts_per_episode {
+            map.serialize_entry("parts_per_episode", &number)?;
+        }
         match &score.parts {
             ScoreParts::SelfTouch { touched } => {
                 for (hand, (name, touched)) in HANDS.iter().zip(touched.each_ref()).enumerate() {

@@ -138,7 +138,7 @@ fn other_programs_are_told_senses_after_their_transforms() {
     let mut policy = CommandPolicy::start(&format!("sh '{}'", program.display())).expect("a program");
     let mut action = Vec::new();
     env.reset(Some(2)).expect("no divergence");
-    policy.begin(&mut env).expect("a fitting program");
+    policy.begin(&mut env, 0).expect("a fitting program");
     for _ in 0..6 {
         policy.act(&mut env, &mut action).expect("an action");
         let lines = std::fs::read_to_string(&heard).expect("what was told");
@@ -167,7 +167,7 @@ fn networks_see_images_after_their_transforms() {
     let mut policy = OnnxPolicy::open(model).expect("a model");
     let mut action = Vec::new();
     env.reset(Some(2)).expect("no divergence");
-    policy.begin(&mut env).expect("a fitting model");
+    policy.begin(&mut env, 0).expect("a fitting model");
     for step in 0..6 {
         policy.act(&mut env, &mut action).expect("an action");
         let seen = env.observation();

@@ -1,0 +1,398 @@
+//! Movements without a purpose: the noises with which infants' models babble and learners explore.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use super::{BoxSpace, NumpyRng};
+
+/// Standard deviation of all noises before they are clipped, in half ranges of an action: that of uniform noise. A noise then
+/// differs from another by how long it lasts, not by how strong it is.
+const DEVIATION: f64 = 0.577_350_269_189_625_8;
+/// Number of processes that pink noise is the sum of. The slowest lasts 2^11 steps, about as long as an episode.
+const OCTAVES: usize = 12;
+/// Strength of the coupling of oscillators, in natural frequencies. From about 1.6 times the spread of the frequencies on,
+/// oscillators begin to swing together (Kuramoto, 1984); at this value some do and some do not.
+const COUPLING: f64 = 0.5;
+/// Spread of the natural frequencies, as a share of their mean.
+const SPREAD: f64 = 0.25;
+/// Random walk of a phase within a second, rad: movements repeat, but never exactly.
+const DRIFT: f64 = 0.5;
+
+/// A kind of noise over an action space.
+///
+/// As text, `held:0.5` is [`Noise::Held`] with half a second; a name alone takes the default. Every noise but the uniform ones has
+/// the standard deviation of uniform noise, 1/sqrt(3) of half the range of an action, and is clipped to the range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Noise {
+    /// `white`: a uniform action at every step, which is what `random` means elsewhere.
+    White,
+    /// `held`: a uniform action that is held for a time.
+    Held {
+        /// How long an action is held, s; 0.5 by default.
+        seconds: f64,
+    },
+    /// `ou`: an Ornstein-Uhlenbeck process for each number of the action, sampled exactly
+    /// (D. T. Gillespie, "Exact numerical simulation of the Ornstein-Uhlenbeck process and its integral", 1996).
+    OrnsteinUhlenbeck {
+        /// The time in which the correlation falls to 1/e, s; 0.2 by default.
+        seconds: f64,
+    },
+    /// `pink`: noise whose power falls with the inverse of the frequency, between that of the step and one in 2^12 steps, which
+    /// explores better than others in many tasks (O. Eberhard et al., "Pink noise is all you need", 2023). It is the sum of
+    /// processes whose durations are octaves (J. Bernamont, 1937).
+    Pink,
+    /// `oscillators`: an oscillator for each number of the action; all are coupled to their mean field (Y. Kuramoto, "Chemical
+    /// Oscillations, Waves, and Turbulence", 1984), each with a frequency, an amplitude and a phase of its own.
+    Oscillators {
+        /// The mean of the frequencies, Hz; 1 by default.
+        hertz: f64,
+    },
+}
+
+/// A text that is not a noise.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error(
+    "{text:?} is not a noise; choose white, held, ou, pink or oscillators, with a number where it may have one: held:0.5 (seconds from 0.001 to 1000), ou:0.2 (seconds), oscillators:1 (hertz)"
+)]
+pub struct NoiseError {
+    text: String,
+}
+
+impl FromStr for Noise {
+    type Err = NoiseError;
+
+    fn from_str(text: &str) -> Result<Self, NoiseError> {
+        let error = || NoiseError { text: text.to_string() };
+        let (name, number) = match text.split_once(':') {
+            Some((name, number)) => (name, Some(number.parse::<f64>().map_err(|_| error())?)),
+            None => (text, None),
+        };
+        // beyond these bounds a noise is another one: white, or a constant
+        let valid = number.is_none_or(|n| (1e-3..=1e3).contains(&n));
+        match (name, number) {
+            _ if !valid => Err(error()),
+            ("white", None) => Ok(Self::White),
+            ("held", seconds) => Ok(Self::Held {
+                seconds: seconds.unwrap_or(0.5),
+            }),
+            ("ou", seconds) => Ok(Self::OrnsteinUhlenbeck {
+                seconds: seconds.unwrap_or(0.2),
+            }),
+            ("pink", None) => Ok(Self::Pink),
+            ("oscillators", hertz) => Ok(Self::Oscillators {
+                hertz: hertz.unwrap_or(1.0),
+            }),
+            _ => Err(error()),
+        }
+    }
+}
+
+impl Display for Noise {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::White => f.write_str("white"),
+            Self::Held { seconds } => write!(f, "held:{seconds}"),
+            Self::OrnsteinUhlenbeck { seconds } => write!(f, "ou:{seconds}"),
+            Self::Pink => f.write_str("pink"),
+            Self::Oscillators { hertz } => write!(f, "oscillators:{hertz}"),
+        }
+    }
+}
+
+/// A noise over an action space: the same seed gives the same actions on every target.
+///
+/// ```
+/// use babybench::spaces::{ActionNoise, BoxSpace};
+///
+/// let space = BoxSpace::new(vec![-1.0; 3], vec![1.0; 3]);
+/// let mut noise = ActionNoise::new("pink".parse()?, &space, 0.005, 42); // a step of 5 ms
+/// let mut action = Vec::new();
+/// noise.sample(&mut action);
+/// assert!(space.contains(&action));
+/// # Ok::<(), babybench::spaces::NoiseError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ActionNoise {
+    noise: Noise,
+    space: BoxSpace,
+    step: f64,
+    rng: NumpyRng,
+    process: Process,
+}
+
+/// What the noises remember from step to step.
+#[derive(Clone, Debug)]
+enum Process {
+    White,
+    Held {
+        action: Vec<f32>,
+        left: usize,
+    },
+    /// Processes that fade by a factor each, (len, decays), whose sum is the noise.
+    Relaxing {
+        decays: Vec<f64>,
+        values: Vec<f64>,
+    },
+    Oscillators(Vec<Oscillator>),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Oscillator {
+    phase: f64,
+    /// Natural frequency, rad/s.
+    speed: f64,
+    amplitude: f64,
+    /// Phase of the movement against the oscillator's: oscillators that swing together would move all joints alike.
+    lag: f64,
+}
+
+impl ActionNoise {
+    /// Creates a noise over a space. `step` is the time between two actions, s, which for an environment is
+    /// [`Blueprint::dt`](crate::Blueprint::dt).
+    pub fn new(noise: Noise, space: &BoxSpace, step: f64, seed: u64) -> Self {
+        let mut made = Self {
+            noise,
+            space: space.clone(),
+            step,
+            rng: NumpyRng::seed(seed),
+            process: Process::White,
+        };
+        made.reset(seed);
+        made
+    }
+
+    /// Begins anew with a seed.
+    pub fn reset(&mut self, seed: u64) {
+        self.rng = NumpyRng::seed(seed);
+        let (len, step, rng) = (self.space.len(), self.step, &mut self.rng);
+        self.process = match self.noise {
+            Noise::White => Process::White,
+            Noise::Held { .. } => Process::Held {
+                action: Vec::with_capacity(len),
+                left: 0,
+            },
+            Noise::OrnsteinUhlenbeck { seconds } => relaxing(vec![pxfm::f_exp(-step / seconds)], len, rng),
+            Noise::Pink => {
+                let octaves = (0..OCTAVES).map(|k| pxfm::f_exp(-1.0 / f64::from(1_u32 << k)));
+                relaxing(octaves.collect(), len, rng)
+            }
+            Noise::Oscillators { hertz } => Process::Oscillators(
+                (0..len)
+                    .map(|_| Oscillator {
+                        phase: rng.uniform_in(0.0, TAU),
+                        speed: TAU * hertz * pxfm::f_exp(SPREAD * rng.normal()),
+                        // the mean of the squares is that of one: 2 * DEVIATION^2, of which a sine has half
+                        amplitude: DEVIATION * std::f64::consts::SQRT_2 * (0.5 + rng.uniform())
+                            / (13.0_f64 / 12.0).sqrt(),
+                        lag: rng.uniform_in(0.0, TAU),
+                    })
+                    .collect(),
+            ),
+        };
+    }
+
+    /// Returns the kind.
+    pub fn noise(&self) -> Noise {
+        self.noise
+    }
+
+    /// Fills `action` with the next action.
+    pub fn sample(&mut self, action: &mut Vec<f32>) {
+        let Self {
+            noise,
+            space,
+            step,
+            rng,
+            process,
+        } = self;
+        match process {
+            Process::White => space.sample(rng, action),
+            Process::Held { action: held, left } => {
+                if *left == 0 {
+                    space.sample(rng, held);
+                    let seconds = match noise {
+                        Noise::Held { seconds } => *seconds,
+                        _ => 0.0,
+                    };
+                    *left = ((seconds / *step + 0.5) as usize).max(1);
+                }
+                *left -= 1;
+                action.clone_from(held);
+            }
+            Process::Relaxing { decays, values } => {
+                let numbers = values.chunks_exact_mut(decays.len()).map(|values| {
+                    let sum = values.iter().sum::<f64>();
+                    for (value, decay) in values.iter_mut().zip(&*decays) {
+                        *value = decay * *value + share(decays.len()) * (1.0 - decay * decay).sqrt() * rng.normal();
+                    }
+                    sum
+                });
+                place(space, numbers, action);
+            }
+            Process::Oscillators(all) => {
+                let numbers = all.iter().map(|o| o.amplitude * pxfm::f_sin(o.phase + o.lag));
+                place(space, numbers, action);
+                let natural = match noise {
+                    Noise::Oscillators { hertz } => TAU * *hertz,
+                    _ => 0.0,
+                };
+                swing(all, natural, *step, rng);
+            }
+        }
+    }
+}
+
+/// Standard deviation of each of `n` processes whose sum has that of all noises.
+fn share(n: usize) -> f64 {
+    DEVIATION / (n as f64).sqrt()
+}
+
+/// Starts processes as they are in the long run: a start from 0 would begin every episode with a pause.
+fn relaxing(decays: Vec<f64>, len: usize, rng: &mut NumpyRng) -> Process {
+    let deviation = share(decays.len());
+    let values = (0..len * decays.len()).map(|_| deviation * rng.normal()).collect();
+    Process::Relaxing { decays, values }
+}
+
+/// Moves oscillators on by a step: the mean field pulls each towards the mean phase, the more the more they agree.
+fn swing(all: &mut [Oscillator], natural: f64, step: f64, rng: &mut NumpyRng) {
+    let mut field = [0.0; 2];
+    for o in &*all {
+        let (sin, cos) = pxfm::f_sincos(o.phase);
+        field = [field[0] + cos, field[1] + sin];
+    }
+    let n = all.len().max(1) as f64;
+    let pull = COUPLING * natural / n;
+    for o in all {
+        let (sin, cos) = pxfm::f_sincos(o.phase);
+        let toward = field[1] * cos - field[0] * sin;
+        o.phase += step * (o.speed + pull * toward) + DRIFT * step.sqrt() * rng.normal();
+        // sines of large angles cost more and are no better
+        if o.phase > PI {
+            o.phase -= TAU;
+        }
+    }
+}
+
+/// Turns numbers in half ranges into an action.
+fn place(space: &BoxSpace, numbers: impl Iterator<Item = f64>, action: &mut Vec<f32>) {
+    action.clear();
+    let bounds = space.low.iter().zip(&space.high);
+    action.extend(bounds.zip(numbers).map(|((&low, &high), number)| {
+        let (low, high) = (f64::from(low), f64::from(high));
+        let value = 0.5 * (low + high) + 0.5 * (high - low) * number.clamp(-1.0, 1.0);
+        value as f32
+    }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: f64 = 0.005;
+
+    /// Series of one number, `n` steps.
+    fn series(noise: Noise, seed: u64, n: usize) -> Vec<f64> {
+        let space = BoxSpace::new(vec![-1.0; 3], vec![1.0; 3]);
+        let mut noise = ActionNoise::new(noise, &space, STEP, seed);
+        let mut action = Vec::new();
+        (0..n)
+            .map(|_| {
+                noise.sample(&mut action);
+                assert!(space.contains(&action), "{action:?}");
+                f64::from(action[1])
+            })
+            .collect()
+    }
+
+    fn correlation(x: &[f64], lag: usize) -> f64 {
+        let mean = x.iter().sum::<f64>() / x.len() as f64;
+        let product = |lag: usize| {
+            x.iter()
+                .zip(&x[lag..])
+                .map(|(a, b)| (a - mean) * (b - mean))
+                .sum::<f64>()
+        };
+        product(lag) / product(0)
+    }
+
+    fn all() -> [Noise; 5] {
+        ["white", "held", "ou", "pink", "oscillators"].map(|name| name.parse().unwrap())
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_actions_and_another_seed_others() {
+        for noise in all() {
+            assert_eq!(series(noise, 7, 50), series(noise, 7, 50), "{noise}");
+            assert_ne!(series(noise, 7, 50), series(noise, 8, 50), "{noise}");
+            assert_eq!(noise.to_string().parse(), Ok(noise));
+        }
+    }
+
+    #[test]
+    fn noises_are_alike_in_strength() {
+        for noise in all() {
+            // many seeds: an oscillator keeps its amplitude, and pink noise its mean, for a long time
+            let power: f64 = (0..200)
+                .map(|seed| series(noise, seed, 500).iter().map(|x| x * x).sum::<f64>() / 500.0)
+                .sum();
+            let deviation = (power / 200.0).sqrt();
+            assert!((0.5..0.62).contains(&deviation), "{noise}: {deviation}");
+        }
+    }
+
+    #[test]
+    fn each_noise_lasts_as_long_as_it_says() {
+        let white = series(Noise::White, 0, 20_000);
+        assert!(correlation(&white, 1).abs() < 0.03);
+        let held = series(Noise::Held { seconds: 0.1 }, 0, 20_000);
+        for (k, pair) in held.windows(2).enumerate() {
+            assert_eq!(pair[0] == pair[1], (k + 1) % 20 != 0, "step {k}");
+        }
+        let ou = series(Noise::OrnsteinUhlenbeck { seconds: 0.1 }, 0, 200_000);
+        let after = correlation(&ou, 20);
+        assert!((after - pxfm::f_exp(-1.0)).abs() < 0.05, "{after}");
+        let swinging = series(Noise::Oscillators { hertz: 2.0 }, 0, 4000);
+        let crossings = swinging.windows(2).filter(|x| x[0] < 0.0 && x[1] >= 0.0).count();
+        assert!((20..=60).contains(&crossings), "{crossings} periods in 20 s");
+    }
+
+    #[test]
+    fn the_power_of_pink_noise_falls_with_the_inverse_of_the_frequency() {
+        let n = 4096;
+        let power = |frequency: usize| {
+            let mean = |seed| {
+                let x = series(Noise::Pink, seed, n);
+                let turn = TAU * frequency as f64 / n as f64;
+                let wave = |f: fn(f64) -> f64| x.iter().enumerate().map(|(k, x)| x * f(turn * k as f64)).sum::<f64>();
+                wave(f64::sin).powi(2) + wave(f64::cos).powi(2)
+            };
+            (0..120).map(mean).sum::<f64>()
+        };
+        let slope = (power(512) / power(8)).ln() / 64.0_f64.ln();
+        assert!((slope + 1.0).abs() < 0.15, "{slope}");
+    }
+
+    #[test]
+    fn what_is_no_noise_is_an_error_that_says_what_is() {
+        for text in [
+            "",
+            "pinkish",
+            "pink:1",
+            "held:",
+            "held:0",
+            "held:-1",
+            "ou:nan",
+            "ou:inf",
+            "oscillators:1e9",
+            "white:2",
+        ] {
+            let error = text.parse::<Noise>().unwrap_err().to_string();
+            assert!(error.contains("pink") && error.contains("held:0.5"), "{error}");
+        }
+    }
+}
