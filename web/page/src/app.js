@@ -136,6 +136,7 @@ export class App {
     if (name === "error") this.notice(data, true);
     else if (name === "awake") this.emit("over", "hung");
     else if (name === "tape") this.recordings.keep(data.recording, data.full);
+    else if (name === "locked") this.setLocked(data);
     else this.announce(/** @type {keyof typeof STATES} */ (name), data);
   }
 
@@ -278,6 +279,18 @@ export class App {
   }
 
   /**
+   * Goes to a moment of the past, or of the recording that plays; time stands there, and goes on with the same bits.
+   * @param {number} step of the moment's `line`
+   */
+  async seek(step) {
+    if (this.playing) this.setPlaying(false);
+    this.emit("over", "episode");
+    this.emit("over", "replayed");
+    this.stage.jump = true;
+    await this.world.ask("seek", step);
+  }
+
+  /**
    * Whether a body can be pulled: it moves, and no recording or replay runs.
    * @param {number} body
    */
@@ -308,7 +321,11 @@ export class App {
    * @param {boolean} on
    */
   async lock(part, on) {
-    const locked = await this.world.ask("lock", part, on);
+    this.setLocked(await this.world.ask("lock", part, on));
+  }
+
+  /** @param {boolean[]} locked of all joints */
+  setLocked(locked) {
     this.scene?.joints.forEach((j, i) => (j.locked = locked[i]));
     this.state.locks = this.scene?.joints.filter((j) => j.locked).map((j) => j.name) ?? [];
     this.emit("state");

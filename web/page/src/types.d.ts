@@ -124,6 +124,8 @@ export interface Moment {
   score: Score;
   recorded: number | null;
   replay: { done: number; of: number } | null;
+  /** Moments that can be gone to, and where time is among them, in steps; whether they are those of a recording. */
+  line: { from: number; at: number; to: number; recording: boolean };
   memory: number;
   pull: { body: number; at: [number, number, number]; force: number } | null;
 }

@@ -166,11 +166,12 @@ for (const [width, height, what] of [[320, 640, "320 pixels"], [320, 256, "400 %
     await until(page, () => mimo.moment.steps > 5);
     const found = await page.evaluate(() => {
       const box = (s) => document.querySelector(s).getBoundingClientRect();
-      const [play, transport, mast, clock, stage] = ["#play", ".transport", ".masthead h1", "#clock", ".stage"].map(box);
-      return { wide: document.scrollingElement.scrollWidth, round: play.width - play.height, apart: transport.top - mast.bottom, clock: transport.right - clock.right, stage: stage.height };
+      const [play, transport, mast, clock, stage, past] = ["#play", ".transport", ".masthead h1", "#clock", ".stage", "#past"].map(box);
+      return { past: past.width, wide: document.scrollingElement.scrollWidth, round: play.width - play.height, apart: transport.top - mast.bottom, clock: transport.right - clock.right, stage: stage.height };
     });
     assert.ok(found.wide <= width, `${found.wide} wide`);
     assert.ok(Math.abs(found.round) < 1, "the button is round");
+    assert.ok(found.past > 200, `a line of time of ${found.past}`);
     assert.ok(found.apart > 0 && found.clock >= 0, JSON.stringify(found));
     assert.ok(found.stage >= 200, `a scene of ${found.stage}`);
     await page.context().close();

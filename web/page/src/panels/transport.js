@@ -1,6 +1,7 @@
 // Time: play, one step, reset, speed, the clock; and their keys.
 import { $, el, say } from "../dom.js";
 import { SPEEDS } from "../state.js";
+import { past, where } from "./past.js";
 
 
 /** @param {import("../app.js").App} app */
@@ -9,6 +10,7 @@ export function transport(app) {
   const speed = /** @type {HTMLSelectElement} */ ($("speed"));
   const clock = $("clock");
   speed.append(...SPEEDS.map((value) => el("option", { value, selected: value === 1 }, `${value} ×`)));
+  const { back } = past(app);
   const toggle = () => app.attempt(() => app.play(!app.playing));
   const step = () => {
     app.play(false);
@@ -28,16 +30,17 @@ export function transport(app) {
     speed.value = String(app.state.speed);
   });
   app.on("tick", (/** @type {import("../types").Moment} */ m) => {
-    const pace = m.playing ? ` ${m.pace.toFixed(2)} × real time` : "";
-    const small = el("small", {}, pace);
-    clock.replaceChildren(`${m.time.toFixed(2)} s`, ...(pace ? [small] : []));
+    const ago = where(m, app.scene?.timestep ?? 0);
+    const told = m.line.recording ? `${ago} s recorded` : ago ? `${ago} s ago` : m.playing ? `${m.pace.toFixed(2)} × real time` : "";
+    clock.replaceChildren(`${m.time.toFixed(2)} s`, ...(told ? [el("small", { className: ago ? "ago" : "" }, told)] : []));
   });
   document.addEventListener("keydown", (e) => {
     const on = /** @type {HTMLElement} */ (e.target);
-    if (e.ctrlKey || e.metaKey || e.altKey || on.closest("input, select, textarea, dialog")) return;
+    if (e.ctrlKey || e.metaKey || e.altKey || (on.id !== "past" && on.closest("input, select, textarea, dialog"))) return;
     const pressable = on.closest("button, a, summary");
     if (e.key === " " && !pressable) toggle();
     else if (e.key === ".") step();
+    else if (e.key === ",") back();
     else if (e.key === "r" || e.key === "R") reset();
     else if (e.key === "?") $("help-open").click();
     else return;

@@ -1,7 +1,7 @@
 // The pace of a world: as many steps as the time that has passed asks for, however long frames take to be drawn.
 
 /** Longest stretch of steps without a look at messages, ms. */
-const BUDGET = 24;
+export const BUDGET = 24;
 /** Milliseconds between looks at the time. */
 const BEAT = 8;
 /** Seconds that the shown pace looks back. */

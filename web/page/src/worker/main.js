@@ -25,6 +25,7 @@ async function bring(bytes) {
   const w = world();
   const model = await Model.load(bytes, w.env);
   w.model?.free();
+  w.past.forget();
   w.model = model;
   return model.about;
 }
@@ -82,6 +83,7 @@ const answers = {
     await load();
     live?.clock.play(false);
     const last = live && { settings: live.env.yaml, snapshot: live.env.snapshot(), seed: 0, locks: [] };
+    if (live) live.goal = null;
     // two worlds at once would take twice the memory, and leave it in pieces
     live?.env.free();
     /** @type {PageEnv} */
@@ -104,6 +106,7 @@ const answers = {
   look: () => world().show(),
   play(/** @type {boolean} */ on) {
     wanted = on;
+    if (live && on) live.goal = null;
     live?.clock.play(on); // one that is being made plays when it is there
     if (!on) live?.show();
   },
@@ -116,13 +119,13 @@ const answers = {
   reset: (/** @type {number} */ seed) => world().reset(seed),
   move: (/** @type {Movement} */ m) => world().move(m),
   strength: (/** @type {number} */ v) => void (world().spring.strength = v),
-  pull(/** @type {any} */ held) {
-    const w = world();
-    w.spring.hold(held);
-    if (!held) w.env.clearForces();
-    if (!w.clock.playing) w.show();
+  /** Goes to a moment of the past; time stands there. */
+  seek(/** @type {number} */ step) {
+    wanted = false;
+    return world().seek(step);
   },
-  lock: (/** @type {string} */ part, /** @type {boolean} */ on) => world().env.lock(part, on),
+  pull: (/** @type {any} */ held) => world().hold(held),
+  lock: (/** @type {string} */ part, /** @type {boolean} */ on) => world().lock(part, on),
   snapshot: () => world().env.snapshot(),
   eyes: () => world().env.eyes(),
   keys: () => PageEnv.keys(),

@@ -1,6 +1,7 @@
 // The world: an environment of the package, what the page wants of it, and a frame of it.
 import { CONTACT, CONTACTS, layoutOf } from "../frame.js";
-import { Clock } from "./clock.js";
+import { BUDGET, Clock } from "./clock.js";
+import { Past } from "./past.js";
 import { babbling, sine, zero } from "./policies.js";
 import { Spring } from "./pull.js";
 import { Tape, sameBits } from "./tape.js";
@@ -28,8 +29,14 @@ export class LiveWorld {
     this.spring = new Spring();
     /** @type {Tape | null} */
     this.tape = null;
-    /** @type {{ recording: import("../types").Recording, done: number } | null} */
-    this.replay = null;
+    this.past = new Past(env.actions.length, env.seconds);
+    /** Where time is on its way to, if somebody went back or forth. */
+    /** @type {number | null} */
+    this.goal = null;
+    /** @type {Promise<void> | null} */
+    this.travelling = null;
+    /** Whether steps tell nobody what happens. */
+    this.quiet = false;
     /** @type {import("./model.js").Model | null} */
     this.model = null;
     this.action = new Float32Array(env.actions.length);
@@ -52,8 +59,15 @@ export class LiveWorld {
     this.clock.speed = movement.speed;
   }
 
+  /** The recording that plays, if one does. */
+  get replay() {
+    const { recording, known, at } = this.past;
+    return recording && known ? { recording, done: at } : null;
+  }
+
   /** @param {Movement} movement */
   move(movement) {
+    if (differs(movement, this.movement)) this.past.forget();
     this.movement = movement;
     this.clock.speed = movement.speed;
   }
@@ -62,12 +76,6 @@ export class LiveWorld {
   decide() {
     const { policy, seed, vigour, held } = this.movement;
     const { env, action } = this;
-    if (this.replay) {
-      const { recording, done } = this.replay;
-      const width = action.length;
-      action.set(recording.actions.subarray(done * width, (done + 1) * width));
-      return;
-    }
     if (policy === "random") env.sampleAction(action);
     else if (policy === "model" && this.model) this.model.act(env, action);
     else if (policy === "babbling") babbling(seed, vigour)(env.steps, env.actions, action);
@@ -77,19 +85,144 @@ export class LiveWorld {
   }
 
   step() {
-    const { env, spring } = this;
     if (this.over) return this.clock.play(false);
+    const { past } = this;
+    const stretch = past.begin(() => ({ bytes: this.env.snapshot(), truncated: this.truncated }));
+    if (past.known) this.again(stretch);
+    else this.live(stretch);
+  }
+
+  /**
+   * Does what the policy, the sliders and the pointer want.
+   * @param {import("./past.js").Stretch} stretch of the past that the step becomes part of
+   */
+  live(stretch) {
+    const { env, action } = this;
     this.decide();
     env.clearForces();
-    const held = spring.held;
+    const pull = this.pulled();
+    if (pull) env.pull(pull.body, pull.force, pull.at);
+    if (this.tape && !this.tape.add(action)) this.to.event("tape", { recording: this.endRecording(), full: true });
+    const over = env.step(action);
+    this.past.add(stretch, action, this.movement.policy === "random", pull);
+    this.end(over);
+  }
+
+  /**
+   * Does again what was done.
+   * @param {import("./past.js").Stretch} stretch of the past that the step is in
+   */
+  again(stretch) {
+    const { env, past, action } = this;
+    if (stretch.cut && stretch.start === past.at) this.restore(stretch);
+    const { action: done, drawn, pull } = past.deed(stretch);
+    if (drawn) env.sampleAction(action); // so that chance goes on as it did
+    action.set(done);
+    env.clearForces();
+    if (pull) env.pull(pull.body, pull.force, pull.at);
+    const over = env.step(action);
+    past.at++;
+    this.end(over);
+    if (past.recording && !past.known && !this.quiet) this.endReplay();
+  }
+
+  /** The force of the spring, where something is held. */
+  pulled() {
+    const { env, spring } = this;
+    const { held } = spring;
+    if (!held) return null;
+    const mass = 1 / Math.max(1e-3, env.bodies[held.body].invweight);
+    const pulled = spring.apply(env.pose(held.body), mass, env.seconds);
+    return pulled && { body: held.body, ...pulled };
+  }
+
+  /** @param {Parameters<Spring["hold"]>[0]} held */
+  hold(held) {
     if (held) {
-      const mass = 1 / Math.max(1e-3, env.bodies[held.body].invweight);
-      const pulled = spring.apply(env.pose(held.body), mass, env.seconds);
-      if (pulled) env.pull(held.body, pulled.force, pulled.at);
+      this.goal = null;
+      this.past.forget();
     }
-    if (this.tape && !this.tape.add(this.action)) this.to.event("tape", { recording: this.endRecording(), full: true });
-    this.end(env.step(this.action));
-    if (this.replay && ++this.replay.done >= this.replay.recording.steps) this.endReplay();
+    this.spring.hold(held);
+    if (!held) this.env.clearForces();
+    if (!this.clock.playing) this.show();
+  }
+
+  /**
+   * Locks a joint or a part, or unlocks it.
+   * @param {string} target
+   * @param {boolean} on
+   */
+  lock(target, on) {
+    this.goal = null;
+    this.past.forget();
+    this.past.changed = true;
+    return this.env.lock(target, on);
+  }
+
+  /** @param {import("./past.js").Stretch} stretch whose snapshot is gone back to */
+  restore(stretch) {
+    if (!stretch.key) return;
+    const locks = this.env.locked().join();
+    this.env.restore(stretch.key.bytes);
+    this.past.at = stretch.start;
+    this.truncated = stretch.key.truncated;
+    this.over = false;
+    this.scored = 0;
+    if (this.env.locked().join() !== locks) this.to.event("locked", this.env.locked());
+  }
+
+  /**
+   * Goes to a moment of the past, or of the recording that plays, where time then stands.
+   * @param {number} target steps, as in a moment's `line`
+   */
+  seek(target) {
+    const { past } = this;
+    if (this.tape) throw new Error("A recording runs: end it to go back.");
+    this.clock.play(false);
+    this.spring.hold(null);
+    if (!past.known && past.changed) past.begin(() => ({ bytes: this.env.snapshot(), truncated: this.truncated }));
+    this.goal = Math.min(past.last, Math.max(past.first, Math.round(target)));
+    this.travelling ??= this.travel().finally(() => (this.travelling = null));
+    return this.travelling;
+  }
+
+  /** Goes where time shall be, with looks at messages, which may change that. */
+  async travel() {
+    const { past } = this;
+    let towards = -1;
+    for (;;) {
+      await new Promise((done) => setTimeout(done));
+      if (this.goal === null || past !== this.past) return;
+      if (towards !== this.goal) {
+        towards = this.goal;
+        const start = past.from(towards);
+        if (start) this.restore(start);
+      }
+      if (this.towards(towards)) break;
+      if (this.away < AHEAD) this.show();
+    }
+    this.goal = null;
+    this.show();
+  }
+
+  /**
+   * Steps to a moment for a while.
+   * @param {number} target
+   * @returns {boolean} whether it is reached
+   */
+  towards(target) {
+    const { past } = this;
+    const until = performance.now() + BUDGET;
+    this.quiet = true;
+    try {
+      while (past.at < target && performance.now() < until) this.step();
+    } finally {
+      this.quiet = false;
+    }
+    if (past.at < target) return false;
+    const cut = past.cut(target);
+    if (cut) this.restore(cut);
+    return true;
   }
 
   /**
@@ -97,17 +230,18 @@ export class LiveWorld {
    * @param {boolean} over
    */
   end(over) {
-    if (over && !this.truncated && !this.replay) {
+    if (over && !this.truncated && !this.past.recording) {
       this.score = this.env.score();
       this.over = this.score.earned !== null;
       if (this.over) this.clock.play(false);
-      this.to.event("episode", { ...this.score, time: this.env.time });
+      if (!this.quiet) this.to.event("episode", { ...this.score, time: this.env.time });
     }
     this.truncated = over;
   }
 
   /** @param {number} n */
   steps(n) {
+    this.goal = null;
     for (let i = 0; i < n && !this.over; i++) this.step();
     this.show();
   }
@@ -122,7 +256,9 @@ export class LiveWorld {
 
   /** Lets go of everything that belongs to a run. */
   settle() {
-    this.tape = this.replay = null;
+    this.tape = null;
+    this.goal = null;
+    this.past = new Past(this.action.length, this.env.seconds);
     this.truncated = this.over = false;
     this.spring.hold(null);
     this.env.clearForces();
@@ -153,15 +289,14 @@ export class LiveWorld {
     }
     this.settle();
     this.env.resetTo(recording);
-    this.replay = { recording, done: 0 };
+    this.past = new Past(width, this.env.seconds, recording);
   }
 
   endReplay() {
-    const replay = this.replay;
-    this.replay = null;
+    const { recording } = this.past;
     this.clock.play(false);
-    if (!replay) return;
-    const { end, steps } = replay.recording;
+    if (!recording) return;
+    const { end, steps } = recording;
     this.to.event("replayed", { steps, same: end && sameBits(end, this.env.qpos()) });
   }
 
@@ -184,6 +319,7 @@ export class LiveWorld {
       this.score = env.score();
     }
     const { held } = this.spring;
+    const { past } = this;
     this.away++;
     this.to.frame(buffer, {
       time: env.time,
@@ -197,6 +333,7 @@ export class LiveWorld {
       score: this.score,
       recorded: this.tape?.steps ?? null,
       replay: this.replay && { done: this.replay.done, of: this.replay.recording.steps },
+      line: { from: past.first, at: past.at, to: past.last, recording: past.recording !== null },
       memory: env.memory,
       pull: held && { body: held.body, at: held.point, force: this.spring.force },
     });
@@ -207,4 +344,14 @@ export class LiveWorld {
     this.away = Math.max(0, this.away - 1);
     if (buffer.byteLength === 4 * this.layout.length && this.spare.length < AHEAD) this.spare.push(buffer);
   }
+}
+
+/**
+ * Whether two movements move MIMo differently.
+ * @param {Movement} a
+ * @param {Movement} b
+ */
+function differs(a, b) {
+  const key = (/** @type {Movement} */ { policy, held, vigour, seed }) => JSON.stringify([policy, held, vigour, seed]);
+  return key(a) !== key(b);
 }

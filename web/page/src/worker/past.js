@@ -1,0 +1,136 @@
+// The past of a world: snapshots, and between them what was done, so that every moment is reached again with the same bits.
+
+/** Seconds between snapshots of a life. */
+const APART = 0.5;
+/** Seconds of a life that one can go back. */
+const KEPT = 30;
+/** Most snapshots of a recording, which is kept whole. */
+const MOST = 128;
+
+/** @typedef {{ bytes: Uint8Array, truncated: boolean }} Key a snapshot, and what else belongs to its moment */
+/** @typedef {{ body: number, force: [number, number, number], at: [number, number, number] }} Pull */
+/**
+ * Steps between two snapshots. `draws` tells where an action was drawn by chance; `cut` whether something other than a step led to its
+ * snapshot, as a lock does.
+ * @typedef {{ start: number, room: number, actions: Float32Array, draws: Uint8Array | null, pulls: Map<number, Pull>, key: Key | null, cut: boolean }} Stretch
+ */
+
+export class Past {
+  /**
+   * @param {number} width numbers of an action
+   * @param {number} seconds of a step
+   * @param {import("../types").Recording | null} [recording] what will be done, if that is known
+   */
+  constructor(width, seconds, recording = null) {
+    this.width = width;
+    this.apart = Math.max(1, Math.round(APART / seconds));
+    this.kept = Math.round(KEPT / seconds);
+    /** Where the world is, and the latest moment that is known; steps since the beginning. */
+    this.at = 0;
+    this.last = recording?.steps ?? 0;
+    /** Whether these are the steps of a recording, and nothing beside. */
+    this.recording = recording;
+    /** Whether something other than a step has changed the world since the last step. */
+    this.changed = false;
+    /** @type {Stretch[]} */
+    this.stretches = recording ? this.whole(recording) : [];
+  }
+
+  /** @param {import("../types").Recording} recording */
+  whole({ steps, actions }) {
+    const room = Math.max(this.apart, Math.ceil(steps / MOST));
+    return Array.from({ length: Math.ceil(steps / room) }, (_, i) => {
+      const [start, end] = [i * room, Math.min(steps, (i + 1) * room)];
+      return { start, room: end - start, actions: actions.subarray(start * this.width, end * this.width), draws: null, pulls: new Map(), key: null, cut: false };
+    });
+  }
+
+  /** The earliest moment that can be reached. */
+  get first() {
+    return Math.max(this.stretches[0]?.start ?? this.at, this.recording ? 0 : this.last - this.kept);
+  }
+
+  /** Whether what comes next is known. */
+  get known() {
+    return this.at < this.last;
+  }
+
+  /** The stretch that the next step belongs to. */
+  get here() {
+    return this.stretches.findLast((s) => s.start <= this.at && this.at < s.start + s.room);
+  }
+
+  /**
+   * Prepares the next step: where a stretch begins, a snapshot is taken.
+   * @param {() => Key} save
+   */
+  begin(save) {
+    let stretch = this.known || !this.changed ? this.here : undefined;
+    if (!stretch) {
+      const tail = this.stretches.at(-1);
+      if (tail?.start === this.at) this.stretches.pop();
+      else if (tail) tail.room = Math.min(tail.room, this.at - tail.start);
+      stretch = { start: this.at, room: this.apart, actions: new Float32Array(this.apart * this.width), draws: new Uint8Array(this.apart), pulls: new Map(), key: null, cut: this.changed };
+      this.stretches.push(stretch);
+      this.changed = false;
+    }
+    stretch.key ??= save();
+    return stretch;
+  }
+
+  /**
+   * What was done in the step that comes next.
+   * @param {Stretch} stretch that it belongs to
+   */
+  deed(stretch) {
+    const i = this.at - stretch.start;
+    return { action: stretch.actions.subarray(i * this.width, (i + 1) * this.width), drawn: stretch.draws?.[i] === 1, pull: stretch.pulls.get(i) ?? null };
+  }
+
+  /**
+   * Keeps a step that was done.
+   * @param {Stretch} stretch that it belongs to
+   * @param {Float32Array} action
+   * @param {boolean} drawn whether it was drawn by chance
+   * @param {Pull | null} pull
+   */
+  add(stretch, action, drawn, pull) {
+    const i = this.at - stretch.start;
+    stretch.actions.set(action, i * this.width);
+    if (stretch.draws) stretch.draws[i] = Number(drawn);
+    if (pull) stretch.pulls.set(i, pull);
+    this.recording = null; // life has gone on after it
+    this.last = ++this.at;
+    while (this.stretches.length > 1 && this.stretches[1].start <= this.last - this.kept) this.stretches.shift();
+  }
+
+  /** Forgets what comes next, as something else is done. What a recording holds stays. */
+  forget() {
+    if (!this.known || this.recording) return;
+    this.changed = this.cut(this.at) !== null;
+    this.stretches = this.stretches.filter((s) => s.start <= this.at && !(s.cut && s.start === this.at));
+    const tail = this.stretches.at(-1);
+    for (const i of tail?.pulls.keys() ?? []) if (tail && tail.start + i >= this.at) tail.pulls.delete(i);
+    this.last = this.at;
+  }
+
+  /**
+   * Where a way to a moment starts: the world itself, if that is nearer than a snapshot. A snapshot of the very moment is used only where no
+   * step leads there, as a step brings up to date what a snapshot does not hold.
+   * @param {number} target
+   * @returns {Stretch | null} nothing for the world as it is
+   */
+  from(target) {
+    const reached = this.stretches.filter((s) => s.key);
+    const near = reached.findLast((s) => s.start < target) ?? reached.find((s) => s.start === target) ?? null;
+    return near && this.at <= target && this.at >= near.start ? null : near;
+  }
+
+  /**
+   * The stretch that something other than a step led to at this very moment.
+   * @param {number} at
+   */
+  cut(at) {
+    return this.stretches.find((s) => s.cut && s.key && s.start === at) ?? null;
+  }
+}
