@@ -9,6 +9,7 @@ import { guarded, memory, module } from "./module.js";
 export { ArgumentError, Blueprint, Env, FreedError, MissingError, ModuleError };
 
 /** @typedef {import("./types.js").Settings} Settings */
+/** @typedef {import("./types.js").Assets} Assets */
 /** @typedef {import("./types.js").ConfigKey} ConfigKey */
 /** @typedef {import("./types.js").Observation} Observation */
 /** @typedef {import("./types.js").Step} Step */

@@ -1,6 +1,6 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 // What environments of one configuration share.
-import { text } from "./check.js";
+import { files, text } from "./check.js";
 import { Blueprint as CoreBlueprint } from "./core.js";
 import { Env } from "./env.js";
 import { FreedError } from "./errors.js";
@@ -16,11 +16,12 @@ export class Blueprint {
    * Builds the scene.
    * @param {import("./types.js").Settings | string} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
+   * @param {import("./types.js").Assets} [assets] files by path, among which a scene of one's own and its textures are looked for
    */
-  constructor(config = {}, name = "configuration") {
-    const [yaml, file] = [yamlOf(config), text("name", name)];
+  constructor(config = {}, name = "configuration", assets = {}) {
+    const [yaml, file, { paths, contents }] = [yamlOf(config), text("name", name), files("assets", assets)];
     memory();
-    this.#core = guarded(() => new CoreBlueprint(yaml, file));
+    this.#core = guarded(() => new CoreBlueprint(yaml, file, paths, contents));
   }
 
   /** Makes an environment. */

@@ -88,6 +88,22 @@ export function bytes(name, value) {
 }
 
 /**
+ * Reads files by path; a text becomes UTF-8.
+ * @param {string} name
+ * @param {unknown} value
+ * @returns {{ paths: string[], contents: Uint8Array[] }}
+ */
+export function files(name, value) {
+  if (typeof value !== "object" || value === null || Array.isArray(value) || ArrayBuffer.isView(value)) return refuse(name, value, "an object of files by path");
+  const entries = Object.entries(value);
+  const contents = entries.map(([path, file]) => {
+    if (typeof file === "string") return new TextEncoder().encode(file);
+    return file instanceof Uint8Array ? file : refuse(`${name}[${JSON.stringify(path)}]`, file, "a text or a Uint8Array");
+  });
+  return { paths: entries.map(([path]) => path), contents };
+}
+
+/**
  * Whether something is an array, or a typed one of numbers.
  * @param {unknown} value
  * @returns {value is ArrayLike<number>}

@@ -42,10 +42,11 @@ export class Env {
    * Builds the scene of a configuration, or makes one more environment of a blueprint.
    * @param {import("./types.js").Settings | string | Blueprint} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
+   * @param {import("./types.js").Assets} [assets] files by path, among which a scene of one's own and its textures are looked for
    */
-  constructor(config = {}, name) {
+  constructor(config = {}, name, assets) {
     const shared = config instanceof Blueprint;
-    const blueprint = shared ? config : new Blueprint(config, name);
+    const blueprint = shared ? config : new Blueprint(config, name, assets);
     const core = guarded(() => blueprint.core.env());
     this.#core = core;
     this.#config = blueprint.config;

@@ -1,5 +1,5 @@
 // Environments in a worker: the same calls as of `Env`, each of which returns a promise.
-import { refuse, text } from "./check.js";
+import { files, refuse, text } from "./check.js";
 import { MissingError } from "./errors.js";
 import { yamlOf } from "./yaml.js";
 
@@ -65,9 +65,11 @@ export class Connection {
    * Makes an environment.
    * @param {import("./types.js").Settings | string} [config] values by key, or the text of a YAML file
    * @param {string} [name] of the file, for errors
+   * @param {import("./types.js").Assets} [assets] files by path, among which a scene of one's own and its textures are looked for
    */
-  async create(config = {}, name = "configuration") {
-    const args = [yamlOf(config), text("name", name)];
+  async create(config = {}, name = "configuration", assets = {}) {
+    files("assets", assets); // refused here, where the call is
+    const args = [yamlOf(config), text("name", name), assets];
     return new RemoteEnv(this, await this.send(undefined, "create", args));
   }
 

@@ -37,8 +37,8 @@ function copied(value, moved) {
  */
 async function answer({ env: id, what, args }) {
   if (what === "create") {
-    await init(args[2]);
-    environments.set(next, new Env(args[0], args[1]));
+    await init();
+    environments.set(next, new Env(args[0], args[1], args[2]));
     return next++;
   }
   const env = environments.get(/** @type {number} */ (id));

@@ -38,6 +38,7 @@ const home = process.env.PAGE_URL;
 const html = readFileSync(join(here, "index.html"), "utf8");
 writeFileSync(join(out, "index.html"), home ? html.replace('content="./card.png"', `content="${new URL("card.png", home.endsWith("/") ? home : `${home}/`).href}"`) : html);
 for (const file of ["icon.svg", "page.webmanifest"]) copyFileSync(join(here, file), join(out, file));
+copyFileSync(join(here, "../../cli/src/commands/scene/room.xml"), join(out, "room.xml"));
 copyFileSync(join(here, "../../docs/page.png"), join(out, "card.png"));
 const font = join(here, "../node_modules/@fontsource-variable/inter");
 copyFileSync(join(font, "files/inter-latin-wght-normal.woff2"), join(out, "inter.woff2"));
@@ -49,7 +50,7 @@ writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
 const files = readdirSync(out, { recursive: true, withFileTypes: true })
   .filter((f) => f.isFile())
   .map((f) => relative(out, join(f.parentPath, f.name)).replaceAll("\\", "/"))
-  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$/.test(f))
+  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|room\.xml|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$/.test(f))
   .sort();
 const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, { hash: createHash("sha256").update(readFileSync(join(out, f))).digest("hex"), wanted: !/onnx|remote|babybench\/worker/.test(f) }]));
 const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = {};", `const FILES = ${JSON.stringify(table)};`);

@@ -29,7 +29,7 @@ fn describe(key: &Key) -> JsValue {
             ("number", JsValue::NULL, min.into(), max.into())
         }
         KeyKind::Choice(names) => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
-        // a page has no files
+        // a path is offered by who hands over its file
         KeyKind::ChoiceOrFile { names, .. } => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         KeyKind::List(names) => ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         KeyKind::Text => ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL),

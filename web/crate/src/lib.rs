@@ -13,6 +13,10 @@ mod scene;
 mod task;
 
 use babybench::Config;
+use babybench::assets::{MemoryAssets, Overlay};
+use babybench::env::BlueprintOptions;
+use babybench::mimo::embedded;
+use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 
 /// Lists the configuration keys: name, section, kind, what is allowed, default, meaning.
@@ -27,11 +31,17 @@ pub struct Blueprint(babybench::Blueprint);
 
 #[wasm_bindgen]
 impl Blueprint {
-    /// Builds the scene of a configuration in YAML; `name` stands for its file in errors.
+    /// Builds the scene of a configuration in YAML; `name` stands for its file in errors. A scene of one's own is looked for among
+    /// files of the caller's, by path, which lie over those of the library.
     #[wasm_bindgen(constructor)]
-    pub fn new(yaml: &str, name: &str) -> Result<Blueprint, JsValue> {
+    pub fn new(yaml: &str, name: &str, paths: Vec<String>, contents: Vec<Uint8Array>) -> Result<Blueprint, JsValue> {
         let config = Config::from_yaml(yaml, name).map_err(|e| js::config_error(&e))?;
-        babybench::Blueprint::new(config)
+        let mut files = MemoryAssets::new();
+        for (path, bytes) in paths.iter().zip(contents) {
+            files.insert(path, bytes.to_vec()).map_err(js::error)?;
+        }
+        let options = BlueprintOptions::default().with_assets(Overlay::new(embedded()).with(files));
+        babybench::Blueprint::with(config, options)
             .map(Self)
             .map_err(|e| js::env_error(&e))
     }

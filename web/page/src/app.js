@@ -1,6 +1,8 @@
 // What the page is: one world, one stage, one state; the panels look at it and ask it to change.
 import { STATES } from "./announce.js";
+import { BEHAVIORS } from "./names.js";
 import { Recordings } from "./recordings.js";
+import { sceneOf } from "./room.js";
 import { Sharing } from "./sharing.js";
 import { FIRST } from "./state.js";
 import { World, WorldError } from "./world.js";
@@ -36,6 +38,9 @@ export class App {
     /** The network that was brought. */
     /** @type {Network | null} */
     this.model = null;
+    /** The room of one's own that was brought. */
+    /** @type {import("./room.js").Room | null} */
+    this.room = null;
     /** Asks a question with two answers. */
     /** @type {(text: string, yes: string, no: string) => Promise<boolean>} */
     this.confirm = async () => true;
@@ -184,8 +189,11 @@ export class App {
    */
   async build(settings, snapshot, yaml) {
     const { seed, policy, held, vigour, speed, locks } = this.state;
+    const own = sceneOf(yaml ?? settings);
+    if (own !== null && !this.room?.files[own]) throw new WorldError(`The room ${own} is not here: drop its folder on the page first.`);
+    const assets = own === null ? undefined : this.room?.files;
     /** @type {Scene} */
-    const scene = await this.world.ask("make", { settings: yaml ?? settings, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot, network: policy === "model" ? this.model?.bytes : undefined });
+    const scene = await this.world.ask("make", { settings: yaml ?? settings, assets, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot, network: policy === "model" ? this.model?.bytes : undefined });
     if (scene.misfit !== null) {
       this.state.policy = "babbling";
       this.announce("misfit", scene.misfit);
@@ -209,6 +217,27 @@ export class App {
   async begin(settings) {
     this.state.locks = [];
     await this.make(settings, null);
+  }
+
+  /**
+   * Makes a room of one's own the scene, with the configuration that lies beside it, if one does.
+   * @param {import("./room.js").Room} room
+   */
+  async enter(room) {
+    if (!(await this.recordings.consent("Another room"))) return;
+    const before = this.room;
+    this.room = room;
+    const { behavior, age } = this.settings;
+    const settings = { behavior: String(behavior) in BEHAVIORS ? behavior : "self_touch", age, vision_active: false, max_episode_steps: 12_000, scene: room.scenes[0] };
+    try {
+      this.state.locks = [];
+      await this.make(settings, null, room.yaml ?? undefined);
+    } catch (e) {
+      this.room = before;
+      throw e;
+    }
+    const others = room.scenes.filter((name) => name !== this.state.settings.scene);
+    this.notice(`MIMo is in ${this.state.settings.scene} now.${others.length ? ` Other rooms beside it, for the setting scene: ${others.join(", ")}.` : ""}`);
   }
 
   /**

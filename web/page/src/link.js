@@ -44,18 +44,24 @@ export async function through(bytes, stream, most) {
 /** @param {Uint8Array<ArrayBuffer>} bytes */
 export const pack = (bytes) => through(bytes, new CompressionStream("deflate-raw"), Infinity);
 
-/** What a link holds: a state, where it goes on from, the network that moves MIMo. */
-/** @typedef {{ state: Record<string, any>, snapshot: Uint8Array<ArrayBuffer> | null, network: Uint8Array<ArrayBuffer> | null }} Link */
+/** @typedef {import("./room.js").Files} Files */
+/** What a link holds: a state, where it goes on from, the network that moves MIMo, the files of a room of one's own. */
+/** @typedef {{ state: Record<string, any>, snapshot: Uint8Array<ArrayBuffer> | null, network: Uint8Array<ArrayBuffer> | null, room: Files | null }} Link */
+
+/** @param {Files} files */
+export const packFiles = (files) => pack(new TextEncoder().encode(JSON.stringify(Object.entries(files).map(([path, bytes]) => [path, base64(bytes)]))));
 
 /**
  * @param {PageState} state
  * @param {Uint8Array<ArrayBuffer> | null} snapshot
  * @param {Uint8Array<ArrayBuffer> | null} network packed
+ * @param {Uint8Array<ArrayBuffer> | null} room packed
  * @returns {Promise<string>} the fragment, without #
  */
-export async function encode(state, snapshot, network) {
+export async function encode(state, snapshot, network, room) {
   const parts = [`s=${base64(await pack(new TextEncoder().encode(JSON.stringify(state))))}`];
   if (snapshot) parts.push(`m=${base64(await pack(snapshot))}`);
+  if (room) parts.push(`r=${base64(room)}`);
   if (network) parts.push(`n=${base64(network)}`);
   return parts.join("&");
 }
@@ -72,5 +78,8 @@ export async function decode(hash) {
   if (!said) return null;
   const state = JSON.parse(new TextDecoder().decode(said));
   if (typeof state !== "object" || state === null) throw new Error("the link holds no state");
-  return { state, snapshot: await part("m"), network: await part("n") };
+  const room = await part("r");
+  /** @type {[string, string][] | null} */
+  const files = room && JSON.parse(new TextDecoder().decode(room));
+  return { state, snapshot: await part("m"), network: await part("n"), room: files && Object.fromEntries(files.map(([path, bytes]) => [path, unbase64(bytes)])) };
 }

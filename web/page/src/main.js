@@ -10,6 +10,7 @@ import { tabs } from "./panels/tabs.js";
 import { caption, transport } from "./panels/transport.js";
 import { watch } from "./panels/watch.js";
 import { fromFile } from "./recording.js";
+import { readRoom } from "./room.js";
 import { drawnInSoftware } from "./stage/graphics.js";
 import { HEAT, heatGradient, place, SCALE } from "./stage/heat.js";
 import { Pointer } from "./stage/pointer.js";
@@ -130,14 +131,17 @@ function drops(app) {
   document.addEventListener("dragover", (e) => e.preventDefault());
   document.addEventListener("drop", (e) => {
     e.preventDefault();
+    const items = Array.from(e.dataTransfer?.items ?? [], (item) => item.webkitGetAsEntry?.() ?? item.getAsFile());
+    const things = items.filter((thing) => thing !== null);
     const file = e.dataTransfer?.files[0];
-    if (!file) return;
+    if (!file || !things.length) return;
     app.attempt(async () => {
+      if (things.length > 1 || !(things[0] instanceof File || things[0].isFile) || /\.(zip|xml)$/i.test(file.name)) return app.enter(await readRoom(things));
       if (/\.npz$/i.test(file.name)) await app.recordings.replay(await fromFile(new Uint8Array(await file.arrayBuffer())));
       else if (/\.ya?ml$/i.test(file.name)) await app.make({}, null, await file.text());
       else if (/\.onnx$/i.test(file.name)) {
         await app.bring({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), url: null });
-      } else throw new Error(`${file.name} is no recording (.npz), model (.onnx) or configuration (.yml).`);
+      } else throw new Error(`${file.name} is no recording (.npz), model (.onnx), configuration (.yml) or room (.xml, .zip or a folder).`);
     });
   });
 }

@@ -1,5 +1,5 @@
 // NumPy archives, read and written: what `babybench replay` takes, and what NumPy's savez and savez_compressed write.
-import { through } from "./link.js";
+import { unzip } from "./zip.js";
 
 /** @typedef {{ shape: number[], data: Float64Array | Float32Array | Uint8Array }} NumpyArray */
 
@@ -111,26 +111,12 @@ function parse(bytes, name) {
  * @returns {Promise<Record<string, NumpyArray>>}
  */
 export async function read(bytes) {
-  const v = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  let end = bytes.length - 22;
-  while (end >= 0 && v.getUint32(end, true) !== 0x06054b50) end--;
-  if (end < 0) throw new Error("The file is not a NumPy archive (.npz).");
+  const files = await unzip(bytes, (_, size) => size <= MOST, MOST);
+  if (!files) throw new Error("The file is not a NumPy archive (.npz).");
   /** @type {Record<string, NumpyArray>} */
   const out = {};
-  let at = v.getUint32(end + 16, true);
-  for (let i = v.getUint16(end + 10, true); i > 0; i--) {
-    if (at + 46 > bytes.length) throw new Error("The archive is cut off.");
-    const method = v.getUint16(at + 10, true);
-    const [packed, size] = [v.getUint32(at + 20, true), v.getUint32(at + 24, true)];
-    const nameLength = v.getUint16(at + 28, true);
-    const name = new TextDecoder().decode(bytes.subarray(at + 46, at + 46 + nameLength)).replace(/\.npy$/, "");
-    const local = v.getUint32(at + 42, true);
-    at += 46 + nameLength + v.getUint16(at + 30, true) + v.getUint16(at + 32, true);
-    if (size > MOST) continue;
-    if (local + 30 > bytes.length) throw new Error("The archive is cut off.");
-    const start = local + 30 + v.getUint16(local + 26, true) + v.getUint16(local + 28, true);
-    const raw = bytes.slice(start, start + packed);
-    const body = method === 8 ? await through(raw, new DecompressionStream("deflate-raw"), MOST) : raw;
+  for (const [file, body] of files) {
+    const name = file.replace(/\.npy$/, "");
     const array = parse(body, name);
     if (array) out[name] = array;
   }

@@ -1,6 +1,7 @@
 // The page and its links: what an address holds is opened, and what there is goes into an address.
 import * as link from "./link.js";
 import { fromFile } from "./recording.js";
+import { roomOf, sceneOf } from "./room.js";
 import { checked, FIRST } from "./state.js";
 import { WorldError } from "./world.js";
 
@@ -9,6 +10,8 @@ import { WorldError } from "./world.js";
 
 /** Largest network that goes into a link, bytes as it is packed: messengers take links of a hundred thousand characters. */
 const LARGEST = 64 << 10;
+/** Largest room that outlives a reload, bytes: browsers keep a few megabytes. */
+const REMEMBERED = 4 << 20;
 /** Milliseconds after a change until it is remembered: sliders change often. */
 const LATER = 300;
 
@@ -38,6 +41,12 @@ export class Sharing {
     return { ...state, settings: scene ? scene.changed : state.settings, view: stage.orbit.view, network };
   }
 
+  /** The files of the room that MIMo is in, if it is one's own. */
+  get room() {
+    const { room, state } = this.app;
+    return sceneOf(state.settings) === null || !room ? null : room.files;
+  }
+
   /** Tells states apart, wherever one looks from. */
   get key() {
     return JSON.stringify({ ...this.state, view: null });
@@ -48,7 +57,9 @@ export class Sharing {
     if (!this.app.scene || this.opening || window !== top) return; // the history of a frame is that of the page around it
     if (this.linked !== null && this.linked === this.key) return;
     const { model } = this.app;
-    const kept = { state: this.state, network: this.state.network && model ? model.bytes : null };
+    const { room } = this;
+    const small = room && Object.values(room).reduce((sum, bytes) => sum + bytes.length, 0) < REMEMBERED;
+    const kept = { state: this.state, network: this.state.network && model ? model.bytes : null, room: small ? room : null };
     const plain = location.pathname + location.search;
     if (this.linked === null) history.replaceState(kept, "", plain);
     else history.pushState(kept, "", plain);
@@ -76,7 +87,7 @@ export class Sharing {
   async arrive() {
     if (/[#&]s=/.test(location.hash)) return this.open(location.hash);
     const kept = history.state;
-    return kept?.state ? this.enter({ state: kept.state, snapshot: null, network: kept.network ?? null }) : null;
+    return kept?.state ? this.enter({ state: kept.state, snapshot: null, network: kept.network ?? null, room: kept.room ?? null }) : null;
   }
 
   /** Goes where the address has gone: back, forward, or to a link that was pasted. */
@@ -84,7 +95,7 @@ export class Sharing {
     if (!(await this.app.recordings.consent("Another address"))) return;
     this.app.play(false);
     this.linked = null;
-    if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, network: null });
+    if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, network: null, room: null });
   }
 
   /**
@@ -111,15 +122,17 @@ export class Sharing {
   async enter(found) {
     const { app } = this;
     const { state, refused } = checked(found.state);
-    const [before, model] = [app.state, app.model];
+    const [before, model, room] = [app.state, app.model, app.room];
     app.state = state;
     this.opening = true;
     try {
+      if (found.room) app.room = roomOf(Object.entries(found.room));
       await this.network(state, found.network);
       await this.makeOf(state, found.snapshot, refused);
     } catch (e) {
       app.state = app.scene ? before : structuredClone(FIRST);
       app.model = model;
+      app.room = room;
       if (!app.world.alive) app.connectAnew();
       app.notice(`The link cannot be opened: ${/** @type {Error} */ (e).message} ${app.scene ? "What was here stays." : "The page starts afresh."}`, true);
       return null;
@@ -215,8 +228,11 @@ export class Sharing {
     const snapshot = withMoment ? await app.world.ask("snapshot") : null;
     const packed = state.network && app.model && !state.network.url ? await link.pack(app.model.bytes) : null;
     const fits = packed !== null && packed.length <= LARGEST;
-    const href = new URL(`#${await link.encode(state, snapshot, fits ? packed : null)}`, location.href).href;
+    const files = this.room && (await link.packFiles(this.room));
+    const held = files !== null && files.length <= LARGEST;
+    const href = new URL(`#${await link.encode(state, snapshot, fits ? packed : null, held ? files : null)}`, location.href).href;
     const lacks = [];
+    if (files && !held) lacks.push(`It does not hold the room ${state.settings.scene} (${(files.length / 1e3).toFixed(0)} kB): who opens it must drop that on the page before.`);
     if (packed && !fits) lacks.push(`It does not hold the network ${app.model?.name} (${(packed.length / 1e3).toFixed(0)} kB): who opens it must drop that file on the page, or you put it on a server and open this page with ?policy= and its address.`);
     if (app.moment?.replay) lacks.push("A recording plays here, which the link does not hold: from this moment its policy goes on.");
     return { href, lacks: lacks.join(" ") };

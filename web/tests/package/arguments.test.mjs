@@ -26,6 +26,7 @@ const WRONG = {
   rows: [5, "123", null, {}, [[1], [2, 3]], [["a"]], [null], [5], Symbol("rows"), nothing],
   camera: [5, null, true, {}, { lookat: [0, 0], distance: 1, azimuth: 0, elevation: 0 }, { lookat: [0, 0, 0], distance: "1", azimuth: 0, elevation: 0 }, Symbol("camera"), 1n, [], NaN],
   config: [5, null, true, Symbol("config"), 1n, [], nothing, { age: NaN }, { age: Symbol("age") }, { scene: { crib: 1 } }],
+  files: [5, null, true, Symbol("files"), 1n, "room.xml", [], new Uint8Array(2), { "room.xml": 5 }, { "room.xml": null }],
   source: [5, null, true, Symbol("source"), 1n, "", {}, [], nothing, NaN],
   env: [5, null, true, Symbol("env"), 1n, "env", {}, [], nothing, NaN],
   worker: [5, null, true, Symbol("worker"), 1n, "worker.js", {}, [], nothing, NaN],
@@ -109,10 +110,10 @@ test("every other export names the argument that is wrong", async () => {
   const env = new Env({ behavior: "none", scene: "base", touch_active: false, vision_active: false });
   env.reset(0);
   const model = readFileSync(join(root, "tests/data/policies/network.onnx"));
-  const good = { config: {}, name: "name", bytes: model, env, source: undefined };
+  const good = { config: {}, name: "name", assets: {}, bytes: model, env, source: undefined };
   const constructors = /** @type {const} */ ([
-    [Env, [["config", "config"], ["name", "text"]]],
-    [Blueprint, [["config", "config"], ["name", "text"]]],
+    [Env, [["config", "config"], ["name", "text"], ["assets", "files"]]],
+    [Blueprint, [["config", "config"], ["name", "text"], ["assets", "files"]]],
     [onnx.OnnxPolicy, [["bytes", "bytes"], ["env", "env"], ["name", "text"]]],
     [remote.Connection, [["worker", "worker"]]],
   ]);
@@ -129,6 +130,7 @@ test("every other export names the argument that is wrong", async () => {
     await assert.rejects(worker.create({}, /** @type {any} */ (wrong)), { name: "ArgumentError", argument: "name" });
     await assert.rejects(far.call(/** @type {any} */ (wrong)), { name: "ArgumentError", argument: "what" });
   }
+  for (const wrong of WRONG.files) await assert.rejects(worker.create({}, "name", /** @type {any} */ (wrong)), { name: "ArgumentError" });
   assert.equal(sent.length, 0);
   worker.close();
   await assert.rejects(far.call("reset"), /the worker was closed/);

@@ -50,6 +50,40 @@ test("a program elsewhere installs and runs it", () => {
   }
 });
 
+const rooms = fileURLToPath(new URL("../../../docs/guide/rooms", import.meta.url));
+
+test("a room of one's own is made of files in memory", () => {
+  const assets = { "rooms/play_room.xml": readFileSync(join(rooms, "play_room.xml")) };
+  const settings = { scene: "rooms/play_room.xml", behavior: "self_touch", age: 6, vision_active: false };
+  const blueprint = new Blueprint(settings, "play_room.yml", assets);
+  const [env, other] = [blueprint.env(), new Env(settings, undefined, { "rooms/play_room.xml": assets["rooms/play_room.xml"].toString("utf8") })];
+  for (const e of [env, other]) {
+    e.reset(1);
+    for (let k = 0; k < 20; k++) e.step();
+  }
+  assert.equal(env.checksum(), other.checksum(), "bytes or a text");
+  assert.ok(env.model.geoms.some(({ name }) => name === "moon") && env.draw("corner", 8, 8).length === 256);
+  const kept = env.snapshot();
+  env.step();
+  other.restore(kept);
+  other.step();
+  assert.equal(other.checksum(), env.checksum(), "a snapshot fits a room of the same content");
+  // a picture beside the document, a part of it in a file of its own
+  const parts = {
+    "mine/room.xml": '<mujoco><include file="mimo_settings.xml"/><include file="mimo_actuators.xml"/><include file="wall.xml"/><worldbody><body name="mimo_location" pos="0 0 .3"><freejoint name="mimo_location"/><include file="mimo.xml"/></body><geom type="plane" size="2 2 .1"/></worldbody></mujoco>',
+    "mine/wall.xml": '<mujocoinclude><worldbody><geom name="wall" type="box" size="1 .02 .3" pos="0 .8 .3"/></worldbody></mujocoinclude>',
+  };
+  const mine = new Env({ scene: "mine/room.xml" }, undefined, parts);
+  assert.ok(mine.model.geoms.some(({ name }) => name === "wall"));
+  const lacking = { "mine/room.xml": parts["mine/room.xml"] };
+  assert.throws(() => new Env({ scene: "mine/room.xml" }, undefined, lacking), /mine\/wall.xml/);
+  assert.throws(() => new Env({ scene: "mine/room.xml" }), /not among the assets/);
+  assert.throws(() => new Env({ scene: "crib" }, undefined, { "../crib.xml": "" }), /is not a relative path/);
+  assert.throws(() => new Env({ scene: "mine/mimo.xml" }, undefined, { "mine/mimo.xml": parts["mine/room.xml"] }), /mimo.xml/);
+  for (const e of [env, other, mine]) e.free();
+  blueprint.free();
+});
+
 test("errors tell key and place", () => {
   assert.throws(() => new Env("scene: crib\nbehaviour: none\n", "my.yml"), { name: "ConfigError", message: "my.yml:2:1: unknown key `behaviour`; did you mean `behavior`?", key: "behaviour", line: 2, column: 1 });
   assert.throws(() => new Env({ engine: "rapier" }), /--features rapier/);

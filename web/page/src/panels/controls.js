@@ -85,16 +85,17 @@ export function slider(text, { min, max, step = "any", value, format = (v) => v.
 }
 
 /**
- * A place to drop a file on, or to choose one.
+ * A place to drop a file on, or to choose one; or several.
  * @param {string} text
  * @param {string} accept
- * @param {(file: File) => void} taken
+ * @param {(file: File, all: File[]) => void} taken
+ * @param {Partial<HTMLInputElement>} [more] of its field
  */
-export function drop(text, accept, taken) {
-  const input = el("input", { type: "file", accept, className: "hidden", "aria-label": text, onchange: () => {
-    const file = input.files?.[0];
+export function drop(text, accept, taken, more = {}) {
+  const input = el("input", { type: "file", accept, className: "hidden", "aria-label": text, ...more, onchange: () => {
+    const files = Array.from(input.files ?? []);
     input.value = "";
-    if (file) taken(file);
+    if (files.length) taken(files[0], files);
   } });
   const root = el("label", { className: "drop" }, input, text);
   return Object.assign(root, { input });

@@ -1,6 +1,7 @@
 // The configuration: scene, behavior, body, muscles, senses, seed; and every key of the file, from the library's own table.
 import { download, el, say } from "../dom.js";
 import { BEHAVIORS, capital, TASKS } from "../names.js";
+import { readRoom, sceneOf } from "../room.js";
 import { MOST_SEED } from "../state.js";
 import { button, card, check, choice, drop, slider } from "./controls.js";
 import { senses } from "./senses.js";
@@ -21,7 +22,7 @@ const ORIGINAL = 18;
 
 /** @param {import("../app.js").App} app */
 export function setup(app) {
-  return el("div", {}, presets(app), scene(app), senses(app), start(app), file(app), all(app));
+  return el("div", {}, presets(app), scene(app), room(app), senses(app), start(app), file(app), all(app));
 }
 
 /** Where to begin: names, and what they set beside what a first visitor sees. @type {[string, import("../types").Settings][]} */
@@ -97,6 +98,37 @@ function scene(app) {
     body,
     line("Growth", el("div", { className: "age" }, age, original), "Size, mass and strength at an age. The original is measured as a child of 18 months."),
     line("Actuation", actuation, "Torques, pairs of opposing muscles, or desired angles."),
+    error,
+  );
+}
+
+/** @param {import("../app.js").App} app */
+function room(app) {
+  const error = el("p", { className: "error", role: "alert" });
+  const take = async (/** @type {File[]} */ files) => {
+    say(error, "");
+    try {
+      await app.enter(await readRoom(files));
+    } catch (e) {
+      say(error, /** @type {Error} */ (e).message);
+    }
+  };
+  const place = drop("Drop a room here: its folder, a .zip, or its files", ".xml,.zip,.yml,.yaml,image/*", (_, files) => take(files), { multiple: true });
+  const folder = drop("Choose a folder", "", (_, files) => take(files), { webkitdirectory: true });
+  folder.className = "button";
+  const list = el("select", { "aria-label": "Room", onchange: () => app.attempt(() => app.change({ scene: list.value })) });
+  app.on("state", () => {
+    const scenes = app.room?.scenes ?? [];
+    list.hidden = scenes.length === 0;
+    const now = sceneOf(app.settings) ?? "";
+    list.replaceChildren(...["", ...scenes].map((value) => el("option", { value, selected: value === now, disabled: value === "" }, value || "Scenes of this room")));
+  });
+  return card(
+    "A room of your own",
+    el("p", { className: "soft small" }, "An MJCF document in which MIMo is included beside furniture and toys, with its pictures. No server sees it; a link that you copy holds it where it is small."),
+    place,
+    el("div", { className: "row" }, folder, el("a", { className: "button", href: "./room.xml", download: "my_room.xml" }, "Save one to start from")),
+    list,
     error,
   );
 }
@@ -204,7 +236,11 @@ function field(key, changed) {
   const hint = el("small", {}, capital(key.doc));
   if (key.options) {
     const select = el("select", { id, onchange: () => changed(select.value) }, ...key.options.map((c) => el("option", { value: c }, c)));
-    return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), select, hint), show: (v) => (select.value = String(v)) };
+    return { root: el("div", { className: "field" }, el("label", { htmlFor: id }, key.name), select, hint), show: (v) => {
+      // a room of one's own is none of the options
+      select.value = String(v);
+      if (select.value !== String(v)) select.append(el("option", { value: v, selected: true }, String(v)));
+    } };
   }
   const number = key.kind !== "text";
   const input = el("input", { id, type: number ? "number" : "text", step: "any", min: key.min, max: key.max });

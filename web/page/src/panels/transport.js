@@ -53,6 +53,7 @@ export function caption(app) {
   /** @type {Record<string, string>} */
   const scenes = { crib: "in its crib", cubes: "among cubes", base: "on the floor" };
   app.on("scene", (/** @type {import("../types").Scene} */ s) => {
-    say($("where"), `A virtual infant ${scenes[String(s.settings.scene)] ?? ""}: skin, eyes and muscles, alive`);
+    const name = String(s.settings.scene);
+    say($("where"), `A virtual infant ${scenes[name] ?? `in ${name.replace(/^.*\/|\.xml$/gi, "").replaceAll("_", " ")}`}: skin, eyes and muscles, alive`);
   });
 }

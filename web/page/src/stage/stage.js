@@ -1,6 +1,7 @@
 // The scene on the page: draws when something changed, and only then.
 import { NeutralToneMapping, Scene as Root, Vector3, WebGLRenderer } from "three";
 import { CONTACT } from "../frame.js";
+import { sceneOf } from "../room.js";
 import { Arrows } from "./arrows.js";
 import { Bodies } from "./bodies.js";
 import { Studio, THEMES } from "./lights.js";
@@ -98,7 +99,7 @@ export class Stage {
     this.root.remove(...[this.bodies, this.skin].filter((o) => o !== null));
     this.scene = scene;
     // the page has its own ground
-    this.bodies = new Bodies({ ...scene, drawables: scene.drawables.map(ofThePage) }, this.shared, this.plain);
+    this.bodies = new Bodies({ ...scene, drawables: sceneOf(scene.settings) === null ? scene.drawables.map(ofThePage) : scene.drawables.map(ofARoom) }, this.shared, this.plain);
     this.skin = new Skin(scene);
     this.skin.dots = this.dots;
     this.skin.visible &&= this.glow;
@@ -229,6 +230,16 @@ function ofThePage(d) {
   if (d.shape === "plane" && d.body === 0) return { ...d, rgba: [0, 0, 0, 0] };
   return d.name === "rug" ? { ...d, texture: null, specular: 0, rgba: FELT } : d;
 }
+
+/** The colour of what has none. */
+const GREY = "0.5,0.5,0.5,1";
+
+/**
+ * Leaves out the floor of a room of one's own where it has no colours: the page has a ground.
+ * @param {import("../types").Drawable} d
+ * @returns {import("../types").Drawable}
+ */
+const ofARoom = (d) => (d.shape === "plane" && d.body === 0 && d.texture === null && d.rgba.join() === GREY ? { ...d, rgba: [0, 0, 0, 0] } : d);
 
 /**
  * @param {Scene} scene

@@ -11,9 +11,13 @@ const PARTS = 34;
 export const load = () => init();
 
 export class PageEnv {
-  /** @param {Settings | string} settings values by key, or the text of a file */
-  constructor(settings) {
-    this.env = new Env(settings, "configuration");
+  /**
+   * @param {Settings | string} settings values by key, or the text of a file
+   * @param {Record<string, Uint8Array>} [assets] files of a room of one's own
+   */
+  constructor(settings, assets) {
+    this.env = new Env(settings, "configuration", assets);
+    this.assets = assets;
     const { env } = this;
     env.deferVision(true);
     this.yaml = env.yaml;

@@ -56,10 +56,10 @@ function stopped(e) {
 
 /**
  * Makes an environment and brings it to where it starts.
- * @param {{ settings: import("../types").Settings | string, seed: number, locks: string[], snapshot: Uint8Array | null }} d
+ * @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, seed: number, locks: string[], snapshot: Uint8Array | null }} d
  */
 function build(d) {
-  const env = new PageEnv(d.settings);
+  const env = new PageEnv(d.settings, d.assets);
   try {
     env.reset(d.seed);
     for (const joint of d.locks) env.lock(joint, true);
@@ -78,11 +78,11 @@ const answers = {
   /** Loads ahead of time; who asks for it later hears what went wrong. */
   warm: () => load().then(() => {}, () => {}),
 
-  /** @param {{ settings: import("../types").Settings | string, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array } & Movement} d */
+  /** @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array } & Movement} d */
   async make(d) {
     await load();
     live?.clock.play(false);
-    const last = live && { settings: live.env.yaml, snapshot: live.env.snapshot(), seed: 0, locks: [] };
+    const last = live && { settings: live.env.yaml, assets: live.env.assets, snapshot: live.env.snapshot(), seed: 0, locks: [] };
     if (live) live.goal = null;
     // two worlds at once would take twice the memory, and leave it in pieces
     live?.env.free();
