@@ -12,8 +12,10 @@ const STUBS = {
   }`,
   "extras/PMREMGenerator.js": `export class PMREMGenerator { constructor() { throw new Error("The page has no environment maps."); } }`,
 };
-const UNUSED_SHADERS = ["meshtoon", "meshmatcap", "meshphysical", "meshnormal", "sprite", "points", "linedashed", "equirect", "cube", "backgroundCube"];
+const UNUSED_SHADERS = ["meshtoon", "meshmatcap", "meshphysical", "meshnormal", "sprite", "points", "linedashed", "equirect", "cube", "backgroundCube", "vsm"];
 
+/** Parts of shaders for what no material of the page has: bones, maps of bumps and reflections, planes that clip. */
+const UNUSED_PARTS = /ShaderChunk[\\/](aomap|lightmap|envmap|bumpmap|displacementmap|emissivemap|metalnessmap|roughnessmap|gradientmap|normalmap|morph|skin|batching|clearcoat|iridescence|clipping_planes|alphahash|logdepthbuf|map_particle|dithering)\w*\.glsl\.js$/;
 const UNUSED_CHUNKS = ["lights_physical_pars_fragment", "lights_physical_fragment", "transmission_pars_fragment", "transmission_fragment", "iridescence_fragment", "cube_uv_reflection_fragment", "lights_toon_pars_fragment", "lights_toon_fragment"];
 
 /** @param {string} folder of three.js */
@@ -29,7 +31,7 @@ export function lean(folder) {
         if (stub) return { contents: stub, loader: "js" };
         if (!path.endsWith(".glsl.js")) return undefined;
         const name = path.match(/ShaderLib[\\/](\w+)\.glsl\.js$/)?.[1];
-        if (UNUSED_CHUNKS.some((c) => path.endsWith(`${c}.glsl.js`))) return { contents: 'export default "";', loader: "js" };
+        if (UNUSED_PARTS.test(path) || UNUSED_CHUNKS.some((c) => path.endsWith(`${c}.glsl.js`))) return { contents: 'export default "";', loader: "js" };
         if (name && UNUSED_SHADERS.includes(name)) return { contents: 'export const vertex = "", fragment = "";', loader: "js" };
         return { contents: bare(readFileSync(path, "utf8")), loader: "js" };
       });

@@ -7,7 +7,7 @@ import { capital, TASKS } from "./names.js";
  * @typedef {{ text: string, bad?: boolean, stays?: boolean, alert?: boolean, actions?: [string, () => unknown][] }} Notice
  */
 
-/** @type {Record<"stopped" | "lost" | "hung" | "tape" | "replayed" | "episode" | "refused" | "missing" | "misfit", (app: App, data: any) => Notice>} */
+/** @type {Record<"stopped" | "lost" | "hung" | "tape" | "replayed" | "episode" | "refused" | "missing" | "misfit" | "alone" | "slow", (app: App, data: any) => Notice>} */
 export const STATES = {
   stopped: (app, why) => ({ text: `Time has stopped: ${why}`, bad: true, actions: [["Reset", () => app.reset()]] }),
 
@@ -34,15 +34,16 @@ export const STATES = {
     return { text: `The replay is over: ${steps} steps.${verdict} Play goes on from here.`, stays: true, actions: [["Replay again", again]] };
   },
 
-  /** @param {App} app @param {import("./types").Score & { time: number }} s */
-  episode: (app, { behavior, success, earned, value, time }) => {
+  /** @param {App} app @param {import("./types").Score & { time: number, second?: boolean }} s */
+  episode: (app, { behavior, success, failure, earned, value, time, second }) => {
+    const who = second ? "The second MIMo. " : "";
     const task = TASKS[behavior];
     if (!task) {
       const score = value === null ? "" : ` with a score of ${(100 * value).toFixed(1)} %`;
-      return { text: `The episode is complete after ${time.toFixed(1)} s${score}. MIMo goes on; Reset starts another episode.` };
+      return { text: `${who}The episode is complete after ${time.toFixed(1)} s${score}. MIMo goes on; Reset starts another episode.` };
     }
-    const end = success ? "the goal is reached" : app.moment?.score.failure ? "the goal is out of reach" : "the time is up";
-    return { text: `${task.title}: ${end} after ${time.toFixed(2)} s, with a return of ${(earned ?? 0).toFixed(1)}.`, stays: true, actions: [["Next episode", () => app.nextEpisode()]] };
+    const end = success ? "the goal is reached" : failure ? "the goal is out of reach" : "the time is up";
+    return { text: `${who}${task.title}: ${end} after ${time.toFixed(2)} s, with a return of ${(earned ?? 0).toFixed(1)}.`, stays: true, actions: [["Next episode", () => app.nextEpisode()]] };
   },
 
   /** @param {App} _app @param {{ name: string, size: number }} network */
@@ -50,6 +51,12 @@ export const STATES = {
 
   /** @param {App} app @param {string} why */
   misfit: (app, why) => ({ text: `${app.model?.name ?? "The network"} does not fit this configuration, so MIMo babbles: ${why}`, bad: true }),
+
+  /** @param {App} _app @param {string} why */
+  alone: (_app, why) => ({ text: `There is no second MIMo: ${why}`, bad: true }),
+
+  /** @param {App} app @param {number} pace */
+  slow: (app, pace) => ({ text: `This machine is too slow for two MIMos at ${app.state.speed} ×: a second takes them ${(1 / pace).toFixed(1)} s.`, stays: true, actions: [["End the comparison", () => app.compare(null)]] }),
 
   /** @param {App} _app @param {string[]} what */
   refused: (_app, what) => ({ text: `The link asks for what there is not: ${what.join(", ")}. The rest of it is kept.`, bad: true }),

@@ -3,6 +3,7 @@ import { STATES } from "./announce.js";
 import { BEHAVIORS } from "./names.js";
 import { Recordings } from "./recordings.js";
 import { sceneOf } from "./room.js";
+import { Second } from "./second.js";
 import { Sharing } from "./sharing.js";
 import { FIRST } from "./state.js";
 import { World, WorldError } from "./world.js";
@@ -12,7 +13,7 @@ import { World, WorldError } from "./world.js";
 /** @typedef {import("./types").Moment} Moment */
 /** @typedef {import("./types").Settings} Settings */
 /** @typedef {{ name: string, bytes: Uint8Array<ArrayBuffer>, url: string | null }} Network */
-/** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "tape" | "pull"} Event */
+/** @typedef {"scene" | "tick" | "state" | "play" | "notice" | "over" | "eyes" | "second eyes" | "tape" | "pull"} Event */
 
 /** Milliseconds between looks at numbers: faster than one reads. */
 const TICK = 100;
@@ -55,6 +56,8 @@ export class App {
     /** Changes that wait for their world, the first of them first. */
     /** @type {Settings[]} */
     this.asked = [];
+    /** The picture of the MIMo beside the first. */
+    this.second = new Second(this);
     this.recordings = new Recordings(this);
     this.sharing = new Sharing(this);
     this.world = this.connect(worker);
@@ -68,7 +71,7 @@ export class App {
   /** @param {Worker} [worker] a new one by default */
   connect(worker) {
     return new World(this.script, {
-      frame: (frame, moment) => this.see(frame, moment),
+      frame: (frame, moment, second) => (second ? this.second.see(frame, moment) : this.see(frame, moment)),
       event: (name, data) => this.hear(name, data),
       died: (why) => this.announce("lost", why),
       busy: () => this.playing,
@@ -164,11 +167,12 @@ export class App {
    * @param {Settings} settings
    * @param {Uint8Array<ArrayBuffer> | null} snapshot
    * @param {string} [yaml] the settings as a file, which may hold more than the page shows
+   * @param {Uint8Array<ArrayBuffer> | null} [second] snapshot of the MIMo beside him
    * @returns {Promise<boolean>} whether it was done: not if somebody would rather go on recording
    */
-  async make(settings, snapshot, yaml) {
+  async make(settings, snapshot, yaml, second) {
     if (!(await this.recordings.consent("This change"))) return false;
-    await this.inTurn(() => this.build(settings, snapshot, yaml));
+    await this.inTurn(() => this.build(settings, snapshot, yaml, second));
     return true;
   }
 
@@ -186,14 +190,19 @@ export class App {
    * @param {Settings} settings
    * @param {Uint8Array<ArrayBuffer> | null} snapshot
    * @param {string} [yaml]
+   * @param {Uint8Array<ArrayBuffer> | null} [second]
    */
-  async build(settings, snapshot, yaml) {
-    const { seed, policy, held, vigour, speed, locks } = this.state;
+  async build(settings, snapshot, yaml, second) {
+    const { seed, policy, held, vigour, speed, locks, twin } = this.state;
     const own = sceneOf(yaml ?? settings);
     if (own !== null && !this.room?.files[own]) throw new WorldError(`The room ${own} is not here: drop its folder on the page first.`);
     const assets = own === null ? undefined : this.room?.files;
     /** @type {Scene} */
-    const scene = await this.world.ask("make", { settings: yaml ?? settings, assets, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot, network: policy === "model" ? this.model?.bytes : undefined });
+    const scene = await this.world.ask("make", { settings: yaml ?? settings, assets, seed, policy, held: snapshot ? held : {}, vigour, speed, locks: snapshot ? [] : locks, snapshot, twin, second, network: policy === "model" || twin?.policy === "model" ? this.model?.bytes : undefined });
+    if (typeof scene.alone === "string") {
+      this.state.twin = null;
+      this.announce("alone", scene.alone);
+    }
     if (scene.misfit !== null) {
       this.state.policy = "babbling";
       this.announce("misfit", scene.misfit);
@@ -204,6 +213,7 @@ export class App {
     this.scene = scene;
     this.state.settings = scene.settings;
     this.state.locks = scene.joints.filter((j) => j.locked).map((j) => j.name);
+    this.second.show(scene.twin ?? null);
     this.stage.build(scene);
     this.emit("scene", scene);
     this.emit("state");
@@ -217,6 +227,17 @@ export class App {
   async begin(settings) {
     this.state.locks = [];
     await this.make(settings, null);
+  }
+
+  /**
+   * Puts a second MIMo beside the first, or takes him away. Both begin anew, from the same seed.
+   * @param {import("./types").Twin | null} twin
+   */
+  async compare(twin) {
+    if (!(await this.recordings.consent("A comparison"))) return;
+    this.emit("over", "slow");
+    this.state.twin = twin;
+    await this.make(this.state.settings, null);
   }
 
   /**
@@ -290,6 +311,7 @@ export class App {
     this.state.seed = seed;
     await this.world.ask("reset", seed);
     this.stage.jump = true;
+    if (this.second.stage) this.second.stage.jump = true;
     await this.world.ask("look");
     this.emit("state");
   }
@@ -316,6 +338,7 @@ export class App {
     this.emit("over", "episode");
     this.emit("over", "replayed");
     this.stage.jump = true;
+    if (this.second.stage) this.second.stage.jump = true;
     await this.world.ask("seek", step);
   }
 
@@ -329,20 +352,23 @@ export class App {
   }
 
   /** @param {{ body: number, point: [number, number, number], target: [number, number, number] }} pull */
-  pull(pull) {
+  pull(pull, second = false) {
     this.held = true;
-    this.stage.target = pull.target;
-    this.world.tell("pull", pull);
+    const stage = second ? this.second.stage : this.stage;
+    if (stage) stage.target = pull.target;
+    this.world.tell("pull", pull, second);
     this.emit("pull");
     if (!this.playing) this.world.tell("look");
   }
 
-  letGo() {
+  letGo(second = false) {
     this.held = false;
-    this.stage.target = null;
-    this.stage.spring.visible = false;
-    this.world.tell("pull", null);
-    this.stage.invalidate();
+    const stage = second ? this.second.stage : this.stage;
+    this.world.tell("pull", null, second);
+    if (!stage) return;
+    stage.target = null;
+    stage.spring.visible = false;
+    stage.invalidate();
   }
 
   /**
@@ -370,6 +396,7 @@ export class App {
     this.state.policy = "model";
     this.emit("over", "missing");
     this.move();
+    if (this.state.twin?.policy === "model") await this.compare(this.state.twin);
     this.notice(`${network.name} moves MIMo now. ${about}`);
   }
 

@@ -45,8 +45,8 @@ export async function through(bytes, stream, most) {
 export const pack = (bytes) => through(bytes, new CompressionStream("deflate-raw"), Infinity);
 
 /** @typedef {import("./room.js").Files} Files */
-/** What a link holds: a state, where it goes on from, the network that moves MIMo, the files of a room of one's own. */
-/** @typedef {{ state: Record<string, any>, snapshot: Uint8Array<ArrayBuffer> | null, network: Uint8Array<ArrayBuffer> | null, room: Files | null }} Link */
+/** What a link holds: a state, where it goes on from, and the MIMo beside him, the network that moves MIMo, the files of a room of one's own. */
+/** @typedef {{ state: Record<string, any>, snapshot: Uint8Array<ArrayBuffer> | null, second: Uint8Array<ArrayBuffer> | null, network: Uint8Array<ArrayBuffer> | null, room: Files | null }} Link */
 
 /** @param {Files} files */
 export const packFiles = (files) => pack(new TextEncoder().encode(JSON.stringify(Object.entries(files).map(([path, bytes]) => [path, base64(bytes)]))));
@@ -54,13 +54,15 @@ export const packFiles = (files) => pack(new TextEncoder().encode(JSON.stringify
 /**
  * @param {PageState} state
  * @param {Uint8Array<ArrayBuffer> | null} snapshot
+ * @param {Uint8Array<ArrayBuffer> | null} second likewise, of the MIMo beside him
  * @param {Uint8Array<ArrayBuffer> | null} network packed
  * @param {Uint8Array<ArrayBuffer> | null} room packed
  * @returns {Promise<string>} the fragment, without #
  */
-export async function encode(state, snapshot, network, room) {
+export async function encode(state, snapshot, second, network, room) {
   const parts = [`s=${base64(await pack(new TextEncoder().encode(JSON.stringify(state))))}`];
   if (snapshot) parts.push(`m=${base64(await pack(snapshot))}`);
+  if (second) parts.push(`t=${base64(await pack(second))}`);
   if (room) parts.push(`r=${base64(room)}`);
   if (network) parts.push(`n=${base64(network)}`);
   return parts.join("&");
@@ -81,5 +83,5 @@ export async function decode(hash) {
   const room = await part("r");
   /** @type {[string, string][] | null} */
   const files = room && JSON.parse(new TextDecoder().decode(room));
-  return { state, snapshot: await part("m"), network: await part("n"), room: files && Object.fromEntries(files.map(([path, bytes]) => [path, unbase64(bytes)])) };
+  return { state, snapshot: await part("m"), second: await part("t"), network: await part("n"), room: files && Object.fromEntries(files.map(([path, bytes]) => [path, unbase64(bytes)])) };
 }

@@ -44,6 +44,7 @@ function theme(stage) {
     const name = /** @type {"light" | "dark"} */ (chosen ?? (dark.matches ? "dark" : "light"));
     document.documentElement.dataset.theme = name;
     stage.theme = name;
+    if (stage.peer) stage.peer.theme = name;
   };
   dark.addEventListener("change", apply);
   $("theme").addEventListener("click", () => {
@@ -111,6 +112,7 @@ function glances(app) {
     seen = m.time;
     try {
       app.emit("eyes", await app.world.ask("eyes"));
+      if (app.second.scene) app.emit("second eyes", await app.world.ask("eyes", true));
     } catch (e) {
       if (app.world.alive) app.notice(`The eyes cannot be drawn: ${/** @type {Error} */ (e).message}`, true);
       return;

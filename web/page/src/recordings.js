@@ -49,6 +49,7 @@ export class Recordings {
    */
   async replay(recording, play = true) {
     if (!(await this.consent("A replay"))) return;
+    if (this.app.state.twin) await this.app.compare(null);
     if (recording.yaml !== null && recording.yaml !== this.app.scene?.yaml) await this.app.make({}, null, recording.yaml);
     await this.app.world.ask("replay", recording);
     this.last = recording;

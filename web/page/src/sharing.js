@@ -37,7 +37,7 @@ export class Sharing {
   /** What there is, for a link: without what is as it always is. */
   get state() {
     const { state, scene, stage, model } = this.app;
-    const network = state.policy === "model" && model ? { name: model.name, size: model.bytes.length, url: model.url } : undefined;
+    const network = (state.policy === "model" || state.twin?.policy === "model") && model ? { name: model.name, size: model.bytes.length, url: model.url } : undefined;
     return { ...state, settings: scene ? scene.changed : state.settings, view: stage.orbit.view, network };
   }
 
@@ -87,7 +87,7 @@ export class Sharing {
   async arrive() {
     if (/[#&]s=/.test(location.hash)) return this.open(location.hash);
     const kept = history.state;
-    return kept?.state ? this.enter({ state: kept.state, snapshot: null, network: kept.network ?? null, room: kept.room ?? null }) : null;
+    return kept?.state ? this.enter({ state: kept.state, snapshot: null, second: null, network: kept.network ?? null, room: kept.room ?? null }) : null;
   }
 
   /** Goes where the address has gone: back, forward, or to a link that was pasted. */
@@ -95,7 +95,7 @@ export class Sharing {
     if (!(await this.app.recordings.consent("Another address"))) return;
     this.app.play(false);
     this.linked = null;
-    if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, network: null, room: null });
+    if (!(await this.arrive()) && !location.hash) await this.enter({ state: FIRST, snapshot: null, second: null, network: null, room: null });
   }
 
   /**
@@ -128,7 +128,7 @@ export class Sharing {
     try {
       if (found.room) app.room = roomOf(Object.entries(found.room));
       await this.network(state, found.network);
-      await this.makeOf(state, found.snapshot, refused);
+      await this.makeOf(state, found, refused);
     } catch (e) {
       app.state = app.scene ? before : structuredClone(FIRST);
       app.model = model;
@@ -155,7 +155,7 @@ export class Sharing {
     const { app } = this;
     const { network } = state;
     delete state.network;
-    if (state.policy !== "model") return;
+    if (state.policy !== "model" && state.twin?.policy !== "model") return;
     const { name, url, size } = network ?? { name: "a network", url: null, size: 0 };
     const own = app.model?.name === name && app.model.bytes.length === size ? app.model.bytes : null;
     const found = bytes ?? own ?? (await this.fetched(url, async (answer) => new Uint8Array(await answer.arrayBuffer())));
@@ -164,22 +164,22 @@ export class Sharing {
       return;
     }
     app.model = null;
-    state.policy = "babbling";
+    for (const moved of [state, state.twin]) if (moved?.policy === "model") moved.policy = "babbling";
     app.announce("missing", { name, size });
   }
 
   /**
    * Builds a world of a state from outside, without the settings that the library refuses.
    * @param {PageState} state
-   * @param {Uint8Array<ArrayBuffer> | null} snapshot
+   * @param {Link} found where it goes on from
    * @param {string[]} refused what is left out is added
    */
-  async makeOf(state, snapshot, refused) {
+  async makeOf(state, { snapshot, second }, refused) {
     const { app } = this;
     const { locks } = state;
     for (;;) {
       try {
-        await app.make(state.settings, snapshot);
+        await app.make(state.settings, snapshot, undefined, second);
         const joints = new Set(app.scene?.joints.map((j) => j.name));
         refused.push(...locks.filter((name) => !joints.has(name)).map((name) => `lock ${name}`));
         return;
@@ -226,11 +226,12 @@ export class Sharing {
   async made(withMoment) {
     const { app, state } = this;
     const snapshot = withMoment ? await app.world.ask("snapshot") : null;
+    const second = withMoment && state.twin ? await app.world.ask("snapshot", true) : null;
     const packed = state.network && app.model && !state.network.url ? await link.pack(app.model.bytes) : null;
     const fits = packed !== null && packed.length <= LARGEST;
     const files = this.room && (await link.packFiles(this.room));
     const held = files !== null && files.length <= LARGEST;
-    const href = new URL(`#${await link.encode(state, snapshot, fits ? packed : null, held ? files : null)}`, location.href).href;
+    const href = new URL(`#${await link.encode(state, snapshot, second, fits ? packed : null, held ? files : null)}`, location.href).href;
     const lacks = [];
     if (files && !held) lacks.push(`It does not hold the room ${state.settings.scene} (${(files.length / 1e3).toFixed(0)} kB): who opens it must drop that on the page before.`);
     if (packed && !fits) lacks.push(`It does not hold the network ${app.model?.name} (${(packed.length / 1e3).toFixed(0)} kB): who opens it must drop that file on the page, or you put it on a server and open this page with ?policy= and its address.`);

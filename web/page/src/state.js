@@ -19,6 +19,7 @@ export const FIRST = {
   vigour: 0.6,
   speed: 1,
   locks: [],
+  twin: null,
 };
 
 const isObject = (/** @type {unknown} */ v) => typeof v === "object" && v !== null && !Array.isArray(v);
@@ -35,6 +36,7 @@ const ALLOWED = {
   speed: (v) => SPEEDS.includes(v),
   view: (v) => Array.isArray(v) && v.length === 7 && v.every(isNumber),
   locks: (v) => Array.isArray(v) && v.every((x) => typeof x === "string"),
+  twin: (v) => v === null || (isObject(v) && (v.age === null || isNumber(v.age)) && POLICIES.includes(v.policy) && isNumber(v.sensory) && isNumber(v.motor)),
   network: (v) => isObject(v) && typeof v.name === "string" && isNumber(v.size) && (v.url === null || typeof v.url === "string"),
 };
 

@@ -71,6 +71,9 @@ export interface Scene {
   layout: Layout;
   /** Seconds of a step. */
   timestep: number;
+  /** The scene of the MIMo beside him, if there is one; or why there is none. */
+  twin?: Scene | null;
+  alone?: string | null;
   /** Why the network that moved MIMo cannot go on, if so. */
   misfit: string | null;
 }
@@ -132,6 +135,14 @@ export interface Moment {
 
 export type PolicyName = "babbling" | "random" | "sine" | "zero" | "model";
 
+/** What the MIMo beside the first has of his own: age, months, or null for the original; policy; delays, ms. */
+export interface Twin {
+  age: number | null;
+  policy: PolicyName;
+  sensory: number;
+  motor: number;
+}
+
 /** What makes a page: enough to continue with the same bits. */
 export interface PageState {
   settings: Settings;
@@ -142,6 +153,8 @@ export interface PageState {
   /** How strongly babbling and sine move, 0 to 1. */
   vigour: number;
   speed: number;
+  /** The MIMo beside the first, if there is one. */
+  twin?: Twin | null;
   view?: number[];
   locks: string[];
   /** The network of the policy `model`, in links and in what is remembered. */

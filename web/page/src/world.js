@@ -22,7 +22,7 @@ const LOOK = 1000;
 export class World {
   /**
    * @param {URL} script
-   * @param {{ frame: (frame: Float32Array, moment: Moment) => void, event: (name: string, data?: any) => void, died: (why: string) => void, busy: () => boolean }} to
+   * @param {{ frame: (frame: Float32Array, moment: Moment, second?: boolean) => void, event: (name: string, data?: any) => void, died: (why: string) => void, busy: () => boolean }} to
    * @param {Worker} [worker] one that was started before
    */
   constructor(script, to, worker = World.worker(script)) {
@@ -77,8 +77,8 @@ export class World {
     if (d.pong) return;
     if (d.frame) {
       const frame = new Float32Array(d.frame);
-      this.to.frame(frame, d.moment);
-      if (this.alive) this.worker.postMessage({ back: d.frame }, [d.frame]);
+      this.to.frame(frame, d.moment, d.second);
+      if (this.alive) this.worker.postMessage({ back: d.frame, second: d.second }, [d.frame]);
     } else if (d.id) {
       const w = this.waiting.get(d.id);
       this.waiting.delete(d.id);

@@ -77,7 +77,7 @@ test("what the scene shows", async () => {
 
 test("both eyes see", async () => {
   await steps(page, 1);
-  await until(page, () => [...document.querySelectorAll(".eyes canvas")].every((c) => c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v, i) => i % 4 < 3 && v > 0)));
+  await until(page, () => [...document.querySelectorAll("section:not([hidden]) .eyes canvas")].every((c) => c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v, i) => i % 4 < 3 && v > 0)));
 });
 
 test("signals come and go", async () => {
@@ -277,7 +277,7 @@ test("scene, behavior, body, actuation, seed and settings", async () => {
   const saved = page.waitForEvent("download");
   await page.getByRole("button", { name: "Save file" }).click();
   assert.match(readFileSync(await (await saved).path(), "utf8"), /touch_scale: 2/);
-  await page.locator("#panel-setup input[type=file]").setInputFiles({ name: "a.yml", mimeType: "text/yaml", buffer: Buffer.from("scene: crib\nbehavior: self_touch\n") });
+  await page.getByLabel("Drop a configuration").setInputFiles({ name: "a.yml", mimeType: "text/yaml", buffer: Buffer.from("scene: crib\nbehavior: self_touch\n") });
   await until(page, () => mimo.scene.settings.touch_scale === 1);
   await steps(page, 1); // so that a world at its start is a new one
   await until(page, () => mimo.moment.steps === 1);

@@ -7,7 +7,7 @@ import { button, card, choice, drop, slider } from "./controls.js";
 /** @typedef {import("../types").PolicyName} PolicyName */
 
 /** @type {[PolicyName, string][]} */
-const POLICIES = [["babbling", "Babbling"], ["random", "Random"], ["sine", "Sine"], ["zero", "Still"], ["model", "Model"]];
+export const POLICIES = [["babbling", "Babbling"], ["random", "Random"], ["sine", "Sine"], ["zero", "Still"], ["model", "Model"]];
 /** @type {Record<PolicyName, string>} */
 const MEANINGS = {
   babbling: "Smooth random efforts, each joint in a rhythm of its own, as infants babble with their limbs.",

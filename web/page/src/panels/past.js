@@ -35,7 +35,7 @@ export function past(app) {
   const shown = (/** @type {Moment} */ m) => {
     const { from, to, at } = m.line;
     const now = goal ?? at;
-    Object.assign(line, { min: from, max: to, value: now, disabled: m.recorded !== null || to <= from });
+    Object.assign(line, { min: Math.min(from, to - 1), max: to, value: now, disabled: m.recorded !== null || to <= from });
     line.style.setProperty("--at", `${to > from ? (100 * (now - from)) / (to - from) : 100}%`);
     // who listens hears where time is when it stands, not ten times a second
     if (!m.playing || !m.line.recording) line.setAttribute("aria-valuetext", m.playing && now < to ? "in the past" : words(m, now));

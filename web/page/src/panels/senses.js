@@ -1,11 +1,9 @@
 // Senses that mature: how sharply the eyes see and where, and how late MIMo senses and acts.
+import { inMilliseconds, unit as unitOf } from "../delays.js";
 import { el, say } from "../dom.js";
 import { card, check, slider } from "./controls.js";
 
 /** @typedef {import("../types").Settings} Settings */
-
-/** Every key that counts in `delay_unit`. */
-const DELAYS = ["delay_sensory", "delay_motor", "delay_proprioception", "delay_touch", "delay_vestibular", "delay_vision"];
 
 /** @param {import("../app.js").App} app */
 export function senses(app) {
@@ -57,13 +55,8 @@ function eyes(app, change) {
  * @param {(settings: () => Settings) => void} change
  */
 function delays(app, change) {
-  /** Milliseconds of a unit in which the configuration counts delays. */
-  const unit = () => (app.settings.delay_unit === "ms" ? 1 : 1000 * (app.scene?.timestep ?? 0.005));
-  const set = (/** @type {string} */ key, /** @type {number} */ ms) => change(() => {
-    const counted = DELAYS.filter((name) => typeof app.settings[name] === "number");
-    const all = Object.fromEntries(counted.map((name) => [name, unit() * Number(app.settings[name])]));
-    return { ...all, delay_unit: "ms", [key]: ms };
-  });
+  const unit = () => unitOf(app.settings, app.scene?.timestep);
+  const set = (/** @type {string} */ key, /** @type {number} */ ms) => change(() => ({ ...inMilliseconds(app.settings, app.scene?.timestep), [key]: ms }));
   const line = (/** @type {string} */ text, /** @type {string} */ key, /** @type {string} */ label) => {
     const made = slider(text, { min: 0, max: 400, step: 5, value: 0, format: (v) => `${Math.round(v)} ms`, label }, () => {});
     made.input.addEventListener("change", () => set(key, made.input.valueAsNumber));

@@ -3,6 +3,7 @@ import { download, el, say } from "../dom.js";
 import { BEHAVIORS, capital, TASKS } from "../names.js";
 import { readRoom, sceneOf } from "../room.js";
 import { MOST_SEED } from "../state.js";
+import { compare } from "./compare.js";
 import { button, card, check, choice, drop, slider } from "./controls.js";
 import { senses } from "./senses.js";
 
@@ -22,7 +23,7 @@ const ORIGINAL = 18;
 
 /** @param {import("../app.js").App} app */
 export function setup(app) {
-  return el("div", {}, presets(app), scene(app), room(app), senses(app), start(app), file(app), all(app));
+  return el("div", {}, presets(app), scene(app), room(app), senses(app), compare(app), start(app), file(app), all(app));
 }
 
 /** Where to begin: names, and what they set beside what a first visitor sees. @type {[string, import("../types").Settings][]} */

@@ -93,6 +93,6 @@ function pictures(app) {
   return card(
     "Picture and video",
     el("div", { className: "row" }, button("Save picture", () => app.attempt(async () => download("mimo.png", await picture(app.stage)))), video),
-    el("p", { className: "soft small" }, Film.possible() ? "The scene as you see it. A video ends after 20 seconds." : "This browser cannot record video."),
+    el("p", { className: "soft small" }, Film.possible() ? "The scene as you see it; of two MIMos the first. A video ends after 20 seconds." : "This browser cannot record video."),
   );
 }

@@ -8,19 +8,23 @@ import { signals } from "./signals.js";
 
 /** @param {import("../app.js").App} app */
 export function watch(app) {
-  return el("div", {}, eyes(app), score(app), skin(app), signals(app));
+  return el("div", {}, eyes(app, "eyes", "What MIMo sees"), eyes(app, "second eyes", "What the second sees"), score(app), skin(app), signals(app));
 }
 
-/** @param {import("../app.js").App} app */
-function eyes(app) {
+/**
+ * @param {import("../app.js").App} app
+ * @param {"eyes" | "second eyes"} event
+ * @param {string} title
+ */
+function eyes(app, event, title) {
   // as one faces MIMo, its right eye is on the left
   const sides = ["right", "left"].map((side) => {
-    const canvas = el("canvas", { width: 64, height: 64, role: "img", "aria-label": `What the ${side} eye sees` });
+    const canvas = el("canvas", { width: 64, height: 64, role: "img", "aria-label": event === "eyes" ? `What the ${side} eye sees` : `What the second MIMo’s ${side} eye sees` });
     return { canvas, figure: el("figure", {}, canvas, el("figcaption", {}, `${capital(side)} eye`)) };
   });
   const note = el("p", { className: "soft small" });
-  app.on("eyes", (/** @type {import("../types").Glance} */ { pixels, side, late }) => {
-    say(note, [optics(app.state.settings, late), ...(plain(pixels) ? ["Nothing in sight but a plain surface, as the ceiling over the crib is."] : [])].filter(Boolean).join(". "));
+  app.on(event, (/** @type {import("../types").Glance} */ { pixels, side, late }) => {
+    say(note, [optics(event === "eyes" ? app.state.settings : (app.second.scene?.settings ?? {}), late), ...(plain(pixels) ? ["Nothing in sight but a plain surface, as the ceiling over the crib is."] : [])].filter(Boolean).join(". "));
     const size = 4 * side * side;
     sides.forEach(({ canvas }, i) => {
       if (canvas.width !== side) canvas.width = canvas.height = side;
@@ -28,7 +32,9 @@ function eyes(app) {
       canvas.getContext("2d")?.putImageData(new ImageData(pixels.subarray(start, start + size), side), 0, 0);
     });
   });
-  return card("What MIMo sees", el("div", { className: "eyes" }, ...sides.map((s) => s.figure)), note);
+  const section = card(title, el("div", { className: "eyes" }, ...sides.map((s) => s.figure)), note);
+  if (event !== "eyes") app.on("scene", () => (section.hidden = !app.second.scene));
+  return section;
 }
 
 /** Brightness, of 255, that differs within a picture in which something is to be seen. */
@@ -125,24 +131,27 @@ function regards(counts, steps) {
 /** @param {import("../app.js").App} app */
 function skin(app) {
   const { stage } = app;
-  const glow = check("Heat map of touch", (on) => {
-    if (stage.skin) stage.skin.visible = on && app.scene !== null && app.scene.skin.of.length > 0;
-    stage.glow = on;
-    stage.invalidate();
-  }, true);
-  const dots = check("All sensors as dots", (on) => {
-    stage.dots = on;
-    if (stage.skin) stage.skin.dots = on;
-    stage.invalidate();
-  }, true);
+  /** Changes something on the stage, and on that beside it. */
+  const each = (/** @type {(stage: import("../stage/stage.js").Stage) => void} */ change) => {
+    for (const s of [stage, stage.peer]) {
+      if (!s) continue;
+      change(s);
+      s.invalidate();
+    }
+  };
+  const glow = check("Heat map of touch", (on) => each((s) => {
+    if (s.skin) s.skin.visible = on && app.scene !== null && app.scene.skin.of.length > 0;
+    s.glow = on;
+  }), true);
+  const dots = check("All sensors as dots", (on) => each((s) => {
+    s.dots = on;
+    if (s.skin) s.skin.dots = on;
+  }), true);
   const arrows = check("Contact forces as arrows", (on) => {
-    stage.arrows.visible = on;
-    if (app.moment) stage.show(app.frame, app.moment, 0);
+    each((s) => (s.arrows.visible = on));
+    if (!app.playing) app.world.tell("look");
   });
-  const shadows = check("Shadows", (on) => {
-    stage.studio.key.castShadow = on;
-    stage.invalidate();
-  }, stage.studio.key.castShadow);
+  const shadows = check("Shadows", (on) => each((s) => (s.studio.key.castShadow = on)), stage.studio.key.castShadow);
   const follow = check("Camera follows MIMo", (on) => {
     stage.orbit.follow = on;
   }, true);

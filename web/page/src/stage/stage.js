@@ -59,6 +59,10 @@ export class Stage {
     this.glow = true;
     this.jump = true;
     this.shown = 0;
+    /** The stage beside this one, which looks from the same side; and the view that both last had. */
+    /** @type {Stage | null} */
+    this.peer = null;
+    this.agreed = { view: "" };
     this.followed = new Vector3();
     /** How far away the camera looks, m. */
     this.focus = { value: 2 };
@@ -112,7 +116,8 @@ export class Stage {
   /** Returns to the view with which the scene starts. */
   home() {
     const [azimuth, elevation, distance] = VIEWS[String(this.scene?.settings.scene)] ?? VIEWS.base;
-    const narrow = Math.max(1, 1.15 / (this.orbit.camera.aspect || 1));
+    // one of two may be cut off at the sides, rather than be small
+    const narrow = Math.min(this.peer ? 1.9 : Infinity, Math.max(1, 1.15 / (this.orbit.camera.aspect || 1)));
     this.orbit.view = [azimuth, elevation, distance * narrow, 0, 0, 0, 1];
     this.jump = true;
     this.invalidate();
@@ -193,6 +198,40 @@ export class Stage {
     this.invalidate();
   }
 
+  /**
+   * Looks from where another stage looks, and draws what it draws.
+   * @param {Stage} other
+   */
+  pair(other) {
+    [this.peer, other.peer, this.agreed] = [other, this, other.agreed];
+    this.dots = other.dots;
+    this.glow = other.glow;
+    this.arrows.visible = other.arrows.visible;
+    this.studio.key.castShadow = other.studio.key.castShadow;
+    this.orbit.view = other.orbit.view;
+    other.agreed.view = other.orbit.view.join();
+  }
+
+  /** Lets the stage beside this one look where this one was turned. */
+  agree() {
+    const view = this.orbit.view.join();
+    if (!this.peer || view === this.agreed.view) return;
+    this.agreed.view = view;
+    this.peer.orbit.view = this.orbit.view;
+    this.peer.invalidate();
+  }
+
+  /** Gives the graphics back. */
+  dispose() {
+    if (this.peer) this.peer.peer = null;
+    cancelAnimationFrame(this.pending);
+    this.placed = false;
+    this.bodies?.dispose();
+    this.skin?.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
   /** Draws in the next frame of the screen. */
   invalidate() {
     if (this.pending || !this.placed || !this.compiled) return;
@@ -205,6 +244,7 @@ export class Stage {
   draw() {
     const start = performance.now();
     const { orbit, skin, renderer } = this;
+    this.agree();
     orbit.update();
     this.studio.aim(orbit.at);
     this.focus.value = orbit.distance;

@@ -1,4 +1,5 @@
 // The worker: it owns the world, and answers the page.
+import { inMilliseconds } from "../delays.js";
 import { load, PageEnv } from "./env.js";
 import { Model } from "./model.js";
 import { LiveWorld } from "./world.js";
@@ -15,6 +16,13 @@ const event = (/** @type {string} */ name, /** @type {unknown} */ data) => post(
 function world() {
   if (!live) throw new Error("There is no world yet.");
   return live;
+}
+
+/** The world that lives, or the one beside it. @param {boolean} [second] */
+function of(second) {
+  const w = second ? world().twin : world();
+  if (!w) throw new Error("MIMo is alone.");
+  return w;
 }
 
 /**
@@ -71,6 +79,27 @@ function build(d) {
   }
 }
 
+/**
+ * Makes the world beside the one that lives: with its settings, but for those of its own, and its time.
+ * @param {LiveWorld} beside
+ * @param {any} d as for `make`
+ */
+async function pair(beside, d) {
+  const { age, policy, sensory, motor } = /** @type {import("../types").Twin} */ (d.twin);
+  const { settings, seconds, assets } = beside.env;
+  const own = { ...settings, ...inMilliseconds(settings, seconds), age, delay_sensory: sensory, delay_motor: motor };
+  const env = build({ ...d, settings: own, assets, snapshot: d.second });
+  const to = { frame: (/** @type {ArrayBuffer} */ frame, /** @type {unknown} */ moment) => post({ frame, moment, second: true }, [frame]), event: (/** @type {string} */ name, /** @type {any} */ data) => name === "episode" && event(name, { ...data, second: true }), fail: stopped };
+  const world = new LiveWorld(env, { ...d, policy }, to, beside.clock);
+  try {
+    if (policy === "model") world.model = await Model.load(d.network, env);
+  } catch (e) {
+    world.free();
+    throw e;
+  }
+  return world;
+}
+
 /** What the page can ask for, by name. */
 /** @type {Record<string, (...args: any[]) => unknown>} */
 const answers = {
@@ -78,12 +107,12 @@ const answers = {
   /** Loads ahead of time; who asks for it later hears what went wrong. */
   warm: () => load().then(() => {}, () => {}),
 
-  /** @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array } & Movement} d */
+  /** @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array, twin?: import("../types").Twin | null, second?: Uint8Array | null } & Movement} d */
   async make(d) {
     await load();
     live?.clock.play(false);
     const last = live && { settings: live.env.yaml, assets: live.env.assets, snapshot: live.env.snapshot(), seed: 0, locks: [] };
-    if (live) live.goal = null;
+    live?.stay();
     // two worlds at once would take twice the memory, and leave it in pieces
     live?.env.free();
     /** @type {PageEnv} */
@@ -96,17 +125,26 @@ const answers = {
       throw e;
     }
     live?.model?.free();
+    live?.twin?.free();
     const strength = live?.spring.strength;
     live = new LiveWorld(env, d, { frame: (buffer, moment) => post({ frame: buffer, moment }, [buffer]), event, fail: stopped });
     if (strength !== undefined) live.spring.strength = strength;
-    const misfit = d.network ? await bring(d.network).then(() => null, (/** @type {Error} */ e) => e.message) : null;
+    const made = live;
+    const failed = (/** @type {unknown} */ e) => {
+      if (deadly(e)) throw e;
+      return e instanceof Error ? e.message : String(e);
+    };
+    const misfit = d.network && d.policy === "model" ? await bring(d.network).then(() => null, failed) : null;
+    const alone = d.twin ? await pair(made, d).then((twin) => void (made.twin = twin), failed) : null;
+    const { twin } = made;
+    if (twin && strength !== undefined) twin.spring.strength = strength;
     live.clock.play(wanted);
-    return { ...env.scene(), layout: live.layout, misfit };
+    return { ...env.scene(), layout: made.layout, misfit, alone, twin: twin && { ...twin.env.scene(), layout: twin.layout } };
   },
   look: () => world().show(),
   play(/** @type {boolean} */ on) {
     wanted = on;
-    if (live && on) live.goal = null;
+    if (on) live?.stay();
     live?.clock.play(on); // one that is being made plays when it is there
     if (!on) live?.show();
   },
@@ -118,27 +156,30 @@ const answers = {
   },
   reset: (/** @type {number} */ seed) => world().reset(seed),
   move: (/** @type {Movement} */ m) => world().move(m),
-  strength: (/** @type {number} */ v) => void (world().spring.strength = v),
+  strength: (/** @type {number} */ v) => [world(), world().twin].forEach((w) => w && (w.spring.strength = v)),
   /** Goes to a moment of the past; time stands there. */
   seek(/** @type {number} */ step) {
     wanted = false;
     return world().seek(step);
   },
-  pull: (/** @type {any} */ held) => world().hold(held),
+  pull(/** @type {any} */ held, /** @type {boolean} */ second) {
+    if (held) world().forget();
+    of(second).hold(held);
+  },
   lock: (/** @type {string} */ part, /** @type {boolean} */ on) => world().lock(part, on),
-  snapshot: () => world().env.snapshot(),
-  eyes: () => world().env.eyes(),
+  snapshot: (/** @type {boolean} */ second) => (second && !world().twin ? null : of(second).env.snapshot()),
+  eyes: (/** @type {boolean} */ second) => of(second).env.eyes(),
   keys: () => PageEnv.keys(),
   record: () => world().record(),
   endRecording: () => world().endRecording(),
   replay: (/** @type {import("../types").Recording} */ r) => world().startReplay(r),
   model: async (/** @type {Uint8Array} */ bytes) => bring(bytes),
-  checksum: () => world().env.checksum(),
+  checksum: (/** @type {boolean} */ second) => of(second).env.checksum(),
 };
 
 onmessage = async ({ data }) => {
   if (data.ping) return post({ pong: true });
-  if (data.back) return live?.back(data.back);
+  if (data.back) return (data.second ? live?.twin : live)?.back(data.back);
   const { id, name, args } = data;
   try {
     const value = await answers[name](...args);

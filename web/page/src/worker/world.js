@@ -21,8 +21,9 @@ export class LiveWorld {
    * @param {PageEnv} env
    * @param {Movement} movement
    * @param {{ frame: (buffer: ArrayBuffer, moment: Moment) => void, event: (name: string, data: unknown) => void, fail: (e: unknown) => void }} to
+   * @param {Clock} [clock] of the world beside which it lives
    */
-  constructor(env, movement, to) {
+  constructor(env, movement, to, clock) {
     this.env = env;
     this.to = to;
     this.movement = movement;
@@ -49,11 +50,14 @@ export class LiveWorld {
     this.truncated = false;
     /** Whether a task has ended: it goes on with its next episode only. */
     this.over = false;
-    this.clock = new Clock(
-      () => this.step(),
+    /** The world beside this one, whose time this one's clock is, too. */
+    /** @type {LiveWorld | null} */
+    this.twin = null;
+    this.clock = clock ?? new Clock(
+      () => this.tick(),
       () => env.seconds,
       () => this.show(),
-      () => this.away < AHEAD,
+      () => this.away < AHEAD && (this.twin?.away ?? 0) < AHEAD,
       to.fail,
     );
     this.clock.speed = movement.speed;
@@ -67,8 +71,9 @@ export class LiveWorld {
 
   /** @param {Movement} movement */
   move(movement) {
-    if (differs(movement, this.movement)) this.past.forget();
+    if (differs(movement, this.movement)) this.forget();
     this.movement = movement;
+    if (this.twin) this.twin.movement = { ...movement, policy: this.twin.movement.policy };
     this.clock.speed = movement.speed;
   }
 
@@ -84,8 +89,39 @@ export class LiveWorld {
     for (const [i, v] of Object.entries(held)) if (Number(i) < action.length) action[Number(i)] = v;
   }
 
+  /** One step of the clock, which stands when an episode is over. */
+  tick() {
+    if (this.over || this.twin?.over) return this.clock.play(false);
+    this.step();
+    this.twin?.step();
+  }
+
+  /** Stops on the way to a moment, here and beside. */
+  stay() {
+    this.goal = null;
+    this.twin?.stay();
+  }
+
+  /** Forgets what comes next, here and beside. */
+  forget() {
+    this.goal = null;
+    this.past.forget();
+    this.twin?.forget();
+  }
+
+  /** Refuses what two cannot do. */
+  single() {
+    if (this.twin) throw new Error("A recording is of one MIMo: end the comparison first.");
+  }
+
+  /** Lets go of the memory. */
+  free() {
+    this.env.free();
+    this.model?.free();
+    this.twin?.free();
+  }
+
   step() {
-    if (this.over) return this.clock.play(false);
     const { past } = this;
     const stretch = past.begin(() => ({ bytes: this.env.snapshot(), truncated: this.truncated }));
     if (past.known) this.again(stretch);
@@ -138,10 +174,6 @@ export class LiveWorld {
 
   /** @param {Parameters<Spring["hold"]>[0]} held */
   hold(held) {
-    if (held) {
-      this.goal = null;
-      this.past.forget();
-    }
     this.spring.hold(held);
     if (!held) this.env.clearForces();
     if (!this.clock.playing) this.show();
@@ -153,9 +185,9 @@ export class LiveWorld {
    * @param {boolean} on
    */
   lock(target, on) {
-    this.goal = null;
-    this.past.forget();
-    this.past.changed = true;
+    this.forget();
+    for (const { past } of [this, this.twin ?? this]) past.changed = true;
+    this.twin?.env.lock(target, on);
     return this.env.lock(target, on);
   }
 
@@ -174,6 +206,7 @@ export class LiveWorld {
   /**
    * Goes to a moment of the past, or of the recording that plays, where time then stands.
    * @param {number} target steps, as in a moment's `line`
+   * @returns {Promise<unknown>}
    */
   seek(target) {
     const { past } = this;
@@ -183,7 +216,7 @@ export class LiveWorld {
     if (!past.known && past.changed) past.begin(() => ({ bytes: this.env.snapshot(), truncated: this.truncated }));
     this.goal = Math.min(past.last, Math.max(past.first, Math.round(target)));
     this.travelling ??= this.travel().finally(() => (this.travelling = null));
-    return this.travelling;
+    return Promise.all([this.travelling, this.twin?.seek(target)]);
   }
 
   /** Goes where time shall be, with looks at messages, which may change that. */
@@ -241,8 +274,8 @@ export class LiveWorld {
 
   /** @param {number} n */
   steps(n) {
-    this.goal = null;
-    for (let i = 0; i < n && !this.over; i++) this.step();
+    this.stay();
+    for (let i = 0; i < n && !this.over && !this.twin?.over; i++) this.tick();
     this.show();
   }
 
@@ -252,6 +285,7 @@ export class LiveWorld {
     this.settle();
     this.env.reset(seed);
     this.scored = 0;
+    this.twin?.reset(seed);
   }
 
   /** Lets go of everything that belongs to a run. */
@@ -266,6 +300,7 @@ export class LiveWorld {
   }
 
   record() {
+    this.single();
     if (this.env.locksDiffer) throw new Error("A recording knows actions only, so it needs the locks of the configuration: unlock what you locked, or choose the locks in Setup.");
     this.settle();
     const start = this.env.start();
@@ -282,6 +317,7 @@ export class LiveWorld {
 
   /** @param {import("../types").Recording} recording */
   startReplay(recording) {
+    this.single();
     if (recording.steps === 0) throw new Error("The recording has no steps.");
     const width = recording.actions.length / recording.steps;
     if (width !== this.action.length) {
@@ -328,7 +364,7 @@ export class LiveWorld {
       pace: this.clock.pace,
       playing: this.clock.playing,
       truncated: this.truncated,
-      over: this.over,
+      over: this.over || this.twin?.over === true,
       contacts,
       score: this.score,
       recorded: this.tape?.steps ?? null,
@@ -337,6 +373,7 @@ export class LiveWorld {
       memory: env.memory,
       pull: held && { body: held.body, at: held.point, force: this.spring.force },
     });
+    this.twin?.show();
   }
 
   /** @param {ArrayBuffer} buffer a frame that was drawn */
