@@ -74,6 +74,22 @@ def eyes():
     )
 
 
+def gray():
+    """Mean brightness / 255 of the left and the right eye, three times each."""
+    write(
+        "gray",
+        [
+            helper.make_node("ReduceMean", ["eye_left_gray"], ["left"], axes=[1, 2], keepdims=0),
+            helper.make_node("ReduceMean", ["eye_right_gray"], ["right"], axes=[1, 2], keepdims=0),
+            helper.make_node("Concat", ["left", "right"] * (ACTIONS // 2), ["means"], axis=0),
+            helper.make_node("Div", ["means", "scale"], ["actions"]),
+        ],
+        [value("eye_left_gray", [1, SIDE, SIDE]), value("eye_right_gray", [1, SIDE, SIDE])],
+        [value("actions", [ACTIONS])],
+        [constant("scale", np.float32(255))],
+    )
+
+
 def flat():
     """Some numbers of one vector of all senses: of the left and the right eye, of the angles, of balance."""
     pixels = 3 * SIDE * SIDE
@@ -149,6 +165,7 @@ network("wrong_name", 1, observation="obs")
 network("wrong_shape", 1, angles=ANGLES + 1)
 network("wrong_action", 1, actions=ACTIONS - 1)
 eyes()
+gray()
 flat()
 large()
 not_finite()

@@ -8,7 +8,8 @@ Example:
     >>> env.close()
 
 :func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
-Stable-Baselines3. Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
+Stable-Baselines3, :class:`ActionNoise` moves them at random.
+Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
 ``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
 ``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0`` and ``babybench/RollOver-v0``.
 ``babybench.utils``, ``babybench.eval``, ``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter
@@ -25,14 +26,16 @@ from babybench_core.swap import claim as _claim
 
 if TYPE_CHECKING:
     from babybench_core.env import Env, make
+    from babybench_core.noise import ActionNoise
     from babybench_core.scenes import read_config
     from babybench_core.vector import VectorEnv
 
-__all__ = ["Env", "VectorEnv", "__version__", "config_examples", "config_keys", "make", "read_config"]
+__all__ = ["ActionNoise", "Env", "VectorEnv", "__version__", "config_examples", "config_keys", "make", "read_config"]
 
 __path__ = _extended(__path__)
 
 _HOMES = {
+    "ActionNoise": "babybench_core.noise",
     "Env": "babybench_core.env",
     "VectorEnv": "babybench_core.vector",
     "make": "babybench_core.env",

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from babybench_core.records import LockReport, TouchBody
 
 __all__ = [
+    "ActionNoise",
     "Blocks",
     "Blueprint",
     "Env",
@@ -201,6 +202,17 @@ class Env:
         """Draws the distance from the camera's plane, (height, width), m; infinite where nothing is."""
     def segmentation(self, camera: str, width: int, height: int) -> npt.NDArray[np.int32]:
         """Draws the ids of geoms, (height, width); -1 where none is."""
+
+@final
+class ActionNoise:
+    """A noise over the actions of one environment."""
+
+    def __new__(cls, noise: str, low: Sequence[float], high: Sequence[float], step: float, seed: int) -> ActionNoise:
+        """Makes a noise of its name, for actions between two bounds that are ``step`` seconds apart."""
+    def sample(self) -> npt.NDArray[np.float32]:
+        """Returns the next action."""
+    def reset(self, seed: int) -> None:
+        """Begins anew."""
 
 @final
 class VectorEnv:

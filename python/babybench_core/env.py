@@ -105,7 +105,9 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self.observation_space = spaces.observation_space(self._core)
         options = self._core.blueprint.model_options
         self.camera = scenes.camera_of(self._core.blueprint, camera)
-        self.metadata = {**self.metadata, "render_fps": round(1 / (options["timestep"] * self.config["frame_skip"]))}
+        self.dt: float = options["timestep"] * self.config["frame_skip"]
+        """The time between two steps, s."""
+        self.metadata = {**self.metadata, "render_fps": round(1 / self.dt)}
 
     def _build(self) -> None:
         self._core = _native.Env(scenes.blueprint(self.config, self._assets), self._views)

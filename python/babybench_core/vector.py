@@ -51,6 +51,7 @@ _EACH = ("array", "compute_reward", "info", "lock", "restore", "snapshot", "unlo
 
 _SINGLE = {
     "action_space": "single_action_space",
+    "dt": "dt",
     "observation_space": "single_observation_space",
     "proprioception": "proprioception",
     "render_mode": "render_mode",
@@ -141,6 +142,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self._build()
         self._camera = scenes.camera_of(self._blueprints[0], camera)
         self._everyone: Mask = np.ones(num_envs, np.bool_)
+        self.dt: float = self._blueprints[0].model_options["timestep"] * self.config["frame_skip"]
+        """The time between two steps, s."""
         self.num_envs = num_envs
         self.render_mode = render_mode
         low, high = self._core.action_bounds
@@ -298,7 +301,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             >>> envs = babybench.VectorEnv("self_touch", num_envs=2, vision_active=False)
             >>> observations, infos = envs.reset(seed=0)
             >>> [round(float(state[2]), 2) for state in envs.call("array", "qpos")]
-            [0.11, 0.11]
+            [0.3, 0.3]
 
         Raises:
             AttributeError: There is no such method or attribute.

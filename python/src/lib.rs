@@ -11,6 +11,7 @@ mod env;
 mod errors;
 mod info;
 mod model;
+mod noise;
 mod observation;
 mod parts;
 mod pictures;
@@ -36,6 +37,8 @@ mod _native {
     use super::config::{config_examples, config_from_mapping, config_from_yaml, config_keys};
     #[pymodule_export]
     use super::env::Env;
+    #[pymodule_export]
+    use super::noise::ActionNoise;
     #[pymodule_export]
     use super::parts::Parts;
     #[pymodule_export]

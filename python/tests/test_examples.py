@@ -101,7 +101,8 @@ def test_recordings_are_compared(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "module", ["babybench", "babybench_core.env", "babybench_core.senses", "babybench_core.vector"]
+    "module",
+    ["babybench", "babybench_core.env", "babybench_core.noise", "babybench_core.senses", "babybench_core.vector"],
 )
 def test_the_documentation_tells_the_truth(module):
     result = doctest.testmod(importlib.import_module(module), optionflags=doctest.ELLIPSIS)

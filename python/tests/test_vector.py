@@ -202,6 +202,23 @@ def test_snapshots_fit_vectors_and_single_environments():
     assert envs.array(0, "qpos").shape == env.array("qpos").shape
 
 
+def test_a_noise_moves_all_as_each_alone():
+    env, envs = babybench.Env(SMALL), babybench.VectorEnv(SMALL, 3)
+    many, one = babybench.ActionNoise("pink", envs, seed=4), babybench.ActionNoise("pink", env, seed=5)
+    for _ in range(5):
+        actions = many()
+        assert envs.action_space.contains(actions)
+        np.testing.assert_array_equal(actions[1], one(), strict=True)
+    first = [babybench.ActionNoise(name, env)() for name in ("white", "held:0.1", "ou", "pink", "oscillators:2")]
+    assert len({action.tobytes() for action in first}) == 5
+    one.reset(5)
+    many.reset(4)
+    np.testing.assert_array_equal(many()[1], one())
+    assert env.dt == envs.dt == 0.005 == envs.get_attr("dt")[2]
+    with pytest.raises(ValueError, match="choose white, held"):
+        babybench.ActionNoise("brown", env)
+
+
 def test_what_the_numbers_are_is_that_of_one_environment():
     envs, env = babybench.VectorEnv(SMALL, 2), babybench.Env(SMALL)
     observations, _ = envs.reset(seed=0)
@@ -214,16 +231,16 @@ def test_what_the_numbers_are_is_that_of_one_environment():
 
 
 def test_attributes_and_methods_of_each_environment():
-    envs = babybench.VectorEnv([{**SMALL, "age": age} for age in (6, 12)], act_fingers=False)
+    envs = babybench.VectorEnv([{**SMALL, "scene": scene} for scene in ("crib", "base")])
     envs.reset(seed=0)
-    assert [config["age"] for config in envs.get_attr("config")] == [6, 12]
+    assert [config["scene"] for config in envs.get_attr("config")] == ["crib", "base"]
     assert envs.get_attr("action_space") == (envs.single_action_space,) * 2
     assert envs.call("info") == (envs.info(0), envs.info(1))
-    masses = envs.call("array", "qpos")
-    assert not np.array_equal(masses[0], masses[1])
+    heights = [positions[2] for positions in envs.call("array", "qpos")]
+    assert heights[0] != heights[1]
     assert all(report["changed"] for report in envs.call("lock", "head", angle=0.1))
     for name in ("no_such_thing", "step", "_core"):
-        with pytest.raises(AttributeError, match="they have .*snapshot"):
+        with pytest.raises(AttributeError, match=r"they have .*snapshot"):
             envs.call(name)
     with pytest.raises(AttributeError, match="cannot set"):
         envs.set_attr("config", {})

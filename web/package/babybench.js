@@ -5,8 +5,9 @@ import { Env } from "./env.js";
 import { ArgumentError, FreedError, MissingError, ModuleError } from "./errors.js";
 import { locate, once } from "./load.js";
 import { guarded, memory, module } from "./module.js";
+import { ActionNoise } from "./noise.js";
 
-export { ArgumentError, Blueprint, Env, FreedError, MissingError, ModuleError };
+export { ActionNoise, ArgumentError, Blueprint, Env, FreedError, MissingError, ModuleError };
 
 /** @typedef {import("./types.js").Settings} Settings */
 /** @typedef {import("./types.js").Assets} Assets */

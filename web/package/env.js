@@ -257,6 +257,19 @@ export class Env {
   }
 
   /**
+   * Describes what is observed: each entry's property of {@link Env.observation}, Gymnasium's key, shape, number type and bounds.
+   * @returns {import("./types.js").ObservationSpace[]}
+   */
+  get observationSpace() {
+    return this.#call((core) => core.observationSpace());
+  }
+
+  /** The time between two steps, s. */
+  get dt() {
+    return this.#call((core) => core.dt());
+  }
+
+  /**
    * Names the numbers of proprioception, in order.
    * @returns {{ component: string, name: string, start: number, end: number }[]}
    */

@@ -22,8 +22,8 @@ const init = once(async (source) => {
 export default init;
 
 /**
- * A policy that is an ONNX model. Its inputs are named after the senses it uses (`observation`, `touch`, `vestibular`,
- * `eye_left`, `eye_right`), or it has a single one for all of them; its output is the action.
+ * A policy that is an ONNX model. Its inputs are named after what it observes (`observation`, `touch`, `vestibular`, `eye_left`,
+ * `eye_left_depth`, ...: the keys of {@link Env.observationSpace}), or it has a single one for all of that; its output is the action.
  *
  * ```js
  * import init, { OnnxPolicy } from "babybench/onnx";
@@ -35,6 +35,8 @@ export default init;
 export class OnnxPolicy {
   /** @type {Model | undefined} */
   #model;
+  /** Properties of what is observed. */
+  #names;
 
   /**
    * Reads a model for an environment, and for those that sense and act alike.
@@ -50,21 +52,13 @@ export class OnnxPolicy {
     const { actions } = env.model;
     const bounds = (/** @type {"low" | "high"} */ side) => Float32Array.from(actions, (a) => a[side]);
     const model = guarded(() => new Model(bytes, name, bounds("low"), bounds("high")));
-    const { observation: seen } = env;
-    const eye = (/** @type {Uint8Array | null} */ pixels) => pixels && [Math.sqrt(pixels.length / 3), Math.sqrt(pixels.length / 3), 3];
-    const vector = (/** @type {ArrayLike<number> | null} */ values) => values && [values.length];
-    const senses = /** @type {const} */ ([
-      ["observation", vector(seen.proprioception)],
-      ["touch", vector(seen.touch)],
-      ["eye_left", eye(seen.eye_left)],
-      ["eye_right", eye(seen.eye_right)],
-      ["vestibular", vector(seen.vestibular)],
-    ]);
+    const spaces = env.observationSpace;
     // what was refused is freed when nobody holds it
     guarded(() => {
-      for (const [key, shape] of senses) if (shape) model.sense(key, Uint32Array.from(shape));
+      for (const { name, shape } of spaces) model.sense(name, Uint32Array.from(shape));
       model.connect();
     });
+    this.#names = spaces.map((space) => space.name);
     this.#model = model;
   }
 
@@ -75,9 +69,11 @@ export class OnnxPolicy {
    */
   act(env) {
     if (!(env instanceof Env)) refuse("env", env, "an Env");
-    const [model, o] = [this.#live(), env.observation];
-    const senses = /** @type {const} */ ([o.proprioception, o.touch, o.vestibular, o.eye_left, o.eye_right]);
-    return guarded(() => model.act(...senses));
+    const [model, { observation }] = [this.#live(), env];
+    const observed = this.#names.map((name) => observation[name]);
+    const missing = this.#names.filter((_, k) => !observed[k]);
+    if (missing.length > 0) refuse("env", env, `an Env that observes ${missing.join(", ")}`);
+    return guarded(() => model.act(observed));
   }
 
   /** Frees the memory. Without it, it is freed some time after the last use. A second call throws a `FreedError`. */

@@ -39,6 +39,17 @@
  */
 
 /**
+ * One entry of the observation.
+ * @typedef {object} ObservationSpace
+ * @property {Exclude<keyof Observation, number>} name the property of an observation
+ * @property {string} key the same, but `observation` for `proprioception`
+ * @property {number[]} shape
+ * @property {"float64" | "float32" | "uint8" | "int32"} dtype
+ * @property {number} low of every number
+ * @property {number} high of every number
+ */
+
+/**
  * @template T
  * @typedef {{ right_hand: T, left_hand: T }} PerHand
  */

@@ -121,6 +121,27 @@ impl Core {
         entries.map(|entry| entry.field.to_string()).collect()
     }
 
+    /// Describes the entries of the observation that are there: property, Gymnasium's key, shape, number type and bounds.
+    #[wasm_bindgen(js_name = observationSpace)]
+    pub fn observation_space(&self) -> JsValue {
+        let field = |key: &str| ObservationEntry::of_key(key).map_or_else(String::new, |entry| entry.field.to_string());
+        list(self.env.observation_space().into_iter().map(|space| {
+            object([
+                ("name", field(space.key).into()),
+                ("key", space.key.into()),
+                ("shape", ids(&space.shape)),
+                ("dtype", space.dtype.name().into()),
+                ("low", space.low.into()),
+                ("high", space.high.into()),
+            ])
+        }))
+    }
+
+    /// Returns the time between two steps, s.
+    pub fn dt(&self) -> f64 {
+        self.env.blueprint().dt()
+    }
+
     /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`.
     pub fn update(&mut self) -> Result<(), JsValue> {
         let scenery = self.scenery()?;

@@ -8,6 +8,7 @@ mod fold;
 mod frame;
 mod js;
 mod keys;
+mod noise;
 mod numbers;
 mod scene;
 mod task;

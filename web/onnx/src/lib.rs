@@ -1,9 +1,11 @@
-//! ONNX policies for JavaScript. The environment lives in another module, so senses come as arrays.
+//! ONNX policies for JavaScript. The environment lives in another module, so what it observes comes as arrays.
 #![forbid(unsafe_code)]
 
-use babybench::Observation;
 use babybench::policy::OnnxPolicy;
-use babybench::spaces::{BoxSpace, Dtype, ObservationSpace};
+use babybench::sensors::ObservationEntry;
+use babybench::spaces::{Array, BoxSpace, Dtype, ObservationSpace};
+use babybench::{Observation, spaces::Values};
+use js_sys::{Float32Array, Float64Array, Int32Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 
 /// A model that chooses actions.
@@ -11,7 +13,8 @@ use wasm_bindgen::prelude::*;
 pub struct Model {
     policy: OnnxPolicy,
     space: BoxSpace,
-    senses: Vec<ObservationSpace>,
+    /// What is observed, and what it was last.
+    senses: Vec<(ObservationSpace, Array)>,
     action: Vec<f32>,
 }
 
@@ -29,47 +32,49 @@ impl Model {
         })
     }
 
-    /// Tells of a sense that is active: its key, and its length or, for an eye, height, width and 3.
-    pub fn sense(&mut self, key: &str, shape: Vec<usize>) -> Result<(), JsValue> {
-        let keys = ["observation", "touch", "vestibular", "eye_left", "eye_right"];
-        let known = keys.into_iter().find(|k| *k == key);
-        let key = known.ok_or_else(|| error(format!("there is no sense {key:?}; senses are {}", keys.join(", "))))?;
-        let (dtype, low, high) = match shape.len() {
-            3 => (Dtype::U8, 0.0, 255.0),
-            _ => (Dtype::F64, f64::NEG_INFINITY, f64::INFINITY),
-        };
-        self.senses.push(ObservationSpace {
-            key,
+    /// Tells of an entry of the observation that is there: its property, and its shape.
+    pub fn sense(&mut self, field: &str, shape: Vec<usize>) -> Result<(), JsValue> {
+        let known = ObservationEntry::ALL.iter().find(|entry| entry.field == field);
+        let entry = known.ok_or_else(|| error(format!("nothing that is observed is called {field:?}")))?;
+        let values = Array::zeros(entry.dtype, shape.iter().product());
+        let space = ObservationSpace {
+            key: entry.key,
             shape,
-            dtype,
-            low,
-            high,
-        });
+            dtype: entry.dtype,
+            low: entry.low,
+            high: entry.high,
+        };
+        self.senses.push((space, values));
         Ok(())
     }
 
-    /// Matches the model's inputs with the senses.
+    /// Matches the model's inputs with what is observed.
     pub fn connect(&mut self) -> Result<(), JsValue> {
-        self.policy.connect(&self.senses).map_err(error)
+        let spaces: Vec<_> = self.senses.iter().map(|(space, _)| space.clone()).collect();
+        self.policy.connect(&spaces).map_err(error)
     }
 
-    /// Returns the action for an observation.
-    pub fn act(
-        &mut self,
-        proprioception: &[f64],
-        touch: Option<Vec<f32>>,
-        vestibular: Option<Vec<f64>>,
-        eye_left: Option<Vec<u8>>,
-        eye_right: Option<Vec<u8>>,
-    ) -> Result<Vec<f32>, JsValue> {
-        let observation = Observation {
-            proprioception,
-            touch: touch.as_deref(),
-            vestibular: vestibular.as_deref(),
-            eye_left: eye_left.as_deref(),
-            eye_right: eye_right.as_deref(),
-            ..Observation::default() // models in pages see in colour
-        };
+    /// Returns the action for an observation: the arrays of the entries, in the order in which [`Model::sense`] told of them.
+    pub fn act(&mut self, observed: Vec<JsValue>) -> Result<Vec<f32>, JsValue> {
+        for ((space, values), array) in self.senses.iter_mut().zip(observed) {
+            let read = match space.dtype {
+                Dtype::F64 => Array::F64(Float64Array::new(&array).to_vec()),
+                Dtype::F32 => Array::F32(Float32Array::new(&array).to_vec()),
+                Dtype::U8 => Array::U8(Uint8Array::new(&array).to_vec()),
+                Dtype::I32 => Array::I32(Int32Array::new(&array).to_vec()),
+            };
+            if read.values().len() != values.values().len() {
+                return Err(error(format!(
+                    "{} has {} numbers, not the {} of the environment that the model was read for",
+                    space.key,
+                    read.values().len(),
+                    values.values().len()
+                )));
+            }
+            *values = read;
+        }
+        let seen = |key: &str| self.senses.iter().find(|(space, _)| space.key == key);
+        let observation = Observation::from_fn(|entry| -> Option<Values<'_>> { Some(seen(entry.key)?.1.values()) });
         let decided = self.policy.decide(&observation, &self.space, &mut self.action);
         decided.map_err(error)?;
         Ok(self.action.clone())

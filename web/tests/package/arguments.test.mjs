@@ -110,10 +110,11 @@ test("every other export names the argument that is wrong", async () => {
   const env = new Env({ behavior: "none", scene: "base", touch_active: false, vision_active: false });
   env.reset(0);
   const model = readFileSync(join(root, "tests/data/policies/network.onnx"));
-  const good = { config: {}, name: "name", assets: {}, bytes: model, env, source: undefined };
+  const good = { noise: "pink", seed: 0, config: {}, name: "name", assets: {}, bytes: model, env, source: undefined };
   const constructors = /** @type {const} */ ([
     [Env, [["config", "config"], ["name", "text"], ["assets", "files"]]],
     [Blueprint, [["config", "config"], ["name", "text"], ["assets", "files"]]],
+    [babybench.ActionNoise, [["noise", "text"], ["env", "env"], ["seed", "seed"]]],
     [onnx.OnnxPolicy, [["bytes", "bytes"], ["env", "env"], ["name", "text"]]],
     [remote.Connection, [["worker", "worker"]]],
   ]);
@@ -136,7 +137,7 @@ test("every other export names the argument that is wrong", async () => {
   await assert.rejects(far.call("reset"), /the worker was closed/);
   assert.throws(() => remote.connect(), { name: "MissingError", message: /Worker/ });
   // functions without arguments, and classes of errors: nothing can be wrong with them
-  const known = ["default", "Env", "Blueprint", "configKeys", "memoryBytes", "ArgumentError", "FreedError", "MissingError", "ModuleError", "OnnxPolicy", "Connection", "RemoteEnv", "connect"];
+  const known = ["default", "ActionNoise", "Env", "Blueprint", "configKeys", "memoryBytes", "ArgumentError", "FreedError", "MissingError", "ModuleError", "OnnxPolicy", "Connection", "RemoteEnv", "connect"];
   assert.deepEqual([babybench, onnx, remote].flatMap((m) => Object.keys(m)).filter((name) => !known.includes(name)), []);
   env.free();
 });
@@ -170,6 +171,27 @@ test("a policy that was freed says so, and names what is wrong", () => {
   policy.free();
   for (const use of [() => policy.free(), () => policy.act(env)]) assert.throws(use, { name: "FreedError", message: /policy was freed/ });
   policy[Symbol.dispose]();
+  env.free();
+});
+
+test("a noise gives the actions of its seed, and names what is wrong", () => {
+  const env = new Env(settings);
+  const of = (/** @type {string} */ name, /** @type {number} */ seed) => {
+    const noise = new babybench.ActionNoise(name, env, seed);
+    const actions = Array.from({ length: 30 }, () => Array.from(noise.sample()));
+    noise.reset(seed);
+    assert.deepEqual(Array.from(noise.sample()), actions[0], name);
+    tryAll("reset", [["seed", "seed"]], {}, (wrong) => noise.reset(wrong));
+    noise.free();
+    for (const use of [() => noise.free(), () => noise.sample(), () => noise.reset(0)]) assert.throws(use, { name: "FreedError", message: /noise was freed/ });
+    noise[Symbol.dispose]();
+    return actions;
+  };
+  const all = ["white", "held:0.1", "ou", "pink", "oscillators"].map((name) => of(name, 1));
+  assert.deepEqual(of("pink", 1), all[3]);
+  assert.equal(new Set([...all, of("pink", 2)].map((actions) => JSON.stringify(actions))).size, 6);
+  for (const actions of all) actions.flat().forEach((value, k) => assert.ok(value >= env.model.actions[k % env.model.actions.length].low && value <= env.model.actions[k % env.model.actions.length].high));
+  assert.throws(() => new babybench.ActionNoise("brown", env), { name: "ArgumentError", argument: "noise", message: /choose white, held/ });
   env.free();
 });
 

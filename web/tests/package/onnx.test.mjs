@@ -54,6 +54,25 @@ test("eyes go in as images", () => {
   env.free();
 });
 
+test("whatever is observed goes in by its name", () => {
+  const env = new Env({ ...eyesOnly, touch_active: true, touch_pooled: true, vision_active: true, vision_outputs: ["gray"], vision_resolution: 8 });
+  env.reset(0);
+  assert.deepEqual(
+    env.observationSpace.map(({ name, key, dtype }) => [name, key, dtype]),
+    [["proprioception", "observation", "float64"], ["touch", "touch", "float32"], ["touch_pooled", "touch_pooled", "float64"], ["eye_left_gray", "eye_left_gray", "uint8"], ["eye_right_gray", "eye_right_gray", "uint8"], ["vestibular", "vestibular", "float64"]],
+  );
+  for (const { name, shape } of env.observationSpace) assert.equal(env.observation[name]?.length, shape.reduce((n, side) => n * side, 1), name);
+  const policy = new OnnxPolicy(model("gray"), env);
+  const { eye_left_gray, eye_right_gray } = env.observation;
+  const wanted = [eye_left_gray, eye_right_gray].map((eye) => Array.from(eye ?? []).reduce((sum, v) => sum + v, 0) / (64 * 255));
+  assert.ok(wanted[0] > 0);
+  policy.act(env).forEach((value, k) => assert.ok(Math.abs(value - wanted[k % 2]) < 1e-6));
+  const other = new Env({ ...eyesOnly, vision_active: true, vision_resolution: 8 });
+  other.reset(0);
+  assert.throws(() => policy.act(other), { name: "ArgumentError", argument: "env", message: /observes touch, touch_pooled, eye_left_gray/ });
+  for (const one of [policy, env, other]) one.free();
+});
+
 test("a model that does not fit tells why", () => {
   const env = new Env(eyesOnly);
   env.reset(0);

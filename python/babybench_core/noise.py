@@ -1,0 +1,63 @@
+"""Movements without a purpose, by which infants babble and learners explore."""
+
+from __future__ import annotations
+
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+from babybench_core import _native
+from babybench_core.env import Env
+from babybench_core.vector import VectorEnv
+
+__all__ = ["ActionNoise"]
+
+
+class ActionNoise:
+    """A noise over the actions of an environment, or of each environment of a vector.
+
+    The same seed gives the same actions here, in Rust and in JavaScript. All noises but ``white`` last: they move MIMo,
+    where a new action every 5 ms does not.
+
+    Example:
+        >>> import babybench
+        >>> env = babybench.make("self_touch", vision_active=False)
+        >>> noise = babybench.ActionNoise("pink", env, seed=0)
+        >>> observation, info = env.reset(seed=0)
+        >>> observation, reward, terminated, truncated, info = env.step(noise())
+    """
+
+    def __init__(self, noise: str, env: Union[Env, VectorEnv], seed: int = 0) -> None:
+        """Makes a noise.
+
+        Args:
+            noise: ``white`` (new at every step), ``held`` (for 0.5 s; ``held:0.1`` for 0.1 s), ``ou`` (Ornstein-Uhlenbeck;
+                ``ou:0.2`` with a correlation of 0.2 s), ``pink``, or ``oscillators`` (coupled, of 1 Hz on average;
+                ``oscillators:2`` of 2 Hz).
+            env: The environment, or the vector.
+            seed: Of a vector, environment i gets the seed plus i.
+
+        Raises:
+            ValueError: What is no noise; the text says what is.
+        """
+        if isinstance(env, VectorEnv):
+            count, space = env.num_envs, env.single_action_space
+        else:
+            count, space = 0, env.action_space
+        self._many = count > 0
+        low, high = space.low.tolist(), space.high.tolist()
+        self._noises = [_native.ActionNoise(noise, low, high, env.dt, seed + k) for k in range(max(count, 1))]
+
+    def __call__(self) -> npt.NDArray[np.float32]:
+        """Returns the next action, (action size), or those of a vector, (N, action size)."""
+        actions = [noise.sample() for noise in self._noises]
+        return np.stack(actions) if self._many else actions[0]
+
+    def reset(self, seed: int = 0) -> None:
+        """Begins anew."""
+        for k, noise in enumerate(self._noises):
+            noise.reset(seed + k)
+
+    def __repr__(self) -> str:
+        return f"<babybench.ActionNoise of {len(self._noises)}>"
