@@ -72,6 +72,8 @@ limits! {
         near_pairs: usize = 4_194_304,
         /// Physics: contacts in a step of a large scene.
         contacts: usize = 50_000,
+        /// Physics: numbers in the matrices of the solver `PGS`, and of the solver against slip.
+        dual_numbers: usize = 16_777_216,
         /// Assets: bytes of a file that is read from a directory.
         asset_bytes: u64 = 64 * MIB,
         /// Pictures: pixels of a side.

@@ -17,8 +17,8 @@ HERE = Path(__file__).resolve().parents[1]
 LEFT_OUT = re.compile(r"^n?(flex|skin|mesh|hfield|key|tuple|text_|numeric|plugin|bvh|mocap|tree|fluid|island|wrap_x)")
 KINDS = {"mjtNum": "F64", "int": "I32", "mjtByte": "U8", "float": "F32"}
 OPTION = {
-    "mjtNum": "timestep impratio tolerance ls_tolerance ccd_tolerance gravity",
-    "int": "integrator cone jacobian solver iterations ls_iterations ccd_iterations disableflags enableflags",
+    "mjtNum": "timestep impratio tolerance ls_tolerance noslip_tolerance ccd_tolerance gravity",
+    "int": "integrator cone jacobian solver iterations ls_iterations noslip_iterations ccd_iterations disableflags enableflags",
 }
 CONTACT = {
     "mjtNum": "dist pos frame includemargin friction solref solreffriction solimp",

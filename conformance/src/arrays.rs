@@ -2,7 +2,7 @@
 
 use babybench::Model;
 use babybench::model::{
-    BiasType, CamLight, DynType, EqualityKind, GainType, GeomType, JointType, ObjType, TextureType,
+    BiasType, CamLight, DynType, EqualityKind, GainType, GeomType, JointType, ObjType, TextureType, TrnType,
 };
 
 fn ids(values: &[usize]) -> Vec<f64> {
@@ -193,11 +193,26 @@ fn of_sites_and_cameras(m: &Model) -> Named {
 
 /// Returns the arrays that recordings do not have: those are compared with MuJoCo alone where it runs.
 pub fn unrecorded(m: &Model) -> Named {
+    let transmission = |kind: &TrnType| match kind {
+        TrnType::Joint => 0.0,
+        TrnType::JointInParent => 1.0,
+        TrnType::Tendon => 3.0,
+    };
     let kinds = |all: &[ObjType]| all.iter().map(|kind| f64::from(kind.code())).collect();
     let keys = |of: fn(&babybench::model::Keyframe) -> &[f64]| m.keys.iter().flat_map(of).copied().collect();
     vec![
         ("body_user", users(&m.body_user)),
         ("jnt_user", users(&m.jnt_user)),
+        ("jnt_actfrclimited", flags(&m.jnt_actfrclimited)),
+        ("jnt_actfrcrange", flat(&m.jnt_actfrcrange)),
+        ("tendon_frictionloss", m.tendon_frictionloss.clone()),
+        ("tendon_solref_fri", flat(&m.tendon_solref_fri)),
+        ("tendon_solimp_fri", flat(&m.tendon_solimp_fri)),
+        ("tendon_length0", m.tendon_length0.clone()),
+        (
+            "actuator_trntype",
+            m.actuator_trntype.iter().map(transmission).collect(),
+        ),
         ("geom_user", users(&m.geom_user)),
         ("site_user", users(&m.site_user)),
         ("cam_pos0", flat(&m.cam_pos0)),
@@ -254,6 +269,16 @@ fn of_equalities(m: &Model) -> Named {
                 eq_obj1.push(*joint1 as f64);
                 eq_obj2.push(joint2.map_or(-1.0, |joint| joint as f64));
                 // The last entry is the unused torque scale.
+                eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+            }
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => {
+                eq_type.push(3.0);
+                eq_obj1.push(*tendon1 as f64);
+                eq_obj2.push(tendon2.map_or(-1.0, |tendon| tendon as f64));
                 eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
             }
             EqualityKind::Connect {
@@ -526,6 +551,8 @@ pub fn options(m: &Model) -> Named {
         ("ls_iterations", vec![o.ls_iterations as f64]),
         ("ls_tolerance", vec![o.ls_tolerance]),
         ("impratio", vec![o.impratio]),
+        ("noslip_iterations", vec![o.noslip_iterations as f64]),
+        ("noslip_tolerance", vec![o.noslip_tolerance]),
         ("ccd_iterations", vec![o.ccd_iterations as f64]),
         ("ccd_tolerance", vec![o.ccd_tolerance]),
     ]

@@ -50,10 +50,12 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
             Some("damping ratios of servos with a negative gain")
         }
         ErrorKind::Invalid("the tendon names this joint twice") => Some("tendons that name a joint twice"),
+        ErrorKind::Invalid(message) if message.contains("may touch another by convex collision") => {
+            Some("other convex collision than the default")
+        }
         ErrorKind::Invalid(message) if message.starts_with("two joints of one kind along one axis") => {
             Some("joints that move a body alike")
         }
-        ErrorKind::Invalid(message) if message.starts_with("solver=\"PGS\"") => Some("PGS with elliptic cones"),
         ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => {
             Some("inertias that are singular")
         }

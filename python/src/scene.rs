@@ -111,6 +111,15 @@ pub fn model_extras<'py>(py: Python<'py>, blueprint: &Bound<'py, Blueprint>) -> 
                 row[10] = 1.0;
                 [2, joint1 as i32, joint2.map_or(-1, |j| j as i32)]
             }
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => {
+                row[..5].copy_from_slice(&polycoef);
+                row[10] = 1.0;
+                [3, tendon1 as i32, tendon2.map_or(-1, |t| t as i32)]
+            }
         });
         rows.push(row);
     }

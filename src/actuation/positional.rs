@@ -40,7 +40,7 @@ impl Positional {
         let (mut low, mut high) = (Vec::new(), Vec::new());
         let actuators = MimoBodies::of(model).actuators();
         for &i in &actuators {
-            let j = model.actuator_trnid[i];
+            let Some(j) = model.actuator_joint(i) else { continue };
             let actuator = || model.actuator_name[i].clone();
             let follows = model.actuator_biastype[i] == BiasType::Affine
                 && model.actuator_gaintype[i] == GainType::Fixed
@@ -70,7 +70,7 @@ impl Positional {
         for (equality, kind) in model.eq_kind.iter().enumerate() {
             if let EqualityKind::Joint { joint1, joint2, .. } = kind {
                 let on = |j: usize| *joint1 == j || *joint2 == Some(j);
-                let held = actuators.iter().filter(|&&i| on(model.actuator_trnid[i]));
+                let held = actuators.iter().filter(|&&i| model.actuator_joint(i).is_some_and(on));
                 holds.extend(held.map(|&actuator| Hold { equality, actuator }));
             }
         }

@@ -48,7 +48,8 @@ impl<'m> MimoBodies<'m> {
     /// Lists the actuators on MIMo's joints, by id.
     pub fn actuators(&self) -> Vec<usize> {
         let model = self.model;
-        let own = |&i: &usize| self.contains(model.jnt_bodyid[model.actuator_trnid[i]]);
+        let joint = |i: usize| model.actuator_joint(i);
+        let own = |&i: &usize| joint(i).is_some_and(|j| self.contains(model.jnt_bodyid[j]));
         (0..model.nu()).filter(own).collect()
     }
 

@@ -24,11 +24,12 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "joint" joint: Option<String> = None, TEXT, own, transmission, "Joint that it drives.";
         "jointinparent" jointinparent: Option<String> = None, TEXT, own, transmission, "Joint that it drives, in place of `joint`: the same for the joints that actuators may have here.";
+        "tendon" tendon: Option<String> = None, TEXT, own, transmission, "Tendon that it pulls, in place of `joint`.";
         "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
         "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the control.";
         "forcerange" forcerange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force.";
         "lengthrange" lengthrange: [f64; 2] = [0.0; 2], reals(2, Any), own, "Shortest and longest length. Kept, and used by muscles alone.";
-        "gear" gear: f64 = 1.0, real(Any), "Ratio of the force on the joint to the actuator's force.";
+        "gear" gear: f64 = 1.0, real(Any), "Ratio of the force on the joint or the tendon to the actuator's force.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         check "group", int(i32::MIN as i64, i32::MAX as i64), "Group. Ignored: groups are for viewers.";
     }
@@ -68,8 +69,8 @@ table! {
     group Servo {
         "kp" kp: Option<f64> = None, real(NonNegative), "Gain of the position error; 1 if no default gives another.";
         "kv" kv: Option<f64> = None, real(NonNegative), "Damping; 0 if no default gives another.";
-        "dampratio" dampratio: Option<f64> = None, real(NonNegative), "Damping in place of `kv`, as the damping ratio at `qpos0` of the joint alone.";
-        "inheritrange" inheritrange: Option<f64> = None, real(Any), "Width of the range of the position that is asked for, relative to that of the joint, where positive.";
+        "dampratio" dampratio: Option<f64> = None, real(NonNegative), "Damping in place of `kv`, as the damping ratio at `qpos0` of what it acts on alone.";
+        "inheritrange" inheritrange: Option<f64> = None, real(Any), "Width of the range of the position that is asked for, relative to that of the joint or the tendon, where positive.";
     }
 }
 

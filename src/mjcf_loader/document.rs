@@ -20,6 +20,7 @@ pub(super) use super::words::{Frame, Orientation, Tri};
 table! {
     /// `<joint>`.
     element Joint {
+        also within: Option<usize> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
@@ -28,6 +29,9 @@ table! {
         "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
         "range" range: [f64; 2] = [0.0; 2], reals(2, Any), "Lower and upper limit, angle or m.";
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
+        "actuatorfrclimited" actuatorfrclimited: Tri = Tri::Auto, TRI, "Whether `actuatorfrcrange` is enforced.";
+        "actuatorfrcrange" actuatorfrcrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force of all actuators on the joint, N m or N.";
+        "springdamper" springdamper: [f64; 2] = [0.0; 2], reals(2, NonNegative), "Time constant, s, and damping ratio of the joint alone, from which stiffness and damping follow in place of those given.";
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring, N m/rad or N/m.";
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping, N m s/rad or N s/m.";
         "armature" armature: f64 = 0.0, real(NonNegative), "Inertia of the rotor, kg m^2 or kg.";
@@ -53,6 +57,7 @@ table! {
 table! {
     /// `<geom>`.
     element Geom {
+        also within: Option<usize> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: GeomType = GeomType::Sphere, SHAPES, "Shape.";
         "size" size: Vec3 = [0.0; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
@@ -80,6 +85,7 @@ table! {
 table! {
     /// `<site>`.
     element Site {
+        also within: Option<usize> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: GeomType = GeomType::Sphere, SITE_SHAPES, "Shape.";
         "size" size: Vec3 = [0.005; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
@@ -95,6 +101,7 @@ table! {
 table! {
     /// `<camera>`.
     element Camera {
+        also within: Option<usize> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it looks at in modes `targetbody` and `targetbodycom`.";
@@ -109,6 +116,7 @@ table! {
 table! {
     /// `<light>`.
     element Light {
+        also within: Option<usize> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it shines at in modes `targetbody` and `targetbodycom`.";
@@ -140,6 +148,7 @@ table! {
     /// `<body>` with what hangs on it; children follow their parents in the list of bodies.
     element Body {
         also parent: usize = 0;
+        also within: Option<usize> = None;
         also inertial: Option<Inertial> = None;
         also joints: Vec<Joint> = Vec::new();
         also geoms: Vec<Geom> = Vec::new();
@@ -149,6 +158,16 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         "gravcomp" gravcomp: f64 = 0.0, real(Any), "Part of its weight that is compensated.";
+        check "childclass", TEXT, "Default class of the elements in it that name none.";
+        with frame: Frame;
+    }
+}
+
+table! {
+    /// `<frame>` in a body: a pose that what it holds, but for an `inertial`, is placed in. Frames follow those that they are in.
+    element BodyFrame {
+        also within: Option<usize> = None;
+        "name" name: String = String::new(), TEXT, own, "Name.";
         check "childclass", TEXT, "Default class of the elements in it that name none.";
         with frame: Frame;
     }
@@ -165,6 +184,8 @@ pub(super) struct Document {
     pub textures: Vec<Texture>,
     pub materials: Vec<Material>,
     pub bodies: Vec<Body>,
+    /// Frames in the bodies, which elements name by their place here.
+    pub frames: Vec<BodyFrame>,
     pub pairs: Vec<Pair>,
     pub excludes: Vec<Exclude>,
     pub equalities: Vec<Equality>,

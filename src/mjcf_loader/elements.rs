@@ -6,8 +6,10 @@ use crate::model::{Flags, Options, SensorType, Statistic};
 use super::actuator::{Activation, Actuator, Control, Cylinder, Filter, Law, Servo, Speed};
 use super::attribute::{Attr, TEXT};
 use super::custom::{Key, Numeric, Text};
-use super::document::{Body, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
-use super::relation::{ConnectEquality, Equality, Exclude, JointEquality, Pair, Tendon, WeldEquality, Wrap};
+use super::document::{Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
+use super::relation::{
+    ConnectEquality, Equality, Exclude, JointEquality, Pair, Tendon, TendonEquality, WeldEquality, Wrap,
+};
 use super::schema::{self, Rule};
 use super::sensor;
 use super::settings::{Global, Headlight, Map, Quality, Rgba, Root, Scale};
@@ -84,9 +86,19 @@ static LIGHT: Rule = rule("light", &[CLASS, Light::ATTRIBUTES], &[]);
 static BODY: Rule = rule(
     "body",
     &[Body::ATTRIBUTES],
-    &[&BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT],
+    &[
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME,
+    ],
 );
-static WORLDBODY: Rule = rule("worldbody", &[], &[&BODY, &GEOM, &SITE, &CAMERA, &LIGHT]);
+/// In the world it can hold what the world can, which the reader checks.
+static FRAME: Rule = rule(
+    "frame",
+    &[BodyFrame::ATTRIBUTES],
+    &[
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME,
+    ],
+);
+static WORLDBODY: Rule = rule("worldbody", &[], &[&BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME]);
 
 static PAIR: Rule = rule("pair", &[CLASS, Pair::ATTRIBUTES], &[]);
 static EXCLUDE: Rule = rule("exclude", &[Exclude::ATTRIBUTES], &[]);
@@ -99,7 +111,16 @@ static EQUALITY_CONNECT: Rule = rule(
     &[],
 );
 static EQUALITY_WELD: Rule = rule("weld", &[CLASS, WeldEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
-static EQUALITY: Rule = rule("equality", &[], &[&EQUALITY_CONNECT, &EQUALITY_JOINT, &EQUALITY_WELD]);
+static EQUALITY_TENDON: Rule = rule(
+    "tendon",
+    &[CLASS, TendonEquality::ATTRIBUTES, Equality::ATTRIBUTES],
+    &[],
+);
+static EQUALITY: Rule = rule(
+    "equality",
+    &[],
+    &[&EQUALITY_CONNECT, &EQUALITY_JOINT, &EQUALITY_TENDON, &EQUALITY_WELD],
+);
 
 static TENDON_JOINT: Rule = rule("joint", &[Wrap::ATTRIBUTES], &[]);
 static FIXED: Rule = rule("fixed", &[CLASS, Tendon::ATTRIBUTES], &[&TENDON_JOINT]);

@@ -6,7 +6,9 @@ use crate::model::{JointType, Options, Statistic};
 
 use super::actuator::Actuator;
 use super::custom::{Key, Numeric, Text};
-use super::document::{Body, Camera, Compiler, Document, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
+use super::document::{
+    Body, BodyFrame, Camera, Compiler, Document, FreeJoint, Geom, Inertial, Joint, Light, Site, Size,
+};
 use super::error::{ErrorKind, LoadError};
 use super::relation::{Equality, Exclude, Pair, Tendon, Wrap};
 use super::schema::{DEFAULT, Element};
@@ -133,6 +135,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         textures: Vec::new(),
         materials: Vec::new(),
         bodies: vec![world],
+        frames: Vec::new(),
         pairs: Vec::new(),
         excludes: Vec::new(),
         equalities: Vec::new(),
@@ -167,7 +170,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
             "size" => document.size.apply(section),
             "visual" => section.children.iter().for_each(|e| visual.apply(e)),
             "statistic" => document.statistic.apply(section),
-            "worldbody" => content(section, 0, MAIN, &classes, &mut document.bodies)?,
+            "worldbody" => content(section, (0, None), MAIN, &classes, &mut document)?,
             _ => section
                 .children
                 .iter()
@@ -207,51 +210,95 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
     Ok(())
 }
 
-/// Reads what hangs on a body, and its child bodies depth first.
+/// Reads what hangs on a body, or stands in a frame of it, and its child bodies depth first.
 fn content(
     parent: &Element,
-    body: usize,
+    (body, within): (usize, Option<usize>),
     around: &str,
     classes: &Classes,
-    bodies: &mut Vec<Body>,
+    document: &mut Document,
 ) -> Result<(), LoadError> {
     for e in &parent.children {
-        if e.name == "body" {
-            let inner = e.text("childclass").unwrap_or(around);
-            let id = child(e, body, inner, classes, bodies)?;
-            content(e, id, inner, classes, bodies)?;
-        } else {
-            attach(e, body, around, classes, bodies)?;
+        let inner = e.text("childclass").unwrap_or(around);
+        match e.name {
+            "body" => {
+                let id = child(e, (body, within), inner, classes, document)?;
+                content(e, (id, None), inner, classes, document)?;
+            }
+            "frame" => {
+                let id = frame(e, within, inner, classes, document)?;
+                content(e, (body, Some(id)), inner, classes, document)?;
+            }
+            _ => attach(e, (body, within), around, classes, &mut document.bodies)?,
         }
     }
     Ok(())
+}
+
+/// Checks that a default class for children exists.
+fn known(e: &Element, class: &str, classes: &Classes) -> Result<(), LoadError> {
+    if classes.by_name.contains_key(class) {
+        Ok(())
+    } else {
+        Err(classes.error(e, ErrorKind::UnknownClass(class.to_owned())))
+    }
 }
 
 /// Adds a child body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
 fn child(
     e: &Element,
-    parent: usize,
+    (parent, within): (usize, Option<usize>),
     inner: &str,
     classes: &Classes,
-    bodies: &mut Vec<Body>,
+    document: &mut Document,
 ) -> Result<usize, LoadError> {
-    if !classes.by_name.contains_key(inner) {
-        return Err(classes.error(e, ErrorKind::UnknownClass(inner.to_owned())));
-    }
+    known(e, inner, classes)?;
     let body = Body {
         parent,
+        within,
         ..Body::read(e)
     };
-    bodies.push(body);
-    Ok(bodies.len() - 1)
+    document.bodies.push(body);
+    Ok(document.bodies.len() - 1)
+}
+
+/// Adds a frame. It is kept out of `content`, which recurses, so that its stack frames stay small.
+#[inline(never)]
+fn frame(
+    e: &Element,
+    within: Option<usize>,
+    inner: &str,
+    classes: &Classes,
+    document: &mut Document,
+) -> Result<usize, LoadError> {
+    known(e, inner, classes)?;
+    let frame = BodyFrame {
+        within,
+        ..BodyFrame::read(e)
+    };
+    document.frames.push(frame);
+    Ok(document.frames.len() - 1)
 }
 
 /// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn attach(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
-    let body = &mut bodies[body];
+fn attach(
+    e: &Element,
+    (id, within): (usize, Option<usize>),
+    around: &str,
+    classes: &Classes,
+    bodies: &mut [Body],
+) -> Result<(), LoadError> {
+    let body = &mut bodies[id];
     match e.name {
+        // which the rules keep out of the world itself, but not out of frames in it
+        "inertial" | "freejoint" | "joint" if id == 0 => {
+            return Err(classes.error(e, ErrorKind::Invalid("the world has no joints and no inertia")));
+        }
+        "inertial" if body.inertial.is_some() => {
+            return Err(classes.error(e, ErrorKind::RepeatedElement("inertial")));
+        }
         "inertial" => body.inertial = Some(Inertial::read(e)),
         "freejoint" => {
             let FreeJoint { at, name, group } = FreeJoint::read(e);
@@ -263,13 +310,26 @@ fn attach(e: &Element, body: usize, around: &str, classes: &Classes, bodies: &mu
                 ..Joint::initial()
             });
         }
-        "joint" => body.joints.push(with(&classes.of(e, around)?.joint, e, Joint::apply)),
-        "geom" => body.geoms.push(with(&classes.of(e, around)?.geom, e, Geom::apply)),
-        "site" => body.sites.push(with(&classes.of(e, around)?.site, e, Site::apply)),
-        "camera" => body
-            .cameras
-            .push(with(&classes.of(e, around)?.camera, e, Camera::apply)),
-        "light" => body.lights.push(with(&classes.of(e, around)?.light, e, Light::apply)),
+        "joint" => {
+            let joint = with(&classes.of(e, around)?.joint, e, Joint::apply);
+            body.joints.push(Joint { within, ..joint });
+        }
+        "geom" => {
+            let geom = with(&classes.of(e, around)?.geom, e, Geom::apply);
+            body.geoms.push(Geom { within, ..geom });
+        }
+        "site" => {
+            let site = with(&classes.of(e, around)?.site, e, Site::apply);
+            body.sites.push(Site { within, ..site });
+        }
+        "camera" => {
+            let camera = with(&classes.of(e, around)?.camera, e, Camera::apply);
+            body.cameras.push(Camera { within, ..camera });
+        }
+        "light" => {
+            let light = with(&classes.of(e, around)?.light, e, Light::apply);
+            body.lights.push(Light { within, ..light });
+        }
         _ => {}
     }
     Ok(())

@@ -43,6 +43,15 @@ table! {
 }
 
 table! {
+    /// Attributes of `<equality><tendon>`.
+    group TendonEquality {
+        "tendon1" tendon1: String = String::new(), TEXT, required, "Tendon that is held.";
+        "tendon2" tendon2: Option<String> = None, TEXT, own, "Tendon that it follows; none for a constant.";
+        "polycoef" polycoef: [f64; 5] = [0.0, 1.0, 0.0, 0.0, 0.0], some(1, 5, Any), own, "Coefficients of the polynomial in the length of the second tendon.";
+    }
+}
+
+table! {
     /// Attributes of `<equality><weld>`.
     group WeldEquality {
         "body1" body1: String = String::new(), TEXT, required, "First body.";
@@ -66,6 +75,7 @@ table! {
 #[derive(Clone)]
 pub(super) enum Held {
     Joint(JointEquality),
+    Tendon(TendonEquality),
     Connect(ConnectEquality),
     Weld(WeldEquality),
 }
@@ -87,6 +97,7 @@ impl Equality {
         self.apply(e);
         self.held = match e.name {
             "connect" => Held::Connect(ConnectEquality::read(e)),
+            "tendon" => Held::Tendon(TendonEquality::read(e)),
             "weld" => Held::Weld(WeldEquality::read(e)),
             _ => Held::Joint(JointEquality::read(e)),
         };
@@ -137,6 +148,9 @@ table! {
         "solreflimit" solref_limit: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the limit.";
         "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";
         "springlength" springlength: SpringLength = SpringLength::AT_REST, some(1, 2, Any), "Shortest and longest length without a spring force; a single one is both. -1 for that of the springs' rest configuration.";
+        "frictionloss" frictionloss: f64 = 0.0, real(NonNegative), "Dry friction.";
+        "solreffriction" solref_friction: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of dry friction.";
+        "solimpfriction" solimp_friction: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of dry friction.";
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring.";
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";

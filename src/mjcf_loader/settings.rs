@@ -38,28 +38,35 @@ table! {
     }
 }
 
+const INTEGRATORS: Words<IntegratorType> = words! {
+    "Euler" => IntegratorType::Euler,
+    "RK4" => IntegratorType::Rk4,
+    "implicit" => IntegratorType::Implicit,
+    "implicitfast" => IntegratorType::ImplicitFast,
+};
+
 table! {
     fields Options {
         also flags: Flags = Flags::initial();
         "timestep" timestep: f64 = 0.002, real(Positive), "Time step, s.";
         "gravity" gravity: Vec3 = [0.0, 0.0, -9.81], reals(3, Any), "Gravity, m/s^2.";
-        "iterations" iterations: usize = 100, int(0, MAX_COUNT), "Maximum number of Newton iterations per step.";
-        "tolerance" tolerance: f64 = 1e-8, real(NonNegative), "Improvement or gradient below which Newton's method stops.";
-        "ls_iterations" ls_iterations: usize = 50, int(0, MAX_COUNT), "Maximum number of line-search iterations per Newton iteration.";
+        "iterations" iterations: usize = 100, int(0, MAX_COUNT), "Maximum number of iterations of the solver per step.";
+        "tolerance" tolerance: f64 = 1e-8, real(NonNegative), "Improvement or gradient below which the solver stops.";
+        "noslip_iterations" noslip_iterations: usize = 0, int(0, MAX_COUNT), "Maximum number of iterations of the solver against slip, which takes the softness out of friction.";
+        "noslip_tolerance" noslip_tolerance: f64 = 1e-6, real(NonNegative), "Improvement below which the solver against slip stops.";
+        "ls_iterations" ls_iterations: usize = 50, int(0, MAX_COUNT), "Maximum number of line-search iterations per iteration of the solver.";
         "ls_tolerance" ls_tolerance: f64 = 0.01, real(NonNegative), "Tolerance of the line search.";
         "impratio" impratio: f64 = 1.0, real(Positive), "Ratio of frictional to normal constraint impedance.";
         "cone" cone: ConeType = ConeType::Pyramidal, words! { "pyramidal" => ConeType::Pyramidal, "elliptic" => ConeType::Elliptic }, "Shape of the friction cones.";
         "jacobian" jacobian: JacobianFormat = JacobianFormat::Auto, words! { "dense" => JacobianFormat::Dense, "sparse" => JacobianFormat::Sparse, "auto" => JacobianFormat::Auto }, "Format of the constraint Jacobian in MuJoCo. It changes no accelerations; sparse, also equalities without effect keep their rows.";
         "ccd_iterations" ccd_iterations: usize = 50, int(0, MAX_COUNT), "Maximum number of iterations of the convex collision routine.";
         "ccd_tolerance" ccd_tolerance: f64 = 1e-6, real(NonNegative), "Tolerance of the convex collision routine, m.";
-        "integrator" integrator: IntegratorType = IntegratorType::Euler, words! { "Euler" => IntegratorType::Euler, "RK4" => IntegratorType::Rk4 }, "Integrator: Euler's method with implicit damping, or Runge and Kutta's of fourth order.";
-        "solver" solver: SolverType = SolverType::Newton, words! { "PGS" => SolverType::Pgs, "Newton" => SolverType::Newton }, "Solver of constraints: Newton's method, or projected Gauss-Seidel with pyramidal cones.";
+        "integrator" integrator: IntegratorType = IntegratorType::Euler, INTEGRATORS, "Integrator: Euler's method with implicit damping, Runge and Kutta's of fourth order, or Euler's method implicit in all velocities, `implicitfast` in all but those of Coriolis forces.";
+        "solver" solver: SolverType = SolverType::Newton, words! { "PGS" => SolverType::Pgs, "CG" => SolverType::Cg, "Newton" => SolverType::Newton }, "Solver of constraints: Newton's method, conjugate gradients, or projected Gauss-Seidel.";
         "density" density: f64 = 0.0, real(NonNegative), "Density of the medium around bodies, kg/m^3.";
         "viscosity" viscosity: f64 = 0.0, real(NonNegative), "Viscosity of the medium around bodies, Pa s.";
         "wind" wind: Vec3 = [0.0; 3], reals(3, Any), "Velocity of the medium, m/s.";
         "magnetic" magnetic: Vec3 = [0.0, -0.5, 0.0], reals(3, Any), "Magnetic flux, which magnetometers read.";
-        check "noslip_iterations", int(0, 0), "Iterations of the solver against slip; only none.";
-        check "noslip_tolerance", real(NonNegative), "Tolerance of the solver against slip, which is not used.";
         check "apirate", real(NonNegative), "Rate at which programs are to be told. Ignored.";
         check "o_margin" | "o_solref" | "o_solimp" | "o_friction", some(1, 5, Any), "Parameters of all contacts where the flag `override` is on, which it cannot be. Ignored.";
         check "sdf_iterations" | "sdf_initpoints", int(0, MAX_COUNT), "Collision of signed distance fields, of which there are none. Ignored.";
@@ -86,9 +93,10 @@ table! {
         "sensor" sensor: bool = true, SWITCH, "Whether sensors are computed.";
         "midphase" midphase: bool = true, SWITCH, "Whether contacts of two bodies are listed by the types of the geoms; else by their ids.";
         "eulerdamp" eulerdamp: bool = true, SWITCH, "Whether Euler's method takes joint damping implicitly.";
+        "nativeccd" nativeccd: bool = true, SWITCH, "Whether convex collision is MuJoCo's own; off only in models in which it makes no difference.";
+        "multiccd" multiccd: bool = false, SWITCH, "Whether pairs of convex collision may have several contacts; on only in models in which it makes no difference.";
         check "autoreset" | "energy" | "fwdinv" | "invdiscrete", Kind::Word(SWITCH.names), "What changes no motion. Ignored: pairs of geoms are found in one way, and a simulation that diverges is an error.";
-        check "nativeccd", Kind::Word(&["enable"]), "Convex collision; only MuJoCo's own.";
-        check "override" | "multiccd" | "island", Kind::Word(&["disable"]), "What is off by default; only that.";
+        check "override" | "island", Kind::Word(&["disable"]), "What is off by default; only that.";
     }
 }
 

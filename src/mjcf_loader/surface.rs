@@ -2,7 +2,7 @@
 
 use crate::model::{Builtin, Mark, TextureType};
 
-use super::attribute::Sign::{Any, NonNegative, Unit};
+use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
 use super::attribute::{FLAG, TEXT, int, real, reals};
 use super::table::table;
 use super::words::{BUILTINS, MARKS, MAX_PIXELS, TEXTURES};
@@ -28,6 +28,10 @@ table! {
         "width" width: usize = 0, int(0, MAX_PIXELS), "Width, pixels.";
         "height" height: usize = 0, int(0, MAX_PIXELS), "Height, pixels.";
         "file" file: Option<String> = None, TEXT, "Image.";
+        "gridsize" gridsize: [f64; 2] = [1.0; 2], reals(2, Positive), "Rows and columns of squares in the image of a cube.";
+        "gridlayout" gridlayout: Option<String> = None, TEXT, "What each square of the image is, row by row: `R`, `L`, `U`, `D`, `F`, `B` for the right, left, upper, lower, front and back face, `.` for none.";
+        "hflip" hflip: bool = false, FLAG, "Whether images are mirrored from left to right.";
+        "vflip" vflip: bool = false, FLAG, "Whether images are mirrored from top to bottom.";
     }
 }
 

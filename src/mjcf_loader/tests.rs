@@ -99,8 +99,10 @@ fn broken_xml_is_an_error() {
     );
     let dtd = "<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco/>";
     assert_eq!(outcome(dtd), "m.xml:1:1: a document type is not allowed; remove it");
-    check("some text", "mujoco: text is not allowed; remove it");
-    check("&amp;", "mujoco: text is not allowed; remove it");
+    // as in MuJoCo, text within elements says nothing
+    check("some text", "");
+    check("&amp;", "");
+    assert_eq!(outcome("<mujoco/>text"), "m.xml:1:10: text is not allowed; remove it");
     check("<![CDATA[x]]>", "mujoco: a CDATA section is not allowed; remove it");
     check("<?php ?>", "mujoco: a processing instruction is not allowed; remove it");
     check(
@@ -357,7 +359,7 @@ fn actuators_are_checked() {
     );
     told(
         "position joint='j' inheritrange='1'",
-        "inheritrange is used, but the joint has no range",
+        "inheritrange is used, but the joint or the tendon has no range",
     );
     told(
         "position jointinparent='j' inheritrange='1'",
@@ -414,6 +416,28 @@ fn constraints_are_checked() {
 }
 
 #[test]
+fn frames_place_what_they_hold() {
+    let text = "<mujoco><worldbody><frame pos='1 0 0' euler='0 0 90'><geom name='g' size='1' pos='1 0 0'/><frame pos='0 0 2'>
+        <body name='b' pos='1 0 0'><frame euler='0 0 90'><joint pos='1 0 0' axis='1 0 0'/><inertial pos='1 0 0' mass='1' diaginertia='1 1 1'/>
+        </frame></body></frame></frame></worldbody></mujoco>";
+    let arrays = load_str(text, "m.xml", &source(&[]))
+        .map(|spec| spec.arrays)
+        .expect("valid");
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-15);
+    assert!(near(arrays.geom_pos[0], [1.0, 1.0, 0.0]), "{:?}", arrays.geom_pos[0]);
+    assert!(near(arrays.body_pos[1], [1.0, 1.0, 2.0]), "{:?}", arrays.body_pos[1]);
+    assert!(near(arrays.jnt_pos[0], [0.0, 1.0, 0.0]) && near(arrays.jnt_axis[0], [0.0, 1.0, 0.0]));
+    assert_eq!(arrays.body_ipos[1], [1.0, 0.0, 0.0], "an inertial stays in its body");
+    check_world(
+        "<frame><joint/></frame>",
+        "frame/joint: the world has no joints and no inertia",
+    );
+    check_world("<frame childclass='x'/>", "frame: unknown default class \"x\"");
+    let twice = "<body><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><frame><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></frame></body>";
+    check_world(twice, "body/frame/inertial: element \"inertial\" is given twice");
+}
+
+#[test]
 fn textures_are_recipes_with_normalised_paths() {
     let texture = |attributes: &str| {
         let text = format!("<mujoco><asset><texture {attributes}/></asset></mujoco>");
@@ -426,8 +450,23 @@ fn textures_are_recipes_with_normalised_paths() {
     assert_eq!(found.cube_files[2].as_deref(), Some("tex/a.png"));
     assert_eq!(found.cube_files[3].as_deref(), Some("kit/b.png"));
     assert_eq!(texture("type='2d' file='./b.png'").unwrap().name, "b");
+    let grid = texture("file='b.png' gridsize='2 3' gridlayout='.ULFRB'").unwrap();
+    assert_eq!(grid.gridsize, [2, 3]);
+    assert_eq!(grid.gridlayout, [None, Some(2), Some(1), Some(4), Some(0), Some(5)]);
     let error = |attributes| texture(attributes).unwrap_err();
     assert_eq!(error("name='t' file='a.png'"), "file \"kit/a.png\" does not exist");
+    assert_eq!(
+        error("file='b.png' gridsize='2 3' gridlayout='.U'"),
+        "gridlayout must have a letter for each square of gridsize, row by row"
+    );
+    assert_eq!(
+        error("file='b.png' gridsize='2 7'"),
+        "gridsize must be two whole numbers, of no more than 12 squares in all"
+    );
+    assert_eq!(
+        error("file='b.png' gridsize='1 2' gridlayout='.Q'"),
+        "gridlayout may have the letters R, L, U, D, F and B, and dots"
+    );
     let outside = "path \"../../a.png\" is not a relative path inside the asset source";
     assert_eq!(error("name='t' file='../../a.png'"), outside);
     assert_eq!(error("name='t'"), "the texture has neither a builtin nor a file");

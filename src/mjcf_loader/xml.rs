@@ -327,6 +327,9 @@ impl<'t> Parser<'t> {
                 Ok(Event::Eof) => return self.end(),
                 Ok(Event::Comment(_) | Event::Decl(_)) => {}
                 Ok(Event::Text(content)) if content.trim().is_empty() => {}
+                // as in MuJoCo, text within elements says nothing
+                Ok(Event::Text(content)) if !self.open.is_empty() && !content.contains('\0') => {}
+                Ok(Event::GeneralRef(_)) if !self.open.is_empty() => {}
                 Ok(Event::Text(_) | Event::GeneralRef(_)) => return Err(self.fail(ErrorKind::Forbidden("text"))),
                 Ok(Event::CData(_)) => return Err(self.fail(ErrorKind::Forbidden("a CDATA section"))),
                 Ok(Event::PI(_)) => return Err(self.fail(ErrorKind::Forbidden("a processing instruction"))),

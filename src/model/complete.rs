@@ -9,7 +9,7 @@ use crate::math::{Mat3, Quat, Vec3};
 ///
 /// Every array of [`Arrays`] can be read through the model (`model.body_mass[b]`, `model.nbody()`). Only
 /// [`crate::physics::compile`] makes a model, so that constants which need dynamics (`body_invweight0`, `dof_invweight0`,
-/// `tendon_invweight0`, `dof_m0`, statistics, poses of welds, damping from damping ratios) are never missing:
+/// `tendon_invweight0`, `dof_m0`, statistics, poses of welds, damping from damping ratios, springs and dampers from time constants) are never missing:
 ///
 /// ```
 /// use babybench::{assets::MemoryAssets, mjcf_loader, physics};
@@ -50,6 +50,12 @@ pub(crate) struct Constants {
     pub dof_invweight0: Vec<f64>,
     /// See [`Arrays::dof_m0`].
     pub dof_m0: Vec<f64>,
+    /// See [`Arrays::jnt_stiffness`].
+    pub jnt_stiffness: Vec<f64>,
+    /// See [`Arrays::dof_damping`].
+    pub dof_damping: Vec<f64>,
+    /// See [`Arrays::tendon_length0`].
+    pub tendon_length0: Vec<f64>,
     /// See [`Arrays::tendon_lengthspring`].
     pub tendon_lengthspring: Vec<[f64; 2]>,
     /// See [`Arrays::tendon_invweight0`].
@@ -101,6 +107,9 @@ impl Model {
         arrays.body_invweight0 = constants.body_invweight0;
         arrays.dof_invweight0 = constants.dof_invweight0;
         arrays.dof_m0 = constants.dof_m0;
+        arrays.jnt_stiffness = constants.jnt_stiffness;
+        arrays.dof_damping = constants.dof_damping;
+        arrays.tendon_length0 = constants.tendon_length0;
         arrays.tendon_lengthspring = constants.tendon_lengthspring;
         arrays.tendon_invweight0 = constants.tendon_invweight0;
         arrays.actuator_biasprm = constants.actuator_biasprm;

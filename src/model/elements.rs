@@ -93,6 +93,16 @@ pub enum EqualityKind {
         /// Coefficients of the quartic polynomial.
         polycoef: [f64; 5],
     },
+    /// `y - y0 = polycoef(x - x0)` with `y` the length of the first tendon and `x` that of the second, `y0` and `x0` those at
+    /// `qpos0`; without a second tendon `y - y0 = polycoef[0]`.
+    Tendon {
+        /// The constrained tendon.
+        tendon1: usize,
+        /// The tendon it follows.
+        tendon2: Option<usize>,
+        /// Coefficients of the quartic polynomial.
+        polycoef: [f64; 5],
+    },
     /// A point of body 1 and a point of body 2 stay together.
     Connect {
         /// First body.
@@ -119,6 +129,17 @@ pub enum EqualityKind {
         /// Weight of the rotational rows.
         torquescale: f64,
     },
+}
+
+/// What an actuator acts on: `actuator_trnid` is its id (MuJoCo's `mjtTrn`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TrnType {
+    /// A joint.
+    Joint,
+    /// A joint, with forces in the frame of the parent: the same for joints of one coordinate.
+    JointInParent,
+    /// A tendon.
+    Tendon,
 }
 
 /// The dynamics of an actuator's activation, from which the force follows in place of the control.
@@ -216,6 +237,12 @@ pub struct Texture {
     pub height: usize,
     /// Path of the single image file, in the asset source.
     pub file: Option<String>,
+    /// Rows and columns of squares in that image, for a cube.
+    pub gridsize: [usize; 2],
+    /// The face of each square, row by row, by its place in `cube_files`; empty where nothing is said.
+    pub gridlayout: Vec<Option<usize>>,
+    /// Whether images are mirrored from left to right, and from top to bottom.
+    pub flip: [bool; 2],
     /// Paths of the cube faces: right, left, up, down, front, back.
     pub cube_files: [Option<String>; 6],
 }
@@ -358,10 +385,14 @@ pub struct Options {
     pub timestep: f64,
     /// Gravity, m/s^2.
     pub gravity: Vec3,
-    /// Greatest number of Newton iterations per step.
+    /// Greatest number of iterations of the solver per step.
     pub iterations: usize,
-    /// Scaled improvement or gradient below which Newton's method stops.
+    /// Scaled improvement or gradient below which the solver stops.
     pub tolerance: f64,
+    /// Greatest number of iterations of the solver against slip, which changes friction after the other; 0 for none.
+    pub noslip_iterations: usize,
+    /// Scaled improvement below which it stops.
+    pub noslip_tolerance: f64,
     /// Greatest number of line-search iterations per Newton iteration.
     pub ls_iterations: usize,
     /// Line-search tolerance.
@@ -405,7 +436,9 @@ pub enum SolverType {
     /// Newton's method on the accelerations, with exact line search.
     #[default]
     Newton,
-    /// Projected Gauss-Seidel on the forces. It has no elliptic cones.
+    /// Conjugate gradients (Polak and Ribiere) on the accelerations, with exact line search.
+    Cg,
+    /// Projected Gauss-Seidel on the forces.
     Pgs,
 }
 
@@ -415,11 +448,16 @@ pub enum IntegratorType {
     /// Euler's semi-implicit method, with implicit joint damping.
     #[default]
     Euler,
+    /// Euler's method, implicit in velocity: forces of the medium, of dampers, of actuators, of Coriolis.
+    Implicit,
+    /// The same without Coriolis forces.
+    ImplicitFast,
     /// The fourth-order method of Runge and Kutta.
     Rk4,
 }
 
-/// The parts of a simulation that a document may switch off (`<option><flag>`); all are on by default.
+/// The parts of a simulation that a document may switch off (`<option><flag>`); all but `multiccd` are on by
+/// default.
 #[doc(alias = "mjtDisableBit")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flags {
@@ -453,6 +491,10 @@ pub struct Flags {
     pub midphase: bool,
     /// Implicit joint damping in Euler's method.
     pub eulerdamp: bool,
+    /// MuJoCo's own convex collision; models in which another could be seen are refused.
+    pub nativeccd: bool,
+    /// Several contacts of a convex pair; off by default. Models in which it could be seen are refused.
+    pub multiccd: bool,
 }
 
 /// The visual settings (`<visual>`) as MuJoCo stores them, in single precision where it does.

@@ -13,7 +13,7 @@ pub use complete::Model;
 pub(crate) use complete::{CameraPose, Constants, LightPose, WeldPose};
 pub use elements::{
     BiasType, CamLight, ConeType, DynType, EqualityKind, Flags, GainType, GeomType, IntegratorType, JacobianFormat,
-    JointType, Keyframe, Light, Material, Options, SolverType, Statistic,
+    JointType, Keyframe, Light, Material, Options, SolverType, Statistic, TrnType,
 };
 internals!(use elements::{Builtin, Mark, SameFrame, Texture, TextureType, Visual});
 pub use sensor::{DataType, ObjType, SensorType};
@@ -123,6 +123,12 @@ arrays! {
     jnt_margin: Vec<f64>,
     /// Spring stiffness, N m/rad or N/m.
     jnt_stiffness: Vec<f64>,
+    /// Whether `jnt_actfrcrange` applies.
+    jnt_actfrclimited: Vec<bool>,
+    /// Limits of the force of all actuators on the joint, N m or N.
+    jnt_actfrcrange: Vec<[f64; 2]>,
+    /// Time constant, s, and damping ratio from which its spring and damper follow; zeros where those are given.
+    jnt_springdamper: Vec<[f64; 2]>,
     /// `solref` of the limit.
     jnt_solref: Vec<[f64; 2]>,
     /// `solimp` of the limit.
@@ -306,18 +312,28 @@ arrays! {
     tendon_solimp_lim: Vec<[f64; 5]>,
     /// Lengths between which the spring is slack; that of `qpos_spring` where none is given.
     tendon_lengthspring: Vec<[f64; 2]>,
+    /// Dry friction.
+    tendon_frictionloss: Vec<f64>,
+    /// `solref` of dry friction.
+    tendon_solref_fri: Vec<[f64; 2]>,
+    /// `solimp` of dry friction.
+    tendon_solimp_fri: Vec<[f64; 5]>,
     /// Stiffness of the spring.
     tendon_stiffness: Vec<f64>,
     /// Damping.
     tendon_damping: Vec<f64>,
     /// Inverse weight at `qpos0`.
     tendon_invweight0: Vec<f64>,
+    /// Length at `qpos0`.
+    tendon_length0: Vec<f64>,
     /// Numbers for programs, `nuser_tendon` for each tendon.
     tendon_user: Vec<Vec<f64>>,
 
     /// Actuator names.
     actuator_name: Vec<String>,
-    /// Driven joint.
+    /// Kind of what it acts on.
+    actuator_trntype: Vec<TrnType>,
+    /// Joint or tendon that it acts on.
     actuator_trnid: Vec<usize>,
     /// Gear, the first of MuJoCo's six.
     actuator_gear: Vec<f64>,
@@ -432,6 +448,16 @@ sizes! {
     nsensor sensor_name "sensors",
     npair pair_geom "explicit contact pairs",
     nkey keys "keyframes",
+}
+
+impl Arrays {
+    /// Returns the joint that an actuator acts on, if it acts on one.
+    pub fn actuator_joint(&self, actuator: usize) -> Option<usize> {
+        match self.actuator_trntype[actuator] {
+            TrnType::Joint | TrnType::JointInParent => Some(self.actuator_trnid[actuator]),
+            TrnType::Tendon => None,
+        }
+    }
 }
 
 impl Arrays {

@@ -2,12 +2,18 @@
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
 use crate::model::{Arrays, Constants, JointType, Model, SameFrame};
+use crate::physics::contact::needs_convex;
 use crate::physics::dynamics::{MAX_WEIGHT, constants};
+use crate::physics::world::ContactRules;
 
 const NO_ACCELERATION: &str =
     "the inertia at qpos0 is singular or ill-conditioned: redundant joints, or masses of extreme size or ratio";
 const NO_DAMPING: &str = "a damping ratio needs a gain that is not negative: give kv instead";
 const REDUNDANT: &str = "two joints of one kind along one axis of a body that stands alone, of which MuJoCo lets each move the whole inertia: make them one";
+const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, or a cylinder with a capsule, a cylinder or \
+    a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
+const SEVERAL_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, or a cylinder with a capsule, a cylinder \
+    or a box), which gives one contact only: remove multiccd=\"enable\"";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
 
 /// Compiles a document into a model, as MuJoCo's `mj_compile` does: the only way to a [`Model`].
@@ -33,7 +39,25 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     let (arrays, places) = spec.into_parts();
     let constants = constants(&arrays);
     check(&arrays, &constants, &places)?;
-    Ok(Model::new(arrays, constants))
+    let model = Model::new(arrays, constants);
+    check_convex(&model, &places)?;
+    Ok(model)
+}
+
+/// Refuses other convex collision than MuJoCo's default where two geoms may touch whose contacts it finds.
+fn check_convex(model: &Model, places: &Places) -> Result<(), LoadError> {
+    let message = match (model.opt.flags.nativeccd, model.opt.flags.multiccd) {
+        (true, false) => return Ok(()),
+        (false, _) => OTHER_CONVEX,
+        (true, true) => SEVERAL_CONVEX,
+    };
+    match ContactRules::new(model).find(needs_convex) {
+        Some([a, b]) => {
+            let body = model.geom_bodyid[a].max(model.geom_bodyid[b]);
+            Err(places.body_error(body, message))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Finds a body whose inertia MuJoCo takes for diagonal (`body_simple`) although two of its joints move it alike: one without
@@ -93,5 +117,64 @@ fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), 
         Ok(())
     } else {
         Err(places.body_error(0, NO_STATISTICS))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::MemoryAssets;
+    use crate::mjcf_loader::load_str;
+
+    fn outcome(flag: &str, geoms: &str) -> Result<Model, String> {
+        let text = format!(
+            "<mujoco><option><flag {flag}/></option><worldbody><geom type='plane' size='1 1 1'/>{geoms}
+             <body><freejoint/><geom type='cylinder' size='.1 .1'/></body></worldbody></mujoco>"
+        );
+        let model = load_str(&text, "m.xml", &MemoryAssets::new()).and_then(compile);
+        model.map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn other_convex_collision_is_taken_where_it_makes_no_difference() {
+        const BALL: &str = "<body><freejoint/><geom size='.1'/></body>";
+        const BOX: &str = "<body><freejoint/><geom type='box' size='.1 .1 .1'/></body>";
+        const GHOST: &str = "<body><freejoint/><geom type='box' size='.1 .1 .1' contype='0' conaffinity='0'/></body>";
+        for flag in ["nativeccd='disable'", "multiccd='enable'"] {
+            for harmless in ["", BALL, GHOST] {
+                assert!(outcome(flag, harmless).is_ok(), "{flag} {harmless}");
+            }
+            let error = outcome(flag, BOX).expect_err("a box and a cylinder");
+            assert!(error.contains("may touch another by convex collision"), "{error}");
+            assert!(
+                error.ends_with(&format!("remove {}", flag.replace('\'', "\""))),
+                "{error}"
+            );
+        }
+        assert!(outcome("nativeccd='enable' multiccd='disable'", BOX).is_ok());
+    }
+
+    #[test]
+    fn springs_follow_from_time_constants() {
+        let text = "<mujoco><worldbody><body><joint type='slide' springdamper='.1 .5' stiffness='7' damping='9'/>
+            <geom size='.1' mass='2'/></body></worldbody></mujoco>";
+        let model = load_str(text, "m.xml", &MemoryAssets::new())
+            .and_then(compile)
+            .expect("valid");
+        // 2 kg: m / (t^2 r^2) and 2 m / t
+        assert!(
+            (model.jnt_stiffness[0] - 800.0).abs() < 1e-9,
+            "{}",
+            model.jnt_stiffness[0]
+        );
+        assert!((model.dof_damping[0] - 40.0).abs() < 1e-9, "{}", model.dof_damping[0]);
+        let bad = text.replace(".1 .5", ".1 0");
+        let error = load_str(&bad, "m.xml", &MemoryAssets::new()).expect_err("no damping ratio");
+        assert!(
+            error
+                .to_string()
+                .ends_with("both numbers of springdamper must be positive"),
+            "{error}"
+        );
     }
 }

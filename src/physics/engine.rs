@@ -100,7 +100,8 @@ pub trait Engine: Send + Sync {
     #[doc(alias = "mj_forward")]
     fn forward(&mut self, state: &mut State) -> Result<(), EngineError>;
 
-    /// Advances by one time step. The computed quantities stay those of the start of the step.
+    /// Advances by one time step. The computed quantities stay those of the start of the step; with the integrator `RK4`
+    /// they are those of the last of its four evaluations, at the end of the step, but for `sensordata`, which is that of the start.
     ///
     /// # Errors
     /// As [`Engine::forward`].
@@ -278,6 +279,15 @@ pub enum EngineError {
         /// Names of the geoms, in quotes; the number of one without a name.
         geoms: [String; 2],
     },
+}
+
+/// Checks a number against its limit.
+pub(super) fn within(limit: usize, found: usize, what: &'static str, step: u64) -> Result<(), EngineError> {
+    if found > limit {
+        Err(EngineError::TooMany { step, what, limit })
+    } else {
+        Ok(())
+    }
 }
 
 /// Checks the sizes of all that a step reads and writes, and that what it reads is finite.

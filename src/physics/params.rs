@@ -12,7 +12,7 @@ table! {
     dynamic {
         /// Which equality constraints hold (neq).
         pub eq_active: [bool; model.neq()] => model.eq_active0.clone();
-        /// Constant term of each joint equality (neq), rad; unused for welds.
+        /// Constant term of each equality of joints or tendons (neq), rad; unused for welds.
         pub eq_offset: [f64; model.neq()] finite => model.eq_kind.iter().map(offset).collect();
         /// Joint stiffness (njnt), N m/rad.
         pub jnt_stiffness: [f64; model.njnt()] finite => model.jnt_stiffness.clone();
@@ -54,7 +54,7 @@ impl Params {
 /// Returns the constant term of an equality.
 fn offset(kind: &EqualityKind) -> f64 {
     match kind {
-        EqualityKind::Joint { polycoef, .. } => polycoef[0],
+        EqualityKind::Joint { polycoef, .. } | EqualityKind::Tendon { polycoef, .. } => polycoef[0],
         EqualityKind::Connect { .. } | EqualityKind::Weld { .. } => 0.0,
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::model::{IntegratorType, Model, SolverType};
-use crate::physics::constraint::{GaussSeidel, Newton, RowBuilder, contact_forces};
+use crate::physics::constraint::{Dual, Newton, RowBuilder, contact_forces};
 use crate::physics::contact::Quirks;
 use crate::physics::dynamics::*;
 use crate::physics::engine::{
@@ -29,9 +29,9 @@ pub struct SoftOptions {
 
 /// Advances a state by MuJoCo's formulation in joint space.
 ///
-/// A step computes kinematics, inertia, contacts, constraint rows, velocities, forces, solves for the acceleration with
-/// Newton's method, and integrates with semi-implicit Euler and implicit joint damping. After warm-up it allocates
-/// nothing.
+/// A step computes kinematics, inertia, contacts, constraint rows, velocities, forces, solves for the acceleration with the
+/// solver of the model, and integrates with its integrator: by default Newton's method, and semi-implicit Euler with implicit
+/// joint damping. After warm-up it allocates nothing.
 #[doc(alias("mj_step", "mjSOL_NEWTON"))]
 pub struct SoftEngine {
     model: Arc<Model>,
@@ -41,7 +41,7 @@ pub struct SoftEngine {
     sweep: Sweep,
     rows: RowBuilder,
     newton: Newton,
-    dual: GaussSeidel,
+    dual: Dual,
     integrator: Integrator,
     stages: RungeKutta,
     subtrees: SubtreeScratch,
@@ -87,7 +87,7 @@ impl SoftModel {
             sweep: Sweep::new(model, pairs, contact),
             rows: RowBuilder::new(model, topology),
             newton: Newton::with_capacity(topology, model.nv, RESERVED_CONTACTS),
-            dual: GaussSeidel::default(),
+            dual: Dual::default(),
             integrator: Integrator::default(),
             stages: RungeKutta::default(),
             subtrees: SubtreeScratch::default(),
@@ -147,15 +147,15 @@ impl SoftEngine {
         vectorized!(fwd_actuation(&self.model, &mut self.bodies, s));
         self.mark(Some(Stage::Solver));
         match self.model.opt.solver {
-            SolverType::Newton => vectorized!({
-                self.newton.solve(&self.model, &self.topology, s);
-                contact_forces(&self.model, s);
-            }),
-            SolverType::Pgs => {
-                self.dual.solve(&self.model, &self.topology, &mut self.bodies, s);
-                contact_forces(&self.model, s);
+            SolverType::Newton | SolverType::Cg => {
+                vectorized!(self.newton.solve(&self.model, &self.topology, &mut self.bodies, s))
             }
+            SolverType::Pgs => self.dual.solve(&self.model, &self.topology, &mut self.bodies, s)?,
         }
+        if self.model.opt.noslip_iterations > 0 {
+            self.dual.hold(&self.model, &self.topology, &mut self.bodies, s)?;
+        }
+        vectorized!(contact_forces(&self.model, s));
         self.mark(Some(Stage::Wrenches));
         vectorized!({
             rne_post_constraint(&self.model, s, self.options.double_weld_torque);
@@ -197,7 +197,12 @@ impl Engine for SoftEngine {
         self.compute_checked(state)?;
         self.mark(Some(Stage::Integration));
         match self.model.opt.integrator {
-            IntegratorType::Euler => vectorized!(self.integrator.advance(&self.model, &mut self.bodies, state)),
+            IntegratorType::Euler | IntegratorType::Implicit | IntegratorType::ImplicitFast => {
+                vectorized!(
+                    self.integrator
+                        .advance(&self.model, &self.topology, &mut self.bodies, state)
+                );
+            }
             IntegratorType::Rk4 => {
                 let (model, mut stages) = (self.model.clone(), std::mem::take(&mut self.stages));
                 let done = stages.advance(&model, state, |s| {

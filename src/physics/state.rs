@@ -50,7 +50,8 @@ table! {
     ///
     /// The fields up to `params` decide how a run goes on, with any engine and any actuation model: a copy of them
     /// ([`State::copy_dynamic_from`]) continues with the same bits. A step advances `qpos` and `qvel`; all computed
-    /// quantities describe the *start* of the last step, before integration, as in MuJoCo.
+    /// quantities describe the *start* of the last step, before integration, as in MuJoCo. The integrator `RK4` evaluates them four
+    /// times in a step: they are those of its last evaluation, but for `sensordata`, which describes the start there, too.
     ///
     /// Constraint rows are read with [`State::efc_rows`], their Jacobian and the inertia matrix with
     /// [`Engine::efc_j`](crate::physics::Engine::efc_j) and [`Engine::full_m`](crate::physics::Engine::full_m).
@@ -158,7 +159,7 @@ table! {
         pub qfrc_constraint: [f64; model.nv] = 0.0;
         /// Acceleration (nv), without the implicit damping of the integrator.
         pub qacc: [f64; model.nv] = 0.0;
-        /// Newton iterations of the last step, summed over islands.
+        /// Iterations of the solver in the last step, summed over islands.
         pub solver_iterations: (usize) = 0;
 
         // after constraints

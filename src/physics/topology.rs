@@ -191,7 +191,6 @@ impl Topology {
     }
 
     /// Copies the values of the degrees of freedom from `lanes` to the vector `x`.
-    #[cfg(any(test, feature = "rapier"))]
     #[inline]
     pub(crate) fn read_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
         for (&slot, v) in self.slot.iter().zip(x) {
@@ -208,6 +207,21 @@ impl Topology {
     #[inline]
     pub(crate) fn dof_chain(&self, dof: usize) -> &[u32] {
         &self.chain[self.row_adr[dof]..self.row_adr[dof + 1]]
+    }
+
+    /// Returns where the chain of `dof` begins among the entries of all chains; for `dof = nv` their number.
+    #[inline]
+    pub(crate) fn chain_start(&self, dof: usize) -> usize {
+        self.row_adr[dof]
+    }
+
+    /// Returns where `ancestor` stands among the entries of all chains in that of `dof`, if it is there.
+    #[inline]
+    pub(crate) fn chain_place(&self, ancestor: usize, dof: usize) -> Option<usize> {
+        // the chain of an ancestor is a prefix, so its length tells the place
+        let place = self.row_adr[ancestor + 1] - self.row_adr[ancestor] - 1;
+        let there = self.dof_chain(dof).get(place).is_some_and(|&d| d as usize == ancestor);
+        there.then_some(self.row_adr[dof] + place)
     }
 
     /// Returns the degrees of freedom that move `body`, ascending.

@@ -50,6 +50,27 @@ impl Level {
         Self { width, height, pixels }
     }
 
+    /// Mirrors it from left to right, and from top to bottom.
+    fn flip(&mut self, [horizontally, vertically]: [bool; 2]) {
+        if horizontally {
+            self.pixels.chunks_exact_mut(self.width).for_each(<[_]>::reverse);
+        }
+        if vertically {
+            let rows = self.pixels.chunks_exact(self.width).rev();
+            self.pixels = rows.flatten().copied().collect();
+        }
+    }
+
+    /// Copies a square of it.
+    fn part(&self, row: usize, column: usize, side: usize) -> Self {
+        let line = |y: usize| &self.pixels[y * self.width + column..][..side];
+        Self {
+            width: side,
+            height: side,
+            pixels: (row..row + side).flat_map(line).copied().collect(),
+        }
+    }
+
     /// Creates the next mip level: a bilinear reduction, rounded to bytes.
     fn halved(&self) -> Self {
         let (w, h) = ((self.width / 2).max(1), (self.height / 2).max(1));
@@ -108,7 +129,8 @@ impl Level {
 /// A loader of textures that decodes an image used by several only once.
 pub struct Loader<'a> {
     assets: &'a dyn AssetSource,
-    faces: BTreeMap<String, Face>,
+    /// By path, and how they are mirrored.
+    faces: BTreeMap<(String, [bool; 2]), Face>,
     /// Pixels that may still be made.
     left: usize,
 }
@@ -153,17 +175,9 @@ impl<'a> Loader<'a> {
         }
         if let Some(path) = &recipe.file {
             if flat {
-                return Ok(TexturePixels::Flat(self.image(path)?));
+                return Ok(TexturePixels::Flat(self.image(path, recipe.flip)?));
             }
-            let face = self.image(path)?;
-            // MuJoCo repeats a square image on all six sides
-            if face[0].width == face[0].height {
-                return Ok(TexturePixels::Cube([0; 6].map(|_| face.clone())));
-            }
-            return Err(wrong(format!(
-                "\"{path}\" has {} x {} pixels (after reduction); a cube needs a square image",
-                face[0].width, face[0].height
-            )));
+            return self.cube_of_one(recipe, path);
         }
         if flat {
             return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
@@ -172,7 +186,7 @@ impl<'a> Loader<'a> {
         let mut side = None;
         for (face, path) in faces.iter_mut().zip(&recipe.cube_files) {
             let Some(path) = path else { continue };
-            let image = self.image(path)?;
+            let image = self.image(path, recipe.flip)?;
             let (w, h) = (image[0].width, image[0].height);
             if w != h || side.is_some_and(|s| s != w) {
                 return Err(wrong(format!(
@@ -189,6 +203,47 @@ impl<'a> Loader<'a> {
         Ok(TexturePixels::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
     }
 
+    /// Creates a cube from a single image: a square for all faces, or a grid of squares.
+    fn cube_of_one(&mut self, recipe: &Recipe, path: &str) -> Result<TexturePixels, RenderError> {
+        let [rows, columns] = recipe.gridsize;
+        if recipe.gridsize == [1, 1] {
+            let face = self.image(path, recipe.flip)?;
+            // MuJoCo repeats a square image on all six sides
+            if face[0].width == face[0].height {
+                return Ok(TexturePixels::Cube([0; 6].map(|_| face.clone())));
+            }
+            return Err(RenderError::Texture {
+                name: recipe.name.clone(),
+                message: format!(
+                    "\"{path}\" has {} x {} pixels (after reduction); a cube needs a square image",
+                    face[0].width, face[0].height
+                ),
+            });
+        }
+        // squares are cut out before anything is reduced
+        let image = self.level(path, recipe.flip)?;
+        let side = image.width / columns;
+        if side == 0 || side * columns != image.width || side * rows != image.height {
+            return Err(RenderError::Texture {
+                name: recipe.name.clone(),
+                message: format!(
+                    "\"{path}\" has {} x {} pixels, which are not {rows} rows of {columns} squares, as gridsize says",
+                    image.width, image.height
+                ),
+            });
+        }
+        let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
+        let mut faces = [0; 6].map(|_| plain.clone());
+        for (square, face) in recipe.gridlayout.iter().enumerate() {
+            if let Some(face) = face {
+                faces[*face] = image
+                    .part(square / columns * side, square % columns * side, side)
+                    .face();
+            }
+        }
+        Ok(TexturePixels::Cube(faces))
+    }
+
     /// Counts pixels of a texture, before time and memory are spent on them; the error says that they are too many.
     fn take(&mut self, pixels: usize) -> Result<(), String> {
         let Some(left) = self.left.checked_sub(pixels) else {
@@ -202,19 +257,26 @@ impl<'a> Loader<'a> {
     }
 
     /// Decodes an image with its mip levels.
-    fn image(&mut self, path: &str) -> Result<Face, RenderError> {
-        if let Some(face) = self.faces.get(path) {
+    fn image(&mut self, path: &str, flip: [bool; 2]) -> Result<Face, RenderError> {
+        let key = (path.to_string(), flip);
+        if let Some(face) = self.faces.get(&key) {
             return Ok(face.clone());
         }
+        let face = self.level(path, flip)?.face();
+        self.faces.insert(key, face.clone());
+        Ok(face)
+    }
+
+    /// Decodes an image as it is, mirrored.
+    fn level(&mut self, path: &str, flip: [bool; 2]) -> Result<Level, RenderError> {
         let bytes = self.assets.read(path)?;
-        let level = decode(path, &bytes)?;
+        let mut level = decode(path, &bytes)?;
         self.take(level.pixels.len()).map_err(|message| RenderError::Image {
             path: path.to_string(),
             message,
         })?;
-        let face = level.face();
-        self.faces.insert(path.to_string(), face.clone());
-        Ok(face)
+        level.flip(flip);
+        Ok(level)
     }
 }
 
@@ -365,6 +427,53 @@ mod tests {
         let spec = crate::mjcf_loader::load_str(&text, "t.xml", &crate::assets::MemoryAssets::new());
         let recipe = spec.expect("it is valid").into_parts().0.textures.remove(0);
         Recipe { kind, ..recipe }
+    }
+
+    #[test]
+    fn parts_and_mirrored_images_are_those_of_the_image() {
+        let level = || Level::from_fn(3, 2, |row, column| [row as u8, column as u8, 0]);
+        let at = |level: &Level| level.pixels.iter().map(|p| 10 * p[0] + p[1]).collect::<Vec<u8>>();
+        assert_eq!(at(&level()), [0, 1, 2, 10, 11, 12]);
+        assert_eq!(at(&level().part(0, 1, 2)), [1, 2, 11, 12]);
+        let mut flipped = level();
+        flipped.flip([true, false]);
+        assert_eq!(at(&flipped), [2, 1, 0, 12, 11, 10]);
+        flipped.flip([true, true]);
+        assert_eq!(at(&flipped), [10, 11, 12, 0, 1, 2]);
+    }
+
+    #[test]
+    fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
+        // columns of 2 pixels, red by number
+        let image = image::RgbImage::from_fn(8, 6, |x, y| image::Rgb([(x / 2) as u8, (y / 2) as u8, 7]));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).expect("a picture");
+        let mut assets = crate::assets::MemoryAssets::new();
+        assets.insert("a.png", bytes.into_inner()).expect("a path");
+        let cube = |grid: &str| {
+            let text = format!("<mujoco><asset><texture file='a.png' rgb1='1 0 0' {grid}/></asset></mujoco>");
+            let spec = crate::mjcf_loader::load_str(&text, "t.xml", &assets).expect("valid");
+            let recipe = spec.into_parts().0.textures.remove(0);
+            match Loader::new(&assets).texture(&recipe) {
+                Ok(TexturePixels::Cube(faces)) => {
+                    Ok(faces.map(|face| (face[0].width, [0, 1, 2].map(|c| face[0].pixels[0][c]))))
+                }
+                Ok(_) => Err("not a cube".to_string()),
+                Err(e) => Err(e.to_string()),
+            }
+        };
+        let faces = cube("gridsize='3 4' gridlayout='.U..LFRB.D..'").expect("squares");
+        let expected = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
+        assert_eq!(faces, expected.map(|[column, row]| (2, [column, row, 7])));
+        let plain = cube("gridsize='3 4' gridlayout='.U..........'").expect("squares");
+        assert_eq!(plain[0], (2, [255, 0, 0]));
+        let error = cube("gridsize='2 4' gridlayout='RLUDFB..'").expect_err("no squares");
+        assert!(error.contains("which are not 2 rows of 4 squares"), "{error}");
+        assert!(
+            cube("")
+                .expect_err("not square")
+                .contains("a cube needs a square image")
+        );
     }
 
     #[test]

@@ -196,7 +196,10 @@ fn write_actuators(out: &mut impl Write, env: &Env) -> io::Result<()> {
         "", "name", "joint", "gear", "force range"
     )?;
     for i in 0..model.nu() {
-        let joint = &model.jnt_name[model.actuator_trnid[i]];
+        let joint = match model.actuator_joint(i) {
+            Some(joint) => &model.jnt_name[joint],
+            None => &model.tendon_name[model.actuator_trnid[i]],
+        };
         let [lo, hi] = model.actuator_forcerange[i];
         let (name, gear) = (&model.actuator_name[i], model.actuator_gear[i]);
         writeln!(out, "{i:>4} {name:34} {joint:34} {gear:>9} {lo:>8} {hi:>8}")?;

@@ -130,7 +130,8 @@ impl Sides {
         let all = distances(&self.model, &self.simulation).into_iter();
         let measured = all.filter_map(|distance| {
             let mut limit = distance.limit;
-            if distance.name.ends_with("invweight0") {
+            // springs and dampers may follow from inverse weights
+            if distance.name.ends_with("invweight0") || ["jnt_stiffness", "dof_damping"].contains(&distance.name) {
                 if self.condition > CONDITION {
                     return None;
                 }
@@ -154,7 +155,7 @@ impl Sides {
         state.copy_dynamic_from(start);
         // Where a step evaluates several states, what is computed shows at its start: later ones have the rounding errors of the
         // first, as much greater as the forces are stiff.
-        let evaluations = self.model.opt.integrator != IntegratorType::Euler;
+        let evaluations = self.model.opt.integrator == IntegratorType::Rk4;
         let mut computed = None;
         if evaluations {
             self.simulation.reset();

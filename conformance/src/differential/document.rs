@@ -95,8 +95,8 @@ impl Writer<'_> {
         root.children.push(world);
         for section in [
             Self::contact,
-            Self::equality,
             Self::tendon,
+            Self::equality,
             Self::actuator,
             Self::sensor,
         ] {
@@ -206,8 +206,9 @@ impl Writer<'_> {
 
     /// Says of each range whether it limits, where MuJoCo asks for that.
     fn decide_limits(&mut self, node: &mut Node) {
-        const RANGES: [(&str, &str); 5] = [
+        const RANGES: [(&str, &str); 6] = [
             ("range", "limited"),
+            ("actuatorfrcrange", "actuatorfrclimited"),
             ("ctrlrange", "ctrllimited"),
             ("inheritrange", "ctrllimited"),
             ("forcerange", "forcelimited"),
@@ -261,6 +262,7 @@ impl Writer<'_> {
             let body = self.body(0, false);
             world.children.push(body);
         }
+        self.frame(&mut world);
         world
     }
 
@@ -304,7 +306,24 @@ impl Writer<'_> {
             let child = self.body(depth + 1, moves);
             body.children.push(child);
         }
+        self.frame(&mut body);
         body
+    }
+
+    /// Puts some of what a body holds into a frame, at times into frames in each other.
+    fn frame(&mut self, body: &mut Node) {
+        if body.children.is_empty() || self.dice.chance(0.85) {
+            return;
+        }
+        let first = self.dice.rng.usize(..body.children.len());
+        let last = self.dice.rng.usize(first..body.children.len());
+        let mut frame = Node::new("frame");
+        self.class(&mut frame, "childclass");
+        self.language
+            .dress(&mut frame, "worldbody/body/frame", false, &mut self.dice);
+        frame.children = body.children.drain(first..=last).collect();
+        self.frame(&mut frame);
+        body.children.insert(first, frame);
     }
 
     /// Adds joints; returns whether there are any.

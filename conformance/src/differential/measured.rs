@@ -1,6 +1,7 @@
 //! Quantities of a step on both sides.
 
 use babybench::Model;
+use babybench::model::SolverType;
 use babybench::physics::State;
 
 use super::slack::Slack;
@@ -110,14 +111,20 @@ pub(super) fn measure(model: &Model, state: &State, theirs: &Simulation) -> Vec<
     let qacc = acceleration(state, theirs, limit).or(slack.accelerations(&state.qacc, theirs.qacc()));
     let (agrees, alike) = (qacc.agrees(), qacc.quantity == QACC);
     all.push(qacc);
+    let cg = model.opt.solver == SolverType::Cg;
     if agrees {
-        let [qvel, qpos] = advanced(state, theirs, limit);
+        let [mut qvel, qpos] = advanced(state, theirs, limit);
+        if cg {
+            // as far as accelerations agree, which conjugate gradients may leave far from the minimum
+            let apart = h * max_abs(&state.qacc, theirs.qacc());
+            qvel = qvel.or_apart(max_abs(&state.qvel, theirs.qvel()), 2.0 * apart);
+        }
         all.push(qvel.or(slack.velocities(&state.qvel, theirs.qvel(), h)));
         let moved = h * max_abs(&state.qvel, theirs.qvel());
         all.push(qpos.or_apart(max_abs(&state.qpos, theirs.qpos()), 2.0 * moved));
     }
     if agrees && alike {
-        all.push(sensors(state, theirs, 10.0 * limit));
+        all.push(sensors(state, theirs, if cg { 1000.0 * limit } else { 10.0 * limit }));
     }
     all
 }

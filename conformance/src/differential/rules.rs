@@ -27,7 +27,7 @@ pub const RIVALS: [&[&str]; 7] = [
     &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
     &["pos", "fromto"],
     &["diaginertia", "fullinertia"],
-    &["joint", "jointinparent"],
+    &["joint", "jointinparent", "tendon"],
     &["kv", "dampratio"],
     &["ctrlrange", "inheritrange"],
     &["actrange", "inheritrange"],
@@ -101,8 +101,11 @@ const OPTION: &[Rule] = &[
     ("density", Drawn(0.08, |d| d.log(0.5, 2000.0))),
     ("viscosity", Drawn(0.08, |d| d.log(1e-3, 2.0))),
     ("wind", Drawn(0.08, |d| d.reals(3, 3.0))),
-    ("noslip_iterations", Nothing),
-    ("noslip_tolerance", Nothing),
+    (
+        "noslip_iterations",
+        Drawn(0.12, |d| d.pick(&["1", "2", "3", "5", "20"]).to_owned()),
+    ),
+    ("noslip_tolerance", Drawn(0.12, |d| d.log(1e-12, 1e-4))),
     ("apirate", Nothing),
     ("magnetic", Nothing),
     ("o_margin", Nothing),
@@ -136,9 +139,9 @@ const FLAG: &[Rule] = &[
     ("energy", Nothing),
     ("fwdinv", Nothing),
     ("invdiscrete", Nothing),
-    ("nativeccd", Nothing),
+    ("nativeccd", Word(0.1)),
     ("override", Nothing),
-    ("multiccd", Nothing),
+    ("multiccd", Word(0.1)),
     ("island", Nothing),
 ];
 
@@ -159,6 +162,12 @@ const JOINT: &[Rule] = &[
     ("limited", Placed(&[])),
     ("range", Drawn(0.4, Dice::limits)),
     ("margin", Drawn(0.2, |d| d.log(0.001, 0.3))),
+    ("actuatorfrclimited", Placed(&[])),
+    ("actuatorfrcrange", Drawn(0.15, |d| d.range(2.0))),
+    (
+        "springdamper",
+        Drawn(0.08, |d| format!("{} {}", d.log(0.01, 1.0), d.log(0.1, 3.0))),
+    ),
     ("stiffness", Drawn(0.3, |d| d.log(0.01, 50.0))),
     ("damping", Drawn(0.3, |d| d.log(0.001, 5.0))),
     ("armature", Drawn(0.3, |d| d.log(0.0001, 0.5))),
@@ -247,6 +256,18 @@ const JOINT_EQUALITY: &[Rule] = &[
     ),
 ];
 
+const TENDON_EQUALITY: &[Rule] = &[
+    ("tendon1", Placed(&["third"])),
+    ("tendon2", Placed(&["third"])),
+    (
+        "polycoef",
+        Drawn(0.7, |d| {
+            let n = d.rng.usize(1..=5);
+            d.reals(n, 1.0)
+        }),
+    ),
+];
+
 const CONNECT: &[Rule] = &[
     ("body1", Placed(&["ball"])),
     ("body2", Placed(&["ball"])),
@@ -277,6 +298,9 @@ const TENDON: &[Rule] = &[
             numbers(&ends[..n])
         }),
     ),
+    ("frictionloss", Drawn(0.3, |d| d.log(0.001, 5.0))),
+    ("solreffriction", Drawn(0.15, Dice::solref)),
+    ("solimpfriction", Drawn(0.15, Dice::solimp)),
     ("stiffness", Drawn(0.5, |d| d.log(0.1, 50.0))),
     ("damping", Drawn(0.4, |d| d.log(0.01, 5.0))),
     ("user", Nothing),
@@ -295,6 +319,7 @@ const ACTUATOR: &[Rule] = &[
     ("name", Placed(&[])),
     ("joint", Placed(&["slider", "lower"])),
     ("jointinparent", Placed(&["slider", "lower"])),
+    ("tendon", Placed(&["pull", "loose"])),
     ("forcelimited", Placed(&[])),
     ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
     ("forcerange", Drawn(0.4, |d| d.range(2.0))),
@@ -416,6 +441,10 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
             FRAME,
         ],
     ),
+    (
+        "worldbody/body/frame",
+        &[&[("name", Nothing), ("childclass", Placed(&["stiff"]))], FRAME],
+    ),
     ("worldbody/body/inertial", &[INERTIAL, FRAME]),
     ("worldbody/body/joint", &[CLASS, JOINT]),
     (
@@ -429,6 +458,7 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("contact/exclude", &[EXCLUDE]),
     ("equality", &[]),
     ("equality/joint", &[CLASS, JOINT_EQUALITY, EQUALITY]),
+    ("equality/tendon", &[CLASS, TENDON_EQUALITY, EQUALITY]),
     ("equality/connect", &[CLASS, CONNECT, EQUALITY]),
     ("equality/weld", &[CLASS, WELD, EQUALITY]),
     ("tendon", &[]),

@@ -395,7 +395,7 @@ impl Simulation {
             .for_each(|(to, &from)| *to = u8::from(from));
         let data = self.model_mut(field(MODEL, "eq_data"));
         for (row, (kind, &offset)) in data.chunks_exact_mut(11).zip(model.eq_kind.iter().zip(&p.eq_offset)) {
-            if matches!(kind, EqualityKind::Joint { .. }) {
+            if matches!(kind, EqualityKind::Joint { .. } | EqualityKind::Tendon { .. }) {
                 row[0] = offset;
             }
         }

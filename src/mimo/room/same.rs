@@ -105,7 +105,8 @@ fn in_order(model: &Model, usual: &Model) -> Option<Difference> {
     for (i, j) in pairs(&model.jnt_bodyid, &usual.jnt_bodyid) {
         let part = || format!("the joint {:?}", usual.jnt_name[j]);
         compare!(part(), model[i], usual[j]:
-            jnt_name jnt_type jnt_pos jnt_axis jnt_limited jnt_range jnt_margin jnt_stiffness jnt_solref jnt_solimp);
+            jnt_name jnt_type jnt_pos jnt_axis jnt_limited jnt_range jnt_margin jnt_stiffness jnt_solref jnt_solimp
+            jnt_actfrclimited jnt_actfrcrange);
         compare!(part(), model[model.jnt_dofadr[i]], usual[usual.jnt_dofadr[j]]:
             dof_armature dof_damping dof_frictionloss dof_solref dof_solimp);
         compare!(part(), model[model.jnt_qposadr[i]], usual[usual.jnt_qposadr[j]]: qpos0 qpos_spring);
@@ -141,7 +142,7 @@ fn by_name(model: &Model, usual: &Model) -> Option<Difference> {
             return missing(part);
         };
         compare!(part, model[i], usual[j]:
-            actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange actuator_gainprm
+            actuator_trntype actuator_gear actuator_ctrllimited actuator_ctrlrange actuator_forcelimited actuator_forcerange actuator_gainprm
             actuator_biastype actuator_biasprm);
         // a document may ask for room for more numbers
         let (found, expected) = (&model.actuator_user[i], &usual.actuator_user[j]);
@@ -169,7 +170,7 @@ fn by_name(model: &Model, usual: &Model) -> Option<Difference> {
             return missing(part);
         };
         compare!(part, model[i], usual[j]:
-            tendon_limited tendon_range tendon_margin tendon_stiffness tendon_damping tendon_solref_lim tendon_solimp_lim);
+            tendon_limited tendon_range tendon_margin tendon_frictionloss tendon_stiffness tendon_damping tendon_solref_lim tendon_solimp_lim);
     }
     None
 }

@@ -4,12 +4,12 @@ use super::context::{Context, Ids, User};
 use crate::mjcf_loader::actuator::Actuator;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::model::{Arrays, BiasType, DynType, GainType};
+use crate::model::{Arrays, BiasType, DynType, GainType, TrnType};
 
 const FILTERED: &str =
     "inheritrange is for actuators whose control or integral is a position, and this one has a filter";
 const IN_PARENT: &str = "inheritrange needs the attribute joint, not jointinparent";
-const WITHOUT_RANGE: &str = "inheritrange is used, but the joint has no range";
+const WITHOUT_RANGE: &str = "inheritrange is used, but the joint or the tendon has no range";
 const NO_ACTIVATION: &str = "actrange applies, but the actuator has no activation: set dyntype, or actlimited to false";
 const STATELESS: &str = "actdim must be 0 or left out where dyntype is none";
 const STATEFUL: &str = "actdim must be 1 or left out: each activation is one number";
@@ -25,11 +25,16 @@ pub(super) fn compile_actuators(
     let users = User::new("nuser_actuator", document.size.nuser_actuator, users);
     for actuator in &document.actuators {
         let user = users.of(context, actuator.at, &actuator.user)?;
-        let joint = transmission(context, actuator, ids, arrays)?;
-        let (ctrlrange, actrange) = ranges(context, actuator, arrays.jnt_range[joint])?;
+        let (trntype, trnid) = transmission(context, actuator, ids, arrays)?;
+        let range = match trntype {
+            TrnType::Tendon => arrays.tendon_range[trnid],
+            TrnType::Joint | TrnType::JointInParent => arrays.jnt_range[trnid],
+        };
+        let (ctrlrange, actrange) = ranges(context, actuator, range)?;
         let limited = |attribute, limited, range| context.limited(actuator.at, attribute, limited, range);
         arrays.actuator_name.push(actuator.name.clone());
-        arrays.actuator_trnid.push(joint);
+        arrays.actuator_trntype.push(trntype);
+        arrays.actuator_trnid.push(trnid);
         arrays.actuator_gear.push(actuator.gear);
         arrays
             .actuator_ctrllimited
@@ -51,28 +56,38 @@ pub(super) fn compile_actuators(
     Ok(())
 }
 
-/// Returns the joint that an actuator drives.
-fn transmission(context: &Context, actuator: &Actuator, ids: &Ids, arrays: &Arrays) -> Result<usize, LoadError> {
-    let (attribute, name) = match (&actuator.joint, &actuator.jointinparent) {
-        (Some(name), _) => ("joint", name),
-        (None, Some(name)) => ("jointinparent", name),
-        (None, None) => return Err(context.error(actuator.at, ErrorKind::MissingAttribute("joint"))),
-    };
-    ids.scalar_joint(context, arrays, actuator.at, attribute, name)
+/// Returns what an actuator acts on: kind and id.
+fn transmission(
+    context: &Context,
+    actuator: &Actuator,
+    ids: &Ids,
+    arrays: &Arrays,
+) -> Result<(TrnType, usize), LoadError> {
+    let at = actuator.at;
+    let joint = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
+    if let Some(name) = &actuator.joint {
+        Ok((TrnType::Joint, joint("joint", name)?))
+    } else if let Some(name) = &actuator.jointinparent {
+        Ok((TrnType::JointInParent, joint("jointinparent", name)?))
+    } else if let Some(name) = &actuator.tendon {
+        Ok((TrnType::Tendon, ids.tendon.find(context.tree, at, "tendon", name)?))
+    } else {
+        Err(context.error(at, ErrorKind::MissingAttribute("joint")))
+    }
 }
 
-/// Returns the ranges of control and activation: as given, or in the proportion `inheritrange` to that of the joint.
-fn ranges(context: &Context, actuator: &Actuator, joint: [f64; 2]) -> Result<([f64; 2], [f64; 2]), LoadError> {
+/// Returns the ranges of control and activation: as given, or in the proportion `inheritrange` to that of what it acts on.
+fn ranges(context: &Context, actuator: &Actuator, range: [f64; 2]) -> Result<([f64; 2], [f64; 2]), LoadError> {
     let (law, given) = (&actuator.law, (actuator.ctrlrange, actuator.activation.range));
     let servo =
         law.gaintype == GainType::Fixed && law.biastype == BiasType::Affine && law.gainprm[0] == -law.biasprm[1];
     if !servo || actuator.inheritrange <= 0.0 {
         return Ok(given);
     }
-    let [low, high] = joint;
+    let [low, high] = range;
     let wrong = match law.dyntype {
         DynType::Filter => Some(FILTERED),
-        _ if actuator.joint.is_none() => Some(IN_PARENT),
+        _ if actuator.jointinparent.is_some() => Some(IN_PARENT),
         _ if low == high => Some(WITHOUT_RANGE),
         _ => None,
     };

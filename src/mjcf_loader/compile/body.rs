@@ -123,12 +123,14 @@ fn frame(context: &Context, body: &Body, id: usize, arrays: &mut Arrays) -> Resu
     arrays.body_name.push(body.name.clone());
     arrays.body_parentid.push(body.parent);
     arrays.body_rootid.push(root);
-    arrays.body_pos.push(body.frame.pos);
-    arrays.body_quat.push(quat_of(context, body.at, &body.frame)?);
+    let quat = quat_of(context, body.at, &body.frame)?;
+    let (pos, quat) = context.placed(body.within, body.frame.pos, quat);
+    arrays.body_pos.push(pos);
+    arrays.body_quat.push(quat);
     Ok(())
 }
 
-fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
+pub(super) fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
     orientation(&frame.orientation, context.compiler).map_err(|message| context.invalid(at, message))
 }
 
@@ -158,6 +160,7 @@ fn compile_joint(
         if normalize(&mut axis) < EPS {
             return Err(context.invalid(joint.at, "the axis is too short"));
         }
+        (axis, pos) = (context.direction(joint.within, axis), context.point(joint.within, pos));
         limited = context.limited(joint.at, "range", joint.limited, joint.range)?;
     }
     arrays.jnt_name.push(joint.name.clone());
@@ -173,6 +176,21 @@ fn compile_joint(
         .jnt_range
         .push(if limited { joint.range.map(angle) } else { joint.range });
     arrays.jnt_margin.push(joint.margin);
+    // the force on a free joint is not limited, whatever the attributes say
+    let actfrclimited = joint.kind != JointType::Free
+        && context.limited(
+            joint.at,
+            "actuatorfrcrange",
+            joint.actuatorfrclimited,
+            joint.actuatorfrcrange,
+        )?;
+    arrays.jnt_actfrclimited.push(actfrclimited);
+    arrays.jnt_actfrcrange.push(joint.actuatorfrcrange);
+    let spring = joint.springdamper;
+    if spring != [0.0; 2] && spring.contains(&0.0) {
+        return Err(context.invalid(joint.at, "both numbers of springdamper must be positive"));
+    }
+    arrays.jnt_springdamper.push(spring);
     arrays.jnt_stiffness.push(joint.stiffness);
     arrays.jnt_solref.push(joint.solref_limit);
     arrays.jnt_solimp.push(joint.solimp_limit);
@@ -260,6 +278,7 @@ fn compile_geom(
     arrays: &mut Arrays,
 ) -> Result<Solid, LoadError> {
     let (pos, quat, size) = place(context, geom.at, geom.kind, geom.size, &geom.frame, geom.fromto)?;
+    let (pos, quat) = context.placed(geom.within, pos, quat);
     check_size(context, geom.at, geom.kind, &size)?;
     if !matches!(geom.condim, 1 | 3 | 4 | 6) {
         return Err(context.invalid(geom.at, "condim must be 1, 3, 4 or 6"));
@@ -310,10 +329,10 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays:
         Tri::Auto => body.inertial.is_none(),
     };
     let invalid = |message| context.invalid(body.at, message);
-    // Without mass the inertial frame repeats the frame of the body in its parent, as in MuJoCo.
+    // Without mass the inertial frame repeats the frame of the body as it is written, as in MuJoCo.
     let mut solid = Solid {
-        pos: arrays.body_pos[id],
-        quat: arrays.body_quat[id],
+        pos: body.frame.pos,
+        quat: quat_of(context, body.at, &body.frame)?,
         mass: 0.0,
         inertia: [0.0; 3],
     };
@@ -356,6 +375,7 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays:
 
 fn compile_site(context: &Context, site: &Site, body: usize, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
     let (pos, quat, size) = place(context, site.at, site.kind, site.size, &site.frame, site.fromto)?;
+    let (pos, quat) = context.placed(site.within, pos, quat);
     check_size(context, site.at, site.kind, &size)?;
     let find = |name: &String| ids.material.find(context.tree, site.at, "material", name);
     arrays.site_name.push(site.name.clone());
@@ -401,8 +421,10 @@ fn compile_camera(
         .cam_targetbodyid
         .push(camera.target.as_ref().map(find).transpose()?);
     arrays.cam_bodyid.push(body);
-    arrays.cam_pos.push(camera.frame.pos);
-    arrays.cam_quat.push(quat_of(context, camera.at, &camera.frame)?);
+    let quat = quat_of(context, camera.at, &camera.frame)?;
+    let (pos, quat) = context.placed(camera.within, camera.frame.pos, quat);
+    arrays.cam_pos.push(pos);
+    arrays.cam_quat.push(quat);
     arrays.cam_fovy.push(camera.fovy);
     Ok(())
 }
@@ -418,8 +440,8 @@ fn compile_light(context: &Context, light: &Light, body: usize, ids: &Ids) -> Re
         bodyid: body,
         directional: light.directional,
         castshadow: light.castshadow,
-        pos: light.pos,
-        dir,
+        pos: context.point(light.within, light.pos),
+        dir: context.direction(light.within, dir),
         mode: light.mode,
         targetbodyid: light.target.as_ref().map(find).transpose()?,
         pos0: [0.0; 3],

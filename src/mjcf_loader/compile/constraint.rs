@@ -4,7 +4,9 @@ use super::context::{Context, Ids, User};
 use crate::math::quat_normalize;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::relation::{ConnectEquality, Equality, Held, JointEquality, Tendon, WeldEquality, Wrap};
+use crate::mjcf_loader::relation::{
+    ConnectEquality, Equality, Held, JointEquality, Tendon, TendonEquality, WeldEquality, Wrap,
+};
 use crate::model::{Arrays, EqualityKind};
 
 /// Compiles explicit pairs and excludes, both sorted by the pair of bodies.
@@ -105,6 +107,25 @@ pub(super) fn compile_equality(
                 polycoef: *polycoef,
             }
         }
+        Held::Tendon(TendonEquality {
+            tendon1,
+            tendon2,
+            polycoef,
+        }) => {
+            let find = |attribute, name: &String| ids.tendon.find(context.tree, at, attribute, name);
+            let (tendon1, tendon2) = (
+                find("tendon1", tendon1)?,
+                tendon2.as_ref().map(|name| find("tendon2", name)).transpose()?,
+            );
+            if tendon2 == Some(tendon1) {
+                return Err(context.invalid(at, "a tendon cannot follow itself"));
+            }
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef: *polycoef,
+            }
+        }
         Held::Connect(ConnectEquality { body1, body2, anchor }) => {
             let [body1, body2] = two_bodies(context, at, body1, body2.as_ref(), ids)?;
             // where it is in body 2 follows from the poses at qpos0
@@ -184,6 +205,9 @@ pub(super) fn compile_tendon(
         return Err(context.invalid(tendon.at, "springlength must be the shorter and then the longer length"));
     }
     arrays.tendon_lengthspring.push([shortest, longest]);
+    arrays.tendon_frictionloss.push(tendon.frictionloss);
+    arrays.tendon_solref_fri.push(tendon.solref_friction);
+    arrays.tendon_solimp_fri.push(tendon.solimp_friction);
     arrays.tendon_stiffness.push(tendon.stiffness);
     arrays.tendon_damping.push(tendon.damping);
     Ok(())

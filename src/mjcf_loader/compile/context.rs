@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate};
 use crate::mjcf_loader::document::{Compiler, Document, Tri};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::surface::Texture;
@@ -55,6 +56,8 @@ impl Names {
 pub(super) struct Context<'a> {
     pub tree: &'a Tree,
     pub compiler: &'a Compiler,
+    /// The poses of the frames of the document in their bodies.
+    pub frames: Vec<(Vec3, Quat)>,
 }
 
 /// The length that user data have on all elements of a kind.
@@ -84,6 +87,30 @@ impl User {
 }
 
 impl Context<'_> {
+    /// Returns the pose in its body of what stands `within` a frame.
+    pub fn placed(&self, within: Option<usize>, pos: Vec3, quat: Quat) -> (Vec3, Quat) {
+        match within {
+            None => (pos, quat),
+            Some(frame) => (self.point(within, pos), quat_mul(self.frames[frame].1, quat)),
+        }
+    }
+
+    /// Returns where in its body a point is that stands `within` a frame.
+    pub fn point(&self, within: Option<usize>, point: Vec3) -> Vec3 {
+        match within {
+            None => point,
+            Some(frame) => add(self.frames[frame].0, self.direction(within, point)),
+        }
+    }
+
+    /// Returns the direction in its body of one that stands `within` a frame.
+    pub fn direction(&self, within: Option<usize>, direction: Vec3) -> Vec3 {
+        match within {
+            None => direction,
+            Some(frame) => quat_rotate(self.frames[frame].1, direction),
+        }
+    }
+
     pub fn error(&self, at: usize, kind: impl Into<ErrorKind>) -> LoadError {
         self.tree.error(at, kind)
     }
@@ -131,6 +158,9 @@ impl Context<'_> {
                 match attribute {
                     "ctrlrange" => "a ctrlrange is given, but autolimits is off: set ctrllimited to true or false",
                     "forcerange" => "a forcerange is given, but autolimits is off: set forcelimited to true or false",
+                    "actuatorfrcrange" => {
+                        "an actuatorfrcrange is given, but autolimits is off: set actuatorfrclimited to true or false"
+                    }
                     "actrange" => "an actrange is given, but autolimits is off: set actlimited to true or false",
                     _ => "a range is given, but autolimits is off: set limited to true or false",
                 },
@@ -202,6 +232,7 @@ fn check_unreferenced(tree: &Tree, document: &Document) -> Result<(), LoadError>
     Names::new(tree, "exclude", document.excludes.iter().map(|e| (e.at, &e.name)))?;
     Names::new(tree, "numeric", document.numerics.iter().map(|n| (n.at, &n.name)))?;
     Names::new(tree, "text", document.texts.iter().map(|t| (t.at, &t.name)))?;
+    Names::new(tree, "frame", document.frames.iter().map(|f| (f.at, &f.name)))?;
     Names::new(tree, "key", document.keys.iter().map(|k| (k.at, &k.name)))?;
     Ok(())
 }

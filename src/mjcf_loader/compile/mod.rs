@@ -14,10 +14,10 @@ pub(crate) use geometry::bounding_radius;
 pub(super) use geometry::volume;
 
 use super::document::Document;
-use super::error::{ErrorKind, LoadError};
+use super::error::LoadError;
 use super::xml::Tree;
 use crate::assets::AssetSource;
-use crate::model::{Arrays, ConeType, SameFrame, SolverType};
+use crate::model::{Arrays, SameFrame};
 
 /// Compiles the document into everything but what needs dynamics. Images are looked up in `source`, relative to `dir`, and
 /// not decoded.
@@ -29,15 +29,17 @@ pub(super) fn compile(
 ) -> Result<Arrays, LoadError> {
     let (name, opt) = (document.model.clone(), document.option.clone());
     let (vis, stat) = (document.visual.clone(), document.statistic.clone());
-    if opt.solver == SolverType::Pgs && opt.cone == ConeType::Elliptic {
-        let reason = "solver=\"PGS\" has pyramidal cones only; use solver=\"Newton\", which finds the same minimum";
-        return Err(tree.error(0, ErrorKind::Invalid(reason)));
-    }
     let mut arrays = Arrays::without_elements(name, opt, vis, stat);
-    let context = Context {
+    let mut context = Context {
         tree,
         compiler: &document.compiler,
+        frames: Vec::with_capacity(document.frames.len()),
     };
+    for frame in &document.frames {
+        let (pos, quat) = (frame.frame.pos, body::quat_of(&context, frame.at, &frame.frame)?);
+        let pose = context.placed(frame.within, pos, quat);
+        context.frames.push(pose);
+    }
     for texture in &document.textures {
         let texture = surface::compile_texture(&context, texture, source, dir)?;
         arrays.textures.push(texture);

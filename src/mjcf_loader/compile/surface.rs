@@ -31,6 +31,7 @@ pub(super) fn compile_texture(
     } else if texture.width == 0 || flat && texture.height == 0 {
         return invalid("a builtin texture needs a width, and if it is flat a height");
     }
+    let (gridsize, gridlayout) = grid(context, texture)?;
     Ok(model::Texture {
         name: texture_name(context, texture)?,
         kind: texture.kind,
@@ -47,8 +48,42 @@ pub(super) fn compile_texture(
             texture.height
         },
         file,
+        gridsize,
+        gridlayout,
+        flip: [texture.hflip, texture.vflip],
         cube_files,
     })
+}
+
+/// The most squares of a grid.
+const SQUARES: usize = 12;
+
+/// Returns the rows and columns of the grid of a cube's image, and the face of each square.
+fn grid(context: &Context, texture: &surface::Texture) -> Result<([usize; 2], Vec<Option<usize>>), LoadError> {
+    let invalid = |message| context.invalid(texture.at, message);
+    let [rows, columns] = texture.gridsize;
+    if rows.fract() != 0.0 || columns.fract() != 0.0 || rows * columns > SQUARES as f64 {
+        return Err(invalid(
+            "gridsize must be two whole numbers, of no more than 12 squares in all",
+        ));
+    }
+    let size = [rows as usize, columns as usize];
+    let Some(layout) = &texture.gridlayout else {
+        return Ok((size, Vec::new()));
+    };
+    if layout.chars().count() != size[0] * size[1] {
+        return Err(invalid(
+            "gridlayout must have a letter for each square of gridsize, row by row",
+        ));
+    }
+    let face = |letter: char| match letter {
+        '.' => Ok(None),
+        _ => match "RLUDFB".find(letter) {
+            Some(face) => Ok(Some(face)),
+            None => Err(invalid("gridlayout may have the letters R, L, U, D, F and B, and dots")),
+        },
+    };
+    Ok((size, layout.chars().map(face).collect::<Result<_, _>>()?))
 }
 
 /// Returns the path of an image in the source, which must have it.

@@ -138,11 +138,7 @@ impl Rows<'_> {
     pub(super) fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
         let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.least_timeconst());
         let r = ((1.0 - i.imp) / i.imp * spec.diag).max(MINVAL);
-        let k = if self.block_mut().kind == ConstraintType::FrictionDof {
-            0.0
-        } else {
-            i.k
-        };
+        let k = if self.block_mut().kind.is_friction() { 0.0 } else { i.k };
         self.push(pos, margin, spec.diag, r, -k * i.imp * (pos - margin), i.b);
         i.b
     }

@@ -9,8 +9,10 @@
 
 mod append;
 mod cone;
+mod conjugate;
 mod contact_force;
 mod dual;
+mod friction;
 mod hessian;
 mod impedance;
 mod island;
@@ -24,7 +26,7 @@ mod view;
 mod weld;
 
 pub use contact_force::contact_forces;
-pub use dual::GaussSeidel;
+pub use dual::Dual;
 pub use impedance::impedance;
 pub use newton::Newton;
 pub use rows::RowBuilder;
@@ -44,6 +46,8 @@ pub enum ConstraintType {
     Equality,
     /// Dry friction of a degree of freedom: the force stays within plus and minus `frictionloss`.
     FrictionDof,
+    /// Dry friction of a tendon: the force stays within plus and minus `frictionloss`.
+    FrictionTendon,
     /// A limit of a joint: the force is not negative.
     LimitJoint,
     /// A limit of a tendon: the force is not negative.
@@ -54,6 +58,13 @@ pub enum ConstraintType {
     ContactPyramidal,
     /// A contact with an elliptic friction cone.
     ContactElliptic,
+}
+
+impl ConstraintType {
+    /// Tells whether it is dry friction, which has no position.
+    pub(crate) fn is_friction(self) -> bool {
+        matches!(self, Self::FrictionDof | Self::FrictionTendon)
+    }
 }
 
 /// Most rows of a block: the edges of a pyramid with six dimensions.

@@ -1,14 +1,16 @@
-//! Newton's method on the accelerations, island by island.
+//! Newton's method on the accelerations, island by island; conjugate gradients in the same way.
 
 use std::ops::Range;
 
 use crate::math::MINVAL;
-use crate::model::Model;
+use crate::model::{Model, SolverType};
 use crate::physics::constraint::cone::Cone;
+use crate::physics::constraint::conjugate::Conjugate;
 use crate::physics::constraint::hessian::Hessian;
 use crate::physics::constraint::island::Island;
 use crate::physics::constraint::line_search::LineSearch;
 use crate::physics::constraint::{Block, ConstraintType, Efc};
+use crate::physics::dynamics::Articulated;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 use crate::physics::vectorize::vectorize;
@@ -18,6 +20,7 @@ use crate::physics::vectorize::vectorize;
 pub struct Newton {
     island: Island,
     hessian: Hessian,
+    conjugate: Conjugate,
     /// Union-find over trees.
     parent: Vec<usize>,
     /// The next tree of the same island, ascending; the number of trees after the last.
@@ -39,6 +42,7 @@ impl Newton {
         Self {
             island: Island::with_capacity(topology.tiles.tiles(), nv, contacts),
             hessian: Hessian::with_capacity(nv, contacts),
+            conjugate: Conjugate::with_capacity(nv),
             parent: Vec::with_capacity(nv),
             next: Vec::with_capacity(nv),
             trees: Vec::with_capacity(nv),
@@ -50,9 +54,9 @@ impl Newton {
 
     /// Computes `qacc, qfrc_constraint`, the row forces and the contact forces. Starts from `qacc_warmstart` or
     /// `qacc_smooth`, whichever costs less, and stops when the improvement or the gradient, scaled by the mean inertia,
-    /// falls below `opt.tolerance`.
+    /// falls below `opt.tolerance`. `bodies` must be up to date.
     #[inline(always)]
-    pub fn solve(&mut self, model: &Model, topology: &Topology, s: &mut State) {
+    pub fn solve(&mut self, model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
         s.qacc.copy_from_slice(&s.qacc_smooth);
         s.qfrc_constraint.fill(0.0);
         s.solver_iterations = 0;
@@ -75,7 +79,7 @@ impl Newton {
                     self.trees.push(tree);
                     tree = self.next[tree];
                 }
-                self.solve_island(model, topology, blocks, &mut efc, s);
+                self.solve_island(model, topology, bodies, blocks, &mut efc, s);
             }
             s.efc = efc;
         }
@@ -147,8 +151,17 @@ impl Newton {
     }
 
     #[inline(always)]
-    fn solve_island(&mut self, model: &Model, topology: &Topology, blocks: Range<usize>, efc: &mut Efc, s: &mut State) {
+    fn solve_island(
+        &mut self,
+        model: &Model,
+        topology: &Topology,
+        bodies: &mut Articulated,
+        blocks: Range<usize>,
+        efc: &mut Efc,
+        s: &mut State,
+    ) {
         let (island, hessian) = (&mut self.island, &mut self.hessian);
+        let newton = model.opt.solver != SolverType::Cg;
         let (trees, blocks) = (&self.trees[..], &self.blocks[blocks]);
         vectorize(
             #[inline(always)]
@@ -167,15 +180,26 @@ impl Newton {
             island.store(topology, efc, s);
             return;
         }
-        hessian.analyse(island);
-        for _ in 0..model.opt.iterations {
-            hessian.refresh(island, efc);
-            hessian.descend(&island.gradient, &mut island.search);
+        if newton {
+            hessian.analyse(island);
+        }
+        for iteration in 0..model.opt.iterations {
+            if newton {
+                hessian.refresh(island, efc);
+                hessian.descend(&island.gradient, &mut island.search);
+            } else {
+                let first = iteration == 0;
+                self.conjugate
+                    .descend(model, topology, bodies, s, (&mut *island, first));
+            }
             island.follow_search(efc);
             let along = island.along_search();
-            // H search is minus the gradient: the curvature is minus the slope
-            // a slope that is not negative comes from rounding: there is nothing left to descend
-            if along.length < MINVAL || along.slope >= 0.0 || -along.slope < MINVAL {
+            if along.length < MINVAL {
+                break;
+            }
+            // a slope that is not negative comes from rounding: there is nothing left to descend. Conjugate gradients may lead upwards
+            // where a search was cut off, and MuJoCo then goes back along them.
+            if newton && (along.slope >= 0.0 || -along.slope < MINVAL) {
                 break;
             }
             for (c, _) in &mut island.cones {
@@ -236,10 +260,13 @@ fn push_alone(b: &Block, efc: &mut Efc) {
 /// need as many.
 const FEW_ITERATIONS: usize = 20;
 
-/// Tells whether a model may stop the solver before it converges. Then all trees are solved as one island, those without
-/// constraints too, as they start from the last acceleration, and searched as MuJoCo does it: so it stops where MuJoCo stops.
+/// Tells whether a model may stop the solver before it converges, as conjugate gradients do. Then all trees are solved as one island,
+/// those without constraints too, as they start from the last acceleration, and searched as MuJoCo does it: so it stops where MuJoCo
+/// stops.
 fn cut_off(model: &Model) -> bool {
-    model.opt.iterations < FEW_ITERATIONS || model.opt.ls_iterations < FEW_ITERATIONS
+    model.opt.solver == SolverType::Cg
+        || model.opt.iterations < FEW_ITERATIONS
+        || model.opt.ls_iterations < FEW_ITERATIONS
 }
 
 /// Finds the root of a tree's island, with path halving.

@@ -5,7 +5,7 @@ use crate::model::{ConeType, EqualityKind, Model};
 use crate::physics::constraint::append::{Rows, Spec};
 use crate::physics::constraint::impedance::is_solref;
 use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS, connected_points, impedance, weld_points};
-use crate::physics::dynamics::tendon_length;
+use crate::physics::dynamics::{tendon_length, tendon_velocity};
 use crate::physics::state::{Contact, State};
 use crate::physics::tiles::{Lanes, total};
 use crate::physics::topology::Topology;
@@ -42,6 +42,20 @@ impl RowBuilder {
                 rows.row(0.0, 0.0, 0.0, spec);
             }
         }
+        for t in 0..model.ntendon() {
+            let loss = model.tendon_frictionloss[t];
+            if loss > 0.0 {
+                let spec = Spec {
+                    solref: model.tendon_solref_fri[t],
+                    solimp: model.tendon_solimp_fri[t],
+                    diag: model.tendon_invweight0[t],
+                };
+                if tendons(&mut rows, (ConstraintType::FrictionTendon, t), &[(t, 1.0)]) {
+                    rows.block_mut().frictionloss = loss;
+                    rows.row(0.0, 0.0, 0.0, spec);
+                }
+            }
+        }
         Self {
             damping: friction.vel.clone(),
             friction,
@@ -70,7 +84,7 @@ impl RowBuilder {
             equalities(&mut rows, s);
         }
         if flags.frictionloss {
-            self.add_friction(rows.efc, s);
+            self.add_friction(model, rows.efc, s);
         }
         if flags.limit {
             joint_limits(&mut rows, s);
@@ -85,7 +99,7 @@ impl RowBuilder {
 
     /// Appends dry friction.
     #[inline(always)]
-    fn add_friction(&self, efc: &mut Efc, s: &State) {
+    fn add_friction(&self, model: &Model, efc: &mut Efc, s: &State) {
         let f = &self.friction;
         let (row, col, jac) = (efc.pos.len(), efc.cols.len(), efc.jac.len());
         efc.blocks.extend(f.blocks.iter().map(|b| Block {
@@ -106,7 +120,10 @@ impl RowBuilder {
             to.extend_from_slice(from);
         }
         for (b, damping) in f.blocks.iter().zip(&self.damping) {
-            let v = s.qvel[b.id];
+            let v = match b.kind {
+                ConstraintType::FrictionTendon => tendon_velocity(model, s, b.id),
+                _ => s.qvel[b.id],
+            };
             efc.vel.push(v);
             efc.aref.push(0.0 - damping * v);
         }
@@ -118,7 +135,7 @@ impl RowBuilder {
         efc.force.resize(efc.pos.len(), 0.0);
         for k in 0..efc.blocks.len() {
             let b = &efc.blocks[k];
-            if b.kind == ConstraintType::FrictionDof {
+            if b.kind.is_friction() {
                 continue;
             }
             let (row, dim, dof) = (b.row, b.dim, b.dof);
@@ -161,6 +178,11 @@ fn equalities(rows: &mut Rows, s: &State) {
                 joint2,
                 polycoef,
             } => joint_equality(rows, s, id, (joint1, joint2), polycoef),
+            EqualityKind::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => tendon_equality(rows, s, id, (tendon1, tendon2), polycoef),
             EqualityKind::Connect { body1, body2, .. } => connect_equality(rows, s, id, [body1, body2]),
             EqualityKind::Weld { body1, body2, .. } => weld_equality(rows, s, id, [body1, body2]),
         }
@@ -187,14 +209,74 @@ fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<
     };
     let d2 = model.jnt_dofadr[joint2];
     let x = displacement(joint2);
-    pos -= x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
-    let slope = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * 4.0 * c[4]));
+    let (value, slope) = polynomial(&c, x);
+    pos -= value;
     spec.diag += s.params.dof_invweight0[d2];
     rows.block(ConstraintType::Equality, id, 1);
     let mut entries = [(d1, 1.0), (d2, -slope)];
     entries.sort_unstable_by_key(|e| e.0);
     entries.into_iter().for_each(|(d, v)| rows.entry(d, v));
     rows.row(pos, 0.0, pos, spec);
+}
+
+/// Returns a polynomial without its constant term, and its derivative.
+fn polynomial(c: &[f64; 5], x: f64) -> (f64, f64) {
+    (
+        x * (c[1] + x * (c[2] + x * (c[3] + x * c[4]))),
+        c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * 4.0 * c[4])),
+    )
+}
+
+/// Appends the row of an equality of tendons: the length of tendon 1 is a polynomial of that of tendon 2, or constant without one.
+fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usize, Option<usize>), c: [f64; 5]) {
+    let model = rows.model;
+    let displacement = |t: usize| tendon_length(model, &s.qpos, t) - model.tendon_length0[t];
+    let mut pos = displacement(first) - s.params.eq_offset[id];
+    let mut diag = model.tendon_invweight0[first];
+    let mut scales = [(first, 1.0), (first, 0.0)];
+    if let Some(second) = second {
+        let (value, slope) = polynomial(&c, displacement(second));
+        pos -= value;
+        diag += model.tendon_invweight0[second];
+        scales[1] = (second, -slope);
+    }
+    let count = if second.is_some() { 2 } else { 1 };
+    if tendons(rows, (ConstraintType::Equality, id), &scales[..count]) {
+        let spec = Spec {
+            solref: model.eq_solref[id],
+            solimp: model.eq_solimp[id],
+            diag,
+        };
+        rows.row(pos, 0.0, pos, spec);
+    }
+}
+
+/// Starts a block with one row on the lengths of tendons, each with a scale. Returns whether there is one: as with equalities without
+/// effect, MuJoCo drops a row that nothing moves, where the Jacobian is dense.
+fn tendons(rows: &mut Rows, (kind, id): (ConstraintType, usize), scales: &[(usize, f64)]) -> bool {
+    let model = rows.model;
+    rows.block(kind, id, 1);
+    let entries = || {
+        let of = |&(t, scale): &(usize, f64)| {
+            let wrap = model.tendon_wrap[t].iter();
+            wrap.map(move |&(j, coef)| (model.jnt_dofadr[j], scale * coef))
+        };
+        scales.iter().flat_map(of)
+    };
+    // ascending, whatever the order in the model
+    let mut from = 0;
+    while let Some(d) = entries().map(|e| e.0).filter(|d| *d >= from).min() {
+        let value: f64 = entries().filter(|e| e.0 == d).map(|e| e.1).sum();
+        rows.entry(d, value);
+        from = d + 1;
+    }
+    let block = *rows.block_mut();
+    let moves = rows.efc.jac[block.jac..].iter().flatten().any(|v| *v != 0.0);
+    if !moves && !model.opt.jacobian.is_sparse(model.nv) {
+        rows.drop_block();
+        return false;
+    }
+    true
 }
 
 /// Appends the six rows of a weld: translation, rotation.
@@ -294,7 +376,6 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
         if !model.tendon_limited[t] {
             continue;
         }
-        let wrap = &model.tendon_wrap[t];
         let length = tendon_length(model, &s.qpos, t);
         let margin = model.tendon_margin[t];
         let spec = Spec {
@@ -304,22 +385,7 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
         };
         for (side, limit) in [(-1.0, model.tendon_range[t][0]), (1.0, model.tendon_range[t][1])] {
             let dist = side * (limit - length);
-            if dist < margin {
-                rows.block(ConstraintType::LimitTendon, t, 1);
-                // ascending, whatever the order in the model
-                let mut from = 0;
-                while let Some(d) = wrap.iter().map(|w| model.jnt_dofadr[w.0]).filter(|d| *d >= from).min() {
-                    let coef: f64 = wrap.iter().filter(|w| model.jnt_dofadr[w.0] == d).map(|w| w.1).sum();
-                    rows.entry(d, -side * coef);
-                    from = d + 1;
-                }
-                let block = *rows.block_mut();
-                let moves = rows.efc.jac[block.jac..].iter().flatten().any(|v| *v != 0.0);
-                // as with equalities without effect
-                if !moves && !model.opt.jacobian.is_sparse(model.nv) {
-                    rows.drop_block();
-                    continue;
-                }
+            if dist < margin && tendons(rows, (ConstraintType::LimitTendon, t), &[(t, -side)]) {
                 rows.row(dist, margin, dist - margin, spec);
             }
         }

@@ -47,7 +47,7 @@ impl ScalarRows {
     #[inline(always)]
     pub(super) fn set(&mut self, k: usize, efc: &Efc, row: usize, b: &Block) {
         let (low, high) = match b.kind {
-            ConstraintType::FrictionDof => (-b.frictionloss, b.frictionloss),
+            ConstraintType::FrictionDof | ConstraintType::FrictionTendon => (-b.frictionloss, b.frictionloss),
             ConstraintType::LimitJoint
             | ConstraintType::LimitTendon
             | ConstraintType::ContactFrictionless

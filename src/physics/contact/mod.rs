@@ -218,6 +218,17 @@ pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f6
     !apart
 }
 
+/// Tells whether contacts of two kinds of geoms, in any order, come from the routine for all convex shapes (MuJoCo's `mjc_Convex`).
+pub(crate) fn needs_convex(a: GeomType, b: GeomType) -> bool {
+    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Sphere};
+    matches!(
+        (a.min(b), a.max(b)),
+        (Sphere | Capsule | Ellipsoid, Ellipsoid)
+            | (Capsule | Ellipsoid | Cylinder, Cylinder)
+            | (Ellipsoid | Cylinder, Box)
+    )
+}
+
 /// Appends the contacts of two geoms to `out`, in MuJoCo's order.
 ///
 /// Needs `a.kind <= b.kind`; appends nothing otherwise, nor for pairs that do not collide. Contacts are those with

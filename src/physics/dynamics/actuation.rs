@@ -1,15 +1,15 @@
 //! From controls to joint forces and unconstrained acceleration.
 
 use crate::model::{BiasType, GainType, Model};
-use crate::physics::dynamics::activation;
 use crate::physics::dynamics::applied::xfrc_accumulate;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
+use crate::physics::dynamics::{activation, transmission};
 use crate::physics::state::State;
 
 /// Computes `act_dot, actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
 ///
-/// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint; its length and velocity are gear times
-/// those of the joint. Where it has an activation, that takes the place of the control. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
+/// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint or the tendon; its length and velocity are gear times
+/// those of the joint or the tendon. What all actuators together do to a joint may be limited. Where it has an activation, that takes the place of the control. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
 /// of range are clamped. `bodies` must be up to date.
 #[inline(always)]
 pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
@@ -17,8 +17,6 @@ pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
     let acting = if model.opt.flags.actuation { model.nu() } else { 0 };
     s.actuator_force[acting..].fill(0.0);
     for i in 0..acting {
-        let j = model.actuator_trnid[i];
-        let (d, q) = (model.jnt_dofadr[j], model.jnt_qposadr[j]);
         // muscles take the place of motors; a servo beside them is a servo still
         let muscle = s.muscle_torque.get(i).copied();
         let muscle = muscle.filter(|_| model.actuator_biastype[i] == BiasType::None);
@@ -36,7 +34,9 @@ pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
             s.act_dot[k] = activation::rate(model, i, s.act[k], ctrl);
             ctrl = activation::acting(model, i, s.act[k], s.act_dot[k]);
         }
-        let affine = |p: [f64; 3]| p[0] + p[1] * (gear * s.qpos[q]) + p[2] * (gear * s.qvel[d]);
+        let length = gear * transmission::length(model, &s.qpos, i);
+        let velocity = gear * transmission::velocity(model, &s.qvel, i);
+        let affine = |p: [f64; 3]| p[0] + p[1] * length + p[2] * velocity;
         let gain = match model.actuator_gaintype[i] {
             GainType::Fixed => model.actuator_gainprm[i][0],
             GainType::Affine => affine(model.actuator_gainprm[i]),
@@ -53,7 +53,16 @@ pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
             force = force.max(lo).min(hi);
         }
         s.actuator_force[i] = force;
-        s.qfrc_actuator[d] += gear * force;
+        for (d, arm) in transmission::moment(model, i) {
+            s.qfrc_actuator[d] += arm * gear * force;
+        }
+    }
+    for (j, &[low, high]) in model.jnt_actfrcrange.iter().enumerate() {
+        // as in MuJoCo, without actuators there is no force that is too small, either
+        if acting > 0 && model.jnt_actfrclimited[j] {
+            let force = &mut s.qfrc_actuator[model.jnt_dofadr[j]];
+            *force = force.max(low).min(high);
+        }
     }
     for d in 0..model.nv {
         s.qfrc_smooth[d] = s.qfrc_passive[d] - s.qfrc_bias[d] + s.qfrc_applied[d] + s.qfrc_actuator[d];

@@ -8,6 +8,7 @@ use crate::model::{
 };
 use crate::physics::MAXVAL;
 use crate::physics::dynamics::kinematics::local_to_global;
+use crate::physics::dynamics::transmission::moment;
 use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendon_length};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
@@ -24,9 +25,16 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
     let diagonal = (0..model.nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
     let dof_m0: Vec<f64> = diagonal.collect();
     let mut weights = Weights::new(model, &topology, &s);
+    let dof_invweight0 = weights.dofs();
+    let (jnt_stiffness, dof_damping) = springs(model, &dof_invweight0);
     Constants {
         body_invweight0: (0..model.nbody()).map(|b| weights.body(b)).collect(),
-        dof_invweight0: weights.dofs(),
+        dof_invweight0,
+        jnt_stiffness,
+        dof_damping,
+        tendon_length0: (0..model.ntendon())
+            .map(|t| tendon_length(model, &model.qpos0, t))
+            .collect(),
         tendon_lengthspring: (0..model.ntendon()).map(|t| slack(model, t)).collect(),
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
         actuator_biasprm: (0..model.nu()).map(|i| bias(model, i, &dof_m0)).collect(),
@@ -41,17 +49,37 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
 
 /// Returns the bias of an actuator, with the damping that its damping ratio asks for.
 ///
-/// That of a servo with gain `k` on a mass `m` is `2 ratio sqrt(k m)`; the mass is that of the joint at `qpos0`, seen through the
+/// That of a servo with gain `k` on a mass `m` is `2 ratio sqrt(k m)`; the mass is that of the joints at `qpos0`, seen through the
 /// gear.
 fn bias(model: &Arrays, actuator: usize, dof_m0: &[f64]) -> [f64; 3] {
     let ([k, ..], [constant, stiffness, ratio]) = (model.actuator_gainprm[actuator], model.actuator_biasprm[actuator]);
     if k != -stiffness || ratio <= 0.0 {
         return model.actuator_biasprm[actuator];
     }
-    let gear = model.actuator_gear[actuator].powi(2);
-    let inertia = dof_m0[model.jnt_dofadr[model.actuator_trnid[actuator]]];
-    let mass = if gear > MINVAL { inertia / gear } else { 0.0 };
+    let gear = model.actuator_gear[actuator];
+    let seen = moment(model, actuator).map(|(d, arm)| (dof_m0[d], (gear * arm) * (gear * arm)));
+    let mass: f64 = seen
+        .filter(|(_, square)| *square > MINVAL)
+        .map(|(m, square)| m / square)
+        .sum();
     [constant, stiffness, -(ratio * 2.0 * (k * mass).sqrt())]
+}
+
+/// Returns stiffness of the joints and damping of the degrees of freedom: as given, else those that give a joint alone the time
+/// constant and the damping ratio of its `springdamper`.
+fn springs(model: &Arrays, dof_invweight0: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (mut stiffness, mut damping) = (model.jnt_stiffness.clone(), model.dof_damping.clone());
+    for (j, &[timeconst, ratio]) in model.jnt_springdamper.iter().enumerate() {
+        if timeconst <= 0.0 || ratio <= 0.0 {
+            continue;
+        }
+        let dofs = model.jnt_dofadr[j]..model.jnt_dofadr[j] + model.jnt_type[j].nv();
+        let weight: f64 = dof_invweight0[dofs.clone()].iter().sum();
+        let inertia = dofs.len() as f64 / weight.max(MINVAL);
+        stiffness[j] = inertia / (timeconst * timeconst * ratio * ratio).max(MINVAL);
+        damping[dofs].fill(2.0 * inertia / timeconst.max(MINVAL));
+    }
+    (stiffness, damping)
 }
 
 /// Returns the lengths between which a tendon's spring is slack: as given, else that in the springs' rest configuration.
@@ -242,10 +270,16 @@ fn light_poses(model: &Arrays, s: &State) -> Vec<LightPose> {
     model.lights.iter().map(pose).collect()
 }
 
-/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: a body without moving children,
-/// in the world or in a static body of the world, whose joints all slide along axes of its frame, which is that of its
-/// inertia (`body_simple` 2).
+/// Tells whether MuJoCo gives a body its whole inverse mass, not the mean over directions: one that [stands alone](is_simple) and
+/// whose joints all slide (`body_simple` 2).
 fn slides_alone(model: &Arrays, b: usize) -> bool {
+    let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
+    is_simple(model, b) && joints.into_iter().all(|j| model.jnt_type[j] == JointType::Slide)
+}
+
+/// Tells whether MuJoCo takes the inertia of a body for diagonal (`body_simple`): a body without children, in the world or in a static
+/// body of the world, whose joints are at its origin and along axes of its frame, which is that of its inertia.
+pub(super) fn is_simple(model: &Arrays, b: usize) -> bool {
     // what is smaller counts as zero in MuJoCo's compiler
     const EPS: f64 = 1e-14;
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
@@ -259,7 +293,7 @@ fn slides_alone(model: &Arrays, b: usize) -> bool {
         && !joints.is_empty()
         && joints.into_iter().all(|j| {
             let at_origin = SameFrame::of(model.jnt_pos[j], QUAT_ID, [0.0; 3], QUAT_ID) == SameFrame::Body;
-            model.jnt_type[j] == JointType::Slide && along_axis(j) && at_origin
+            along_axis(j) && at_origin
         })
 }
 

@@ -19,12 +19,9 @@ pub(super) fn medium(model: &Model, s: &mut State) {
         if s.params.body_mass[b] < MINVAL {
             continue;
         }
-        let offset = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
-        let axes = &s.ximat[b];
-        let turning = mat_t_vec(axes, angular(&s.cvel[b]));
-        let moving = mat_t_vec(axes, velocity_at(&s.cvel[b], offset));
-        let moving = sub(moving, mat_t_vec(axes, opt.wind));
+        let (turning, moving) = relative_to_medium(model, s, b);
         let (torque, force) = resistance(box_of(s, b), turning, moving, opt.density, opt.viscosity);
+        let axes = &s.ximat[b];
         let (torque, force) = (mat_vec(axes, torque), mat_vec(axes, force));
         let point = s.xipos[b];
         let State {
@@ -35,6 +32,37 @@ pub(super) fn medium(model: &Model, s: &mut State) {
         } = s;
         add_force(model, cdof, subtree_com, (b, force, torque, point), qfrc_passive);
     }
+}
+
+/// Returns how a body turns, rad/s, and how its centre of mass moves through the medium, m/s, along its principal axes.
+fn relative_to_medium(model: &Model, s: &State, b: usize) -> (Vec3, Vec3) {
+    let offset = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
+    let axes = &s.ximat[b];
+    let turning = mat_t_vec(axes, angular(&s.cvel[b]));
+    let moving = mat_t_vec(axes, velocity_at(&s.cvel[b], offset));
+    (turning, sub(moving, mat_t_vec(axes, model.opt.wind)))
+}
+
+/// Returns the derivatives of torque (3) and force (3) of a medium on a body by its own turning and moving along the same principal
+/// axis, N m s and N s/m.
+pub(super) fn medium_slopes(model: &Model, s: &State, b: usize) -> [f64; 6] {
+    let (turning, moving) = relative_to_medium(model, s, b);
+    let (size, opt) = (box_of(s, b), &model.opt);
+    let mut slopes = [0.0; 6];
+    if opt.viscosity > 0.0 {
+        let diameter = (size[0] + size[1] + size[2]) / 3.0;
+        slopes[..3].fill(-PI * diameter * diameter * diameter * opt.viscosity);
+        slopes[3..].fill(-3.0 * PI * diameter * opt.viscosity);
+    }
+    if opt.density > 0.0 {
+        let fourth = |v: f64| v * v * v * v;
+        for k in 0..3 {
+            let (a, b) = (size[(k + 1) % 3], size[(k + 2) % 3]);
+            slopes[k] -= opt.density * size[k] * (fourth(a) + fourth(b)) * 2.0 * turning[k].abs() / 64.0;
+            slopes[3 + k] -= opt.density * a * b * moving[k].abs();
+        }
+    }
+    slopes
 }
 
 /// Returns the sides of the box with the mass and the principal moments of a body, m.

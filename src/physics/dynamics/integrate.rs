@@ -1,43 +1,71 @@
-//! Integration: semi-implicit Euler with implicit joint damping, and Runge and Kutta's method; activations of actuators.
+//! Integration: semi-implicit Euler with implicit joint damping, implicit methods, and Runge and Kutta's; activations of actuators.
 
 use crate::math::{axis_angle_to_quat, quat_mul, quat_normalize, unit};
-use crate::model::{JointType, Model};
+use crate::model::{IntegratorType, JointType, Model};
 use crate::physics::dynamics::activation;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
+use crate::physics::dynamics::derivative::Derivative;
+use crate::physics::dynamics::tree_matrix::TreeMatrix;
 use crate::physics::state::State;
+use crate::physics::topology::Topology;
 
 /// Advances a state by one time step.
 #[derive(Clone, Debug, Default)]
 pub struct Integrator {
-    force: Vec<f64>,
     acc: Vec<f64>,
+    force: Vec<f64>,
+    derivative: Derivative,
+    matrix: TreeMatrix,
 }
 
 impl Integrator {
-    /// Advances `act, qpos, qvel, time`: `v+ = v + h (M + h D)^-1 (qfrc_smooth + qfrc_constraint)`, then `q+ = q (+) h v+`;
-    /// without damping `v+ = v + h qacc`. `bodies` must be up to date.
+    /// Advances `act, qpos, qvel, time`: `v+ = v + h a`, then `q+ = q (+) h v+`. The acceleration `a` is that of the method,
+    /// with `f = qfrc_smooth + qfrc_constraint`:
+    ///
+    /// - Euler: `(M + h D)^-1 f` with the damping `D` of the joints; without damping `qacc`.
+    /// - Implicit: `(M - h d f / d v)^-1 f`; the fast one leaves Coriolis forces out of the derivative.
+    ///
+    /// `bodies` must be up to date.
     #[inline(always)]
-    pub fn advance(&mut self, model: &Model, bodies: &mut Articulated, s: &mut State) {
+    pub fn advance(&mut self, model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
         let h = model.opt.timestep;
+        let damped = match model.opt.integrator {
+            IntegratorType::Implicit | IntegratorType::ImplicitFast => {
+                self.solve_implicit(model, topology, s);
+                true
+            }
+            _ if model.opt.flags.eulerdamp && s.params.dof_damping.iter().any(|&d| d > 0.0) => {
+                self.acc.resize(model.nv, 0.0);
+                self.force.clear();
+                let forces = s.qfrc_smooth.iter().zip(&s.qfrc_constraint);
+                self.force.extend(forces.map(|(a, b)| a + b));
+                bodies.solve(model, s, Damping::Implicit, &self.force, &mut self.acc);
+                true
+            }
+            _ => false,
+        };
         activation::advance(model, &mut s.act, &s.act_dot);
-        if model.opt.flags.eulerdamp && s.params.dof_damping.iter().any(|&d| d > 0.0) {
-            self.acc.resize(model.nv, 0.0);
-            self.force.clear();
-            let forces = s.qfrc_smooth.iter().zip(&s.qfrc_constraint);
-            self.force.extend(forces.map(|(a, b)| a + b));
-            bodies.solve(model, s, Damping::Implicit, &self.force, &mut self.acc);
-            for (v, a) in s.qvel.iter_mut().zip(&self.acc) {
-                *v += h * a;
-            }
-        } else {
-            for (v, a) in s.qvel.iter_mut().zip(&s.qacc) {
-                *v += h * a;
-            }
+        let acc = if damped { &self.acc } else { &s.qacc };
+        for (v, a) in s.qvel.iter_mut().zip(acc) {
+            *v += h * a;
         }
         let State { qpos, qvel, .. } = s;
         integrate_pos(model, qpos, qvel, h);
         s.time += h;
         s.step += 1;
+    }
+
+    /// Computes the acceleration of the implicit methods. It is kept out of `advance`, which is compiled twice.
+    #[inline(never)]
+    fn solve_implicit(&mut self, model: &Model, topology: &Topology, s: &State) {
+        let bias = model.opt.integrator == IntegratorType::Implicit;
+        self.derivative.fill(model, topology, s, bias, &mut self.matrix);
+        self.matrix.subtract_from(topology, &s.qm, model.opt.timestep);
+        self.matrix.factor(topology);
+        self.acc.clear();
+        let forces = s.qfrc_smooth.iter().zip(&s.qfrc_constraint);
+        self.acc.extend(forces.map(|(a, b)| a + b));
+        self.matrix.solve(topology, &mut self.acc);
     }
 }
 

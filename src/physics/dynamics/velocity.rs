@@ -123,7 +123,6 @@ fn pull(model: &Model, s: &mut State, tendon: usize) {
     if stiffness == 0.0 && damping == 0.0 {
         return;
     }
-    let wrap = &model.tendon_wrap[tendon];
     let (length, [shortest, longest]) = (tendon_length(model, &s.qpos, tendon), model.tendon_lengthspring[tendon]);
     let mut force = 0.0;
     if length > longest {
@@ -131,9 +130,8 @@ fn pull(model: &Model, s: &mut State, tendon: usize) {
     } else if length < shortest {
         force = stiffness * (shortest - length);
     }
-    let speed: f64 = wrap.iter().map(|&(j, coef)| coef * s.qvel[model.jnt_dofadr[j]]).sum();
-    force -= damping * speed;
-    for &(j, coef) in wrap {
+    force -= damping * tendon_velocity(model, s, tendon);
+    for &(j, coef) in &model.tendon_wrap[tendon] {
         s.qfrc_passive[model.jnt_dofadr[j]] += coef * force;
     }
 }
@@ -143,4 +141,11 @@ fn pull(model: &Model, s: &mut State, tendon: usize) {
 pub fn tendon_length(model: &Arrays, qpos: &[f64], tendon: usize) -> f64 {
     let wrap = model.tendon_wrap[tendon].iter();
     wrap.map(|&(j, coef)| coef * qpos[model.jnt_qposadr[j]]).sum()
+}
+
+/// Returns the rate of a tendon's length.
+#[inline(always)]
+pub fn tendon_velocity(model: &Arrays, s: &State, tendon: usize) -> f64 {
+    let wrap = model.tendon_wrap[tendon].iter();
+    wrap.map(|&(j, coef)| coef * s.qvel[model.jnt_dofadr[j]]).sum()
 }

@@ -278,7 +278,8 @@ impl Bridge {
     /// # Errors
     /// Fails if the simulation diverged.
     pub fn advance(&mut self, s: &mut State) -> Result<(), EngineError> {
-        self.integrator.advance(&self.model, &mut self.inertia, s);
+        self.integrator
+            .advance(&self.model, &self.topology, &mut self.inertia, s);
         check_output(&self.model, s)
     }
 }

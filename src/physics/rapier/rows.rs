@@ -103,6 +103,8 @@ impl RapierRows {
         for block in &s.efc.blocks {
             let aim = Aim::of(s, block.row, h);
             match (block.kind, block.dof) {
+                // models with it are refused
+                (ConstraintType::FrictionTendon, _) => {}
                 (ConstraintType::FrictionDof, _) => self.dofs[block.id].friction = Some((block.frictionloss, aim)),
                 (ConstraintType::Equality, _) if block.dim == 6 => load_weld(rig, model, s, block, sets),
                 (ConstraintType::Equality, Some(dof)) => self.add_lock(dof, aim),

@@ -18,6 +18,10 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         return Err(RapierError::unsupported("joint", &model.jnt_name[j], what));
     }
     for t in 0..model.ntendon() {
+        if model.tendon_frictionloss[t] > 0.0 {
+            let what = "a tendon cannot have dry friction";
+            return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
+        }
         let pair = matches!(model.tendon_wrap[t][..], [(a, x), (b, y)]
             if a != b && x != 0.0 && y != 0.0 && tree(a) == tree(b));
         if model.tendon_limited[t] && !pair {
@@ -26,6 +30,10 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         }
     }
     for e in 0..model.neq() {
+        if let EqualityKind::Tendon { .. } = model.eq_kind[e] {
+            let what = "tendons cannot be held";
+            return Err(RapierError::unsupported("equality", &model.eq_name[e], what));
+        }
         if let EqualityKind::Joint {
             joint1,
             joint2: Some(joint2),

@@ -17,7 +17,10 @@ fn external(model: &Model, engine: &dyn Engine, s: &State) -> Vec<f64> {
             | ConstraintType::ContactPyramidal
             | ConstraintType::ContactFrictionless => true,
             ConstraintType::Equality => matches!(model.eq_kind[row.id], EqualityKind::Weld { .. }),
-            ConstraintType::FrictionDof | ConstraintType::LimitJoint | ConstraintType::LimitTendon => false,
+            ConstraintType::FrictionDof
+            | ConstraintType::FrictionTendon
+            | ConstraintType::LimitJoint
+            | ConstraintType::LimitTendon => false,
         };
         if outside {
             let jacobian = engine.efc_j(s, k).expect("the row exists");

@@ -67,7 +67,8 @@ fn actions(env: &Env) -> JsValue {
     let (names, driven) = (env.actuation().action_names(m), env.actuation().actuators());
     let entries = names.iter().enumerate().map(|(k, name)| {
         let actuator = driven[k % driven.len().max(1)];
-        let joint = m.actuator_trnid[actuator];
+        // MIMo's all act on joints
+        let joint = m.actuator_joint(actuator).unwrap_or(0);
         object([
             ("name", name.as_str().into()),
             ("actuator", id(actuator)),

@@ -56,7 +56,16 @@ impl Writer<'_> {
         } else {
             0
         } {
-            let mut node = if !joints.is_empty() && self.dice.chance(0.6) {
+            let mut node = if !self.tendons.is_empty() && self.dice.chance(0.3) {
+                let tendons = self.tendons.clone();
+                let first = self.dice.rng.usize(..tendons.len());
+                let second = self.dice.rng.usize(..tendons.len());
+                let mut node = Node::new("tendon").with("tendon1", tendons[first].as_str());
+                if second != first || self.dice.chance(0.02) {
+                    node.set("tendon2", tendons[second].as_str());
+                }
+                node
+            } else if !joints.is_empty() && self.dice.chance(0.6) {
                 let joint1 = &joints[self.dice.rng.usize(..joints.len())];
                 let mut node = Node::new("joint").with("joint1", joint1.as_str());
                 let joint2 = &joints[self.dice.rng.usize(..joints.len())];
@@ -128,9 +137,16 @@ impl Writer<'_> {
                 "cylinder",
             ];
             let (kind, name) = (self.dice.pick(&KINDS), self.name("a"));
-            let joint = joints[self.dice.rng.usize(..joints.len())].as_str();
-            let target = self.dice.pick(&["joint", "joint", "joint", "jointinparent"]);
-            let mut node = Node::new(kind).with("name", name).with(target, joint);
+            let joint = joints[self.dice.rng.usize(..joints.len())].clone();
+            let (target, object) = if !self.tendons.is_empty() && self.dice.chance(0.4) {
+                (
+                    "tendon",
+                    self.tendons[self.dice.rng.usize(..self.tendons.len())].clone(),
+                )
+            } else {
+                (self.dice.pick(&["joint", "joint", "joint", "jointinparent"]), joint)
+            };
+            let mut node = Node::new(kind).with("name", name).with(target, object);
             self.class(&mut node, "class");
             self.language
                 .dress(&mut node, &format!("actuator/{kind}"), false, &mut self.dice);

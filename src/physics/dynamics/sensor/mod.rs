@@ -7,7 +7,7 @@ mod touch;
 use crate::math::*;
 use crate::model::{DataType, Model, SensorType};
 use crate::physics::constraint::ConstraintType;
-use crate::physics::dynamics::tendon_length;
+use crate::physics::dynamics::{tendon_length, tendon_velocity, transmission};
 use crate::physics::ray::nearest_geom;
 use crate::physics::spatial::{angular, linear, torque_at};
 use crate::physics::state::State;
@@ -56,10 +56,10 @@ fn value(model: &Model, s: &State, scratch: &SubtreeScratch, sensor: usize) -> [
         JointActFrc => scalar(s.qfrc_actuator[model.jnt_dofadr[id]]),
         TendonPos => scalar(tendon_length(model, &s.qpos, id)),
         TendonVel => scalar(tendon_velocity(model, s, id)),
-        ActuatorPos => scalar(actuator_gear(s, id) * s.qpos[model.jnt_qposadr[model.actuator_trnid[id]]]),
+        ActuatorPos => scalar(transmission::gear(s, id) * transmission::length(model, &s.qpos, id)),
         // as in MuJoCo, which leaves the rates of the lengths out with the forces
         ActuatorVel if !model.opt.flags.actuation => scalar(0.0),
-        ActuatorVel => scalar(actuator_gear(s, id) * s.qvel[model.jnt_dofadr[model.actuator_trnid[id]]]),
+        ActuatorVel => scalar(transmission::gear(s, id) * transmission::velocity(model, &s.qvel, id)),
         ActuatorFrc => scalar(s.actuator_force[id]),
         JointLimitPos | JointLimitVel | JointLimitFrc => scalar(limit(s, ConstraintType::LimitJoint, kind, id)),
         TendonLimitPos | TendonLimitVel | TendonLimitFrc => scalar(limit(s, ConstraintType::LimitTendon, kind, id)),
@@ -98,20 +98,6 @@ fn on_site(model: &Model, s: &State, kind: SensorType, site: usize) -> [f64; 4] 
         _ => return scalar(touch::touch(model, s, site)),
     };
     vector(mat_t_vec(mat, world))
-}
-
-/// Returns the gear by which an actuator's length follows from its joint. Muscles act on joints themselves.
-fn actuator_gear(s: &State, actuator: usize) -> f64 {
-    if s.muscle_torque.is_empty() {
-        s.params.actuator_gear[actuator]
-    } else {
-        1.0
-    }
-}
-
-fn tendon_velocity(model: &Model, s: &State, tendon: usize) -> f64 {
-    let wrap = model.tendon_wrap[tendon].iter();
-    wrap.map(|&(j, coef)| coef * s.qvel[model.jnt_dofadr[j]]).sum()
 }
 
 /// Returns what a sensor of a limit reads from the first of its rows; 0 where there is none.

@@ -1,0 +1,76 @@
+//! Directions of conjugate gradients (MuJoCo's solver `CG`).
+
+use crate::math::MINVAL;
+use crate::model::Model;
+use crate::physics::constraint::island::Island;
+use crate::physics::dynamics::{Articulated, Damping};
+use crate::physics::state::State;
+use crate::physics::tiles::{Lanes, total};
+use crate::physics::topology::Topology;
+
+/// Finds directions by the rule of Polak and Ribiere, with the inertia as preconditioner; holds the working memory. There is one
+/// island, of all trees.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Conjugate {
+    /// The gradient, and `M^-1` times it (nv).
+    gradient: Vec<f64>,
+    solution: Vec<f64>,
+    /// `M^-1` times the gradient, in lanes.
+    descent: Vec<Lanes>,
+    /// Both where the last direction started.
+    old_gradient: Vec<Lanes>,
+    old_descent: Vec<Lanes>,
+}
+
+impl Conjugate {
+    /// Reserves memory for `nv` degrees of freedom.
+    pub fn with_capacity(nv: usize) -> Self {
+        let lanes = || Vec::with_capacity(nv);
+        Self {
+            gradient: Vec::with_capacity(nv),
+            solution: Vec::with_capacity(nv),
+            descent: lanes(),
+            old_gradient: lanes(),
+            old_descent: lanes(),
+        }
+    }
+
+    /// Sets the search direction of an island from its gradient, and from the direction before unless it is the first.
+    pub fn descend(
+        &mut self,
+        model: &Model,
+        topology: &Topology,
+        bodies: &mut Articulated,
+        s: &State,
+        (island, first): (&mut Island, bool),
+    ) {
+        self.gradient.resize(model.nv, 0.0);
+        self.solution.resize(model.nv, 0.0);
+        topology.read_lanes(&island.gradient, &mut self.gradient);
+        bodies.solve(model, s, Damping::Without, &self.gradient, &mut self.solution);
+        self.descent.clear();
+        self.descent.resize(island.gradient.len(), [0.0; 4]);
+        topology.to_lanes(&self.solution, &mut self.descent);
+        let beta = if first { 0.0 } else { self.weight(&island.gradient) };
+        for (search, descent) in island.search.iter_mut().zip(&self.descent) {
+            for k in 0..4 {
+                search[k] = beta * search[k] - descent[k];
+            }
+        }
+        self.old_gradient.clone_from(&island.gradient);
+        self.old_descent.clone_from(&self.descent);
+    }
+
+    /// Returns the weight of the last direction: 0 where the rule gives a negative one.
+    fn weight(&self, gradient: &[Lanes]) -> f64 {
+        let (mut above, mut below) = ([0.0; 4], [0.0; 4]);
+        let old = self.old_gradient.iter().zip(&self.old_descent);
+        for ((g, d), (old_g, old_d)) in gradient.iter().zip(&self.descent).zip(old) {
+            for k in 0..4 {
+                above[k] += g[k] * (d[k] - old_d[k]);
+                below[k] += old_g[k] * old_d[k];
+            }
+        }
+        (total(&above) / total(&below).max(MINVAL)).max(0.0)
+    }
+}

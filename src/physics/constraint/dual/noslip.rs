@@ -1,0 +1,146 @@
+//! The solver against slip: friction without regularisation, which cannot creep, at the normal forces that another solver found.
+
+use super::{CONE_ROWS, Dual, product, scale, settle};
+use crate::math::MINVAL;
+use crate::model::Model;
+use crate::physics::constraint::friction::{DIRECTIONS, Quadratic};
+use crate::physics::constraint::{Block, ConstraintType, Efc};
+use crate::physics::dynamics::Articulated;
+use crate::physics::engine::EngineError;
+use crate::physics::state::State;
+use crate::physics::topology::Topology;
+
+impl Dual {
+    /// Changes the forces of dry friction and of friction of contacts, after another solver (MuJoCo's `mj_solNoSlip`), and
+    /// `qacc, qfrc_constraint` with them; the start of the next step's solver stays. `bodies` must be up to date.
+    ///
+    /// # Errors
+    /// More numbers in the matrices than [`Limits::dual_numbers`](crate::Limits::dual_numbers).
+    pub fn hold(
+        &mut self,
+        model: &Model,
+        topology: &Topology,
+        bodies: &mut Articulated,
+        s: &mut State,
+    ) -> Result<(), EngineError> {
+        if s.efc.nefc() == 0 {
+            return Ok(());
+        }
+        let mut efc = std::mem::take(&mut s.efc);
+        let prepared = self.prepare(model, topology, bodies, &efc, s);
+        if prepared.is_ok() {
+            s.solver_iterations += self.sweep_friction(model, &mut efc);
+            self.finish(model, bodies, &efc, s);
+        }
+        s.efc = efc;
+        prepared
+    }
+
+    /// Sweeps over friction until a sweep improves the cost by less than the tolerance; returns the number of sweeps.
+    fn sweep_friction(&self, model: &Model, efc: &mut Efc) -> usize {
+        for sweep in 0..model.opt.noslip_iterations {
+            let mut improvement = 0.0;
+            if sweep == 0 {
+                // what regularisation cost, which no longer counts
+                let costs = efc.force.iter().zip(&efc.r).map(|(f, r)| 0.5 * f * f * r);
+                improvement = costs.sum();
+            }
+            for k in 0..efc.blocks.len() {
+                let block = efc.blocks[k];
+                improvement -= match block.kind {
+                    ConstraintType::FrictionDof | ConstraintType::FrictionTendon => self.slide(efc, &block),
+                    ConstraintType::ContactPyramidal => self.pyramid(efc, &block),
+                    ConstraintType::ContactElliptic => self.ellipsoid(efc, &block),
+                    _ => 0.0,
+                };
+            }
+            if improvement * scale(model) < model.opt.noslip_tolerance {
+                return sweep + 1;
+            }
+        }
+        model.opt.noslip_iterations
+    }
+
+    /// Returns an entry of the matrix without regularisation.
+    fn rigid(&self, efc: &Efc, row: usize, col: usize) -> f64 {
+        let value = self.a[row * efc.nefc() + col];
+        if row == col { value - efc.r[row] } else { value }
+    }
+
+    /// Returns the derivative of the cost without regularisation by the force of a row.
+    fn residual(&self, efc: &Efc, row: usize) -> f64 {
+        let n = efc.nefc();
+        let soft = self.b[row] + product(&self.a[row * n..(row + 1) * n], &efc.force);
+        soft - efc.r[row] * efc.force[row]
+    }
+
+    /// Improves dry friction; returns the change of the cost.
+    fn slide(&self, efc: &mut Efc, block: &Block) -> f64 {
+        let (i, loss) = (block.row, block.frictionloss);
+        let (residual, old) = (self.residual(efc, i), efc.force[i]);
+        let inverse = 1.0 / self.rigid(efc, i, i).max(MINVAL);
+        efc.force[i] = (old - residual * inverse).max(-loss).min(loss);
+        let moved = efc.force[i] - old;
+        0.5 * moved * moved / inverse + moved * residual
+    }
+
+    /// Improves the friction of a pyramid: opposite edges, whose sum stays. Returns the change of the cost.
+    fn pyramid(&self, efc: &mut Efc, block: &Block) -> f64 {
+        let mut change = 0.0;
+        for j in (block.row..block.row + block.dim).step_by(2) {
+            let mut residual = [0.0; CONE_ROWS];
+            let mut old = [0.0; CONE_ROWS];
+            let mut a = [[0.0; 2]; 2];
+            for r in 0..2 {
+                residual[r] = self.residual(efc, j + r);
+                old[r] = efc.force[j + r];
+                for (c, v) in a[r].iter_mut().enumerate() {
+                    *v = self.rigid(efc, j + r, j + c);
+                }
+            }
+            let rest = |r: usize| residual[r] - (a[r][0] * old[0] + a[r][1] * old[1]);
+            let middle = 0.5 * (old[0] + old[1]);
+            let curvature = a[0][0] + a[1][1] - a[0][1] - a[1][0];
+            let slope = middle * (a[0][0] - a[1][1]) + rest(0) - rest(1);
+            let apart = if curvature < MINVAL {
+                0.0
+            } else {
+                (-slope / curvature).max(-middle).min(middle)
+            };
+            let own = &mut efc.force[j..j + 2];
+            own.copy_from_slice(&[middle + apart, middle - apart]);
+            change += settle(2, |r, c| a[r][c], own, &old, &residual);
+        }
+        change
+    }
+
+    /// Improves the friction of an elliptic cone; returns the change of the cost.
+    fn ellipsoid(&self, efc: &mut Efc, block: &Block) -> f64 {
+        let (first, n) = (block.row + 1, block.dim - 1);
+        let normal = efc.force[block.row];
+        let mut cost = Quadratic {
+            n,
+            ..Quadratic::default()
+        };
+        let mut residual = [0.0; CONE_ROWS];
+        let mut old = [0.0; CONE_ROWS];
+        for r in 0..n {
+            residual[r] = self.residual(efc, first + r);
+            old[r] = efc.force[first + r];
+            for c in 0..n {
+                cost.a[r][c] = self.rigid(efc, first + r, first + c);
+            }
+        }
+        for r in 0..n {
+            cost.b[r] = residual[r] - product(&cost.a[r][..n], &old[..n]);
+        }
+        let friction = if normal < MINVAL {
+            [0.0; DIRECTIONS]
+        } else {
+            cost.within_ellipsoid(&block.friction, normal)
+        };
+        let own = &mut efc.force[first..first + n];
+        own.copy_from_slice(&friction[..n]);
+        settle(n, |r, c| cost.a[r][c], own, &old, &residual)
+    }
+}
