@@ -19,6 +19,9 @@ __all__ = [
     "Blueprint",
     "Env",
     "Parts",
+    "PhysicsData",
+    "PhysicsModel",
+    "PhysicsRenderer",
     "VectorEnv",
     "__version__",
     "config_examples",
@@ -215,6 +218,100 @@ class ActionNoise:
         """Begins anew."""
 
 @final
+class PhysicsModel:
+    """A model of any document, beneath :class:`babybench.mujoco.MjModel`."""
+
+    ARRAYS: ClassVar[list[str]]
+    """The names of :meth:`array`."""
+
+    @staticmethod
+    def from_file(path: str | os.PathLike[str]) -> PhysicsModel:
+        """Compiles a file; what it includes and its textures lie beside it."""
+    @staticmethod
+    def from_text(text: str, files: Mapping[str, bytes]) -> PhysicsModel:
+        """Compiles a text, with the files that it names."""
+    def copy(self) -> PhysicsModel:
+        """Returns a model of its own with the same numbers."""
+    @property
+    def memory(self) -> _Floats:
+        """The memory of the numbers that a program may change; steps read them."""
+    @property
+    def layout(self) -> list[tuple[str, list[int]]]:
+        """Names and shapes of what lies in :attr:`memory`, in its order."""
+    def array(self, name: str) -> _Array:
+        """Returns a compiled array."""
+    def names(self) -> dict[str, list[str]]:
+        """Returns the names of all elements, by kind."""
+    def settings(self) -> dict[str, Any]:
+        """Returns sizes, options, statistics and visual settings that no array has."""
+    def set_option(self, name: str, value: int) -> None:
+        """Sets a whole number among the options."""
+    def extras(self) -> dict[str, Any]:
+        """Returns MuJoCo's arrays of what the engine keeps in another form."""
+
+@final
+class PhysicsData:
+    """A state of a model and the engine that advances it, beneath :class:`babybench.mujoco.MjData`."""
+
+    GROUPS: ClassVar[dict[str, int]]
+    """The groups of arrays, as bits."""
+
+    def __new__(cls, model: PhysicsModel) -> PhysicsData:
+        """Makes a state of which nothing is computed."""
+    @property
+    def memory(self) -> _Floats:
+        """The memory of all arrays: what is written into the group ``input`` is what the next computation starts from."""
+    @property
+    def eq_active(self) -> npt.NDArray[np.uint8]:
+        """Which equality constraints hold."""
+    @property
+    def layout(self) -> list[tuple[str, int, list[int]]]:
+        """Names, groups and shapes of what lies in :attr:`memory`, in its order."""
+    def reset(self, key: int | None = None) -> None:
+        """Starts anew, or from a keyframe."""
+    def step(self, count: int) -> None:
+        """Advances by some time steps."""
+    def forward(self, groups: int) -> None:
+        """Computes everything without advancing, and shows some groups of arrays."""
+    def rne_post_constraint(self) -> None:
+        """Computes and shows the group ``post``."""
+    def sensordata(self) -> _Floats:
+        """Returns the values of the sensors as they were last computed."""
+    def copy_from(self, other: PhysicsData) -> None:
+        """Takes over everything from another state of the same model."""
+    def contacts(self) -> dict[str, _Array]:
+        """Returns the contacts as arrays, one entry for each."""
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Number of contacts and of rows of constraints."""
+    def rows(self) -> dict[str, _Array]:
+        """Returns the rows of constraints as arrays, one entry for each."""
+    def jacobian(self) -> _Floats:
+        """Returns the Jacobian of the constraints in full, (nefc, nv)."""
+    def inertia(self) -> _Floats:
+        """Returns the joint-space inertia matrix in full, (nv, nv)."""
+
+@final
+class PhysicsRenderer:
+    """Draws states of a model."""
+
+    def __new__(cls, model: PhysicsModel) -> PhysicsRenderer:
+        """Decodes the textures of a model."""
+    def draw(
+        self,
+        data: PhysicsData,
+        camera: int | None,
+        free: tuple[tuple[float, ...], float, float, float],
+        size: tuple[int, int],
+        what: str,
+    ) -> _Array:
+        """Draws ``rgb``, ``depth`` or ``segmentation`` of what the arrays of a state show.
+
+        ``camera`` is one of the model's, or nothing for the ``free`` one: the point that it looks at, distance, azimuth
+        and elevation. ``size`` is width and height.
+        """
+
+@final
 class VectorEnv:
     """Many environments at once, on threads, with arrays over them.
 
@@ -259,8 +356,9 @@ class VectorEnv:
     def infos(self) -> dict[str, _Array]:
         """Returns fresh arrays, a row for each of the last rows.
 
-        ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0; ``regards``
-        (N, 4), how often hands were in view; for tasks ``is_success`` and ``is_failure`` (N) and ``reward_terms`` (N, terms).
+        ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0;
+        ``regards`` (N, 4), how often hands were in view; for tasks ``is_success`` and ``is_failure`` (N) and
+        ``reward_terms`` (N, terms).
         """
     def failures(self) -> list[tuple[int, str]]:
         """Returns the environments that could not go on in the last step, and why."""

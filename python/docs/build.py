@@ -21,6 +21,7 @@ MODULES = (
     "babybench",
     "babybench.build_xml",
     "babybench.eval",
+    "babybench.mujoco",
     "babybench.utils",
     "babybench_core.env",
     "babybench_core.vector",
@@ -35,13 +36,19 @@ MODULES = (
     "babybench_core.mimo.touch",
     "babybench_core.mimo.utils",
     "babybench_core.mimo.views",
+    "babybench_core.mujoco.data",
+    "babybench_core.mujoco.model",
 )
-LINKS = {"(docs/from-the-kit.md)": "(#from-the-starter-kit-to-here)", "(../README.md)": "(#babybench-for-python)"}
+LINKS = {
+    "(docs/from-the-kit.md)": "(#from-the-starter-kit-to-here)",
+    "(docs/mujoco.md)": "(#mujocos-names-without-mujoco)",
+    "(../README.md)": "(#babybench-for-python)",
+}
 
 
 def guide() -> str:
-    """Returns the README and the table from the kit to here as one page of HTML."""
-    text = "\n\n".join((HERE / name).read_text("utf-8") for name in ("../README.md", "from-the-kit.md"))
+    """Returns the README and the guides beside this file as one page of HTML."""
+    text = "\n\n".join((HERE / name).read_text("utf-8") for name in ("../README.md", "mujoco.md", "from-the-kit.md"))
     for link, here in LINKS.items():
         text = text.replace(link, here)
     return str(pdoc.render_helpers.to_html(text))

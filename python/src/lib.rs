@@ -14,6 +14,9 @@ mod model;
 mod noise;
 mod observation;
 mod parts;
+mod physics_data;
+mod physics_fields;
+mod physics_model;
 mod pictures;
 mod recycled;
 mod rows;
@@ -41,6 +44,10 @@ mod _native {
     use super::noise::ActionNoise;
     #[pymodule_export]
     use super::parts::Parts;
+    #[pymodule_export]
+    use super::physics_data::{PhysicsData, PhysicsRenderer};
+    #[pymodule_export]
+    use super::physics_model::PhysicsModel;
     #[pymodule_export]
     use super::scene::{embedded_files, model_extras, scene_file};
     #[pymodule_export]

@@ -2,7 +2,6 @@
 
 use babybench::Model;
 use babybench::model::Arrays;
-use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -18,7 +17,7 @@ macro_rules! table {
         pub fn $get<'py>(py: Python<'py>, of: &$type, name: &str) -> PyResult<Bound<'py, PyAny>> {
             match name {
                 $(stringify!($field) => of.$field[..].to_array(py),)*
-                _ => Err(PyKeyError::new_err(format!("there is no array {name:?}; there are {}", $names.join(", ")))),
+                _ => Err(pyo3::exceptions::PyKeyError::new_err(format!("there is no array {name:?}; there are {}", $names.join(", ")))),
             }
         }
     };

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use babybench::Model;
 use babybench::assets::{AssetSource, DirAssets};
 use babybench::mimo::embedded;
 use babybench::model::EqualityKind;
@@ -62,7 +63,12 @@ pub fn embedded_files(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 /// Returns names of textures and materials, the number of lights, and MuJoCo's arrays of equality constraints.
 #[pyfunction]
 pub fn model_extras<'py>(py: Python<'py>, blueprint: &Bound<'py, Blueprint>) -> PyResult<Bound<'py, PyDict>> {
-    let (extras, model) = (PyDict::new(py), blueprint.get().inner.model());
+    extras(py, blueprint.get().inner.model())
+}
+
+/// Returns what [`model_extras`] does of any model.
+pub fn extras<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict>> {
+    let extras = PyDict::new(py);
     extras.set_item(
         "texture",
         model.textures.iter().map(|t| &t.name[..]).collect::<Vec<_>>(),

@@ -31,7 +31,7 @@ pub(crate) mod world;
 pub use compile::compile;
 pub use contact::Quirks;
 internals!(use constraint::{ConstraintType, EfcRow});
-internals!(use dynamics::{cameras, com_pos, kinematics});
+internals!(use dynamics::{cameras, com_pos, kinematics, rne_post_constraint});
 pub use engine::{Engine, EngineError};
 internals!(use engine::{Probe, Stage});
 pub use free_body::FreeBody;

@@ -5,7 +5,7 @@ use crate::model::Arrays;
 use crate::physics::constraint::{Efc, EfcRow};
 use crate::physics::engine::EngineError;
 use crate::physics::params::Params;
-use crate::physics::spatial::{Inertia, Spatial};
+use crate::physics::spatial::Inertia;
 use crate::physics::table::table;
 use crate::physics::tiles::{Lanes, Tile};
 use crate::physics::topology::Topology;
@@ -121,8 +121,9 @@ table! {
         pub subtree_com: [Vec3; model.nbody()] = [0.0; 3];
         /// Motion axes (nv) about the centre of mass of their tree: rotation, translation.
         pub cdof: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Body inertias (nbody) about the centre of mass of their tree.
-        pub(crate) cinert: [Inertia; model.nbody()] = [0.0; 10];
+        /// Body inertias (nbody) about the centre of mass of their tree, along the axes of the world: `Ixx, Iyy, Izz, Ixy, Ixz, Iyz`,
+        /// kg m^2, mass times the offset of the body's centre of mass (3), kg m, mass, kg. Those of the world are zero.
+        pub cinert: [[f64; 10]; model.nbody()] = [0.0; 10];
         /// Composite inertias of subtrees (nbody).
         pub(crate) crb: [Inertia; model.nbody()] = [0.0; 10];
         /// Motion axes by tile: six values for each lane, zeros where there is none.
@@ -137,8 +138,16 @@ table! {
         // velocity stage
         /// Body velocities (nbody) about the centre of mass of their tree: rotation, rad/s, translation, m/s.
         pub cvel: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// Rates of the motion axes (nv).
-        pub(crate) cdof_dot: [Spatial; model.nv] = [0.0; 6];
+        /// Rates of the motion axes (nv): rotation, translation, 1/s.
+        pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
+        /// Lengths of the tendons (ntendon): coordinates of their joints, rad or m, times their coefficients.
+        pub ten_length: [f64; model.ntendon()] = 0.0;
+        /// Rates of the lengths of the tendons (ntendon).
+        pub ten_velocity: [f64; model.ntendon()] = 0.0;
+        /// Lengths of the actuators (nu): the coordinate of the joint, rad or m, times the gear.
+        pub actuator_length: [f64; model.nu()] = 0.0;
+        /// Rates of the lengths of the actuators (nu); zero where actuators are switched off.
+        pub actuator_velocity: [f64; model.nu()] = 0.0;
         /// Coriolis, centrifugal and gravity force (nv).
         pub qfrc_bias: [f64; model.nv] = 0.0;
         /// Spring and damper force (nv).

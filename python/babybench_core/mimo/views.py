@@ -6,13 +6,20 @@ Names, shapes, number types and units are MuJoCo's. The arrays of a state show t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _native
+from ..contacts import ContactList
+from ..named import KINDS as _KINDS
+from ..named import PREFIX as _PREFIX
+from ..named import Named as _Named
+from ..named import accessor as _accessor
+from ..named import numbers as _numbers
+from ..named import span as _span
+from ..named import widened as _widened
 
 _MODEL_HELP = (
     "{name}: the stand-in for MjModel does not have it; install mujoco (pip install mujoco), "
@@ -22,26 +29,6 @@ _DATA_HELP = (
     "{name}: the stand-in for MjData does not have it; install mujoco (pip install mujoco) and env.data is MuJoCo's own"
 )
 _FIXED = "the engine's model cannot be changed: {name}; change the configuration or the MJCF files of the scene and make another"
-
-_KINDS = {
-    "body": "body",
-    "joint": "joint",
-    "jnt": "joint",
-    "geom": "geom",
-    "site": "site",
-    "camera": "camera",
-    "cam": "camera",
-    "equality": "equality",
-    "eq": "equality",
-    "tendon": "tendon",
-    "actuator": "actuator",
-    "sensor": "sensor",
-    "texture": "texture",
-    "tex": "texture",
-    "material": "material",
-    "mat": "material",
-}
-_PREFIX = {"joint": "jnt", "camera": "cam", "equality": "eq", "texture": "tex", "material": "mat"}
 
 # what MuJoCo stores in another way than the engine
 _BYTES = frozenset(
@@ -73,35 +60,6 @@ _SIZES = {
 _WRITABLE = frozenset({"eq_active0", "eq_data"})
 
 
-def _widened(values: NDArray[Any], width: int) -> NDArray[Any]:
-    """Returns rows of a width, filled up with zeros."""
-    rows = values.reshape(len(values), -1)
-    wide = np.zeros((len(rows), width), dtype=rows.dtype)
-    wide[:, : rows.shape[1]] = rows
-    return wide
-
-
-class Element:
-    """One element of a model or of a state: its id, its name, and its rows of the arrays."""
-
-    def __init__(self, owner: Any, kind: str, number: int, name: str) -> None:
-        """Makes the element of a kind."""
-        self.__dict__.update(_owner=owner, _kind=kind, id=number, name=name)
-
-    def __getattr__(self, name: str) -> Any:
-        """Returns the element's part of an array."""
-        if name.startswith("_"):
-            raise AttributeError(name)
-        return self._owner._part(self._kind, self.id, name)
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Writes the element's part of an array."""
-        getattr(self, name)[...] = value
-
-    def __repr__(self) -> str:
-        return f"<{self._kind} {self.id} {self.name!r}>"
-
-
 class Options:
     """The options of a model, ``model.opt``; they cannot be changed."""
 
@@ -116,35 +74,6 @@ class Options:
         raise AttributeError(_MODEL_HELP.format(name=f"opt.{name}"))
 
 
-class _Named:
-    """The look-up of elements by number and by name, which models and states share."""
-
-    _names: dict[str, list[str]]
-    _numbers: dict[str, dict[str, int]]
-
-    def _find(self, kind: str, key: int | str) -> tuple[int, str]:
-        names = self._names[kind]
-        if isinstance(key, str):
-            number = self._numbers[kind].get(key)
-            if number is None:
-                known = ", ".join(name for name in names if name)
-                raise KeyError(f"Invalid name '{key}'. Valid names: {known}")
-            return number, key
-        number = int(key)
-        if not 0 <= number < len(names):
-            raise IndexError(f"Invalid index {number}. Valid indices from 0 to {len(names) - 1}")
-        return number, names[number]
-
-
-def _accessor(kind: str) -> Callable[..., Element]:
-    def access(self: Any, key: int | str = 0) -> Element:
-        number, name = self._find(kind, key)
-        return Element(self, kind, number, name)
-
-    access.__doc__ = f"Returns the {kind} of an id or of a name."
-    return access
-
-
 class ModelView(_Named):
     """The compiled scene under the names of ``MjModel``."""
 
@@ -156,7 +85,7 @@ class ModelView(_Named):
         names = {kind: list(names) for kind, names in blueprint.model_names.items()}
         names.update(texture=extras["texture"], material=extras["material"])
         own["_names"] = names
-        own["_numbers"] = {kind: {n: i for i, n in enumerate(found) if n} for kind, found in names.items()}
+        own["_numbers"] = _numbers(names)
         own["_blueprint"] = blueprint
         own.update({name: int(options[key]) for name, key in _SIZES.items()})
         own.update(na=0, nmocap=0, nlight=extras["nlight"], ntex=len(names["texture"]), nmat=len(names["material"]))
@@ -213,69 +142,11 @@ class ModelView(_Named):
     def _part(self, kind: str, number: int, name: str) -> NDArray[Any]:
         """Returns the part of an array that belongs to an element."""
         if kind == "joint" and name in ("qpos0", "qpos_spring"):
-            return self._span(getattr(self, name), self.jnt_qposadr, number)
+            return _span(getattr(self, name), self.jnt_qposadr, number)
         if kind == "joint" and name in ("armature", "damping", "frictionloss", "invweight0", "M0"):
-            return self._span(getattr(self, f"dof_{name}"), self.jnt_dofadr, number)
+            return _span(getattr(self, f"dof_{name}"), self.jnt_dofadr, number)
         array: NDArray[Any] = getattr(self, f"{_PREFIX.get(kind, kind)}_{name}")
         return array[number] if array.ndim > 1 else array[number : number + 1]
-
-    @staticmethod
-    def _span(array: NDArray[Any], starts: NDArray[Any], number: int) -> NDArray[Any]:
-        ends = [*starts[1:], len(array)]
-        return array[starts[number] : ends[number]]
-
-
-class Contact:
-    """One contact, as MuJoCo's ``MjContact``."""
-
-    def __init__(self, columns: dict[str, NDArray[Any]], index: int) -> None:
-        """Takes a row of the columns."""
-        for name, column in columns.items():
-            value = column[index]
-            setattr(self, name, value if value.ndim else value.item())
-        self.H = np.zeros(36)
-
-    def __repr__(self) -> str:
-        return f"<contact of geoms {self.geom1} and {self.geom2}, dist {self.dist}>"  # type: ignore[attr-defined]
-
-
-class ContactList:
-    """The contacts of an instant: arrays with an entry for each, or one by one."""
-
-    def __init__(self, columns: dict[str, NDArray[Any]]) -> None:
-        """Adds what MuJoCo derives."""
-        count = len(columns["geom1"])
-        geoms = np.stack([columns["geom1"], columns["geom2"]], axis=1)
-        nothing = np.full((count, 2), -1, dtype=np.int32)
-        self._columns = {
-            **{name: column for name, column in columns.items() if name != "force"},
-            "geom": geoms,
-            "flex": nothing,
-            "elem": nothing,
-            "vert": nothing,
-            "exclude": np.zeros(count, dtype=np.int32),
-            "mu": columns["friction"][:, 0].copy(),
-        }
-        self._forces = columns["force"]
-
-    def __getattr__(self, name: str) -> Any:
-        """Returns a column."""
-        columns = self.__dict__.get("_columns", {})
-        if name in columns:
-            return columns[name]
-        raise AttributeError(_DATA_HELP.format(name=f"contact.{name}"))
-
-    def __len__(self) -> int:
-        return len(self._columns["geom1"])
-
-    def __getitem__(self, index: int) -> Contact:
-        count = len(self)
-        if not -count <= index < count:
-            raise IndexError(f"contact {index}: there are {count}")
-        return Contact(self._columns, index)
-
-    def __iter__(self) -> Iterator[Contact]:
-        return (self[index] for index in range(len(self)))
 
 
 _DATA_FIELDS = {
@@ -335,10 +206,10 @@ class DataView(_Named):
         arrays = self._arrays
         if kind == "joint":
             if name == "qpos":
-                return ModelView._span(self.qpos, self.model.jnt_qposadr, number)
+                return _span(self.qpos, self.model.jnt_qposadr, number)
             if name in _JOINT_ROWS:
                 return arrays[name][number]
-            return ModelView._span(getattr(self, name), self.model.jnt_dofadr, number)
+            return _span(getattr(self, name), self.model.jnt_dofadr, number)
         if kind == "sensor" and name == "data":
             first = self.model.sensor_adr[number]
             return self.sensordata[first : first + 3]

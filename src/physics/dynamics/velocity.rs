@@ -3,6 +3,7 @@
 use crate::math::{quat_at, quat_normalize, rotation_between};
 use crate::model::{Arrays, JointType, Model};
 use crate::physics::dynamics::fluid::{gravity_compensation, medium};
+use crate::physics::dynamics::transmission;
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
@@ -41,10 +42,31 @@ pub struct BiasScratch {
     force: Vec<Spatial>,
 }
 
-/// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`: springs `-k (q - springref)`, dampers `-d v`, and the recursive
+/// Computes the lengths of tendons and actuators, and their rates: `ten_length, ten_velocity, actuator_length, actuator_velocity`.
+#[inline(always)]
+fn lengths(model: &Model, s: &mut State) {
+    for t in 0..model.ntendon() {
+        s.ten_length[t] = tendon_length(model, &s.qpos, t);
+        s.ten_velocity[t] = tendon_velocity(model, s, t);
+    }
+    // as in MuJoCo, which leaves the rates of the lengths out with the forces
+    let acting = model.opt.flags.actuation;
+    for i in 0..model.nu() {
+        let gear = transmission::gear(s, i);
+        s.actuator_length[i] = gear * transmission::length(model, &s.qpos, i);
+        s.actuator_velocity[i] = if acting {
+            gear * transmission::velocity(model, &s.qvel, i)
+        } else {
+            0.0
+        };
+    }
+}
+
+/// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`, lengths of tendons and actuators and their rates: springs `-k (q - springref)`, dampers `-d v`, and the recursive
 /// Newton-Euler algorithm at zero joint acceleration.
 #[inline(always)]
 pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
+    lengths(model, s);
     com_vel(model, s);
     let nb = model.nbody();
     scratch.acc.resize(nb, [0.0; 6]);
@@ -123,15 +145,16 @@ fn pull(model: &Model, s: &mut State, tendon: usize) {
     if stiffness == 0.0 && damping == 0.0 {
         return;
     }
-    let (length, [shortest, longest]) = (tendon_length(model, &s.qpos, tendon), model.tendon_lengthspring[tendon]);
+    let wrap = &model.tendon_wrap[tendon];
+    let (length, [shortest, longest]) = (s.ten_length[tendon], model.tendon_lengthspring[tendon]);
     let mut force = 0.0;
     if length > longest {
         force = stiffness * (longest - length);
     } else if length < shortest {
         force = stiffness * (shortest - length);
     }
-    force -= damping * tendon_velocity(model, s, tendon);
-    for &(j, coef) in &model.tendon_wrap[tendon] {
+    force -= damping * s.ten_velocity[tendon];
+    for &(j, coef) in wrap {
         s.qfrc_passive[model.jnt_dofadr[j]] += coef * force;
     }
 }

@@ -7,7 +7,6 @@ mod touch;
 use crate::math::*;
 use crate::model::{DataType, Model, SensorType};
 use crate::physics::constraint::ConstraintType;
-use crate::physics::dynamics::{tendon_length, tendon_velocity, transmission};
 use crate::physics::ray::nearest_geom;
 use crate::physics::spatial::{angular, linear, torque_at};
 use crate::physics::state::State;
@@ -54,12 +53,10 @@ fn value(model: &Model, s: &State, scratch: &SubtreeScratch, sensor: usize) -> [
         JointPos => scalar(s.qpos[model.jnt_qposadr[id]]),
         JointVel => scalar(s.qvel[model.jnt_dofadr[id]]),
         JointActFrc => scalar(s.qfrc_actuator[model.jnt_dofadr[id]]),
-        TendonPos => scalar(tendon_length(model, &s.qpos, id)),
-        TendonVel => scalar(tendon_velocity(model, s, id)),
-        ActuatorPos => scalar(transmission::gear(s, id) * transmission::length(model, &s.qpos, id)),
-        // as in MuJoCo, which leaves the rates of the lengths out with the forces
-        ActuatorVel if !model.opt.flags.actuation => scalar(0.0),
-        ActuatorVel => scalar(transmission::gear(s, id) * transmission::velocity(model, &s.qvel, id)),
+        TendonPos => scalar(s.ten_length[id]),
+        TendonVel => scalar(s.ten_velocity[id]),
+        ActuatorPos => scalar(s.actuator_length[id]),
+        ActuatorVel => scalar(s.actuator_velocity[id]),
         ActuatorFrc => scalar(s.actuator_force[id]),
         JointLimitPos | JointLimitVel | JointLimitFrc => scalar(limit(s, ConstraintType::LimitJoint, kind, id)),
         TendonLimitPos | TendonLimitVel | TendonLimitFrc => scalar(limit(s, ConstraintType::LimitTendon, kind, id)),

@@ -1,0 +1,74 @@
+"""MuJoCo's names on the engine of this package, without MuJoCo: models from MJCF documents, states, steps, pictures.
+
+Example:
+    >>> from babybench import mujoco
+    >>> ball = "<mujoco><worldbody><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>"
+    >>> model = mujoco.MjModel.from_xml_string(ball)
+    >>> data = mujoco.MjData(model)
+    >>> mujoco.mj_step(model, data, nstep=100)
+    >>> bool(data.qpos[2] < -0.19)
+    True
+
+Names, shapes, number types and units are those of MuJoCo 3.3.0, and so are the numbers, to rounding. What the engine
+does not have is refused with an error that says what to do; it is never left out in silence. :func:`install` lets
+``import mujoco`` mean this module, with which Gymnasium's own MuJoCo environments run unchanged.
+"""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from babybench_core.mujoco import enums as _enums
+from babybench_core.mujoco import functions as _functions
+from babybench_core.mujoco import jacobians as _jacobians
+from babybench_core.mujoco import maths as _maths
+from babybench_core.mujoco.data import MjData
+from babybench_core.mujoco.enums import *  # noqa: F403
+from babybench_core.mujoco.functions import *  # noqa: F403
+from babybench_core.mujoco.installing import install, uninstall
+from babybench_core.mujoco.jacobians import *  # noqa: F403
+from babybench_core.mujoco.maths import *  # noqa: F403
+from babybench_core.mujoco.model import MjModel, MjOption
+from babybench_core.mujoco.renderer import MjvCamera, Renderer, mjv_defaultCamera, mjv_defaultFreeCamera
+
+stands_in = True
+"""Tells this module from MuJoCo's own."""
+
+__version__ = "3.3.0"
+"""The version of MuJoCo whose names and meaning are kept."""
+
+mjMINVAL = 1e-15
+mjMAXVAL = 1e10
+mjPI = 3.141592653589793
+mjNREF, mjNIMP, mjNEQDATA, mjNDYN, mjNGAIN, mjNBIAS = 2, 5, 11, 10, 10, 10
+
+__all__ = [
+    "MjData",
+    "MjModel",
+    "MjOption",
+    "MjvCamera",
+    "Renderer",
+    "__version__",
+    "install",
+    "mjMAXVAL",
+    "mjMINVAL",
+    "mjNBIAS",
+    "mjNDYN",
+    "mjNEQDATA",
+    "mjNGAIN",
+    "mjNIMP",
+    "mjNREF",
+    "mjPI",
+    "mjv_defaultCamera",
+    "mjv_defaultFreeCamera",
+    "stands_in",
+    "uninstall",
+]
+__all__ += _enums.__all__ + _functions.__all__ + _jacobians.__all__ + _maths.__all__
+
+
+def __getattr__(name: str) -> NoReturn:
+    raise AttributeError(
+        f"babybench.mujoco has no {name}: `pip install mujoco` and `import mujoco` have everything. "
+        f"It has {', '.join(__all__)}"
+    )

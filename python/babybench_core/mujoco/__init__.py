@@ -1,0 +1,1 @@
+"""What :mod:`babybench.mujoco` is made of: MuJoCo's names on the engine of this package."""

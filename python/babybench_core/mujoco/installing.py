@@ -1,0 +1,78 @@
+"""Lets ``import mujoco`` mean :mod:`babybench.mujoco`, for programs that are to run unchanged."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from types import ModuleType
+
+__all__ = ["install", "uninstall"]
+
+_NAME = "mujoco"
+_RENDERING = "gymnasium.envs.mujoco.mujoco_rendering"
+_ENVIRONMENTS = "gymnasium.envs.mujoco.mujoco_env"
+
+
+def _own() -> dict[str, ModuleType]:
+    names = {_NAME: "babybench.mujoco", _RENDERING: "babybench_core.mujoco.gymnasium_rendering"}
+    return {name: importlib.import_module(own) for name, own in names.items()}
+
+
+def _real(module: ModuleType | None) -> bool:
+    """Tells whether a module is MuJoCo's own, not one that stands in for it."""
+    return module is not None and not getattr(module, "stands_in", False)
+
+
+def install() -> ModuleType:
+    """Lets ``import mujoco`` mean :mod:`babybench.mujoco` in this process, and lets Gymnasium draw without OpenGL.
+
+    Gymnasium's own MuJoCo environments then run unchanged on the engine of this package, whether MuJoCo is installed or
+    not. Call it before anything imports ``mujoco``; calling it again does nothing.
+
+    Example:
+        >>> import babybench.mujoco
+        >>> _ = babybench.mujoco.install()
+        >>> import gymnasium
+        >>> env = gymnasium.make("Ant-v5")
+
+    Returns:
+        The module :mod:`babybench.mujoco`.
+
+    Raises:
+        RuntimeError: MuJoCo itself was imported already, or Gymnasium's environments with what stood in for it; nothing
+            is changed.
+    """
+    own = _own()
+    present = sys.modules.get(_NAME)
+    if present is own[_NAME]:
+        return present
+    environments = sys.modules.get(_ENVIRONMENTS)
+    if _real(present):
+        raise RuntimeError(
+            f"MuJoCo itself was imported already ({getattr(present, '__file__', None)}): what has it would go on with it. Call "
+            "babybench.mujoco.install() before anything imports mujoco, or import babybench.mujoco under a name of its own"
+        )
+    if environments is not None and getattr(environments, _NAME, None) is not own[_NAME]:
+        raise RuntimeError(
+            "gymnasium.envs.mujoco was imported already: call babybench.mujoco.install() before it is, and before the first "
+            "gymnasium.make of one of its environments"
+        )
+    sys.modules.update(own)
+    return own[_NAME]
+
+
+def uninstall() -> None:
+    """Takes :func:`install` back for imports that are still to come; modules that have imported ``mujoco`` keep what they have.
+
+    Raises:
+        RuntimeError: Gymnasium's environments were imported meanwhile: they would mix both.
+    """
+    own = _own()
+    if sys.modules.get(_NAME) is not own[_NAME]:
+        return
+    if _ENVIRONMENTS in sys.modules:
+        raise RuntimeError(
+            "gymnasium.envs.mujoco has been imported and keeps babybench.mujoco: start another process for MuJoCo itself"
+        )
+    for name in own:
+        sys.modules.pop(name, None)

@@ -1,0 +1,429 @@
+"""The model: :class:`MjModel`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _native
+from ..named import KINDS, PREFIX, Named, accessor, numbers, span
+
+_FIXED = (
+    "model.{name} cannot be changed here: change the document and make another model. What can be changed are the numbers that "
+    "steps read, as body_mass, geom_friction, jnt_stiffness, actuator_gainprm, opt.timestep and opt.gravity"
+)
+_MISSING = "{name}: babybench.mujoco does not have it; `pip install mujoco` and `import mujoco` have everything"
+
+_SINGLES = frozenset(
+    f"{kind}_{name}"
+    for kind, names in {
+        "geom": ("rgba",),
+        "site": ("rgba",),
+        "light": ("ambient", "diffuse", "specular", "attenuation", "cutoff", "exponent"),
+        "mat": ("rgba", "specular", "shininess", "reflectance", "emission", "texrepeat"),
+    }.items()
+    for name in names
+)
+"""What MuJoCo stores in single precision."""
+
+_USERS = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
+_OWN = frozenset({"exclude", "pair_geom", "dof_m0", "texture", "material", "text_data"})
+"""What the engine keeps in a form that MuJoCo does not have."""
+_ADDRESSES = {"body_jntadr": "body_jntnum", "body_dofadr": "body_dofnum", "body_geomadr": "body_geomnum"}
+_SIZES = (
+    *(
+        "nq",
+        "nv",
+        "nu",
+        "na",
+        "nbody",
+        "njnt",
+        "ngeom",
+        "nsite",
+        "ncam",
+        "neq",
+        "ntendon",
+        "nsensor",
+        "nsensordata",
+        "npair",
+    ),
+    *("nkey", "nlight", "nexclude"),
+)
+_POSITION, _VELOCITY, _ACCELERATION = 1, 2, 3
+_VELOCITY_SENSORS = frozenset({2, 3, 10, 12, 14, 20, 23, 30, 31, 35, 36})
+_ACCELERATION_SENSORS = frozenset({0, 1, 4, 5, 15, 16, 21, 24, 32, 33})
+
+
+class FixedArray(np.ndarray[Any, np.dtype[Any]]):
+    """An array of a model that cannot be changed, which says so to whoever tries."""
+
+    _name: str
+
+    def __array_finalize__(self, obj: Any) -> None:
+        """Keeps the name."""
+        self._name = getattr(obj, "_name", "")
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        """Refuses, unless it is a copy."""
+        self._check()
+        super().__setitem__(key, value)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, out: Any = None, **options: Any) -> Any:
+        """Computes with plain arrays, and never into one that is fixed."""
+        if out is not None:
+            for array in out:
+                if isinstance(array, FixedArray):
+                    array._check()
+            options["out"] = tuple(_plain(array) for array in out)
+        return getattr(ufunc, method)(*(_plain(array) for array in inputs), **options)
+
+    def _check(self) -> None:
+        if not self.flags.writeable:
+            raise ValueError(_FIXED.format(name=self._name))
+
+
+def _plain(array: Any) -> Any:
+    return array.view(np.ndarray) if isinstance(array, FixedArray) else array
+
+
+def _fixed(array: NDArray[Any], name: str) -> FixedArray:
+    fixed = np.array(array).view(FixedArray)
+    fixed._name = name
+    fixed.flags.writeable = False
+    return fixed
+
+
+def views(memory: NDArray[np.float64], layout: list[tuple[str, list[int]]]) -> dict[str, NDArray[np.float64]]:
+    """Returns the arrays that lie one after another in a piece of memory."""
+    found, at = {}, 0
+    for name, shape in layout:
+        size = int(np.prod(shape))
+        found[name] = memory[at : at + size].reshape(shape)
+        at += size
+    return found
+
+
+class MjOption:
+    """The options of a model, ``model.opt``."""
+
+    def __init__(
+        self, native: _native.PhysicsModel, floats: dict[str, NDArray[np.float64]], settings: dict[str, Any]
+    ) -> None:
+        """Shows the options of a model."""
+        names = (
+            "iterations",
+            "ls_iterations",
+            "ccd_iterations",
+            "integrator",
+            "solver",
+            "cone",
+            "jacobian",
+            "disableflags",
+        )
+        wholes = {name: int(settings[name]) for name in names}
+        wholes.update(enableflags=0, noslip_iterations=0, disableactuator=0)
+        self.__dict__.update(_own=native, _floats=floats, _wholes=wholes)
+
+    def __getattr__(self, name: str) -> Any:
+        """Returns an option."""
+        floats, wholes = self.__dict__.get("_floats", {}), self.__dict__.get("_wholes", {})
+        if name in floats:
+            array = floats[name]
+            return array if name in ("gravity", "wind", "magnetic") else float(array[0])
+        if name in wholes:
+            return wholes[name]
+        raise AttributeError(_MISSING.format(name=f"opt.{name}"))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Sets an option; steps take it from now on."""
+        if name in self._floats:
+            self._floats[name][...] = value
+        elif name in self._wholes:
+            if int(value) != self._wholes[name]:
+                self._own.set_option(name, int(value))
+                self._wholes[name] = int(value)
+        else:
+            raise AttributeError(_MISSING.format(name=f"opt.{name}"))
+
+    def __dir__(self) -> list[str]:
+        return sorted([*self._floats, *self._wholes])
+
+
+class Settings:
+    """Numbers of a model that do not change, or change nothing: ``model.stat``, ``model.vis`` and what is in it."""
+
+    def __init__(self, of: str, values: dict[str, Any], free: tuple[str, ...] = ()) -> None:
+        """Takes values over; those of ``free`` names can be set."""
+        self.__dict__.update(values)
+        self.__dict__.update(_of=of, _free=free)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self._free:
+            raise AttributeError(_FIXED.format(name=f"{self._of}.{name}"))
+        self.__dict__[name] = type(self.__dict__[name])(value)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(_MISSING.format(name=f"{self.__dict__.get('_of', '')}.{name}"))
+
+
+class MjModel(Named):
+    """A compiled model, under the names and in the shapes of MuJoCo's ``MjModel``.
+
+    Arrays that steps read can be written to, and the next step takes what is written: masses, sizes, poses, friction, solver
+    parameters, gains (:attr:`writable` lists them). As in MuJoCo, nothing that was derived from them follows. The others say that
+    they cannot be changed.
+    """
+
+    writable: tuple[str, ...]
+    """The names of the arrays that can be written to."""
+
+    def __init__(self) -> None:
+        """Refuses: models are made from documents."""
+        raise TypeError("make models with MjModel.from_xml_path(path) or MjModel.from_xml_string(text)")
+
+    @classmethod
+    def from_xml_path(cls, filename: str | os.PathLike[str], assets: Mapping[str, bytes] | None = None) -> MjModel:
+        """Compiles an MJCF document; files that it names are found beside it.
+
+        Args:
+            filename: Path of the document.
+            assets: Contents of files by name, in place of those beside the document.
+
+        Raises:
+            ValueError: The document cannot be read, or has something that the engine does not know, with the place.
+        """
+        path = os.fspath(filename)
+        if assets:
+            try:
+                with open(path, encoding="utf-8") as file:
+                    text = file.read()
+            except OSError as error:
+                raise ValueError(f"{path}: {error.strerror}") from error
+            return cls.from_xml_string(text, assets)
+        return cls._made(_native.PhysicsModel.from_file(path))
+
+    @classmethod
+    def from_xml_string(cls, xml: str, assets: Mapping[str, bytes] | None = None) -> MjModel:
+        """Compiles the text of an MJCF document.
+
+        Args:
+            xml: The text.
+            assets: Contents of the files that it names.
+
+        Raises:
+            ValueError: As :meth:`from_xml_path`.
+        """
+        files = {name: bytes(content) for name, content in (assets or {}).items()}
+        return cls._made(_native.PhysicsModel.from_text(xml, files))
+
+    @classmethod
+    def from_binary_path(cls, filename: str, assets: Any = None) -> MjModel:
+        """Refuses: compiled models of MuJoCo's (MJB) are not read."""
+        raise ValueError(
+            f"{filename}: compiled models (MJB) are not read here; use the document, with MjModel.from_xml_path"
+        )
+
+    @classmethod
+    def _made(cls, native: _native.PhysicsModel) -> MjModel:
+        self = cls.__new__(cls)
+        settings, extras = native.settings(), native.extras()
+        names = {kind: list(found) for kind, found in native.names().items()}
+        changeable = views(native.memory, native.layout)
+        floats = {name[4:]: array for name, array in changeable.items() if name.startswith("opt_")}
+        arrays = {name: array for name, array in changeable.items() if not name.startswith("opt_")}
+        own = self.__dict__
+        own.update({name: int(settings[name]) for name in _SIZES})
+        own.update(_own=native, _names=names, _numbers=numbers(names), _arrays=arrays, _extras=extras, _chains={})
+        own.update(arrays)
+        own["writable"] = tuple(arrays)
+        own.update(ntex=len(names["texture"]), nmat=len(names["material"]), nnumeric=len(names["numeric"]))
+        own.update(ntext=len(names["text"]), nmocap=0, nuserdata=0, nplugin=0, nmesh=0, nwrap=len(extras["wrap_objid"]))
+        own["opt"] = MjOption(native, floats, settings)
+        stat = {name: settings[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
+        own["stat"] = Settings("stat", {**stat, "center": _fixed(settings["center"], "stat.center")})
+        sizes = ("offwidth", "offheight")
+        whole = Settings("vis.global_", {name: settings[name] for name in ("fovy", *sizes)}, sizes)
+        planes = Settings("vis.map", {name: settings[name] for name in ("znear", "zfar")})
+        own["vis"] = Settings("vis", {"global_": whole, "map": planes})
+        return self
+
+    def __getattr__(self, name: str) -> Any:
+        """Returns an array by MuJoCo's name; it is read once."""
+        if name.startswith("_") or "_own" not in self.__dict__:
+            raise AttributeError(name)
+        value = self._derived(name)
+        if value is None:
+            raise AttributeError(_MISSING.format(name=f"model.{name}"))
+        if isinstance(value, np.ndarray):
+            value = _fixed(value, name)
+        self.__dict__[name] = value
+        return value
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Writes into an array that can be changed."""
+        if name not in self._arrays:
+            if name not in self.__dict__ and self._derived(name) is None:
+                raise AttributeError(_MISSING.format(name=f"model.{name}"))
+            raise AttributeError(_FIXED.format(name=name))
+        self._arrays[name][...] = value
+
+    def __copy__(self) -> MjModel:
+        return MjModel._made(self._own.copy())
+
+    def __deepcopy__(self, memo: Any) -> MjModel:
+        return self.__copy__()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "cannot pickle a model: make it from its document where it is needed, with MjModel.from_xml_path"
+        )
+
+    def __dir__(self) -> list[str]:
+        names = [*self.__dict__, *_DERIVED, *self._extras, *_native.PhysicsModel.ARRAYS, *super().__dir__()]
+        return sorted(
+            {name for name in names if not name.startswith("_") and name not in _OWN} | {"texture", "material"}
+        )
+
+    def _compiled(self, name: str) -> NDArray[Any]:
+        array = np.asarray(self._own.array(name))
+        if array.dtype == np.bool_:
+            return array.astype(np.uint8)
+        return array.astype(np.float32) if name in _SINGLES else array
+
+    def _derived(self, name: str) -> Any:
+        """Returns what MuJoCo has and the engine keeps in another form, or nothing."""
+        if name in _DERIVED:
+            return _DERIVED[name](self)
+        if name in _OWN:
+            return None
+        if name.endswith("_user") and name[:-5] in _USERS:
+            count = len(self._names[_KIND_OF.get(name[:-5], name[:-5])])
+            array = self._compiled(name)
+            return array if array.size else np.zeros((count, 0))
+        if name.startswith("nuser_") and name[6:] in _USERS:
+            return getattr(self, f"{name[6:]}_user").shape[1]
+        if name in _ADDRESSES:
+            return np.where(self._compiled(_ADDRESSES[name]) == 0, np.int32(-1), self._compiled(name))
+        if name in self._extras:
+            value = np.asarray(self._extras[name])
+            if value.dtype == np.bool_:
+                return value.astype(np.uint8)
+            return value.astype(np.float32) if name in _SINGLES else value
+        if name in _native.PhysicsModel.ARRAYS:
+            return self._compiled(name)
+        return None
+
+    def _part(self, kind: str, number: int, name: str) -> Any:
+        """Returns the part of an array that belongs to an element."""
+        if kind == "joint" and name in ("qpos0", "qpos_spring"):
+            return span(getattr(self, name), self.jnt_qposadr, number)
+        if kind == "joint" and name in (
+            "armature",
+            "damping",
+            "frictionloss",
+            "invweight0",
+            "M0",
+            "Madr",
+            "jntid",
+            "parentid",
+        ):
+            return span(getattr(self, f"dof_{name}"), self.jnt_dofadr, number)
+        if kind == "numeric" and name == "data":
+            first = self.numeric_adr[number]
+            return self.numeric_data[first : first + self.numeric_size[number]]
+        array: NDArray[Any] = getattr(self, f"{PREFIX.get(kind, kind)}_{name}")
+        return array[number] if array.ndim > 1 else array[number : number + 1]
+
+
+_KIND_OF = {"jnt": "joint", "cam": "camera"}
+
+
+def _keys(name: str, size: str) -> Callable[[MjModel], Any]:
+    return lambda m: np.asarray(m._extras[name]).reshape(m.nkey, getattr(m, size))
+
+
+def _starts(counts: NDArray[Any]) -> NDArray[np.int32]:
+    starts: NDArray[np.int32] = (np.cumsum(counts) - counts).astype(np.int32)
+    return starts
+
+
+def _trees(m: MjModel) -> NDArray[np.int32]:
+    """Returns the number of the tree of each body: -1 for those that cannot move."""
+    roots: dict[int, int] = {}
+    found = np.full(m.nbody, -1, np.int32)
+    parents, moves = m.body_parentid, m.body_dofnum
+    for body in range(1, m.nbody):
+        above = found[parents[body]]
+        if above < 0 and moves[body]:
+            above = roots.setdefault(body, len(roots))
+        found[body] = above
+    return found
+
+
+def _matrix_addresses(m: MjModel) -> NDArray[np.int32]:
+    """Returns where the row of each degree of freedom starts in ``qM``."""
+    depth = np.zeros(m.nv, np.int32)
+    for dof, parent in enumerate(m.dof_parentid):
+        depth[dof] = 1 + (depth[parent] if parent >= 0 else 0)
+    return _starts(depth)
+
+
+def matrix_places(m: MjModel) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Returns the row and the column in full of each number of ``qM``."""
+    found = m.__dict__.get("_places")
+    if found is None:
+        rows, columns = [], []
+        parents = m.dof_parentid
+        for dof in range(m.nv):
+            other = dof
+            while other >= 0:
+                rows.append(dof)
+                columns.append(other)
+                other = int(parents[other])
+        found = np.array(rows, np.intp), np.array(columns, np.intp)
+        m.__dict__["_places"] = found
+    places: tuple[NDArray[np.intp], NDArray[np.intp]] = found
+    return places
+
+
+def _stages(m: MjModel) -> NDArray[np.int32]:
+    def stage(kind: int) -> int:
+        if kind in _VELOCITY_SENSORS:
+            return _VELOCITY
+        return _ACCELERATION if kind in _ACCELERATION_SENSORS else _POSITION
+
+    return np.array([stage(int(kind)) for kind in m.sensor_type], np.int32)
+
+
+_DERIVED: dict[str, Callable[[MjModel], Any]] = {
+    "dof_M0": lambda m: m._compiled("dof_m0"),
+    "dof_Madr": _matrix_addresses,
+    "dof_treeid": lambda m: m.body_treeid[m.dof_bodyid],
+    "body_treeid": _trees,
+    "body_mocapid": lambda m: np.full(m.nbody, -1, np.int32),
+    "nM": lambda m: len(matrix_places(m)[0]),
+    "ntree": lambda m: int(m.body_treeid.max(initial=-1)) + 1,
+    "pair_geom1": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 0],
+    "pair_geom2": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 1],
+    "exclude_signature": lambda m: m._compiled("exclude").reshape(-1, 2) @ np.array([1 << 16, 1], np.int32),
+    "actuator_trnid": lambda m: np.stack([m._compiled("actuator_trnid"), np.full(m.nu, -1, np.int32)], axis=1),
+    "actuator_actnum": lambda m: (m._compiled("actuator_actadr") >= 0).astype(np.int32),
+    "sensor_needstage": _stages,
+    "tendon_adr": lambda m: _starts(m.tendon_num),
+    "numeric_size": lambda m: np.array([len(data) for data in m._extras["numeric_data"]], np.int32),
+    "numeric_adr": lambda m: _starts(m.numeric_size),
+    "numeric_data": lambda m: np.array([value for data in m._extras["numeric_data"] for value in data], np.float64),
+    "key_qpos": _keys("key_qpos", "nq"),
+    "key_qvel": _keys("key_qvel", "nv"),
+    "key_act": _keys("key_act", "na"),
+    "key_ctrl": _keys("key_ctrl", "nu"),
+    "key_mpos": lambda m: np.zeros((m.nkey, 0)),
+    "key_mquat": lambda m: np.zeros((m.nkey, 0)),
+}
+
+for _name, _kind in {**KINDS, "light": "light", "key": "key", "keyframe": "key", "numeric": "numeric"}.items():
+    setattr(MjModel, _name, accessor(_kind))

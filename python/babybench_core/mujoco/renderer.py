@@ -1,0 +1,199 @@
+"""Pictures: :class:`Renderer` and :class:`MjvCamera`, drawn without a GPU or a driver."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _native
+from .data import MjData
+from .enums import mjtCamera, mjtObj
+from .jacobians import check
+from .model import MjModel
+
+__all__ = ["MjvCamera", "Renderer", "mjv_defaultCamera", "mjv_defaultFreeCamera"]
+
+
+class MjvCamera:
+    """A camera: one of the model, or a free one that looks at a point or follows a body.
+
+    Attributes:
+        type: One of ``mjtCamera``: free, tracking or fixed.
+        fixedcamid: Camera of the model, where the type is fixed.
+        trackbodyid: Body whose centre of mass with all below it is looked at, where the type is tracking.
+        lookat: Point that a free camera looks at, world, m.
+        distance: Distance from it, m.
+        azimuth: Direction of view about the vertical axis, degrees.
+        elevation: Direction of view above the horizon, degrees.
+    """
+
+    __slots__ = ("azimuth", "distance", "elevation", "fixedcamid", "lookat", "trackbodyid", "type")
+
+    def __init__(self) -> None:
+        """Makes the free camera of MuJoCo."""
+        self.type = int(mjtCamera.mjCAMERA_FREE)
+        self.fixedcamid = self.trackbodyid = -1
+        self.lookat = np.zeros(3)
+        self.distance, self.azimuth, self.elevation = 2.0, 90.0, -45.0
+
+
+def mjv_defaultCamera(cam: MjvCamera) -> None:
+    """Makes a camera the free one that MuJoCo starts with."""
+    new = MjvCamera()
+    for name in MjvCamera.__slots__:
+        setattr(cam, name, getattr(new, name))
+
+
+def mjv_defaultFreeCamera(m: MjModel, cam: MjvCamera) -> None:
+    """Makes a camera a free one that sees the whole model."""
+    mjv_defaultCamera(cam)
+    cam.lookat[:] = m.stat.center
+    cam.distance = 1.5 * m.stat.extent
+
+
+def draw(
+    native: _native.PhysicsRenderer, data: MjData, camera: MjvCamera, size: tuple[int, int], what: str
+) -> NDArray[Any]:
+    """Draws what the arrays of a state show: ``rgb``, ``depth`` (m) or ``segmentation`` (ids of geoms); size is width, height."""
+    fixed: int | None = None
+    lookat = camera.lookat
+    if camera.type == mjtCamera.mjCAMERA_FIXED:
+        fixed = int(camera.fixedcamid)
+        if not 0 <= fixed < data.model.ncam:
+            raise ValueError(f"camera id {fixed} is out of range [-1, {data.model.ncam}]")
+    elif camera.type == mjtCamera.mjCAMERA_TRACKING:
+        if not 0 <= camera.trackbodyid < data.model.nbody:
+            raise ValueError(f"there is no body {camera.trackbodyid} to follow; the model has {data.model.nbody}")
+        lookat = data.subtree_com[camera.trackbodyid]
+    elif camera.type != mjtCamera.mjCAMERA_FREE:
+        raise ValueError(
+            "a camera of the type user is placed by OpenGL's own matrices: use a free, tracking or fixed one"
+        )
+    if not data.xquat[0].any():
+        raise ValueError("nothing is computed of this state: call mj_forward before a picture")
+    free = (tuple(map(float, lookat)), float(camera.distance), float(camera.azimuth), float(camera.elevation))
+    return native.draw(data._own, fixed, free, size, what)
+
+
+class Renderer:
+    """Draws states of a model, as MuJoCo's ``Renderer`` does, without shadows and reflections."""
+
+    def __init__(self, model: MjModel, height: int = 240, width: int = 320, max_geom: int = 10000) -> None:
+        """Takes the size of pictures, pixels."""
+        if not isinstance(model, MjModel):
+            raise TypeError(
+                f"Renderer needs an MjModel of babybench.mujoco, not {type(model).__module__}.{type(model).__name__}"
+            )
+        self._model, self._width, self._height = model, int(width), int(height)
+        self._native: _native.PhysicsRenderer | None = _native.PhysicsRenderer(model._own)
+        self._data: MjData | None = None
+        self._camera = MjvCamera()
+        self._what = "rgb"
+
+    @property
+    def model(self) -> MjModel:
+        """The model that is drawn."""
+        return self._model
+
+    @property
+    def height(self) -> int:
+        """Height of pictures, pixels."""
+        return self._height
+
+    @property
+    def width(self) -> int:
+        """Width of pictures, pixels."""
+        return self._width
+
+    def update_scene(self, data: MjData, camera: int | str | MjvCamera = -1, scene_option: Any = None) -> None:
+        """Takes the state and the camera of the next picture.
+
+        Args:
+            data: The state; it is drawn as it is when :meth:`render` is called.
+            camera: A camera of the model, by number or name, a :class:`MjvCamera`, or -1 for a free one that sees all.
+            scene_option: What MuJoCo shows or leaves out; only none.
+
+        Raises:
+            ValueError: The model has no such camera.
+            NotImplementedError: ``scene_option`` is given.
+        """
+        check(self._model, data)
+        if scene_option is not None:
+            raise NotImplementedError(
+                "scene_option is not served: pictures show geoms of the groups 0 to 2 and sites, as MuJoCo's default"
+            )
+        if isinstance(camera, MjvCamera):
+            self._camera = camera
+        else:
+            number = camera
+            if isinstance(number, str):
+                names = self._model._names["camera"]
+                if number not in names:
+                    raise ValueError(f'The camera "{number}" does not exist.')
+                number = names.index(number)
+            if not -1 <= number < self._model.ncam:
+                raise ValueError(f"The camera id {number} is out of range [-1, {self._model.ncam}).")
+            self._camera = MjvCamera()
+            mjv_defaultFreeCamera(self._model, self._camera)
+            if number >= 0:
+                self._camera.type, self._camera.fixedcamid = int(mjtCamera.mjCAMERA_FIXED), number
+        self._data = data
+
+    def enable_depth_rendering(self) -> None:
+        """Draws distances from the camera's plane from now on."""
+        self._what = "depth"
+
+    def disable_depth_rendering(self) -> None:
+        """Draws colours from now on."""
+        self._what = "rgb"
+
+    def enable_segmentation_rendering(self) -> None:
+        """Draws ids and kinds of elements from now on."""
+        self._what = "segmentation"
+
+    def disable_segmentation_rendering(self) -> None:
+        """Draws colours from now on."""
+        self._what = "rgb"
+
+    def render(self, *, out: NDArray[Any] | None = None) -> NDArray[Any]:
+        """Draws the picture, rows from the top.
+
+        Args:
+            out: Memory for it; fresh memory otherwise.
+
+        Returns:
+            Red, green and blue, (height, width, 3) bytes; or distances, (height, width), m, the far plane's where there
+            is nothing; or ids and kinds (``mjtObj``), (height, width, 2), -1 where there is no geom.
+
+        Raises:
+            RuntimeError: There was no :meth:`update_scene` before, or the renderer is closed.
+        """
+        if self._native is None:
+            raise RuntimeError("render cannot be called after close.")
+        if self._data is None:
+            raise RuntimeError("call update_scene(data) before render()")
+        picture = draw(self._native, self._data, self._camera, (self._width, self._height), self._what)
+        if self._what == "depth":
+            far = self._model.vis.map.zfar * self._model.stat.extent
+            picture = np.minimum(picture, np.float32(far))
+        elif self._what == "segmentation":
+            kinds = np.where(picture >= 0, np.int32(mjtObj.mjOBJ_GEOM), np.int32(-1))
+            picture = np.stack([picture, kinds], axis=2)
+        if out is None:
+            return picture
+        if np.shape(out) != picture.shape:
+            raise ValueError(f"Expected `out.shape == {picture.shape}`. Got `out.shape={np.shape(out)}` instead.")
+        out[...] = picture
+        return out
+
+    def close(self) -> None:
+        """Gives the memory back; no picture can be drawn any more."""
+        self._native = self._data = None
+
+    def __enter__(self) -> Renderer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

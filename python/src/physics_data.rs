@@ -1,0 +1,419 @@
+//! A state of any model, and the engine that advances it: MuJoCo's `mjData`.
+
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+
+use babybench::model::{IntegratorType, Model, SensorType};
+use babybench::physics::{Engine, EngineError, SoftEngine, State, rne_post_constraint};
+use babybench::render::{FreeCamera, ImageBuffers, Poses, RenderRequest, Renderer, View};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{ToArray, shaped};
+use crate::errors::{IntoException, detached};
+use crate::physics_fields::{COMPUTED, CONSTRAINTS, GROUPS, INPUT, POST, part, read_inputs, state_layout, write_state};
+use crate::physics_model::{PhysicsModel, params};
+use crate::state;
+
+/// Steps between two looks at whether somebody has pressed Ctrl-C.
+const UNINTERRUPTED: usize = 1000;
+
+impl IntoException for EngineError {
+    fn into_exception(self) -> PyErr {
+        let text = self.to_string();
+        match self {
+            Self::NoKeyframe { .. } => PyIndexError::new_err(text),
+            Self::NotFinite { .. } | Self::NotPositive { .. } => PyValueError::new_err(text),
+            _ => PyRuntimeError::new_err(text),
+        }
+    }
+}
+
+/// What a state of Python's holds.
+struct Inner {
+    engine: SoftEngine,
+    state: State,
+    /// A second state for what is computed without contacts and constraints.
+    aside: Option<State>,
+    version: u64,
+    model: Arc<Model>,
+}
+
+/// A state of a model.
+#[pyclass(frozen, module = "babybench_core._native")]
+pub struct PhysicsData {
+    inner: Mutex<Inner>,
+    model: Py<PhysicsModel>,
+    memory: Py<PyArray1<f64>>,
+    active: Py<PyArray1<u8>>,
+}
+
+/// Tells whether MuJoCo computes accelerations of bodies in each step, as a sensor reads them.
+fn reads_accelerations(model: &Model) -> bool {
+    use SensorType::{Accelerometer, Force, FrameAngAcc, FrameLinAcc, Torque};
+    let reads = |kind: &SensorType| matches!(kind, Accelerometer | Force | Torque | FrameLinAcc | FrameAngAcc);
+    model.opt.flags.sensor && model.sensor_type.iter().any(reads)
+}
+
+impl PhysicsData {
+    fn guard(&self) -> PyResult<MutexGuard<'_, Inner>> {
+        self.inner.try_lock().map_err(|e| {
+            PyRuntimeError::new_err(match e {
+                TryLockError::WouldBlock => "another thread is using the state: give each thread one of its own",
+                TryLockError::Poisoned(_) => "the state is broken: make another",
+            })
+        })
+    }
+
+    /// Computes with what a program has written into the arrays of the model and of the state.
+    fn with<R: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Inner) -> Result<R, EngineError> + Send,
+    ) -> PyResult<(MutexGuard<'_, Inner>, R)> {
+        let now = self.model.get().now(py)?;
+        let mut guard = self.guard()?;
+        if guard.version != now.version {
+            guard.engine = now.soft.engine();
+            guard.version = now.version;
+            guard.model = now.model;
+        }
+        {
+            let (memory, active) = (
+                self.memory.bind(py).try_readonly()?,
+                self.active.bind(py).try_readonly()?,
+            );
+            read_inputs(memory.as_slice()?, &mut guard.state);
+            guard.state.params = params(&guard.model, active.as_slice()?);
+        }
+        let inner = &mut *guard;
+        let done = detached(py, || work(inner))?;
+        Ok((guard, done))
+    }
+
+    fn show(&self, py: Python<'_>, state: &State, groups: u32) -> PyResult<()> {
+        let mut memory = self.memory.bind(py).try_readwrite()?;
+        write_state(state, groups, memory.as_slice_mut()?);
+        Ok(())
+    }
+}
+
+/// Advances by some time steps.
+fn steps(inner: &mut Inner, count: usize) -> Result<(), EngineError> {
+    (0..count).try_for_each(|_| inner.engine.step(&mut inner.state))
+}
+
+#[pymethods]
+impl PhysicsData {
+    #[new]
+    fn new(py: Python<'_>, model: Py<PhysicsModel>) -> PyResult<Self> {
+        let now = model.get().now(py)?;
+        let engine = now.soft.engine();
+        let state = engine.new_state();
+        let mut memory = Vec::new();
+        for (_, _, shape) in state_layout(&state) {
+            memory.resize(memory.len() + shape.iter().product::<usize>(), 0.0);
+        }
+        write_state(&state, INPUT, &mut memory);
+        let active = now.model.eq_active0.iter().map(|&on| u8::from(on));
+        Ok(Self {
+            memory: PyArray1::from_vec(py, memory).unbind(),
+            active: PyArray1::from_iter(py, active).unbind(),
+            inner: Mutex::new(Inner {
+                engine,
+                state,
+                aside: None,
+                version: now.version,
+                model: now.model,
+            }),
+            model,
+        })
+    }
+
+    /// Returns the memory of all arrays.
+    #[getter]
+    fn memory<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.memory.bind(py).clone()
+    }
+
+    /// Returns which equality constraints hold.
+    #[getter]
+    fn eq_active<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
+        self.active.bind(py).clone()
+    }
+
+    /// Returns names, groups and shapes of what lies in the memory, in its order.
+    #[getter]
+    fn layout(&self) -> PyResult<Vec<(&'static str, u32, Vec<usize>)>> {
+        Ok(state_layout(&self.guard()?.state))
+    }
+
+    /// Returns the groups of arrays by name.
+    #[classattr]
+    #[allow(non_snake_case)]
+    fn GROUPS(py: Python<'_>) -> PyResult<Py<PyDict>> {
+        let groups = PyDict::new(py);
+        for (name, bit) in GROUPS {
+            groups.set_item(name, bit)?;
+        }
+        Ok(groups.unbind())
+    }
+
+    /// Starts anew: everything zero but the positions, or those of a keyframe with what else it sets.
+    #[pyo3(signature = (key=None))]
+    fn reset(&self, py: Python<'_>, key: Option<usize>) -> PyResult<()> {
+        let (mut guard, ()) = self.with(py, |_| Ok(()))?;
+        let inner = &mut *guard;
+        let mut state = inner.engine.new_state();
+        if let Some(key) = key {
+            inner
+                .engine
+                .reset_to_keyframe(&mut state, key)
+                .map_err(IntoException::into_exception)?;
+        }
+        inner.state = state;
+        {
+            let mut active = self.active.bind(py).try_readwrite()?;
+            for (to, &on) in active.as_slice_mut()?.iter_mut().zip(&inner.model.eq_active0) {
+                *to = u8::from(on);
+            }
+            self.memory.bind(py).try_readwrite()?.as_slice_mut()?.fill(0.0);
+        }
+        self.show(py, &inner.state, INPUT)
+    }
+
+    /// Advances by some time steps.
+    fn step(&self, py: Python<'_>, count: usize) -> PyResult<()> {
+        let mut left = count;
+        while left > 0 {
+            let now = left.min(UNINTERRUPTED);
+            left -= now;
+            let (guard, start) = self.with(py, |inner| {
+                let shows = reads_accelerations(&inner.model);
+                if !shows || inner.model.opt.integrator != IntegratorType::Rk4 {
+                    steps(inner, now)?;
+                    return Ok(shows.then_some(None));
+                }
+                // on the way to the end of a step of Runge and Kutta MuJoCo computes no sensors, nor what they need
+                steps(inner, now - 1)?;
+                let mut start = inner.state.clone();
+                inner.engine.forward(&mut start)?;
+                steps(inner, 1)?;
+                Ok(Some(Some(start)))
+            })?;
+            self.show(py, &guard.state, INPUT | COMPUTED)?;
+            match &start {
+                Some(Some(start)) => self.show(py, start, POST)?,
+                Some(None) => self.show(py, &guard.state, POST)?,
+                None => {}
+            }
+            drop(guard);
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
+    /// Computes everything without advancing, and shows some groups of arrays. Without constraints among them, contacts and their
+    /// forces stay those of before; without accelerations, the solver's start does.
+    fn forward(&self, py: Python<'_>, groups: u32) -> PyResult<()> {
+        let (guard, post) = self.with(py, |inner| {
+            let Inner {
+                engine,
+                state,
+                aside,
+                model,
+                ..
+            } = inner;
+            if groups & CONSTRAINTS == 0 {
+                let other = aside.get_or_insert_with(|| state.clone());
+                other.copy_dynamic_from(state);
+                engine.forward(other)?;
+            } else {
+                engine.forward(state)?;
+            }
+            Ok(reads_accelerations(model) && groups & INPUT != 0)
+        })?;
+        let groups = if post { groups | POST } else { groups };
+        let state = if groups & CONSTRAINTS == 0 {
+            guard.aside.as_ref()
+        } else {
+            None
+        };
+        self.show(py, state.unwrap_or(&guard.state), groups)
+    }
+
+    /// Computes what follows from accelerations and the forces of constraints at the velocities of now.
+    fn rne_post_constraint(&self, py: Python<'_>) -> PyResult<()> {
+        let (guard, ()) = self.with(py, |inner| {
+            inner.engine.check_shape(&inner.state)?;
+            rne_post_constraint(&inner.model, &mut inner.state, true);
+            Ok(())
+        })?;
+        self.show(py, &guard.state, POST)
+    }
+
+    /// Returns the values of the sensors as they were last computed.
+    fn sensordata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.guard()?.state.sensordata[..].to_array(py)
+    }
+
+    /// Takes over everything from another state of the same model.
+    fn copy_from(&self, py: Python<'_>, other: &Self) -> PyResult<()> {
+        if std::ptr::eq(self, other) {
+            return Ok(());
+        }
+        let theirs = other.guard()?;
+        let mut ours = self.guard()?;
+        if self.memory.bind(py).len()? != other.memory.bind(py).len()? {
+            return Err(PyValueError::new_err("the states are of models of other sizes"));
+        }
+        ours.state.clone_from(&theirs.state);
+        let memory = other.memory.bind(py).to_vec()?;
+        self.memory
+            .bind(py)
+            .try_readwrite()?
+            .as_slice_mut()?
+            .copy_from_slice(&memory);
+        let active = other.active.bind(py).to_vec()?;
+        self.active
+            .bind(py)
+            .try_readwrite()?
+            .as_slice_mut()?
+            .copy_from_slice(&active);
+        Ok(())
+    }
+
+    /// Returns the contacts as arrays, one entry for each.
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        state::contacts(py, &self.guard()?.state)
+    }
+
+    /// Returns the number of contacts and of rows of constraints.
+    #[getter]
+    fn counts(&self) -> PyResult<(usize, usize)> {
+        let guard = self.guard()?;
+        Ok((guard.state.contact.len(), guard.state.nefc()))
+    }
+
+    /// Returns the rows of constraints as arrays, one entry for each.
+    fn rows<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let guard = self.guard()?;
+        let (rows, dict) = (guard.state.efc_rows().collect::<Vec<_>>(), PyDict::new(py));
+        dict.set_item("type", PyArray1::from_iter(py, rows.iter().map(|r| r.kind as i32)))?;
+        dict.set_item("id", PyArray1::from_iter(py, rows.iter().map(|r| r.id as i32)))?;
+        macro_rules! numbers {
+            ($($name:literal $field:ident)*) => {$(
+                dict.set_item($name, PyArray1::from_iter(py, rows.iter().map(|r| r.$field)))?;
+            )*};
+        }
+        numbers!("pos" pos "margin" margin "R" r "vel" vel "aref" aref "force" force);
+        dict.set_item("D", PyArray1::from_iter(py, rows.iter().map(|r| 1.0 / r.r)))?;
+        Ok(dict)
+    }
+
+    /// Returns the Jacobian of the constraints in full, (nefc, nv).
+    fn jacobian<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let guard = self.guard()?;
+        let (count, nv) = (guard.state.nefc(), guard.model.nv);
+        let rows = (0..count).flat_map(|row| guard.engine.efc_j(&guard.state, row).unwrap_or_default());
+        shaped(py, &rows.collect::<Vec<_>>(), &[count, nv])
+    }
+
+    /// Returns the joint-space inertia matrix in full, (nv, nv).
+    fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let guard = self.guard()?;
+        let nv = guard.model.nv;
+        shaped(py, &guard.engine.full_m(&guard.state), &[nv, nv])
+    }
+}
+
+/// Draws states of a model.
+#[pyclass(frozen, module = "babybench_core._native")]
+pub struct PhysicsRenderer {
+    renderer: Mutex<Renderer>,
+}
+
+#[pymethods]
+impl PhysicsRenderer {
+    #[new]
+    fn new(py: Python<'_>, model: &PhysicsModel) -> PyResult<Self> {
+        let renderer = Mutex::new(Renderer::cpu(model.scenery(py)?));
+        Ok(Self { renderer })
+    }
+
+    /// Draws what the arrays of a state show, from a camera or from a free one (point, distance, azimuth, elevation): colours
+    /// (height, width, 3), distances or ids of geoms (height, width).
+    fn draw<'py>(
+        &self,
+        py: Python<'py>,
+        data: &PhysicsData,
+        camera: Option<usize>,
+        free: ([f64; 3], f64, f64, f64),
+        size: [usize; 2],
+        what: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let [width, height] = size;
+        let (lookat, distance, azimuth, elevation) = free;
+        let camera_pose = FreeCamera {
+            lookat,
+            distance,
+            azimuth,
+            elevation,
+        }
+        .pose()
+        .map_err(IntoException::into_exception)?;
+        let view = View {
+            camera: camera.unwrap_or(View::FREE),
+            width,
+            height,
+        };
+        view.check().map_err(IntoException::into_exception)?;
+        let guard = data.guard()?;
+        let memory = data.memory.bind(py).try_readonly()?;
+        let memory = memory.as_slice()?;
+        let state = &guard.state;
+        let vectors = |name| part(state, memory, name).as_chunks::<3>().0;
+        let matrices = |name| part(state, memory, name).as_chunks::<9>().0;
+        let poses = Poses {
+            geom_xpos: vectors("geom_xpos"),
+            geom_xmat: matrices("geom_xmat"),
+            geom_size: &guard.model.geom_size,
+            site_xpos: vectors("site_xpos"),
+            site_xmat: matrices("site_xmat"),
+            cam_xpos: vectors("cam_xpos"),
+            cam_xmat: matrices("cam_xmat"),
+            free: Some(camera_pose),
+            xpos: vectors("xpos"),
+            xmat: matrices("xmat"),
+            subtree_com: vectors("subtree_com"),
+        };
+        // waiting for another thread here, with Python's lock held, could last for ever
+        let mut guard_of_renderer = self.renderer.try_lock().map_err(|_| {
+            PyRuntimeError::new_err("another thread is using the renderer: give each thread one of its own")
+        })?;
+        let renderer = &mut *guard_of_renderer;
+        let request = [RenderRequest { poses, view }];
+        let (mut rgb, mut depth, mut ids) = (Vec::new(), Vec::new(), Vec::new());
+        let images = match what {
+            "rgb" => {
+                rgb.resize(view.rgb_len(), 0);
+                ImageBuffers::rgb(&mut rgb)
+            }
+            "depth" => {
+                depth.resize(view.pixels(), 0.0);
+                ImageBuffers::depth(&mut depth)
+            }
+            _ => {
+                ids.resize(view.pixels(), 0);
+                ImageBuffers::segmentation(&mut ids)
+            }
+        };
+        detached(py, || renderer.draw(&request, [images]))?;
+        match what {
+            "rgb" => shaped(py, &rgb, &[height, width, 3]),
+            "depth" => shaped::<f32>(py, &depth, &[height, width]),
+            _ => shaped::<i32>(py, &ids, &[height, width]),
+        }
+    }
+}
