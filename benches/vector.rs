@@ -4,8 +4,10 @@
 //!   environments, seeds and actions. Figures are medians of the ratios of pairs; the spread is between the quartiles.
 //!   Threads are compared by the clock, which needs a machine that does nothing else, and by the time that all processors
 //!   spend; loops by the latter.
+//! - `crowd`: a step in a vector of many environments against the same steps in one environment alone, one thread, by processor time:
+//!   what it costs that environments take turns in the caches.
 //! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
-//! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps.
+//! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps; how long it takes to make one.
 
 #[path = "../tests/common/allocations.rs"]
 mod allocations;
@@ -37,12 +39,16 @@ fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
 }
 
 fn vector(blueprint: &Blueprint, threads: usize) -> VectorEnv {
+    vector_of(ENVS, blueprint, threads)
+}
+
+fn vector_of(n: usize, blueprint: &Blueprint, threads: usize) -> VectorEnv {
     let options = VectorOptions {
         threads,
         autoreset: AutoresetMode::NextStep,
         ..VectorOptions::default()
     };
-    let mut envs = VectorEnv::new(blueprint, ENVS, options).expect("available");
+    let mut envs = VectorEnv::new(blueprint, n, options).expect("available");
     envs.reset(0).expect("no divergence");
     envs
 }
@@ -220,6 +226,55 @@ fn threads(name: &str, blueprint: &Blueprint) {
     );
 }
 
+/// Environments of the vectors whose steps are compared with those of one alone.
+const CROWDS: [usize; 3] = [8, 64, 512];
+/// Courses of each, by turns, and steps of a course.
+const COURSES: usize = 7;
+const COURSE: usize = 25;
+
+/// Both do the same work: the course of each environment of the vector is made by one environment, too, one after the other.
+fn crowd(name: &str, blueprint: &Blueprint) {
+    for n in CROWDS {
+        let mut many = vector_of(n, blueprint, 1);
+        let mut one = blueprint.env().expect("available");
+        let len = one.action_space().len();
+        let courses = COURSES * 64 / n.min(64);
+        let (mut ratios, mut us) = (Vec::new(), [Vec::new(), Vec::new()]);
+        for course in 0..courses as u64 {
+            many.reset(course).expect("no divergence");
+            let actions = |_| {
+                let mut actions = Vec::new();
+                many.sample_actions(&mut actions).expect("all are here");
+                actions
+            };
+            let actions: Vec<Vec<f32>> = (0..COURSE).map(actions).collect();
+            many.reset(course).expect("no divergence");
+            let start = cpu_time();
+            for actions in &actions {
+                black_box(many.step(actions).expect("valid actions"));
+            }
+            let together = cpu_time() - start;
+            let mut alone = 0.0;
+            for env in 0..n {
+                one.reset(Some(course + env as u64)).expect("no divergence");
+                let start = cpu_time();
+                for actions in &actions {
+                    black_box(one.step(&actions[env * len..(env + 1) * len]).expect("no divergence"));
+                }
+                alone += cpu_time() - start;
+            }
+            ratios.push(together / alone);
+            us.iter_mut()
+                .zip([together, alone])
+                .for_each(|(us, t)| us.push(t * 1e6 / (COURSE * n) as f64));
+        }
+        let [low, median, high] = quartiles(ratios);
+        let [together, alone] = us.map(|us| quartiles(us)[1]);
+        let what = format!("crowd/{name}, {n} environments over one");
+        println!("{what:60} {median:.3} times ({low:.3} .. {high:.3}); {together:8.1} and {alone:8.1} us per step");
+    }
+}
+
 /// Steps of one environment in each half of a pair.
 const EYE_STEPS: usize = 64;
 
@@ -279,14 +334,16 @@ fn resident_memory() -> f64 {
 
 fn memory(name: &str, blueprint: &Blueprint) {
     let (mut live, mut resident) = (Vec::new(), Vec::new());
-    let mut kept = Vec::new();
+    let (mut kept, mut made) = (Vec::new(), Vec::new());
     for n in [8, 40] {
         let (before, resident_before) = (allocations::live(), resident_memory());
         let options = VectorOptions {
             threads: 1,
             ..VectorOptions::default()
         };
+        let start = cpu_time();
         let mut envs = VectorEnv::new(blueprint, n, options).expect("available");
+        made.push((cpu_time() - start) * 1e3 / n as f64);
         envs.reset(0).expect("no divergence");
         let mut actions = Vec::new();
         for _ in 0..50 {
@@ -298,10 +355,11 @@ fn memory(name: &str, blueprint: &Blueprint) {
         kept.push(envs);
     }
     println!(
-        "{:60} {:.3} MB, of which {:.3} MB are resident",
+        "{:60} {:.3} MB, of which {:.3} MB are resident; made in {:.3} ms",
         format!("memory/{name}/a further environment"),
         (live[1] - live[0]) / 32.0,
-        (resident[1] - resident[0]) / 32.0
+        (resident[1] - resident[0]) / 32.0,
+        made[1]
     );
 }
 
@@ -319,6 +377,9 @@ fn main() {
         let blueprint = Blueprint::new(config).expect("available");
         if wants(&format!("eyes/{name}")) && blueprint.config().vision_active {
             self::eyes(name, &blueprint);
+        }
+        if wants(&format!("crowd/{name}")) {
+            crowd(&format!("{name}, {eyes}"), &blueprint);
         }
         if wants(&format!("memory/{name}")) {
             memory(&format!("{name}, {eyes}"), &blueprint);

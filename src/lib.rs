@@ -147,6 +147,7 @@ pub mod report;
 #[cfg(feature = "eval")]
 pub mod runs;
 pub mod sensors;
+mod shelf;
 pub mod spaces;
 mod text;
 mod threads;

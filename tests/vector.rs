@@ -25,15 +25,20 @@ fn invariant_4_vectors_allocate_nothing_after_warm_up_and_take_what_is_foreseen(
                 threads,
                 ..VectorOptions::default()
             };
+            let before = allocations::of_all_threads()[0];
             let mut envs = VectorEnv::new(&blueprint(config(name)), 4, options).expect("memory and threads");
-            // what a course needs for its contacts and pictures, it has after the first time
+            assert!(allocations::of_all_threads()[0] > before, "the allocator counts");
+            // what a course needs for its contacts and pictures, an engine has when it has stepped every environment through it; which
+            // thread steps which differs from course to course
             let warm_up = course(&mut envs);
-            let calls = course(&mut envs);
+            let courses = 1 + (1..=10).take_while(|_| course(&mut envs) > 0).count();
             println!(
-                "{name:18} {mode:?}, {threads} threads: {warm_up} calls in the first course, {calls} in the second"
+                "{name:18} {mode:?}, {threads} threads: {warm_up} calls in the first course, none after {courses}"
             );
-            assert!(warm_up > 0, "the allocator counts");
-            assert_eq!(calls, 0, "{name}, {mode:?}, {threads} threads");
+            assert!(
+                courses <= if threads == 1 { 1 } else { 10 },
+                "{name}, {mode:?}, {threads} threads"
+            );
         }
         memory(name);
     }
@@ -99,7 +104,6 @@ fn memory(name: &str) {
         found < 1.3 * each as f64 && each as f64 <= 1.3 * found,
         "{name}: {found} {each}"
     );
-    // measured: 1.34 (no vision), 2.95 and 1.47 (vision)
-    let goal = if blueprint.config().vision_active { 3.0e6 } else { 1.5e6 };
-    assert!(found <= goal, "{name}: {found}");
+    // measured: 0.70, 0.64, 0.72
+    assert!(found <= 1e6, "{name}: {found}");
 }

@@ -108,12 +108,13 @@ impl Env {
 
     /// Returns the physics engine.
     pub fn engine(&self) -> &dyn Engine {
-        &*self.physics.engine
+        self.physics.reader()
     }
 
-    /// Returns the physics engine, to advance copies of the state with it.
+    /// Returns a physics engine, to advance copies of the state with it. Engines remember nothing; this one is made at the first call,
+    /// and the environment steps with it from then on.
     pub fn engine_mut(&mut self) -> &mut dyn Engine {
-        &mut *self.physics.engine
+        self.physics.own_engine()
     }
 
     /// Returns the senses: what they consist of, and what they felt last.

@@ -5,16 +5,15 @@ use std::sync::{Arc, OnceLock};
 use crate::actuation;
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
+use crate::env::engines::{EngineSource, Engines};
 use crate::env::pipeline::effective;
 use crate::env::snapshot::fingerprint;
 use crate::env::task::{TaskScene, TaskSizes, of_config};
 use crate::env::{Env, EnvError, Task};
 use crate::mimo::{build_scene, embedded, lock, scene_assets};
 use crate::model::Model;
-use crate::physics::{Engine, Params, SoftModel, SoftOptions};
-#[cfg(feature = "rapier")]
-use crate::physics::{RapierModel, RapierOptions};
-use crate::render::{RenderError, Renderer, Scenery, SharedGpu, open_gpu};
+use crate::physics::{Engine, Params};
+use crate::render::{RenderError, Renderer, Scenery, SharedGpu, SharedMemory, open_gpu};
 use crate::sensors::SkinLayout;
 use crate::spaces::NumpyRng;
 
@@ -37,7 +36,7 @@ pub struct Blueprint {
     task: Box<dyn Task>,
     sizes: TaskSizes,
     model: Arc<Model>,
-    engines: Engines,
+    engines: Arc<Engines>,
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
@@ -56,6 +55,8 @@ struct Surface {
     skin: Option<Arc<SkinLayout>>,
     /// Meshes and textures, made when they are first needed.
     scenery: Arc<OnceLock<Arc<Scenery>>>,
+    /// The memory in which the eyes of environments are drawn on the CPU.
+    painting: SharedMemory,
     /// The renderer on a GPU, opened when it is first needed.
     gpu: Arc<OnceLock<SharedGpu>>,
 }
@@ -191,6 +192,7 @@ impl Blueprint {
             given,
             skin,
             scenery: Arc::default(),
+            painting: SharedMemory::default(),
             gpu: Arc::default(),
         };
         let blueprint = Self::settled(config, task, model, surface)?;
@@ -202,7 +204,7 @@ impl Blueprint {
 
     /// Binds the task to a model and lets it settle the scene.
     fn settled(config: Config, mut task: Box<dyn Task>, model: Arc<Model>, surface: Surface) -> Result<Self, EnvError> {
-        let engines = Engines::new(&config, &model)?;
+        let engines = Arc::new(Engines::new(&config, &model)?);
         let sizes = task.bind(&config, &model)?;
         let settled = Settled::new(&config, &*task, &engines, &model)?;
         Ok(Self {
@@ -297,6 +299,11 @@ impl Blueprint {
         self.engines.make()
     }
 
+    /// Returns the engines of this blueprint's environments.
+    pub(super) fn engines(&self) -> &Arc<Engines> {
+        &self.engines
+    }
+
     /// Returns the configuration.
     pub fn config(&self) -> &Config {
         &self.config
@@ -362,6 +369,14 @@ impl Blueprint {
         }
     }
 
+    /// Creates the renderer of an environment's eyes, which draw in memory that the environments of the blueprint share.
+    pub(super) fn eyes_renderer(&self) -> Result<Renderer, EnvError> {
+        match self.config.renderer {
+            RendererKind::Cpu => Ok(Renderer::sharing(self.scenery()?, self.surface.painting.clone())),
+            RendererKind::Wgpu => self.renderer(),
+        }
+    }
+
     /// Returns the renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
     /// whatever renderer the configuration asks for.
     ///
@@ -406,47 +421,6 @@ fn make_skin(
     Ok(layout(&original_model)?.scaled(&original_model, model))
 }
 
-/// A maker of engines of one kind for one model.
-#[derive(Clone, Debug)]
-enum Engines {
-    Soft(SoftModel),
-    #[cfg(feature = "rapier")]
-    Rapier(RapierModel),
-}
-
-impl Engines {
-    fn new(config: &Config, model: &Arc<Model>) -> Result<Self, EnvError> {
-        let (model, double_weld_torque) = (model.clone(), config.compat == Compat::Reference);
-        Ok(match config.engine {
-            EngineKind::Soft => {
-                let options = SoftOptions {
-                    double_weld_torque,
-                    ..SoftOptions::default()
-                };
-                Self::Soft(SoftModel::new(model, options))
-            }
-            #[cfg(feature = "rapier")]
-            EngineKind::Rapier => {
-                let options = RapierOptions {
-                    double_weld_torque,
-                    ..RapierOptions::default()
-                };
-                Self::Rapier(RapierModel::new(model, options)?)
-            }
-            #[cfg(not(feature = "rapier"))]
-            EngineKind::Rapier => return Err(EnvError::NoRapier),
-        })
-    }
-
-    fn make(&self) -> Box<dyn Engine> {
-        match self {
-            Self::Soft(shared) => Box::new(shared.engine()),
-            #[cfg(feature = "rapier")]
-            Self::Rapier(shared) => Box::new(shared.engine()),
-        }
-    }
-}
-
 /// A scene after it came to rest.
 struct Settled {
     qpos: Vec<f64>,
@@ -459,8 +433,7 @@ impl Settled {
     /// reset on.
     fn new(config: &Config, task: &dyn Task, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
         let actuation = actuation::build(model, config)?;
-        let mut engine = engines.make();
-        let mut state = engine.new_state();
+        let mut state = engines.reader().new_state();
         actuation.prepare(model, &mut state);
         let mut params = state.params.clone();
         for part in Part::ALL {
@@ -477,7 +450,7 @@ impl Settled {
             model,
             state: &mut state,
             rng: &mut NumpyRng::seed(config.seed),
-            engine: &mut *engine,
+            engine: EngineSource::Shared(engines),
             base: &mut params,
             actuation: &*actuation,
             delay: None,

@@ -6,6 +6,7 @@ mod age;
 mod blueprint;
 mod by_hand;
 mod details;
+mod engines;
 pub(crate) mod error;
 mod eyes;
 mod fields;
@@ -109,12 +110,7 @@ impl Clone for Env {
     fn clone(&self) -> Self {
         Self {
             blueprint: self.blueprint.clone(),
-            physics: Physics {
-                // an engine remembers nothing that changes a later step
-                engine: self.blueprint.engine(),
-                state: self.physics.state.clone(),
-                base: self.physics.base.clone(),
-            },
+            physics: self.physics.clone(),
             actuation: self.actuation.clone(),
             action_delay: self.action_delay.clone(),
             senses: self.senses.clone(),
@@ -215,13 +211,14 @@ impl Env {
 
     /// Returns the scene and the task that plays in it.
     fn play(&mut self) -> Play<'_> {
+        let (engine, state, base) = self.physics.parts();
         let scene = TaskScene {
             config: self.blueprint.config(),
             model: self.blueprint.model(),
-            state: &mut self.physics.state,
+            state,
             rng: &mut self.rng,
-            engine: &mut *self.physics.engine,
-            base: &mut self.physics.base,
+            engine,
+            base,
             actuation: &*self.actuation,
             delay: Some(&mut self.action_delay),
             start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
@@ -254,7 +251,7 @@ impl Env {
     /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
         self.set_position(qpos, qvel)?;
-        if let Err(e) = self.physics.engine.forward(&mut self.physics.state) {
+        if let Err(e) = self.physics.forward() {
             self.episode.ready = false;
             return Err(e.into());
         }
@@ -288,14 +285,14 @@ impl Env {
     /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which
     /// [`Env::reset`] is needed; as the renderer.
     pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
-        // the solver leaves its solution in the state as the start of the next one: on a copy, the state keeps its own
-        let mut posed = self.physics.state.clone();
-        if let Err(e) = self.physics.engine.forward(&mut posed) {
+        // the solver leaves its solution in the state as the start of the next one: the state gets its own back
+        let before = self.physics.state.clone();
+        let posed = self.physics.forward();
+        self.physics.state.copy_dynamic_from(&before);
+        if let Err(e) = posed {
             self.episode.ready = false;
             return Err(e.into());
         }
-        posed.copy_dynamic_from(&self.physics.state);
-        self.physics.state = posed;
         let (rng, mut memory) = (self.rng.clone(), Vec::new());
         self.save_memory(&mut memory);
         let sensed = self.sense();

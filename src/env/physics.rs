@@ -1,14 +1,20 @@
-//! The physics of an environment: an engine, the state that it advances, and the parameters that a reset restores.
+//! The physics of an environment: the state that engines advance, and the parameters that a reset restores.
+
+use std::sync::Arc;
 
 use crate::actuation::Actuation;
+use crate::env::engines::{EngineSource, Engines};
 use crate::env::{Blueprint, EnvError};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
 use crate::physics::{Engine, EngineError, Params, State};
 
-/// An engine and the state that it advances.
+/// The state of a scene, and what advances it.
 pub(super) struct Physics {
-    pub engine: Box<dyn Engine>,
+    /// Those that all environments of the blueprint share.
+    engines: Arc<Engines>,
+    /// An engine of its own, for a program that asked for it.
+    own: Option<Box<dyn Engine>>,
     pub state: State,
     /// Parameters after a reset: the blueprint's, with what locks and unlocks changed.
     pub base: Params,
@@ -22,22 +28,60 @@ impl std::fmt::Debug for Physics {
     }
 }
 
+/// A copy shares the engines, which remember nothing that changes a later step.
+impl Clone for Physics {
+    fn clone(&self) -> Self {
+        Self {
+            engines: self.engines.clone(),
+            own: None,
+            state: self.state.clone(),
+            base: self.base.clone(),
+        }
+    }
+}
+
 impl Physics {
     pub fn new(blueprint: &Blueprint, actuation: &dyn Actuation) -> Self {
-        let engine = blueprint.engine();
-        let mut state = engine.new_state();
+        let engines = blueprint.engines().clone();
+        let mut state = engines.reader().new_state();
         actuation.prepare(blueprint.model(), &mut state);
         state.params.clone_from(blueprint.params());
         Self {
-            engine,
+            engines,
+            own: None,
             state,
             base: blueprint.params().clone(),
         }
     }
 
+    /// Returns where steps get their engine from, the state that it advances, and the parameters of a reset.
+    pub fn parts(&mut self) -> (EngineSource<'_>, &mut State, &mut Params) {
+        let source = match &mut self.own {
+            Some(own) => EngineSource::Own(&mut **own),
+            None => EngineSource::Shared(&self.engines),
+        };
+        (source, &mut self.state, &mut self.base)
+    }
+
+    /// Returns an engine that tells what follows from the model.
+    pub fn reader(&self) -> &dyn Engine {
+        self.own.as_deref().unwrap_or_else(|| self.engines.reader())
+    }
+
+    /// Returns an engine of its own, with which the environment goes on from now on.
+    pub fn own_engine(&mut self) -> &mut dyn Engine {
+        &mut **self.own.get_or_insert_with(|| self.engines.make())
+    }
+
+    /// Computes everything that follows from the state.
+    pub fn forward(&mut self) -> Result<(), EngineError> {
+        let (mut engine, state, _) = self.parts();
+        engine.lend(|engine| engine.forward(state))
+    }
+
     /// Checks that the vectors of the state, which a program may change, still fit the model.
     pub fn check_shape(&self) -> Result<(), EngineError> {
-        self.engine.check_shape(&self.state)
+        self.reader().check_shape(&self.state)
     }
 
     /// Locks joints now and for later episodes.

@@ -52,7 +52,7 @@ impl Senses {
         let proprioception = Proprioception::new(model, config, actuation.observation_len());
         let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
         let vision = if config.vision_active {
-            let mut renderer = blueprint.renderer()?;
+            let mut renderer = blueprint.eyes_renderer()?;
             renderer.set_threads(config.vision_threads as usize);
             let eyes = Vision::with_renderer(model, renderer, config.vision_resolution as usize);
             Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?)

@@ -197,7 +197,7 @@ impl Env {
         }
         if self.physics.check_shape().is_err() {
             // a program has cleared a vector, which leaves no room for its numbers
-            self.physics.state = self.physics.engine.new_state();
+            self.physics.state = self.physics.reader().new_state();
             self.actuation.prepare(self.blueprint.model(), &mut self.physics.state);
         }
         let (behavior, memory) = self.parse(&r, counts)?;

@@ -43,7 +43,7 @@ impl Env {
     /// Installs or removes a probe that is told when each stage of a step begins and when the step is done.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
-        self.physics.engine.set_probe(probe.clone().map(|probe| -> Probe {
+        self.physics.own_engine().set_probe(probe.clone().map(|probe| -> Probe {
             Box::new(move |stage| {
                 // between the physics steps the actuation is at work
                 probe(Some(stage.map_or(EnvStage::Actuation, EnvStage::Physics)));

@@ -55,6 +55,7 @@ internals!(use gpu_of_build::SharedGpu);
 pub(crate) use gpu_of_build::{draw_on, open_gpu};
 internals!(use mesh::{Mesh, MeshPart});
 pub use renderer::Renderer;
+pub(crate) use renderer::SharedMemory;
 internals!(use texture::{Face, Level, MAX_TEXTURE, TexturePixels});
 pub use scenery::Scenery;
 pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::gpu_of_build::{SharedGpu, draw_on, scenery_of};
 use super::pair::Pair;
 use super::{CpuRenderer, ImageBuffers, RenderError, RenderRequest, Scenery};
+use crate::shelf::Shelf;
 
 /// A renderer of one scene, on the CPU or on a GPU, that waits for its images.
 #[derive(Debug)]
@@ -16,19 +17,51 @@ pub struct Renderer {
 #[derive(Debug)]
 enum Backend {
     Cpu {
-        renderer: Box<CpuRenderer>,
+        memory: Memory,
+        /// Passes over the scene's geometry by the caller's thread.
+        passes: u64,
         /// The second thread, if there is one, which draws every second image.
         pair: Option<Pair>,
     },
     Gpu(SharedGpu),
 }
 
-/// A copy draws the same scene by as many threads, with memory of its own; on a GPU, both share it.
+/// Renderers on the CPU whose memory those who draw the same scene in turn share.
+pub(crate) type SharedMemory = Arc<Shelf<CpuRenderer>>;
+
+/// The memory in which a renderer draws.
+#[derive(Debug)]
+enum Memory {
+    Own(Box<CpuRenderer>),
+    Shared(SharedMemory),
+}
+
+impl Memory {
+    fn lend<R>(&mut self, work: impl FnOnce(&mut CpuRenderer) -> R) -> R {
+        match self {
+            Self::Own(renderer) => work(renderer),
+            Self::Shared(shelf) => shelf.lend(CpuRenderer::new, work),
+        }
+    }
+}
+
+/// A copy has memory of its own, as the original has, or shares the same.
+impl Clone for Memory {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Own(_) => Self::Own(Box::default()),
+            Self::Shared(shelf) => Self::Shared(shelf.clone()),
+        }
+    }
+}
+
+/// A copy draws the same scene by as many threads; on a GPU, both share it.
 impl Clone for Renderer {
     fn clone(&self) -> Self {
         let backend = match &self.backend {
-            Backend::Cpu { pair, .. } => Backend::Cpu {
-                renderer: Box::default(),
+            Backend::Cpu { memory, pair, .. } => Backend::Cpu {
+                memory: memory.clone(),
+                passes: 0,
                 pair: pair.as_ref().map(|_| Pair::default()),
             },
             Backend::Gpu(gpu) => Backend::Gpu(gpu.clone()),
@@ -43,10 +76,20 @@ impl Clone for Renderer {
 impl Renderer {
     /// Creates a renderer on the CPU.
     pub fn cpu(scenery: Arc<Scenery>) -> Self {
+        Self::in_memory(scenery, Memory::Own(Box::default()))
+    }
+
+    /// Creates a renderer on the CPU that draws in memory which others use, too.
+    pub(crate) fn sharing(scenery: Arc<Scenery>, memory: SharedMemory) -> Self {
+        Self::in_memory(scenery, Memory::Shared(memory))
+    }
+
+    fn in_memory(scenery: Arc<Scenery>, memory: Memory) -> Self {
         Self {
             scenery,
             backend: Backend::Cpu {
-                renderer: Box::default(),
+                memory,
+                passes: 0,
                 pair: None,
             },
         }
@@ -98,7 +141,7 @@ impl Renderer {
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn passes(&self) -> u64 {
         match &self.backend {
-            Backend::Cpu { renderer, pair } => renderer.passes() + pair.as_ref().map_or(0, Pair::passes),
+            Backend::Cpu { passes, pair, .. } => passes + pair.as_ref().map_or(0, Pair::passes),
             Backend::Gpu(_) => 0,
         }
     }
@@ -123,7 +166,8 @@ impl Renderer {
         images: impl IntoIterator<Item = ImageBuffers<'o>>,
     ) -> Result<(), RenderError> {
         match &mut self.backend {
-            Backend::Cpu { renderer, pair } => {
+            Backend::Cpu { memory, passes, pair } => memory.lend(|renderer| {
+                let before = renderer.passes();
                 let mut rest = pairs(requests, images);
                 while let Some(first) = rest.next() {
                     match pair.as_mut().and_then(|pair| Some((pair, rest.next()?))) {
@@ -131,8 +175,9 @@ impl Renderer {
                         None => renderer.draw(&self.scenery, &first.0.poses, &first.0.view, first.1)?,
                     }
                 }
+                *passes += renderer.passes() - before;
                 Ok(())
-            }
+            }),
             Backend::Gpu(gpu) => draw_on(gpu, requests, images),
         }
     }

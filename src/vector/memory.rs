@@ -1,6 +1,5 @@
 //! Estimates the memory that environments take, before they are made.
 
-use crate::config::VisionOutput;
 use crate::env::Env;
 use crate::vector::rows::Layout;
 use crate::vector::{AutoresetMode, VectorError};
@@ -21,17 +20,9 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     // the array of the vector and the vector of the sense; with the ends of episodes, another of each
     let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
     let rows = copies * layout.row_bytes();
-    let renderer = env.senses().vision().map_or(0, |vision| {
-        let (pixels, outputs) = (vision.shape()[0] * vision.shape()[1], env.config().vision_outputs);
-        let has = |output| outputs.contains(output);
-        let colour = has(VisionOutput::Rgb) || has(VisionOutput::Gray);
-        let centre = has(VisionOutput::Depth) || has(VisionOutput::Segmentation);
-        // with both, what each pixel shows is kept twice
-        300_000 + if colour && centre { 32 * pixels } else { 0 }
-    });
-    // engine and state: contacts, bodies and geoms in Rapier, the matrices of the solver
-    let physics = 400_000 + 3_100 * model.ngeom() + 9_500 * model.nv;
-    (rows + renderer + physics + env.transform_memory()) as u64
+    // the state, with room for contacts and their rows; engines and the memory of pictures are shared
+    let state = 340_000 + 300 * model.ngeom() + 1_600 * model.nv;
+    (rows + state + env.transform_memory()) as u64
 }
 
 /// Refuses more environments than fit.

@@ -3,10 +3,11 @@
 use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
+use crate::env::engines::EngineSource;
 use crate::env::{EnvError, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
-use crate::physics::{Engine, Params, State};
+use crate::physics::{Params, State};
 use crate::sensors::Touch;
 use crate::spaces::NumpyRng;
 
@@ -23,7 +24,7 @@ pub struct TaskScene<'a> {
     pub state: &'a mut State,
     /// The generator of the environment's random choices.
     pub rng: &'a mut NumpyRng,
-    pub(in crate::env) engine: &'a mut dyn Engine,
+    pub(in crate::env) engine: EngineSource<'a>,
     /// Parameters after a reset.
     pub(in crate::env) base: &'a mut Params,
     pub(in crate::env) actuation: &'a dyn Actuation,
@@ -108,9 +109,9 @@ impl<'a> TaskScene<'a> {
         if let Some(delay) = &mut self.delay {
             delay.clear();
         }
-        if self.engine.check_shape(self.state).is_err() {
+        if self.engine.reader().check_shape(self.state).is_err() {
             // a program has cleared a vector; what is forgotten need not have been whole
-            *self.state = self.engine.new_state();
+            *self.state = self.engine.reader().new_state();
             self.actuation.prepare(self.model, self.state);
         }
         let s = &mut *self.state;
@@ -130,7 +131,7 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn forward(&mut self) -> Result<(), EnvError> {
-        Ok(self.engine.forward(self.state)?)
+        Ok(self.engine.lend(|engine| engine.forward(self.state))?)
     }
 
     /// Gives an action, of the length of the action space, to the actuators, and makes physics steps.
@@ -222,10 +223,11 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn steps(&mut self, steps: u32) -> Result<(), EnvError> {
-        for _ in 0..steps {
-            self.engine.step(self.state)?;
-        }
-        Ok(())
+        let state = &mut *self.state;
+        let stepped = self
+            .engine
+            .lend(|engine| (0..steps).try_for_each(|_| engine.step(state)));
+        Ok(stepped?)
     }
 
     /// Updates the actuators, as before each physics step of an action but the first.

@@ -1,0 +1,119 @@
+//! The engines that step a blueprint's environments.
+
+use std::sync::Arc;
+
+use crate::config::{Compat, Config, EngineKind};
+use crate::env::EnvError;
+use crate::model::Model;
+use crate::physics::{Engine, SoftModel, SoftOptions};
+#[cfg(feature = "rapier")]
+use crate::physics::{RapierModel, RapierOptions};
+use crate::shelf::Shelf;
+
+/// Where the steps of an environment get their engine from.
+pub(in crate::env) enum EngineSource<'a> {
+    /// From the environment itself, whose engine a program asked for or looks into.
+    Own(&'a mut dyn Engine),
+    /// From those that the environments of a blueprint share.
+    Shared(&'a Engines),
+}
+
+impl EngineSource<'_> {
+    /// Returns an engine that tells what follows from the model.
+    pub fn reader(&self) -> &dyn Engine {
+        match self {
+            Self::Own(engine) => &**engine,
+            Self::Shared(engines) => engines.reader(),
+        }
+    }
+
+    /// Lends an engine for some work.
+    pub fn lend<R>(&mut self, work: impl FnOnce(&mut dyn Engine) -> R) -> R {
+        match self {
+            Self::Own(engine) => work(&mut **engine),
+            Self::Shared(engines) => engines.lend(work),
+        }
+    }
+}
+
+/// The engines of a blueprint. They remember nothing from one step to the next, so the environments share them: a thread that
+/// steps many environments has the working memory of one engine in its cache instead of that of each.
+pub(in crate::env) struct Engines {
+    kind: EngineMaker,
+    /// Answers questions about the model; it never steps.
+    reader: Box<dyn Engine>,
+    idle: Shelf<Box<dyn Engine>>,
+}
+
+impl std::fmt::Debug for Engines {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Engines").field(&self.kind).finish()
+    }
+}
+
+impl Engines {
+    pub fn new(config: &Config, model: &Arc<Model>) -> Result<Self, EnvError> {
+        let kind = EngineMaker::new(config, model)?;
+        Ok(Self {
+            reader: kind.make(),
+            idle: Shelf::default(),
+            kind,
+        })
+    }
+
+    /// Returns an engine that tells what follows from the model.
+    pub fn reader(&self) -> &dyn Engine {
+        &*self.reader
+    }
+
+    /// Makes an engine for whoever keeps it.
+    pub fn make(&self) -> Box<dyn Engine> {
+        self.kind.make()
+    }
+
+    /// Lends an engine for some work.
+    fn lend<R>(&self, work: impl FnOnce(&mut dyn Engine) -> R) -> R {
+        self.idle.lend(|| self.kind.make(), |engine| work(&mut **engine))
+    }
+}
+
+/// A maker of engines of one kind for one model.
+#[derive(Clone, Debug)]
+enum EngineMaker {
+    Soft(SoftModel),
+    #[cfg(feature = "rapier")]
+    Rapier(RapierModel),
+}
+
+impl EngineMaker {
+    fn new(config: &Config, model: &Arc<Model>) -> Result<Self, EnvError> {
+        let (model, double_weld_torque) = (model.clone(), config.compat == Compat::Reference);
+        Ok(match config.engine {
+            EngineKind::Soft => {
+                let options = SoftOptions {
+                    double_weld_torque,
+                    ..SoftOptions::default()
+                };
+                Self::Soft(SoftModel::new(model, options))
+            }
+            #[cfg(feature = "rapier")]
+            EngineKind::Rapier => {
+                let options = RapierOptions {
+                    double_weld_torque,
+                    ..RapierOptions::default()
+                };
+                Self::Rapier(RapierModel::new(model, options)?)
+            }
+            #[cfg(not(feature = "rapier"))]
+            EngineKind::Rapier => return Err(EnvError::NoRapier),
+        })
+    }
+
+    fn make(&self) -> Box<dyn Engine> {
+        match self {
+            Self::Soft(shared) => Box::new(shared.engine()),
+            #[cfg(feature = "rapier")]
+            Self::Rapier(shared) => Box::new(shared.engine()),
+        }
+    }
+}
