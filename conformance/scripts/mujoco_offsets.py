@@ -14,7 +14,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 # Elements that MIMo's scenes have none of, and bookkeeping.
-LEFT_OUT = re.compile(r"^n?(flex|skin|mesh|hfield|key|tuple|text_|numeric|plugin|bvh|mocap|tree|fluid|island|wrap_x)")
+LEFT_OUT = re.compile(r"^n?(flex|skin|mesh|hfield|tuple|text_|plugin|bvh|tree|fluid|island|wrap_x)")
 KINDS = {"mjtNum": "F64", "int": "I32", "mjtByte": "U8", "float": "F32"}
 OPTION = {
     "mjtNum": "timestep impratio tolerance ls_tolerance noslip_tolerance ccd_tolerance gravity",
@@ -96,6 +96,9 @@ def size(text, known):
     """A number of rows or columns: a number, or the name of a size of mjModel or mjData."""
     text = re.sub(r"^MJ_[MD]\((\w+)\)$", r"\1", text)
     text = known.get(text, text)
+    if times := re.match(r"^MJ_M\((\w+)\)\*(\d+)$|^(\w+)\*(\d+)$", text):
+        name, factor = (group for group in times.groups() if group)
+        return f'Size::Times("{name}", {factor})'
     return f"Size::Fixed({text})" if text.isdigit() else f'Size::Named("{text}")'
 
 

@@ -73,6 +73,7 @@ pub fn options<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDic
         ("nv", model.nv),
         ("nu", model.nu()),
         ("na", model.na),
+        ("nmocap", model.nmocap),
         ("nbody", model.nbody()),
         ("njnt", model.njnt()),
         ("ngeom", model.ngeom()),

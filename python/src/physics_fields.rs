@@ -145,7 +145,7 @@ pub const GROUPS: &[(&str, u32)] = &[
 
 fields! { state_fields, state_fields_mut, State;
     INPUT => time = time, qpos = qpos, qvel = qvel, act = act, ctrl = ctrl, qfrc_applied = qfrc_applied,
-        xfrc_applied = xfrc_applied, qacc_warmstart = qacc_warmstart;
+        xfrc_applied = xfrc_applied, mocap_pos = mocap_pos, mocap_quat = mocap_quat, qacc_warmstart = qacc_warmstart;
     KINEMATICS => xpos = xpos, xquat = xquat, xmat = xmat, xipos = xipos, ximat = ximat, xanchor = xanchor, xaxis = xaxis,
         geom_xpos = geom_xpos, geom_xmat = geom_xmat, site_xpos = site_xpos, site_xmat = site_xmat;
     COM => subtree_com = subtree_com, cdof = cdof, cinert = cinert;

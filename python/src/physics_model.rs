@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use babybench::Model;
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
 use babybench::mjcf_loader::{LoadError, load, load_str};
-use babybench::model::{Arrays, CamLight, Flags, IntegratorType, SensorType, SolverType};
+use babybench::model::{Arrays, CamLight, Flags, IntegratorType, Keyframe, SensorType, SolverType};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
 use babybench::render::{RenderError, Scenery};
 use numpy::{PyArray1, PyArrayMethods};
@@ -34,7 +34,7 @@ impl IntoException for RenderError {
 }
 
 table! { ARRAYS, array, Arrays,
-    body_gravcomp body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
+    body_gravcomp body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
     cam_targetbodyid tendon_lengthspring tendon_stiffness tendon_damping
 }
 
@@ -377,6 +377,9 @@ impl PhysicsModel {
             "mat_texuniform" materials texuniform
             "key_time" keys time "key_qpos" keys qpos "key_qvel" keys qvel "key_act" keys act "key_ctrl" keys ctrl
         }
+        let poses = |of: fn(&Keyframe) -> &[f64]| PyArray1::from_iter(py, m.keys.iter().flat_map(of).copied());
+        all.set_item("key_mpos", poses(|key| key.mpos.as_flattened()))?;
+        all.set_item("key_mquat", poses(|key| key.mquat.as_flattened()))?;
         let wraps: Vec<_> = m.tendon_wrap.iter().flatten().collect();
         let numbers: Vec<usize> = m.tendon_wrap.iter().map(Vec::len).collect();
         all.set_item("tendon_num", numbers[..].to_array(py)?)?;

@@ -37,6 +37,8 @@ pub(super) enum Kind {
     UserCount,
     /// Numbers of which the compiler knows how many there must be, as many as a whole state has at most.
     State,
+    /// Numbers of which the compiler knows how many there must be, as many as all bodies have at most.
+    Poses,
     /// Two whole numbers.
     Ints,
 }
@@ -241,6 +243,7 @@ impl Attr {
             }
             Kind::User => numbers(attribute, text, 0, limits.user, Sign::Any, limits.real).map(Value::Reals),
             Kind::State => numbers(attribute, text, 0, limits.state(), Sign::Any, limits.real).map(Value::Reals),
+            Kind::Poses => numbers(attribute, text, 0, 4 * limits.bodies, Sign::Any, limits.real).map(Value::Reals),
             Kind::Ints => {
                 let values = numbers(attribute, text, 2, 2, Sign::Any, f64::from(i32::MAX))?;
                 match values.iter().find(|value| value.fract() != 0.0) {

@@ -33,5 +33,7 @@ table! {
         "qvel" qvel: Vec<f64> = Vec::new(), Kind::State, "Velocities (nv); else 0.";
         "act" act: Vec<f64> = Vec::new(), Kind::State, "Activations (na); else 0.";
         "ctrl" ctrl: Vec<f64> = Vec::new(), Kind::State, "Controls (nu); else 0.";
+        "mpos" mpos: Vec<f64> = Vec::new(), Kind::Poses, "Positions of mocap bodies (3 nmocap), m; else those in the document.";
+        "mquat" mquat: Vec<f64> = Vec::new(), Kind::Poses, "Orientations of mocap bodies (4 nmocap); else those in the document.";
     }
 }

@@ -157,6 +157,7 @@ table! {
         also lights: Vec<Light> = Vec::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
+        "mocap" mocap: bool = false, FLAG, "Whether a program moves it, by `mocap_pos` and `mocap_quat` of the state.";
         "gravcomp" gravcomp: f64 = 0.0, real(Any), "Part of its weight that is compensated.";
         check "childclass", TEXT, "Default class of the elements in it that name none.";
         with frame: Frame;

@@ -340,6 +340,10 @@ pub struct Keyframe {
     pub act: Vec<f64>,
     /// Controls (nu).
     pub ctrl: Vec<f64>,
+    /// Positions of mocap bodies (nmocap), m.
+    pub mpos: Vec<Vec3>,
+    /// Orientations of mocap bodies (nmocap).
+    pub mquat: Vec<Quat>,
 }
 
 /// The shape of the friction cones of contacts (`<option cone>`).

@@ -56,6 +56,8 @@ arrays! {
     nv: usize,
     /// Number of activations.
     na: usize,
+    /// Number of bodies that a program moves.
+    nmocap: usize,
 
     /// Body names (nbody); may be empty.
     body_name: Vec<String>,
@@ -94,6 +96,8 @@ arrays! {
     /// Whether the inertial frame is the body's.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     body_sameframe: Vec<SameFrame>,
+    /// Place in `mocap_pos` and `mocap_quat` of a body that a program moves.
+    body_mocapid: Vec<Option<usize>>,
     /// Part of the weight that is compensated, 0 for none.
     body_gravcomp: Vec<f64>,
     /// Mean inverse weight at `qpos0`: translation 1/kg, rotation 1/(kg m^2).
@@ -479,6 +483,16 @@ impl Arrays {
     /// Returns the number of activations, as the field of that name.
     pub fn na(&self) -> usize {
         self.na
+    }
+
+    /// Returns the number of bodies that a program moves, as the field of that name.
+    pub fn nmocap(&self) -> usize {
+        self.nmocap
+    }
+
+    /// Tells whether a body may move in the world: by joints, or because a program moves it or what it is fixed to.
+    pub(crate) fn moves(&self, body: usize) -> bool {
+        self.body_weldid[body] != 0 || self.body_mocapid[self.body_rootid[body]].is_some()
     }
 
     /// Returns the length of `sensordata`.

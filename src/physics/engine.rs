@@ -51,7 +51,7 @@ pub trait Engine: Send + Sync {
         state.efc.jacobian_row(self.topology(), row)
     }
 
-    /// Sets time, positions, velocities, activations and controls of a state to those of keyframe `key` of the model, and
+    /// Sets time, positions, velocities, activations, controls and mocap poses of a state to those of keyframe `key` of the model, and
     /// everything else that decides how a run goes on to what it is in a new state: forces, warm start and parameters.
     ///
     /// ```
@@ -81,6 +81,8 @@ pub trait Engine: Send + Sync {
         state.qvel.clone_from(&keyframe.qvel);
         state.act.clone_from(&keyframe.act);
         state.ctrl.clone_from(&keyframe.ctrl);
+        state.mocap_pos.clone_from(&keyframe.mpos);
+        state.mocap_quat.clone_from(&keyframe.mquat);
         Ok(())
     }
 

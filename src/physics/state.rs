@@ -84,6 +84,11 @@ table! {
         /// Force and torque applied from outside to each body (nbody) at its centre of mass `xipos`, world: force, N, torque,
         /// N m. They act in every step until they are changed; [`State::apply_force`] adds to them.
         pub xfrc_applied: [[f64; 6]; model.nbody()] finite = [0.0; 6];
+        /// Positions of the bodies that a program moves (nmocap), world, m; `body_mocapid` tells which they are. They have no velocity:
+        /// what is to be thrown or held by one hangs on it by an equality.
+        pub mocap_pos: [Vec3; model.nmocap] finite => mocap(model).map(|b| model.body_pos[b]).collect();
+        /// Orientations of the bodies that a program moves (nmocap); they need not have unit length.
+        pub mocap_quat: [Quat; model.nmocap] finite => mocap(model).map(|b| model.body_quat[b]).collect();
         /// Start of the solver (nv): the last acceleration.
         pub qacc_warmstart: [f64; model.nv] = 0.0;
         /// Parameters that may change.
@@ -183,6 +188,11 @@ table! {
         /// gravity, m/s^2; angular velocity, rad/s; torque that the parent exerts on the site's body about the site, N m.
         pub sensordata: [f64; model.nsensordata()] = 0.0;
     }
+}
+
+/// Iterates over the bodies that a program moves, in their order.
+fn mocap(model: &Arrays) -> impl Iterator<Item = usize> {
+    (1..model.nbody()).filter(|&b| model.body_mocapid[b].is_some())
 }
 
 impl State {

@@ -124,6 +124,84 @@ fn keyframes_set_the_whole_state() {
 }
 
 #[test]
+fn a_mocap_body_goes_where_the_program_says_and_pulls_what_is_welded_to_it() {
+    let mut engine = engine(
+        r#"<mujoco><option gravity="0 0 0"/><worldbody>
+             <body name="led" mocap="true" pos="0 0 1"><geom type="box" size=".1 .1 .1"/>
+               <body name="tip" pos="0 0 .2"><geom name="tip" size=".02"/></body></body>
+             <body name="ball" pos="1 0 1"><freejoint/><geom name="ball" size=".1" contype="0" conaffinity="0"/></body>
+             <body name="obstacle" pos="0 0 2"><freejoint/><geom name="obstacle" size=".1"/></body></worldbody>
+             <equality><weld body1="led" body2="ball"/></equality>
+             <keyframe><key mpos="0 0 3" mquat="0 2 0 0"/></keyframe></mujoco>"#,
+    );
+    let model = engine.model().clone();
+    let [led, tip, ball] = ["led", "tip", "ball"].map(|name| model.body(name).expect("there"));
+    assert_eq!(
+        (model.nmocap, model.body_mocapid[led], model.body_mocapid[tip]),
+        (1, Some(0), None)
+    );
+    let mut state = engine.new_state();
+    assert_eq!(
+        (state.mocap_pos[0], state.mocap_quat[0]),
+        ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0])
+    );
+    engine.step(&mut state).expect("steps");
+    // what stood still moves; a quaternion need not have unit length
+    (state.mocap_pos[0], state.mocap_quat[0]) = ([0.0, 0.0, 1.75], [0.0, 0.0, 0.0, 5.0]);
+    let mut copy = engine.new_state();
+    copy.copy_dynamic_from(&state);
+    for s in [&mut state, &mut copy] {
+        engine.step(s).expect("steps");
+    }
+    assert_eq!(
+        (state.xpos[led], state.xquat[led]),
+        ([0.0, 0.0, 1.75], [0.0, 0.0, 0.0, 1.0])
+    );
+    assert_eq!(state.xpos[tip], [0.0, 0.0, 1.95]);
+    let names = |k: usize| state.contact[k].geom.map(|g| &model.geom_name[g][..]);
+    assert!((0..state.contact.len()).any(|k| names(k) == ["tip", "obstacle"]));
+    assert_eq!((&copy.qpos, &copy.xpos), (&state.qpos, &state.xpos));
+    for _ in 0..2000 {
+        engine.step(&mut state).expect("steps");
+    }
+    let at = state.xpos[ball];
+    assert!(
+        (at[0] + 1.0).abs() < 1e-3 && at[1].abs() < 1e-3 && (at[2] - 1.75).abs() < 1e-3,
+        "{at:?}"
+    );
+    engine.reset_to_keyframe(&mut state, 0).expect("there");
+    assert_eq!(
+        (state.mocap_pos[0], state.mocap_quat[0]),
+        ([0.0, 0.0, 3.0], [0.0, 1.0, 0.0, 0.0])
+    );
+    state.mocap_pos[0][1] = f64::NAN;
+    let error = engine.step(&mut state).expect_err("not a number").to_string();
+    assert!(error.starts_with("state.mocap_pos[1] is NaN"), "{error}");
+}
+
+#[test]
+fn mocap_bodies_stand_in_the_world_without_joints() {
+    for body in [
+        "<body mocap='true'><joint/><geom size='.1'/></body>",
+        "<body><body mocap='true'><geom size='.1'/></body></body>",
+    ] {
+        let text = format!("<mujoco><worldbody>{body}</worldbody></mujoco>");
+        let error = load_str(&text, "m.xml", &MemoryAssets::new())
+            .expect_err("refused")
+            .to_string();
+        assert!(
+            error.ends_with("a mocap body must be a child of the world without joints"),
+            "{error}"
+        );
+    }
+    let text = "<mujoco><worldbody><body mocap='true'/></worldbody><keyframe><key mpos='1 2'/></keyframe></mujoco>";
+    let error = load_str(text, "m.xml", &MemoryAssets::new())
+        .expect_err("refused")
+        .to_string();
+    assert!(error.ends_with("mpos: 2 values, expected 3 to 3"), "{error}");
+}
+
+#[test]
 fn sensors_measure_what_they_say() {
     let mut engine = engine(
         r#"<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/>

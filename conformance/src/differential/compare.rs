@@ -273,6 +273,8 @@ pub fn describe_state(model: &Arc<Model>, recipe: &Recipe) -> String {
         ("act", &state.act),
         ("qfrc_applied", &state.qfrc_applied),
         ("xfrc_applied", state.xfrc_applied.as_flattened()),
+        ("mocap_pos", state.mocap_pos.as_flattened()),
+        ("mocap_quat", state.mocap_quat.as_flattened()),
         ("qacc_warmstart", &state.qacc_warmstart),
     ];
     let given = parts

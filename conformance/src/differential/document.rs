@@ -275,6 +275,9 @@ impl Writer<'_> {
         self.class(&mut body, "childclass");
         self.language.dress(&mut body, "worldbody/body", false, &mut self.dice);
         let joints = self.joints(&mut body, depth);
+        if depth == 0 && !joints && self.dice.chance(0.5) {
+            body.set("mocap", "true");
+        }
         if joints && self.dice.chance(0.3) {
             let mut inertial = Node::new("inertial").with("pos", self.dice.reals(3, 0.1));
             self.language

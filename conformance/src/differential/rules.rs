@@ -436,6 +436,7 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
                 ("name", Placed(&["named"])),
                 ("childclass", Placed(&["stiff"])),
                 ("user", Nothing),
+                ("mocap", Placed(&[])),
                 ("gravcomp", Drawn(0.05, |d| d.log(0.1, 2.0))),
             ],
             FRAME,

@@ -94,6 +94,12 @@ impl Recipe {
                 draw("act", name, std::slice::from_mut(&mut state.act[k]), self.control);
             }
         }
+        for (name, place) in model.body_name.iter().zip(&model.body_mocapid) {
+            if let Some(k) = *place {
+                draw("place", name, &mut state.mocap_pos[k], self.apart.min(0.5));
+                draw("turn", name, &mut state.mocap_quat[k], self.apart);
+            }
+        }
         for (name, wrench) in model.body_name.iter().zip(&mut state.xfrc_applied).skip(1) {
             draw("wrench", name, wrench, self.wrench);
         }

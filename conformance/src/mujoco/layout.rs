@@ -35,6 +35,8 @@ pub enum Size {
     Fixed(usize),
     /// That of a size of `mjModel` or `mjData`.
     Named(&'static str),
+    /// A size of `mjModel` times a number.
+    Times(&'static str, usize),
 }
 
 /// Returns the field with a name, found at compile time: a name that does not exist stops the build.

@@ -63,12 +63,14 @@ impl Drop for Simulation {
 enum Count {
     Fixed(usize),
     OfModel(usize),
+    OfModelTimes(usize, usize),
     OfData(usize),
 }
 
 const fn count(size: Size) -> Count {
     match size {
         Size::Fixed(n) => Count::Fixed(n),
+        Size::Times(name, factor) => Count::OfModelTimes(field(MODEL_SIZES, name).at, factor),
         Size::Named(name) => match (position(MODEL_SIZES, name), position(DATA_SIZES, name)) {
             (Some(k), _) => Count::OfModel(MODEL_SIZES[k].at),
             (None, Some(k)) => Count::OfData(DATA_SIZES[k].at),
@@ -196,6 +198,7 @@ impl Simulation {
         let n = unsafe {
             match count {
                 Count::Fixed(n) => return n,
+                Count::OfModelTimes(at, factor) => return factor * self.number(Count::OfModel(at)),
                 Count::OfModel(at) => *self.model.byte_add(at).cast::<c_int>(),
                 Count::OfData(at) => *self.data.byte_add(at).cast::<c_int>(),
             }
@@ -266,7 +269,7 @@ impl Simulation {
     /// Returns all arrays, options and statistics of the model, as numbers, in the order of the tables.
     pub fn all_model_values(&self) -> Vec<Vec<f64>> {
         let known = |size: Size| match size {
-            Size::Fixed(_) => true,
+            Size::Fixed(_) | Size::Times(..) => true,
             Size::Named(name) => position(MODEL_SIZES, name).is_some(),
         };
         let whole = MODEL.iter().filter(|f| known(f.rows) && known(f.cols));
@@ -370,6 +373,10 @@ impl Simulation {
         if model.na > 0 {
             self.data_mut(field(DATA, "act")).copy_from_slice(&s.act);
         }
+        self.data_mut(field(DATA, "mocap_pos"))
+            .copy_from_slice(s.mocap_pos.as_flattened());
+        self.data_mut(field(DATA, "mocap_quat"))
+            .copy_from_slice(s.mocap_quat.as_flattened());
         self.set_warmstart(&s.qacc_warmstart);
         self.data_mut(field(DATA, "qfrc_applied"))
             .copy_from_slice(&s.qfrc_applied);

@@ -37,7 +37,7 @@ class MjData(Named):
     """A state of a model, under the names and in the shapes of MuJoCo's ``MjData``.
 
     The arrays are the same memory for as long as the state lives: what is written into ``qpos``, ``qvel``, ``act``,
-    ``ctrl``, ``qfrc_applied``, ``xfrc_applied``, ``qacc_warmstart``, ``eq_active`` and ``time`` counts from the next
+    ``ctrl``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos``, ``mocap_quat``, ``qacc_warmstart``, ``eq_active`` and ``time`` counts from the next
     computation on, and the others show what the last one found. Contacts, rows of constraints and ``qM`` are fresh
     copies each time.
     """
@@ -53,7 +53,7 @@ class MjData(Named):
         native = _native.PhysicsData(model._own)
         arrays = views(native.memory, [(name, shape) for name, _, shape in native.layout])
         clock = arrays.pop("time")
-        arrays.update(mocap_pos=np.zeros((0, 3)), mocap_quat=np.zeros((0, 4)), userdata=np.zeros(0))
+        arrays.update(userdata=np.zeros(0))
         own = self.__dict__
         own.update(arrays)
         own.update(

@@ -40,6 +40,7 @@ _SIZES = (
         "nv",
         "nu",
         "na",
+        "nmocap",
         "nbody",
         "njnt",
         "ngeom",
@@ -241,7 +242,7 @@ class MjModel(Named):
         own.update(arrays)
         own["writable"] = tuple(arrays)
         own.update(ntex=len(names["texture"]), nmat=len(names["material"]), nnumeric=len(names["numeric"]))
-        own.update(ntext=len(names["text"]), nmocap=0, nuserdata=0, nplugin=0, nmesh=0, nwrap=len(extras["wrap_objid"]))
+        own.update(ntext=len(names["text"]), nuserdata=0, nplugin=0, nmesh=0, nwrap=len(extras["wrap_objid"]))
         own["opt"] = MjOption(native, floats, settings)
         stat = {name: settings[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
         own["stat"] = Settings("stat", {**stat, "center": _fixed(settings["center"], "stat.center")})
@@ -342,8 +343,8 @@ class MjModel(Named):
 _KIND_OF = {"jnt": "joint", "cam": "camera"}
 
 
-def _keys(name: str, size: str) -> Callable[[MjModel], Any]:
-    return lambda m: np.asarray(m._extras[name]).reshape(m.nkey, getattr(m, size))
+def _keys(name: str, size: str, each: int = 1) -> Callable[[MjModel], Any]:
+    return lambda m: np.asarray(m._extras[name]).reshape(m.nkey, each * getattr(m, size))
 
 
 def _starts(counts: NDArray[Any]) -> NDArray[np.int32]:
@@ -404,7 +405,6 @@ _DERIVED: dict[str, Callable[[MjModel], Any]] = {
     "dof_Madr": _matrix_addresses,
     "dof_treeid": lambda m: m.body_treeid[m.dof_bodyid],
     "body_treeid": _trees,
-    "body_mocapid": lambda m: np.full(m.nbody, -1, np.int32),
     "nM": lambda m: len(matrix_places(m)[0]),
     "ntree": lambda m: int(m.body_treeid.max(initial=-1)) + 1,
     "pair_geom1": lambda m: m._compiled("pair_geom").reshape(-1, 2)[:, 0],
@@ -421,8 +421,8 @@ _DERIVED: dict[str, Callable[[MjModel], Any]] = {
     "key_qvel": _keys("key_qvel", "nv"),
     "key_act": _keys("key_act", "na"),
     "key_ctrl": _keys("key_ctrl", "nu"),
-    "key_mpos": lambda m: np.zeros((m.nkey, 0)),
-    "key_mquat": lambda m: np.zeros((m.nkey, 0)),
+    "key_mpos": _keys("key_mpos", "nmocap", 3),
+    "key_mquat": _keys("key_mquat", "nmocap", 4),
 }
 
 for _name, _kind in {**KINDS, "light": "light", "key": "key", "keyframe": "key", "numeric": "numeric"}.items():

@@ -23,6 +23,11 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         let user = users.body.of(context, body.at, &body.user)?;
         arrays.body_user.push(user);
         arrays.body_gravcomp.push(body.gravcomp);
+        if body.mocap && (id == 0 || body.parent != 0 || !body.joints.is_empty()) {
+            return Err(context.invalid(body.at, "a mocap body must be a child of the world without joints"));
+        }
+        arrays.body_mocapid.push(body.mocap.then_some(arrays.nmocap));
+        arrays.nmocap += usize::from(body.mocap);
         arrays.body_jntadr.push(arrays.jnt_name.len());
         arrays.body_dofadr.push(arrays.nv);
         let mut dof = last_dof.get(body.parent).copied().flatten();

@@ -1,7 +1,8 @@
 //! Compiles custom data and keyframes.
 
 use super::context::Context;
-use crate::math::{quat_at, quat_normalize};
+use super::geometry::normalize;
+use crate::math::{Quat, Vec3, quat_at, quat_normalize};
 use crate::mjcf_loader::custom::Key;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
@@ -34,7 +35,7 @@ pub(super) fn compile_custom(context: &Context, document: &Document, arrays: &mu
 
 /// Compiles the keyframes, after everything that has coordinates or controls.
 pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
-    let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu();
+    let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu() + 7 * arrays.nmocap;
     let (limit, most) = (
         context.tree.limits.key_numbers,
         document.size.nkey.max(document.keys.len()),
@@ -55,10 +56,18 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
         qvel: vec![0.0; arrays.nv],
         act: vec![0.0; arrays.na],
         ctrl: vec![0.0; arrays.nu()],
+        mpos: mocap_poses(arrays).map(|pose| pose.0).collect(),
+        mquat: mocap_poses(arrays).map(|pose| pose.1).collect(),
     };
     let missing = document.size.nkey.saturating_sub(arrays.keys.len());
     arrays.keys.extend(std::iter::repeat_n(reference, missing));
     Ok(())
+}
+
+/// Iterates over the poses of mocap bodies as the document has them.
+fn mocap_poses(arrays: &Arrays) -> impl Iterator<Item = (Vec3, Quat)> {
+    let moved = (0..arrays.nbody()).filter(|&b| arrays.body_mocapid[b].is_some());
+    moved.map(|b| (arrays.body_pos[b], arrays.body_quat[b]))
 }
 
 fn compile_key(context: &Context, key: &Key, arrays: &Arrays) -> Result<Keyframe, LoadError> {
@@ -85,6 +94,15 @@ fn compile_key(context: &Context, key: &Key, arrays: &Arrays) -> Result<Keyframe
             qpos[adr + 3..adr + 7].copy_from_slice(&quat);
         }
     }
+    let (mpos, mquat): (Vec<Vec3>, Vec<Quat>) = mocap_poses(arrays).unzip();
+    let mpos = sized(&key.mpos, "mpos", mpos.as_flattened())?;
+    let mut mquat = sized(&key.mquat, "mquat", mquat.as_flattened())?
+        .as_chunks::<4>()
+        .0
+        .to_vec();
+    mquat.iter_mut().for_each(|quat| {
+        normalize(quat);
+    });
     Ok(Keyframe {
         name: key.name.clone(),
         time: key.time,
@@ -92,5 +110,7 @@ fn compile_key(context: &Context, key: &Key, arrays: &Arrays) -> Result<Keyframe
         qvel: sized(&key.qvel, "qvel", &vec![0.0; arrays.nv])?,
         act: sized(&key.act, "act", &vec![0.0; arrays.na])?,
         ctrl: sized(&key.ctrl, "ctrl", &vec![0.0; arrays.nu()])?,
+        mpos: mpos.as_chunks::<3>().0.to_vec(),
+        mquat,
     })
 }

@@ -25,8 +25,10 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
         } else {
             let p = model.body_parentid[b];
             if p == 0 {
-                pos = model.body_pos[b];
-                quat = model.body_quat[b];
+                (pos, quat) = match model.body_mocapid[b] {
+                    Some(k) => (s.mocap_pos[k], quat_normalize(s.mocap_quat[k])),
+                    None => (model.body_pos[b], model.body_quat[b]),
+                };
             } else {
                 pos = add(mat_vec(&s.xmat[p], model.body_pos[b]), s.xpos[p]);
                 quat = quat_mul(s.xquat[p], model.body_quat[b]);

@@ -141,10 +141,10 @@ fn insert_bodies(model: &Model, bodies: &mut RigidBodySet) -> Vec<RigidBodyHandl
         poses.push(poses[model.body_parentid[b]] * pose(model.body_pos[b], model.body_quat[b]));
     }
     let body = |(b, pose): (usize, Pose)| {
-        let builder = if model.body_weldid[b] == 0 {
-            RigidBodyBuilder::fixed()
-        } else {
+        let builder = if model.moves(b) {
             RigidBodyBuilder::kinematic_position_based()
+        } else {
+            RigidBodyBuilder::fixed()
         };
         bodies.insert(builder.pose(pose).user_data(b as u128))
     };
@@ -227,7 +227,7 @@ impl RapierScene {
             return Err(EngineError::Shape { what, found, expected });
         }
         for (b, &handle) in self.body_handle.iter().enumerate() {
-            if self.model.body_weldid[b] != 0
+            if self.model.moves(b)
                 && let Some(body) = self.bodies.get_mut(handle)
             {
                 body.set_position(pose(state.xpos[b], state.xquat[b]), false);

@@ -6,6 +6,10 @@ use crate::physics::topology::Topology;
 
 /// Refuses what Rapier's multibodies cannot represent.
 pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierError> {
+    if let Some(b) = model.body_mocapid.iter().position(Option::is_some) {
+        let what = "mocap bodies are not supported";
+        return Err(RapierError::unsupported("body", &model.body_name[b], what));
+    }
     let tree = |j: usize| topology.dof_tree[model.jnt_dofadr[j]];
     for j in 0..model.njnt() {
         let b = model.jnt_bodyid[j];

@@ -45,9 +45,8 @@ impl Sweep {
     /// Prepares the sweep over the geoms of `model` and the pairs of `table`.
     pub fn new(model: &Model, table: &PairTable, options: ContactOptions) -> Self {
         // an explicit pair may be of two geoms that never move
-        let moves = |g: usize| {
-            model.body_weldid[model.geom_bodyid[g]] != 0 || model.pair_geom.iter().any(|pair| pair.contains(&g))
-        };
+        let moves =
+            |g: usize| model.moves(model.geom_bodyid[g]) || model.pair_geom.iter().any(|pair| pair.contains(&g));
         // the boxes of two geoms reach as far as their pair's margin together if either reaches as far alone
         let mut margin = model.geom_margin.clone();
         for (pair, &own) in model.pair_geom.iter().zip(&model.pair_margin) {
