@@ -117,6 +117,7 @@ fn of_bodies(m: &Model) -> Named {
 fn of_joints(m: &Model) -> Named {
     let joint_code = |kind: &JointType| match kind {
         JointType::Free => 0.0,
+        JointType::Ball => 1.0,
         JointType::Slide => 2.0,
         JointType::Hinge => 3.0,
     };

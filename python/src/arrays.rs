@@ -51,6 +51,7 @@ numbers! {
     };
     JointType => i32, |v| match v {
         JointType::Free => 0,
+        JointType::Ball => 1,
         JointType::Slide => 2,
         JointType::Hinge => 3,
     };

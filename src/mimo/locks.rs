@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::config::Part;
 use crate::mimo::joint_part;
-use crate::model::{EqualityKind, JointType, Model};
+use crate::model::{EqualityKind, Model};
 use crate::physics::Params;
 
 /// The joints to lock or unlock.
@@ -81,7 +81,7 @@ pub fn lock_of(model: &Model, joint: usize) -> Option<usize> {
     let name = model.jnt_name.get(joint)?;
     let lock = model.equality(name)?;
     let alone = matches!(model.eq_kind[lock], EqualityKind::Joint { joint1, joint2: None, .. } if joint1 == joint);
-    (alone && model.jnt_type[joint] != JointType::Free).then_some(lock)
+    (alone && model.jnt_type[joint].nv() == 1).then_some(lock)
 }
 
 /// Returns the first active joint equality on a joint other than its lock.

@@ -82,7 +82,7 @@ impl MimoJoints {
         let bodies = MimoBodies::of(model);
         let own = |&j: &usize| {
             model.jnt_name[j].starts_with(JOINT_PREFIX)
-                && model.jnt_type[j] != JointType::Free
+                && matches!(model.jnt_type[j], JointType::Slide | JointType::Hinge)
                 && bodies.contains(model.jnt_bodyid[j])
         };
         let joint: Vec<usize> = (0..model.njnt()).filter(own).collect();

@@ -195,6 +195,8 @@ sensor_rules!(
     ActuatorVel,
     ActuatorFrc,
     JointActFrc,
+    BallQuat,
+    BallAngVel,
     JointLimitPos,
     JointLimitVel,
     JointLimitFrc,

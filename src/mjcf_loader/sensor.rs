@@ -110,7 +110,7 @@ pub(super) const fn tables(kind: SensorType) -> &'static [Groups] {
         Touch | Accelerometer | Velocimeter | Gyro | Force | Torque | Magnetometer | RangeFinder => {
             &[OnSite::ATTRIBUTES, Sensor::ATTRIBUTES]
         }
-        JointPos | JointVel | JointActFrc | JointLimitPos | JointLimitVel | JointLimitFrc => {
+        JointPos | JointVel | JointActFrc | BallQuat | BallAngVel | JointLimitPos | JointLimitVel | JointLimitFrc => {
             &[OfJoint::ATTRIBUTES, Sensor::ATTRIBUTES]
         }
         TendonPos | TendonVel | TendonLimitPos | TendonLimitVel | TendonLimitFrc => {

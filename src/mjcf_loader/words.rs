@@ -29,6 +29,7 @@ pub(super) enum Tri {
 pub(super) const TRI: Words<Tri> = words! { "false" => Tri::No, "true" => Tri::Yes, "auto" => Tri::Auto };
 pub(super) const JOINTS: Words<JointType> = words! {
     "free" => JointType::Free,
+    "ball" => JointType::Ball,
     "slide" => JointType::Slide,
     "hinge" => JointType::Hinge,
 };

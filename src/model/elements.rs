@@ -8,6 +8,8 @@ pub enum JointType {
     /// Six degrees of freedom; `qpos` is position (3) and quaternion (4), `qvel` linear velocity in the world frame (3)
     /// and angular velocity in the body frame (3).
     Free,
+    /// Three rotations about an anchor; `qpos` is a quaternion (4), `qvel` the angular velocity in the body frame (3), rad/s.
+    Ball,
     /// Translation along the axis, m.
     Slide,
     /// Rotation about the axis, rad.
@@ -17,11 +19,28 @@ pub enum JointType {
 impl JointType {
     /// Returns the number of position coordinates.
     pub fn nq(self) -> usize {
-        if self == JointType::Free { 7 } else { 1 }
+        match self {
+            Self::Free => 7,
+            Self::Ball => 4,
+            Self::Slide | Self::Hinge => 1,
+        }
     }
+    /// Returns where in `qpos` the quaternion is of a joint whose coordinates begin at `adr`, if it has one.
+    pub(crate) fn quat(self, adr: usize) -> Option<usize> {
+        match self {
+            Self::Free => Some(adr + 3),
+            Self::Ball => Some(adr),
+            Self::Slide | Self::Hinge => None,
+        }
+    }
+
     /// Returns the number of degrees of freedom.
     pub fn nv(self) -> usize {
-        if self == JointType::Free { 6 } else { 1 }
+        match self {
+            Self::Free => 6,
+            Self::Ball => 3,
+            Self::Slide | Self::Hinge => 1,
+        }
     }
 }
 

@@ -72,6 +72,10 @@ sensors! {
     ActuatorFrc = 15, "actuatorfrc", 1, Real;
     /// Force of all actuators on a hinge or slide, N m or N.
     JointActFrc = 16, "jointactuatorfrc", 1, Real;
+    /// Orientation of a ball joint as a quaternion.
+    BallQuat = 17, "ballquat", 4, Quaternion;
+    /// Angular velocity of a ball joint, rad/s, in the axes of its body.
+    BallAngVel = 18, "ballangvel", 3, Real;
     /// Distance of a joint to its limit less the margin, rad or m, while the limit is active; else 0.
     JointLimitPos = 19, "jointlimitpos", 1, Real;
     /// Rate of that distance while the limit is active; else 0.

@@ -89,8 +89,8 @@ fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), 
         return Err(places.body_error(body, REDUNDANT));
     }
     for (d, (weight, inertia)) in constants.dof_invweight0.iter().zip(&constants.dof_m0).enumerate() {
-        // those of a free joint are means over three directions, which differ as the body's axes do
-        let alone = arrays.jnt_type[arrays.dof_jntid[d]] != JointType::Free;
+        // those of free and ball joints are means over three directions, which differ as the body's axes do
+        let alone = arrays.jnt_type[arrays.dof_jntid[d]].nv() == 1;
         let singular = alone && (*weight < 0.0 || weight * inertia > MAX_WEIGHT);
         if !weight.is_finite() || !inertia.is_finite() || singular {
             return Err(places.body_error(arrays.dof_bodyid[d], NO_ACCELERATION));

@@ -17,6 +17,8 @@ const DEPTH: usize = 5;
 struct JointName {
     name: String,
     scalar: bool,
+    /// Whether it is a ball joint.
+    ball: bool,
     /// Whether it has a limit of its own.
     limited: bool,
 }
@@ -347,25 +349,38 @@ impl Writer<'_> {
             self.joints.push(JointName {
                 name,
                 scalar: false,
+                ball: false,
                 limited: false,
             });
             body.children.push(joint);
             return true;
         }
         let n = self.dice.pick(&[0, 1, 1, 1, 1, 2, 2, 3, 4, 6]);
-        for _ in 0..n {
-            let (name, kind) = (self.name("j"), self.dice.pick(&["hinge", "hinge", "slide"]));
+        for k in 0..n {
+            // no rotation follows one about all axes, and a body has at most six degrees of freedom
+            let last = k + 1 == n && n <= 4;
+            let kinds: &[&str] = if last {
+                &["hinge", "slide", "ball"]
+            } else {
+                &["hinge", "hinge", "slide"]
+            };
+            let (name, kind) = (self.name("j"), self.dice.pick(kinds));
             let mut joint = Node::new("joint").with("name", name.as_str()).with("type", kind);
             self.class(&mut joint, "class");
             self.dice.angle = if kind == "slide" { 1.0 } else { self.radian };
             self.language
                 .dress(&mut joint, "worldbody/body/joint", false, &mut self.dice);
             self.dice.angle = self.radian;
+            if kind == "ball" && (self.defaults || joint.get("range").is_some()) {
+                let most = self.dice.uniform(0.1, 3.3) * self.radian;
+                joint.set("range", numbers(&[0.0, most]));
+            }
             self.decide_limits(&mut joint);
             let limited = has_limit(&joint);
             self.joints.push(JointName {
                 name,
-                scalar: true,
+                scalar: kind != "ball",
+                ball: kind == "ball",
                 limited,
             });
             body.children.push(joint);

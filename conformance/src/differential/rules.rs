@@ -402,6 +402,7 @@ const UNIT_SENSOR: &[Rule] = &[
 ];
 const ON_SITE: &[Rule] = &[("site", Placed(&["tip"]))];
 const OF_JOINT: &[Rule] = &[("joint", Placed(&["slider"]))];
+const OF_BALL: &[Rule] = &[("joint", Placed(&["swing"]))];
 const OF_LIMIT: &[Rule] = &[("joint", Placed(&["lower"]))];
 const OF_TENDON: &[Rule] = &[("tendon", Placed(&["pull"]))];
 const OF_ACTUATOR: &[Rule] = &[("actuator", Placed(&["hold"]))];
@@ -485,6 +486,8 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("sensor/jointpos", &[OF_JOINT, SENSOR]),
     ("sensor/jointvel", &[OF_JOINT, SENSOR]),
     ("sensor/jointactuatorfrc", &[OF_JOINT, SENSOR]),
+    ("sensor/ballquat", &[OF_BALL, UNIT_SENSOR]),
+    ("sensor/ballangvel", &[OF_BALL, SENSOR]),
     ("sensor/jointlimitpos", &[OF_LIMIT, SENSOR]),
     ("sensor/jointlimitvel", &[OF_LIMIT, SENSOR]),
     ("sensor/jointlimitfrc", &[OF_LIMIT, SENSOR]),

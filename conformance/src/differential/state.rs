@@ -2,7 +2,6 @@
 //! element, the rest stays where it was.
 
 use babybench::Model;
-use babybench::model::JointType;
 use babybench::physics::State;
 use fastrand::Rng;
 
@@ -71,14 +70,15 @@ impl Recipe {
         for j in 0..model.njnt() {
             let (name, q, d) = (&model.jnt_name[j], model.jnt_qposadr[j], model.jnt_dofadr[j]);
             let dofs = model.jnt_type[j].nv();
-            if model.jnt_type[j] == JointType::Free {
-                state.qpos[q..q + 3].fill(0.0);
-                draw("place", name, &mut state.qpos[q..q + 3], 0.4);
+            if dofs > 1 {
+                let turn = q + dofs - 3;
+                state.qpos[q..turn].fill(0.0);
+                draw("place", name, &mut state.qpos[q..turn], 0.4);
                 if self.apart > 0.0 {
-                    draw("turn", name, &mut state.qpos[q + 3..q + 7], 1.0);
+                    draw("turn", name, &mut state.qpos[turn..turn + 4], 1.0);
                 }
-                let norm = state.qpos[q + 3..q + 7].iter().map(|v| v * v).sum::<f64>().sqrt();
-                state.qpos[q + 3..q + 7].iter_mut().for_each(|v| *v /= norm);
+                let norm = state.qpos[turn..turn + 4].iter().map(|v| v * v).sum::<f64>().sqrt();
+                state.qpos[turn..turn + 4].iter_mut().for_each(|v| *v /= norm);
             } else {
                 draw("qpos", name, &mut state.qpos[q..q + 1], self.apart);
             }

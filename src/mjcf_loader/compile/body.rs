@@ -148,7 +148,14 @@ fn compile_joint(
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
     let id = arrays.jnt_name.len();
-    let turns = joint.kind == JointType::Hinge && context.compiler.degree;
+    let before = &arrays.jnt_type[arrays.body_jntadr[body_id]..];
+    if joint.kind != JointType::Slide && before.contains(&JointType::Ball) {
+        return Err(context.invalid(
+            joint.at,
+            "a ball joint cannot be followed by a rotation in the same body",
+        ));
+    }
+    let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler.degree;
     let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
     let mut axis = joint.axis;
     let mut pos = joint.pos;
@@ -161,6 +168,13 @@ fn compile_joint(
             return Err(context.invalid(joint.at, "a free joint must be the only joint of its body"));
         }
         (axis, pos) = ([0.0, 0.0, 1.0], [0.0; 3]);
+    } else if joint.kind == JointType::Ball {
+        (axis, pos) = ([0.0, 0.0, 1.0], context.point(joint.within, pos));
+        // any upper end will do: beyond a half turn nothing reaches it
+        limited = joint.limited == Tri::Yes || context.limited(joint.at, "range", joint.limited, joint.range)?;
+        if limited && joint.range[0] != 0.0 {
+            return Err(context.invalid(joint.at, "the range of a ball joint must begin at 0"));
+        }
     } else {
         if normalize(&mut axis) < EPS {
             return Err(context.invalid(joint.at, "the axis is too short"));
@@ -181,8 +195,8 @@ fn compile_joint(
         .jnt_range
         .push(if limited { joint.range.map(angle) } else { joint.range });
     arrays.jnt_margin.push(joint.margin);
-    // the force on a free joint is not limited, whatever the attributes say
-    let actfrclimited = joint.kind != JointType::Free
+    // the force on other joints is not limited, whatever the attributes say
+    let actfrclimited = joint.kind.nv() == 1
         && context.limited(
             joint.at,
             "actuatorfrcrange",
@@ -200,17 +214,29 @@ fn compile_joint(
     arrays.jnt_solref.push(joint.solref_limit);
     arrays.jnt_solimp.push(joint.solimp_limit);
     arrays.jnt_group.push(joint.group);
-    if joint.kind == JointType::Free {
-        let pose = arrays.body_pos[body_id].into_iter().chain(arrays.body_quat[body_id]);
-        arrays.qpos0.extend(pose.clone());
-        arrays.qpos_spring.extend(pose);
-    } else {
-        arrays.qpos0.push(angle(joint.reference));
-        arrays.qpos_spring.push(angle(joint.springref));
-    }
+    reference(joint, body_id, angle, arrays);
     push_dofs(joint, body_id, id, dof, arrays);
     arrays.nq += joint.kind.nq();
     Ok(())
+}
+
+/// Adds the coordinates of a joint at `qpos0`, and at rest of its spring.
+fn reference(joint: &Joint, body: usize, angle: impl Fn(f64) -> f64, arrays: &mut Arrays) {
+    match joint.kind {
+        JointType::Free => {
+            let pose = arrays.body_pos[body].into_iter().chain(arrays.body_quat[body]);
+            arrays.qpos0.extend(pose.clone());
+            arrays.qpos_spring.extend(pose);
+        }
+        JointType::Ball => {
+            arrays.qpos0.extend(QUAT_ID);
+            arrays.qpos_spring.extend(QUAT_ID);
+        }
+        JointType::Slide | JointType::Hinge => {
+            arrays.qpos0.push(angle(joint.reference));
+            arrays.qpos_spring.push(angle(joint.springref));
+        }
+    }
 }
 
 /// Adds the degrees of freedom of a joint. `last` is the last one that moves its body so far.

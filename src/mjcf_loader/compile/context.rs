@@ -215,8 +215,11 @@ impl Ids {
         name: &str,
     ) -> Result<usize, LoadError> {
         let joint = self.joint.find(context.tree, at, attribute, name)?;
-        if arrays.jnt_type[joint] == JointType::Free {
-            return Err(context.invalid(at, "only hinge and slide joints can be used here, not free joints"));
+        if !matches!(arrays.jnt_type[joint], JointType::Slide | JointType::Hinge) {
+            return Err(context.invalid(
+                at,
+                "only hinge and slide joints can be used here, not ball and free joints",
+            ));
         }
         Ok(joint)
     }

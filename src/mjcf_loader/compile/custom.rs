@@ -6,7 +6,7 @@ use crate::math::{Quat, Vec3, quat_at, quat_normalize};
 use crate::mjcf_loader::custom::Key;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::model::{Arrays, JointType, Keyframe};
+use crate::model::{Arrays, Keyframe};
 
 /// Compiles `<custom>`: numbers and texts for programs.
 pub(super) fn compile_custom(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
@@ -89,9 +89,9 @@ fn compile_key(context: &Context, key: &Key, arrays: &Arrays) -> Result<Keyframe
     };
     let mut qpos = sized(&key.qpos, "qpos", &arrays.qpos0)?;
     for (kind, &adr) in arrays.jnt_type.iter().zip(&arrays.jnt_qposadr) {
-        if *kind == JointType::Free {
-            let quat = quat_normalize(quat_at(&qpos, adr + 3));
-            qpos[adr + 3..adr + 7].copy_from_slice(&quat);
+        if let Some(at) = kind.quat(adr) {
+            let quat = quat_normalize(quat_at(&qpos, at));
+            qpos[at..at + 4].copy_from_slice(&quat);
         }
     }
     let (mpos, mquat): (Vec<Vec3>, Vec<Quat>) = mocap_poses(arrays).unzip();

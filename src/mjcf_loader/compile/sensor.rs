@@ -4,7 +4,7 @@ use super::context::{Context, Ids, User};
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::sensor::{FrameOf, InFrame, Object, OfFrame, Sensor};
-use crate::model::{Arrays, DataType, ObjType, SensorType};
+use crate::model::{Arrays, DataType, JointType, ObjType, SensorType};
 
 /// Compiles the sensors, whose values follow one another.
 pub(super) fn compile_sensors(
@@ -68,17 +68,20 @@ fn sensed(context: &Context, sensor: &Sensor, ids: &Ids, arrays: &Arrays) -> Res
     Ok((object, NOTHING))
 }
 
-/// Finds the joint of a sensor, which has one coordinate, and a limit if the sensor is about that.
+/// Finds the joint of a sensor, which has a limit if the sensor is about that, and else the kind that it measures.
 fn joint(context: &Context, sensor: &Sensor, name: &str, ids: &Ids, arrays: &Arrays) -> Result<usize, LoadError> {
-    let joint = ids.scalar_joint(context, arrays, sensor.at, "joint", name)?;
-    let of_limit = matches!(
-        sensor.kind,
-        SensorType::JointLimitPos | SensorType::JointLimitVel | SensorType::JointLimitFrc
-    );
-    if of_limit && !arrays.jnt_limited[joint] {
-        return Err(context.invalid(sensor.at, "the joint has no limit; give it a range"));
+    use SensorType::{BallAngVel, BallQuat, JointLimitFrc, JointLimitPos, JointLimitVel};
+    let (at, any) = (sensor.at, ids.joint.find(context.tree, sensor.at, "joint", name)?);
+    match sensor.kind {
+        JointLimitPos | JointLimitVel | JointLimitFrc if !arrays.jnt_limited[any] => {
+            Err(context.invalid(at, "the joint has no limit; give it a range"))
+        }
+        BallQuat | BallAngVel if arrays.jnt_type[any] != JointType::Ball => {
+            Err(context.invalid(at, "only ball joints can be used here"))
+        }
+        JointLimitPos | JointLimitVel | JointLimitFrc | BallQuat | BallAngVel => Ok(any),
+        _ => ids.scalar_joint(context, arrays, at, "joint", name),
     }
-    Ok(joint)
 }
 
 /// Finds the object of a sensor of a frame, and that in whose frame it measures.

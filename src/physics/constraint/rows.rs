@@ -1,7 +1,7 @@
 //! Construction of the constraint rows.
 
 use crate::math::*;
-use crate::model::{ConeType, EqualityKind, Model};
+use crate::model::{ConeType, EqualityKind, JointType, Model};
 use crate::physics::constraint::append::{Rows, Spec};
 use crate::physics::constraint::impedance::is_solref;
 use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS, connected_points, impedance, weld_points};
@@ -352,6 +352,10 @@ fn joint_limits(rows: &mut Rows, s: &State) {
         if !model.jnt_limited[j] {
             continue;
         }
+        if model.jnt_type[j] == JointType::Ball {
+            ball_limit(rows, s, j);
+            continue;
+        }
         let (value, margin, d) = (s.qpos[model.jnt_qposadr[j]], model.jnt_margin[j], model.jnt_dofadr[j]);
         for (side, limit) in [(-1.0, model.jnt_range[j][0]), (1.0, model.jnt_range[j][1])] {
             let dist = side * (limit - value);
@@ -365,6 +369,28 @@ fn joint_limits(rows: &mut Rows, s: &State) {
                 rows.row(dist, margin, dist - margin, spec);
             }
         }
+    }
+}
+
+/// Appends a row if a ball joint is within the margin of the angle that it may turn by, about any axis.
+#[inline(never)]
+fn ball_limit(rows: &mut Rows, s: &State, j: usize) {
+    let model = rows.model;
+    let quat = quat_normalize(quat_at(&s.qpos, model.jnt_qposadr[j]));
+    let (axis, angle) = unit(rotation_between(QUAT_ID, quat));
+    let (margin, d, [low, high]) = (model.jnt_margin[j], model.jnt_dofadr[j], model.jnt_range[j]);
+    let dist = low.max(high) - angle;
+    if dist < margin {
+        let spec = Spec {
+            solref: model.jnt_solref[j],
+            solimp: model.jnt_solimp[j],
+            diag: s.params.dof_invweight0[d],
+        };
+        rows.block(ConstraintType::LimitJoint, j, 1);
+        for (k, along) in axis.into_iter().enumerate() {
+            rows.entry(d + k, -along);
+        }
+        rows.row(dist, margin, dist - margin, spec);
     }
 }
 

@@ -192,6 +192,10 @@ impl<'a> Weights<'a> {
                     weights[d..d + 3].fill((w[0] + w[1] + w[2]) / 3.0);
                     weights[d + 3..d + 6].fill((w[3] + w[4] + w[5]) / 3.0);
                 }
+                JointType::Ball => {
+                    let w: [f64; 3] = std::array::from_fn(|k| self.of(&[(d + k, 1.0)]));
+                    weights[d..d + 3].fill((w[0] + w[1] + w[2]) / 3.0);
+                }
                 _ => {
                     let (own, body) = (self.of(&[(d, 1.0)]), self.model.jnt_bodyid[j]);
                     // MuJoCo's is whatever the armature; slides along one axis stay what a singular inertia makes of them
@@ -278,12 +282,14 @@ fn slides_alone(model: &Arrays, b: usize) -> bool {
 }
 
 /// Tells whether MuJoCo takes the inertia of a body for diagonal (`body_simple`): a body without children, in the world or in a static
-/// body of the world, whose joints are at its origin and along axes of its frame, which is that of its inertia.
+/// body of the world, whose joints are at its origin and along axes of its frame, which is that of its inertia, and none of which
+/// follows a rotation.
 pub(super) fn is_simple(model: &Arrays, b: usize) -> bool {
     // what is smaller counts as zero in MuJoCo's compiler
     const EPS: f64 = 1e-14;
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
     let along_axis = |j: usize| model.jnt_axis[j].iter().filter(|v| v.abs() > EPS).count() == 1;
+    let turns = |j: usize| matches!(model.jnt_type[j], JointType::Hinge | JointType::Ball);
     let parent = model.body_parentid[b];
     let on_the_ground = model.body_parentid[parent] == 0 && model.body_jntnum[parent] == 0;
     // a child, if there is one, comes next
@@ -291,6 +297,7 @@ pub(super) fn is_simple(model: &Arrays, b: usize) -> bool {
         && model.body_parentid.get(b + 1) != Some(&b)
         && model.body_sameframe[b] == SameFrame::Body
         && !joints.is_empty()
+        && !joints.clone().skip(1).any(|j| turns(j - 1))
         && joints.into_iter().all(|j| {
             let at_origin = SameFrame::of(model.jnt_pos[j], QUAT_ID, [0.0; 3], QUAT_ID) == SameFrame::Body;
             along_axis(j) && at_origin

@@ -1,7 +1,7 @@
 //! Integration: semi-implicit Euler with implicit joint damping, implicit methods, and Runge and Kutta's; activations of actuators.
 
-use crate::math::{axis_angle_to_quat, quat_mul, quat_normalize, unit};
-use crate::model::{IntegratorType, JointType, Model};
+use crate::math::{axis_angle_to_quat, quat_at, quat_mul, quat_normalize, unit};
+use crate::model::{IntegratorType, Model};
 use crate::physics::dynamics::activation;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::dynamics::derivative::Derivative;
@@ -164,16 +164,18 @@ impl RungeKutta {
 pub fn integrate_pos(model: &Model, qpos: &mut [f64], qvel: &[f64], h: f64) {
     for j in 0..model.njnt() {
         let (q, d) = (model.jnt_qposadr[j], model.jnt_dofadr[j]);
-        if model.jnt_type[j] == JointType::Free {
-            for k in 0..3 {
-                qpos[q + k] += h * qvel[d + k];
-            }
-            let (axis, speed) = unit([qvel[d + 3], qvel[d + 4], qvel[d + 5]]);
-            let quat = quat_normalize([qpos[q + 3], qpos[q + 4], qpos[q + 5], qpos[q + 6]]);
-            let turned = quat_mul(quat, axis_angle_to_quat(axis, h * speed));
-            qpos[q + 3..q + 7].copy_from_slice(&turned);
-        } else {
+        let kind = model.jnt_type[j];
+        let Some(at) = kind.quat(q) else {
             qpos[q] += h * qvel[d];
+            continue;
+        };
+        let turning = d + kind.nv() - 3;
+        for k in 0..turning - d {
+            qpos[q + k] += h * qvel[d + k];
         }
+        let (axis, speed) = unit([qvel[turning], qvel[turning + 1], qvel[turning + 2]]);
+        let quat = quat_normalize(quat_at(qpos, at));
+        let turned = quat_mul(quat, axis_angle_to_quat(axis, h * speed));
+        qpos[at..at + 4].copy_from_slice(&turned);
     }
 }

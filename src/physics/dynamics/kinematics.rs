@@ -41,8 +41,12 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
                 let displacement = s.qpos[adr] - model.qpos0[adr];
                 match model.jnt_type[j] {
                     JointType::Slide => pos = add_scaled(pos, axis, displacement),
-                    _ => {
-                        quat = quat_mul(quat, axis_angle_to_quat(jaxis, displacement));
+                    kind => {
+                        let turn = match kind {
+                            JointType::Ball => quat_normalize(quat_at(&s.qpos, adr)),
+                            _ => axis_angle_to_quat(jaxis, displacement),
+                        };
+                        quat = quat_mul(quat, turn);
                         pos = sub(anchor, quat_rotate(quat, jpos));
                     }
                 }
@@ -158,6 +162,12 @@ pub fn com_pos(model: &Arrays, s: &mut State) {
                     s.cdof[d + k][3 + k] = 1.0;
                     let axis = column(&s.xmat[b], k);
                     s.cdof[d + 3 + k] = spatial(axis, cross(axis, to_com));
+                }
+            }
+            JointType::Ball => {
+                for k in 0..3 {
+                    let axis = column(&s.xmat[b], k);
+                    s.cdof[d + k] = spatial(axis, cross(axis, to_com));
                 }
             }
             JointType::Hinge => s.cdof[d] = spatial(s.xaxis[j], cross(s.xaxis[j], to_com)),

@@ -15,16 +15,19 @@ pub fn com_vel(model: &Model, s: &mut State) {
         let mut v = s.cvel[model.body_parentid[b]];
         for j in model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b] {
             let d = model.jnt_dofadr[j];
-            if model.jnt_type[j] == JointType::Free {
-                for k in 0..3 {
-                    s.cdof_dot[d + k] = [0.0; 6];
-                    axpy6(&mut v, s.qvel[d + k], &s.cdof[d + k]);
+            let count = model.jnt_type[j].nv();
+            if count > 1 {
+                // the axes of translation stand still; those of rotation turn with what is before all three
+                let turning = d + count - 3;
+                for k in d..turning {
+                    s.cdof_dot[k] = [0.0; 6];
+                    axpy6(&mut v, s.qvel[k], &s.cdof[k]);
                 }
-                for k in 3..6 {
-                    s.cdof_dot[d + k] = cross_motion(&v, &s.cdof[d + k]);
+                for k in turning..turning + 3 {
+                    s.cdof_dot[k] = cross_motion(&v, &s.cdof[k]);
                 }
-                for k in 3..6 {
-                    axpy6(&mut v, s.qvel[d + k], &s.cdof[d + k]);
+                for k in turning..turning + 3 {
+                    axpy6(&mut v, s.qvel[k], &s.cdof[k]);
                 }
             } else {
                 s.cdof_dot[d] = cross_motion(&v, &s.cdof[d]);
@@ -117,17 +120,19 @@ fn passive(model: &Model, s: &mut State) {
             continue;
         }
         let (q, d) = (model.jnt_qposadr[j], model.jnt_dofadr[j]);
-        let scalars = if model.jnt_type[j] == JointType::Free { 3 } else { 1 };
+        let kind = model.jnt_type[j];
+        let scalars = match kind {
+            JointType::Free => 3,
+            JointType::Ball => 0,
+            JointType::Slide | JointType::Hinge => 1,
+        };
         for i in 0..scalars {
             s.qfrc_passive[d + i] -= k * (s.qpos[q + i] - model.qpos_spring[q + i]);
         }
-        if model.jnt_type[j] == JointType::Free {
-            let turn = rotation_between(
-                quat_at(&model.qpos_spring, q + 3),
-                quat_normalize(quat_at(&s.qpos, q + 3)),
-            );
+        if let Some(at) = kind.quat(q) {
+            let turn = rotation_between(quat_at(&model.qpos_spring, at), quat_normalize(quat_at(&s.qpos, at)));
             for i in 0..3 {
-                s.qfrc_passive[d + 3 + i] -= k * turn[i];
+                s.qfrc_passive[d + scalars + i] -= k * turn[i];
             }
         }
     }

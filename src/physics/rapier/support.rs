@@ -15,6 +15,7 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         let b = model.jnt_bodyid[j];
         let what = match model.jnt_type[j] {
             JointType::Slide => "slide joints are not supported",
+            JointType::Ball => "ball joints are not supported",
             JointType::Free if model.body_jntnum[b] > 1 => "a free joint must be the only one of its body",
             JointType::Free if model.body_parentid[b] != 0 => "a free joint must be on a child of the world",
             _ => continue,

@@ -46,6 +46,7 @@ pub fn model(env: &Env) -> JsValue {
 fn joint(m: &Model, j: usize) -> JsValue {
     let kind = match m.jnt_type[j] {
         JointType::Free => "free",
+        JointType::Ball => "ball",
         JointType::Slide => "slide",
         JointType::Hinge => "hinge",
     };

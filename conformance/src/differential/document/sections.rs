@@ -186,6 +186,8 @@ impl Writer<'_> {
         // without a limit neither side takes a sensor of it
         let limited = self.joints.iter().filter(|joint| joint.limited);
         let limited: Vec<String> = limited.map(|joint| joint.name.clone()).collect();
+        let balls = self.joints.iter().filter(|joint| joint.ball);
+        let balls: Vec<String> = balls.map(|joint| joint.name.clone()).collect();
         for _ in 0..if some { self.dice.rng.usize(1..8) } else { 0 } {
             let k = self.dice.rng.usize(..SensorType::ALL.len());
             let kind = SensorType::ALL[k].name();
@@ -195,13 +197,14 @@ impl Writer<'_> {
                 "clock" => None,
                 _ if kind.starts_with("frame") => Some("objname"),
                 _ if kind.starts_with("subtree") => Some("body"),
-                _ if kind.starts_with("joint") => Some("joint"),
+                _ if kind.starts_with("joint") || kind.starts_with("ball") => Some("joint"),
                 _ if kind.starts_with("tendon") => Some("tendon"),
                 _ if kind.starts_with("actuator") => Some("actuator"),
                 _ => Some("site"),
             };
             let objects = match attribute {
                 Some("joint") if of_limit => limited.clone(),
+                Some("joint") if kind.starts_with("ball") => balls.clone(),
                 Some("joint") => joints.clone(),
                 Some("tendon") if of_limit => self.limited_tendons.clone(),
                 Some("tendon") => self.tendons.clone(),

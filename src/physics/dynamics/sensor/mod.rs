@@ -53,6 +53,11 @@ fn value(model: &Model, s: &State, scratch: &SubtreeScratch, sensor: usize) -> [
         JointPos => scalar(s.qpos[model.jnt_qposadr[id]]),
         JointVel => scalar(s.qvel[model.jnt_dofadr[id]]),
         JointActFrc => scalar(s.qfrc_actuator[model.jnt_dofadr[id]]),
+        BallQuat => quat_normalize(quat_at(&s.qpos, model.jnt_qposadr[id])),
+        BallAngVel => {
+            let d = model.jnt_dofadr[id];
+            vector([s.qvel[d], s.qvel[d + 1], s.qvel[d + 2]])
+        }
         TendonPos => scalar(s.ten_length[id]),
         TendonVel => scalar(s.ten_velocity[id]),
         ActuatorPos => scalar(s.actuator_length[id]),
