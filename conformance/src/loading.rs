@@ -26,6 +26,10 @@ pub enum Outcome {
     Fault(String),
 }
 
+/// Why our loader rejects inertias without an inverse. MuJoCo divides by their zero pivots: its numbers are infinite, or what rounding
+/// leaves of zero.
+pub const SINGULAR: &str = "inertias that are singular";
+
 /// Tells why our loader rejects what MuJoCo accepts, where it is meant to.
 pub fn deliberate(error: &LoadError) -> Option<&'static str> {
     match &error.kind {
@@ -56,9 +60,7 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::Invalid(message) if message.starts_with("two joints of one kind along one axis") => {
             Some("joints that move a body alike")
         }
-        ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => {
-            Some("inertias that are singular")
-        }
+        ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => Some(SINGULAR),
         ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
         ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),
         _ => None,

@@ -12,7 +12,7 @@ use super::dice::numbers;
 use super::matrix::scaled_condition;
 use super::measured::{Measured, QACC, activations, advanced, measure};
 use super::state::Recipe;
-use crate::loading::{deliberate, distances};
+use crate::loading::{SINGULAR, deliberate, distances};
 use crate::measure::{max_abs, relative};
 use crate::mujoco::{Contact, Mujoco, Simulation};
 
@@ -83,9 +83,9 @@ impl Sides {
                 0.0,
                 format!("MuJoCo refuses: {}", e.trim()),
             )),
-            (Err(e), Ok(_)) => match deliberate(&e) {
-                Some(reason) => Taken::Stricter(reason),
-                None => Taken::ByOne(Measured::new("taken", 1.0, 0.0, format!("ours refuses: {e}"))),
+            (Err(e), Ok(simulation)) => match deliberate(&e) {
+                Some(reason) if reason != SINGULAR || !sound(simulation) => Taken::Stricter(reason),
+                _ => Taken::ByOne(Measured::new("taken", 1.0, 0.0, format!("ours refuses: {e}"))),
             },
             (Ok(model), Ok(simulation)) => Taken::Both(Box::new(Self::new(Arc::new(model), simulation))),
         }
@@ -252,6 +252,14 @@ impl Sides {
             _ => other,
         })
     }
+}
+
+/// Tells whether what MuJoCo computes of an inertia at `qpos0` is more than rounding errors.
+fn sound(mut simulation: Simulation) -> bool {
+    let nv = simulation.size("nv");
+    let weights = simulation.model_array("dof_invweight0").unwrap_or_default();
+    let proper = weights.iter().all(|w| w.is_finite() && *w > 0.0);
+    proper && simulation.try_forward().is_ok() && scaled_condition(&simulation.full_inertia(), nv) <= CONDITION
 }
 
 /// Loads a document.

@@ -15,7 +15,7 @@ pub mod node;
 pub mod reduce;
 pub mod rules;
 pub mod single;
-mod slack;
+pub mod slack;
 pub mod state;
 pub mod table;
 

@@ -14,7 +14,7 @@ use super::measured::Measured;
 const APART: f64 = 4.0;
 
 /// What solvers leave undone in a state.
-pub(super) struct Slack {
+pub struct Slack {
     /// Cost at which a solver stops.
     cost: f64,
     /// Inertia (nv, nv).
