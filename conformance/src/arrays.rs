@@ -235,6 +235,7 @@ pub fn unrecorded(m: &Model) -> Named {
         ("key_qvel", keys(|key| &key.qvel)),
         ("key_act", keys(|key| &key.act)),
         ("key_ctrl", keys(|key| &key.ctrl)),
+        ("geom_fluid", flat(&m.geom_fluid)),
         ("key_mpos", keys(|key| key.mpos.as_flattened())),
         ("key_mquat", keys(|key| key.mquat.as_flattened())),
         ("nmocap", vec![m.nmocap as f64]),

@@ -34,7 +34,7 @@ impl IntoException for RenderError {
 }
 
 table! { ARRAYS, array, Arrays,
-    body_gravcomp body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
+    body_gravcomp geom_fluid body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
     cam_targetbodyid tendon_lengthspring tendon_stiffness tendon_damping
 }
 

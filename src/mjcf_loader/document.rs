@@ -12,7 +12,7 @@ use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
 use super::surface::{Material, Texture};
 use super::table::table;
-use super::words::{CAM_LIGHT, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
+use super::words::{CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
 
 pub(super) use super::settings::{Compiler, Size};
 pub(super) use super::words::{Frame, Orientation, Tri};
@@ -75,6 +75,8 @@ table! {
         "mass" mass: Option<f64> = None, real(NonNegative), "Mass, kg; else by density.";
         "density" density: f64 = 1000.0, real(NonNegative), "Density, kg/m^3.";
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
+        "fluidshape" ellipsoid: bool = false, FLUID, "Whether a medium acts on it as on an ellipsoid; without such geoms it acts on the body as on a box.";
+        "fluidcoef" fluidcoef: [f64; 5] = [0.5, 0.25, 1.5, 1.0, 1.0], some(1, 5, Any), "Coefficients of blunt, slender and angular drag, of Kutta's lift and of Magnus's.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";

@@ -385,7 +385,7 @@ fn constraints_are_checked() {
     check_with_bodies(input, &format!("{pair}geom2: there is no geom \"x\""));
     let input = "<contact><pair geom1='g1' geom2='g1'/></contact>";
     check_with_bodies(input, &format!("{pair}a geom cannot pair with itself"));
-    let free = "only hinge and slide joints can be used here, not free joints";
+    let free = "only hinge and slide joints can be used here, not ball and free joints";
     check_with_bodies(
         "<equality><joint joint1='f'/></equality>",
         &format!("mujoco/equality/joint: {free}"),

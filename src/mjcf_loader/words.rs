@@ -33,6 +33,7 @@ pub(super) const JOINTS: Words<JointType> = words! {
     "slide" => JointType::Slide,
     "hinge" => JointType::Hinge,
 };
+pub(super) const FLUID: Words<bool> = words! { "none" => false, "ellipsoid" => true };
 pub(super) const SHAPES: Words<GeomType> = words! {
     "plane" => GeomType::Plane,
     "sphere" => GeomType::Sphere,

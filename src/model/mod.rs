@@ -203,6 +203,9 @@ arrays! {
     geom_margin: Vec<f64>,
     /// Contact gap, m.
     geom_gap: Vec<f64>,
+    /// How a medium acts on the geom as on an ellipsoid: 1 if it does, coefficients of blunt, slender and angular drag, of Kutta's lift
+    /// and of Magnus's, volumes (3), m^3, and moments (3), m^5, of the medium that moves with it; zeros if it does not.
+    geom_fluid: Vec<[f64; 12]>,
     /// Radius of the bounding sphere, m; 0 for planes.
     geom_rbound: Vec<f64>,
     /// Visual group.

@@ -202,6 +202,14 @@ const GEOM: &[Rule] = &[
     ("mass", Drawn(0.12, |d| d.log(0.01, 5.0))),
     ("density", Drawn(0.12, |d| d.log(100.0, 5000.0))),
     ("group", Drawn(0.15, |d| d.rng.usize(0..=5).to_string())),
+    ("fluidshape", Word(0.15)),
+    (
+        "fluidcoef",
+        Drawn(0.1, |d| {
+            let n = d.rng.usize(1..=5);
+            d.reals(n, 1.5)
+        }),
+    ),
 ];
 
 const SITE: &[Rule] = &[

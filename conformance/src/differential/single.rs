@@ -92,6 +92,7 @@ fn set(node: &mut Node, name: &str, value: &str) {
         // a shape and its size go together
         ("size", n) => node.set("type", ["sphere", "capsule", "box"][n.clamp(1, 3) - 1]),
         ("fromto", _) => node.set("type", "capsule"),
+        ("fluidcoef", _) => node.set("fluidshape", "ellipsoid"),
         // a matrix has no orientation of its own
         ("fullinertia", _) => RIVALS[0].iter().for_each(|rival| node.unset(rival)),
         _ => {}

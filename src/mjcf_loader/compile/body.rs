@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::context::{Context, Ids, User};
+use super::fluid::fluid;
 use super::geometry::{
     EPS, Solid, bounding_radius, inertia, merge, normalize, orientation, principal, segment, size_count, volume,
 };
@@ -334,6 +335,11 @@ fn compile_geom(
     arrays.geom_solimp.push(geom.solimp);
     arrays.geom_margin.push(geom.margin);
     arrays.geom_gap.push(geom.gap);
+    arrays.geom_fluid.push(if geom.ellipsoid {
+        fluid(geom.kind, &size, geom.fluidcoef)
+    } else {
+        [0.0; 12]
+    });
     arrays.geom_rbound.push(bounding_radius(geom.kind, &size));
     arrays.geom_group.push(geom.group);
     arrays.geom_rgba.push(geom.rgba.map(single));

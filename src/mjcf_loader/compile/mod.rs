@@ -5,6 +5,7 @@ mod body;
 mod constraint;
 mod context;
 mod custom;
+mod fluid;
 mod geometry;
 mod sensor;
 mod surface;

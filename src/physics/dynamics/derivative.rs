@@ -1,8 +1,9 @@
 //! Derivatives of the smooth forces by the velocities, for the implicit integrators.
 
 use crate::math::*;
-use crate::model::{BiasType, GainType, Model};
+use crate::model::{BiasType, GainType, IntegratorType, Model};
 use crate::physics::dynamics::constants::is_simple;
+use crate::physics::dynamics::ellipsoid::{swim_slopes, swims};
 use crate::physics::dynamics::fluid::medium_slopes;
 use crate::physics::dynamics::transmission;
 use crate::physics::dynamics::tree_matrix::TreeMatrix;
@@ -22,6 +23,8 @@ pub(super) struct Derivative {
     force: Vec<Spatial>,
     /// Entries of one row of a Jacobian.
     entries: Vec<(usize, f64)>,
+    /// Entries of six rows of a Jacobian.
+    rows: Vec<(usize, Spatial)>,
 }
 
 impl Derivative {
@@ -80,6 +83,11 @@ impl Derivative {
         }
         for b in 1..model.nbody() {
             if s.params.body_mass[b] < MINVAL {
+                continue;
+            }
+            if swims(model, b) {
+                let symmetric = model.opt.integrator == IntegratorType::ImplicitFast;
+                swim_slopes(model, topology, s, (b, symmetric), &mut self.rows, out);
                 continue;
             }
             let slopes = medium_slopes(model, s, b);

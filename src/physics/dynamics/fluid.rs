@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::dynamics::applied::add_force;
+use crate::physics::dynamics::ellipsoid::{swim, swims};
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
@@ -17,6 +18,10 @@ pub(super) fn medium(model: &Model, s: &mut State) {
     }
     for b in 1..model.nbody() {
         if s.params.body_mass[b] < MINVAL {
+            continue;
+        }
+        if swims(model, b) {
+            swim(model, s, b);
             continue;
         }
         let (turning, moving) = relative_to_medium(model, s, b);

@@ -9,6 +9,7 @@ mod applied;
 mod articulated;
 mod constants;
 mod derivative;
+mod ellipsoid;
 mod fluid;
 mod inertia;
 mod integrate;
