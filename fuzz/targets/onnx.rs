@@ -8,8 +8,9 @@ use babybench::spaces::{BoxSpace, Dtype, ObservationSpace};
 use libfuzzer_sys::fuzz_target;
 
 /// Operators that make as much, or take as long, as a model computes: nothing is promised of those.
-const GROW: [&str; 12] = [
-    "ConstantOfShape", "ConvTranspose", "Expand", "EyeLike", "Loop", "OneHot", "Pad", "Range", "Resize", "Scan", "Tile", "Upsample",
+const GROW: [&str; 13] = [
+    "ConstantOfShape", "ConvTranspose", "Expand", "EyeLike", "Loop", "OneHot", "Pad", "Range", "Resize", "Scan", "Tile", "TopK",
+    "Upsample",
 ];
 
 /// What is observed: vectors of a few numbers, and eyes of two by two pixels.

@@ -30,13 +30,13 @@ fn node(operator: &str, inputs: &[&str], outputs: &[&str], attributes: &[Vec<u8>
 /// A list of whole numbers.
 fn constant(name: &str, values: &[i64]) -> Vec<u8> {
     let raw: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    [
-        number(1, values.len() as u64),
-        number(2, 7),
-        field(8, name.as_bytes()),
-        field(9, &raw),
-    ]
-    .concat()
+    tensor(name, 7, Some(values.len() as u64), &raw)
+}
+
+/// Numbers of a type (1 for `f32`, 6 for `i32`, 7 for `i64`, 9 for a flag), a list or a single one.
+fn tensor(name: &str, kind: u64, length: Option<u64>, raw: &[u8]) -> Vec<u8> {
+    let length = length.map(|n| number(1, n)).unwrap_or_default();
+    [length, number(2, kind), field(8, name.as_bytes()), field(9, raw)].concat()
 }
 
 /// An input or output of numbers of a type (1 for `f32`) and a shape.
@@ -78,7 +78,95 @@ fn sized(operator: &str, inputs: &[&str], sizes: &[i64]) -> Vec<u8> {
 /// Numbers in the observation of the quick configuration.
 const OBSERVATION: u64 = 292;
 
+/// A chain of operators that pass on what is observed.
+fn chain(length: usize) -> Vec<u8> {
+    let names: Vec<String> = (0..length).map(|k| format!("x{k}")).collect();
+    let mut from = "observation";
+    let mut nodes = Vec::new();
+    for name in &names {
+        nodes.push(node("Identity", &[from], &[name], &[]));
+        from = name;
+    }
+    nodes.push(node("Relu", &[from], &["action"], &[]));
+    model_of(&nodes, &[], &value("observation", 1, &[1, OBSERVATION]))
+}
+
+/// Models whose sizes stand in constants of other types, and on which the runtime panics.
+fn by_the_runtime() -> Vec<Case> {
+    let observation = value("observation", 1, &[1, OBSERVATION]);
+    let single = |name: &str, v: f32| tensor(name, 1, None, &v.to_le_bytes());
+    let to_float = [field(1, b"to"), number(3, 1)].concat();
+    let quotient = [
+        node("Div", &["least", "minus"], &["q"], &[]),
+        node("Cast", &["q"], &["action"], &[to_float]),
+    ];
+    let least = i32::MIN.to_le_bytes().repeat(44);
+    let divided = [
+        tensor("least", 6, Some(44), &least),
+        tensor("minus", 6, None, &(-1i32).to_le_bytes()),
+    ];
+    let enlarged = [
+        node("Unsqueeze", &["observation", "u"], &["image"], &[]),
+        node("Resize", &["image", "", "scales"], &["action"], &[]),
+    ];
+    let scales: Vec<u8> = [1.0f32, 1.0, 1e5, 1e5].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let scales = [constant("u", &[0, 1]), tensor("scales", 1, Some(4), &scales)];
+    let same = |name: &str| {
+        let graph = [
+            field(1, &node("Identity", &["observation"], &[name], &[])),
+            field(12, field(1, name.as_bytes()).as_slice()),
+        ];
+        graph.concat()
+    };
+    let branch = |name: &str, graph: &[u8]| [field(1, name.as_bytes()), field(6, graph)].concat();
+    let chosen = |graph: &[u8], name: &str| {
+        let attributes = [branch("then_branch", graph), branch("else_branch", &same("e"))];
+        node("If", &["c"], &[name], &attributes)
+    };
+    let nested = (0..12).fold(same("y"), |graph, k| {
+        let name = format!("y{k}");
+        [
+            field(1, &chosen(&graph, &name)),
+            field(12, field(1, name.as_bytes()).as_slice()),
+        ]
+        .concat()
+    });
+    vec![
+        case(
+            "the 2^62 largest of an observation",
+            sized("TopK", &["observation", "s"], &[1 << 62]),
+        ),
+        case("image 10^10 times as large", model_of(&enlarged, &scales, &observation)),
+        case(
+            "ten billion numbers in a row",
+            model_of(
+                &[node("Range", &["from", "to", "by"], &["action"], &[])],
+                &[single("from", 0.0), single("to", 1e10), single("by", 1.0)],
+                &observation,
+            ),
+        ),
+        case(
+            "least number divided by -1",
+            model_of(&quotient, &divided, &observation),
+        ),
+        case(
+            "choices in choices",
+            model_of(
+                &[chosen(&nested, "action")],
+                &[tensor("c", 9, None, &[1])],
+                &observation,
+            ),
+        ),
+        case("25,000 operators in a row", chain(25_000)),
+        case("9,999 operators in a row", chain(9_998)),
+    ]
+}
+
 pub fn cases() -> Vec<Case> {
+    [broken(), by_the_runtime()].concat()
+}
+
+fn broken() -> Vec<Case> {
     let observation = value("observation", 1, &[1, OBSERVATION]);
     let identity = node("Identity", &["observation"], &["action"], &[]);
     let of = |node: Vec<u8>| model_of(&[node], &[], &observation);

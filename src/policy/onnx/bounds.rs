@@ -6,175 +6,196 @@
 
 use std::collections::BTreeMap;
 
-use super::wire::{self, Field, varint};
+use super::constants::{LIST, Numbers, name, of_attribute, of_constant, of_tensor, parts};
+use super::{runtime, wire};
 
 /// Greatest number of values that one operator may make.
-const MOST: u128 = 1 << 26;
-/// Greatest factor by which convolution or pooling may enlarge an image.
-const MOST_LARGER: u128 = 1 << 16;
-/// Longest list of sizes.
-const LIST: usize = 64;
+const MOST: f64 = (1 << 26) as f64;
+/// Greatest factor by which one operator may enlarge what it is given.
+const MOST_LARGER: f64 = (1 << 16) as f64;
+/// Greatest number of turns of a loop.
+const MOST_TURNS: f64 = (1 << 20) as f64;
 
-/// Lists the fields of a message that was looked through.
-fn fields(bytes: &[u8]) -> Vec<(u64, Field<'_>)> {
-    wire::fields(bytes).unwrap_or_default()
+/// Lists numbers as an error message has them.
+fn list(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().take(LIST).map(f64::to_string).collect();
+    format!("[{}]", values.join(", "))
 }
 
-/// Lists the messages, texts or bytes in a field.
-fn parts(bytes: &[u8], number: u64) -> Vec<&[u8]> {
-    let one = |(n, field)| match field {
-        Field::Bytes(data) if n == number => Some(data),
-        _ => None,
-    };
-    fields(bytes).into_iter().filter_map(one).collect()
+/// Returns the name of an operator.
+fn operator(node: &[u8]) -> String {
+    String::from_utf8_lossy(parts(node, 4).first().copied().unwrap_or_default()).into_owned()
 }
 
-/// Returns the 64-bit integers of a tensor, if it holds a short list of them.
-fn integers(tensor: &[u8]) -> Option<Vec<i64>> {
-    let mut values = Vec::new();
-    let mut is_int = false;
-    for (number, field) in fields(tensor) {
-        match (number, field) {
-            (2, Field::Number(kind)) => is_int = kind == 7,
-            (7, Field::Number(value)) => values.push(value as i64),
-            (7, Field::Bytes(mut packed)) => {
-                while let Some(value) = varint(&mut packed) {
-                    values.push(value as i64);
-                }
-            }
-            (9, Field::Bytes(raw)) => values.extend(raw.as_chunks::<8>().0.iter().map(|b| i64::from_le_bytes(*b))),
-            _ => {}
-        }
-    }
-    (is_int && values.len() <= LIST).then_some(values)
+/// Multiplies sizes; those below 1, and what is no number, do not make it smaller.
+fn product(sizes: impl IntoIterator<Item = f64>) -> f64 {
+    sizes.into_iter().map(|size| size.abs().max(1.0)).product()
 }
 
-/// Returns the name of an attribute and its list of integers, if that is one of those with which an image grows; and how much
-/// larger it could become.
-fn growth(attribute: &[u8]) -> Option<(&str, Vec<i64>, u128)> {
-    let name = std::str::from_utf8(parts(attribute, 1).first()?).ok()?;
-    if !["pads", "strides", "output_padding", "output_shape"].contains(&name) {
-        return None;
-    }
-    let mut values = Vec::new();
-    for (number, field) in fields(attribute) {
-        match (number, field) {
-            (8, Field::Number(value)) => values.push(value as i64),
-            (8, Field::Bytes(mut packed)) => {
-                while let Some(value) = varint(&mut packed) {
-                    values.push(value as i64);
-                }
-            }
-            _ => {}
-        }
-    }
-    let size = |value: &i64| u128::from(value.unsigned_abs());
+/// Checks an attribute of an operator with which an image could grow, or that is the shape of what it makes.
+fn check_attribute(node: &[u8], attribute: &[u8]) -> Result<(), String> {
+    let (name, values) = (name(attribute), of_attribute(attribute).values);
     let by = match name {
         // of each axis: those before, then those behind
         "pads" => {
             let (before, behind) = values.split_at(values.len() / 2);
-            let both = before.iter().zip(behind).map(|(a, b)| 1 + size(a) + size(b));
-            both.fold(1, u128::saturating_mul)
+            product(before.iter().zip(behind).map(|(a, b)| 1.0 + a.abs() + b.abs()))
         }
-        _ => values
-            .iter()
-            .map(|value| size(value).max(1))
-            .fold(1, u128::saturating_mul),
+        "strides" | "output_padding" | "output_shape" => product(values.iter().copied()),
+        "shape" => return check_shape(node, &values),
+        _ => return Ok(()),
     };
-    Some((name, values, by))
-}
-
-/// Checks the attributes of an operator.
-fn check_attributes(node: &[u8]) -> Result<(), String> {
-    let grown = parts(node, 5).into_iter().filter_map(growth);
-    for (name, values, by) in grown {
-        if by > MOST_LARGER || values.len() > LIST {
-            let operator = String::from_utf8_lossy(parts(node, 4).first().copied().unwrap_or_default()).into_owned();
-            let values = &values[..values.len().min(LIST)];
-            return Err(format!(
-                "the operator {operator} has {name} of {values:?}, with which images could be more than {MOST_LARGER} times as large"
-            ));
-        }
+    if by > MOST_LARGER || values.len() > LIST {
+        return Err(format!(
+            "the operator {} has {name} of {}, with which images could be more than {MOST_LARGER} times as large",
+            operator(node),
+            list(&values)
+        ));
     }
     Ok(())
 }
 
-/// Returns the place of the input that says how much an operator makes.
-fn size_input(operator: &[u8]) -> Option<usize> {
-    match operator {
-        b"ConstantOfShape" => Some(0),
-        b"Expand" | b"Tile" | b"Pad" | b"Range" | b"OneHot" => Some(1),
-        b"Resize" => Some(3),
-        _ => None,
+/// Checks the sizes of what an operator makes.
+fn check_shape(node: &[u8], sizes: &[f64]) -> Result<(), String> {
+    if product(sizes.iter().copied()) > MOST {
+        return Err(format!(
+            "the operator {} would make values of the sizes {}, more than {MOST}",
+            operator(node),
+            list(sizes)
+        ));
     }
+    Ok(())
+}
+
+/// Checks factors by which an operator enlarges what it is given.
+fn check_factors(node: &[u8], factors: &[f64]) -> Result<(), String> {
+    if product(factors.iter().copied()) > MOST_LARGER {
+        return Err(format!(
+            "the operator {} would make what it is given {} times as large, more than {MOST_LARGER}",
+            operator(node),
+            list(factors)
+        ));
+    }
+    Ok(())
+}
+
+/// Checks a row of numbers from a start to a limit: how many there are, and that each step gets it further.
+fn check_range([start, limit, step]: [Option<&Numbers>; 3]) -> Result<(), String> {
+    let Some(limit) = limit else { return Ok(()) };
+    let one = |numbers: Option<&Numbers>, or| numbers.and_then(|n| n.values.first().copied()).unwrap_or(or);
+    let (from, to, by) = (one(start, 0.0), one(Some(limit), 0.0), one(step, 1.0));
+    let count = (to - from) / by;
+    // whole numbers of 32 bits end, and floats of 32 bits get no further where a step is less than their last bit
+    let stays = if limit.whole {
+        to.abs() + by.abs() > f64::from(i32::MAX)
+    } else {
+        from.abs().max(to.abs()) > f64::from(1 << 24) * by.abs() && count > 0.0
+    };
+    if count > MOST || stays {
+        return Err(format!(
+            "the operator Range would go from {from} to {to} by {by}: more than {MOST} numbers, or without end"
+        ));
+    }
+    Ok(())
 }
 
 /// Constants by name: of a graph, after those of the graphs around it.
-type Constants<'m> = Vec<BTreeMap<&'m [u8], Vec<i64>>>;
+type Constants<'m> = Vec<BTreeMap<&'m [u8], Numbers>>;
 
-/// Checks the bytes of a model and the sizes in it; the error says which operator makes too much.
-pub(super) fn check(model: &[u8]) -> Result<(), String> {
+/// Checks the bytes of a model and the sizes in it, and returns the number of operators in its graph; the error says which operator makes too much.
+pub(super) fn check(model: &[u8]) -> Result<usize, String> {
     wire::check(model)?;
     let mut constants = Vec::new();
-    parts(model, 7)
-        .into_iter()
-        .try_for_each(|graph| check_graph(graph, &mut constants))
+    let mut most = 0;
+    for graph in parts(model, 7) {
+        most = most.max(parts(graph, 1).len());
+        check_graph(graph, runtime::MOST, &mut constants)?;
+    }
+    Ok(most)
 }
 
-/// Checks a graph, and those in its operators; how deep they are was checked before.
-fn check_graph<'m>(graph: &'m [u8], constants: &mut Constants<'m>) -> Result<(), String> {
+/// Checks a graph of at most so many operators, and those in its operators; how deep they are was checked before.
+fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut Constants<'m>) -> Result<(), String> {
     let nodes = parts(graph, 1);
+    if nodes.len() > most {
+        return Err(format!("a graph of it has {} operators, more than {most}", nodes.len()));
+    }
     let mut own = BTreeMap::new();
     for tensor in parts(graph, 5) {
-        if let (Some(&name), Some(values)) = (parts(tensor, 8).first(), integers(tensor)) {
+        if let (Some(&name), Some(values)) = (parts(tensor, 8).first(), of_tensor(tensor)) {
             own.insert(name, values);
         }
     }
     for node in &nodes {
-        let value = parts(node, 5)
-            .into_iter()
-            .flat_map(|attribute| parts(attribute, 5))
-            .find_map(integers);
-        if let (Some(&output), Some(values)) = (parts(node, 2).first(), value) {
+        let passed = || {
+            let name = *parts(node, 1).first()?;
+            let found = own
+                .get(name)
+                .or_else(|| constants.iter().rev().find_map(|graph| graph.get(name)));
+            found.filter(|_| passes_on(node)).cloned()
+        };
+        if let (Some(&output), Some(values)) = (parts(node, 2).first(), of_constant(node).or_else(passed)) {
             own.insert(output, values);
         }
     }
     constants.push(own);
     for node in nodes {
-        check_attributes(node)?;
-        check_sizes(node, constants)?;
+        for attribute in parts(node, 5) {
+            check_attribute(node, attribute)?;
+        }
+        check_inputs(node, constants)?;
         for inner in parts(node, 5).into_iter().flat_map(|attribute| parts(attribute, 6)) {
-            check_graph(inner, constants)?;
+            // the runtime plans these on threads of its own, whose stacks are small
+            check_graph(inner, runtime::SHALLOW, constants)?;
         }
     }
     constants.pop();
     Ok(())
 }
 
+/// Returns whether an operator makes the numbers that it is given, in another form.
+fn passes_on(node: &[u8]) -> bool {
+    let same: [&[u8]; 6] = [b"Cast", b"Flatten", b"Identity", b"Reshape", b"Squeeze", b"Unsqueeze"];
+    parts(node, 4).first().is_some_and(|operator| same.contains(operator))
+}
+
 /// Checks the sizes that an operator is given.
-fn check_sizes(node: &[u8], constants: &Constants<'_>) -> Result<(), String> {
-    let operator = parts(node, 4).first().copied().unwrap_or_default();
-    let input = size_input(operator).and_then(|k| parts(node, 1).get(k).copied());
-    let found = |name: &[u8]| constants.iter().rev().find_map(|graph| graph.get(name));
-    let Some(sizes) = input.and_then(found) else {
-        return Ok(());
+fn check_inputs(node: &[u8], constants: &Constants<'_>) -> Result<(), String> {
+    let names = parts(node, 1);
+    let input = |k: usize| {
+        let name = names.get(k)?;
+        constants.iter().rev().find_map(|graph| graph.get(name))
     };
-    let product = sizes
-        .iter()
-        .fold(1, |n: u128, s| n.saturating_mul(u128::from(s.unsigned_abs().max(1))));
-    if product > MOST {
-        Err(format!(
-            "the operator {} would make values of the sizes {sizes:?}, more than {MOST}",
-            String::from_utf8_lossy(operator)
-        ))
-    } else {
-        Ok(())
+    let values = |k: usize| input(k).map_or(&[][..], |numbers| &numbers.values);
+    match parts(node, 4).first().copied().unwrap_or_default() {
+        b"ConstantOfShape" => check_shape(node, values(0)),
+        b"Expand" | b"Tile" | b"Pad" | b"OneHot" => check_shape(node, values(1)),
+        b"TopK" | b"Upsample" => check_factors(node, values(1)),
+        b"Resize" => check_factors(node, values(2)).and_then(|()| check_shape(node, values(3))),
+        b"Range" => check_range([input(0), input(1), input(2)]),
+        b"Loop" if values(0).iter().any(|&turns| turns > MOST_TURNS) => Err(format!(
+            "the operator Loop would take {} turns, more than {MOST_TURNS}",
+            list(values(0))
+        )),
+        _ => Ok(()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Returns a field with bytes in it, of any length.
+    fn field_of(number: u8, bytes: &[u8]) -> Vec<u8> {
+        let mut out = vec![number << 3 | 2];
+        let mut rest = bytes.len();
+        while rest > 0x7f {
+            out.push(rest as u8 | 0x80);
+            rest >>= 7;
+        }
+        out.push(rest as u8);
+        [&out, bytes].concat()
+    }
 
     /// Returns a field with bytes in it, fewer than 128.
     fn field(number: u8, bytes: &[u8]) -> Vec<u8> {
@@ -228,5 +249,80 @@ mod tests {
         };
         let branch = field(7, &field(1, &field(5, &field(6, graph))));
         assert!(check(&branch).is_err_and(|e| e.contains("the operator Conv has pads of")));
+    }
+
+    /// A list of numbers of a type, and how it is named.
+    fn tensor(name: &str, kind: u8, raw: &[u8]) -> Vec<u8> {
+        let fields = [vec![2 << 3, kind], field(8, name.as_bytes()), field(9, raw)].concat();
+        field(5, &fields)
+    }
+
+    #[test]
+    fn rows_of_numbers_end() {
+        let model = |kind: u8, numbers: [f64; 3]| {
+            let raw = |v: f64| match kind {
+                1 => (v as f32).to_le_bytes().to_vec(),
+                6 => (v as i32).to_le_bytes().to_vec(),
+                _ => (v as i64).to_le_bytes().to_vec(),
+            };
+            let constants: Vec<u8> = ["a", "b", "c"]
+                .iter()
+                .zip(numbers)
+                .flat_map(|(name, v)| tensor(name, kind, &raw(v)))
+                .collect();
+            let node = [field(1, b"a"), field(1, b"b"), field(1, b"c"), field(4, b"Range")].concat();
+            field(7, &[field(1, &node), constants].concat())
+        };
+        for (kind, numbers, fits) in [
+            (1, [0.0, 44.0, 1.0], true),
+            (1, [0.0, -44.0, 1.0], true),
+            (1, [10.0, 0.0, -0.5], true),
+            (1, [0.0, 1e10, 1.0], false),
+            (1, [0.0, 1.0, 1e-9], false),
+            (1, [1e9, 1e9 + 1000.0, 1.0], false),
+            (1, [0.0, f64::INFINITY, 1.0], false),
+            (7, [0.0, 44.0, 1.0], true),
+            (7, [1e9, 1e9 + 5.0, 1.0], true),
+            (7, [0.0, 1e12, 1.0], false),
+            (6, [2_147_483_640.0, 2_147_483_647.0, 10.0], false),
+        ] {
+            assert_eq!(check(&model(kind, numbers)).is_ok(), fits, "{kind} {numbers:?}");
+        }
+    }
+
+    #[test]
+    fn factors_and_turns_are_bounded() {
+        let model = |operator: &str, place: usize, kind: u8, raw: &[u8]| {
+            let inputs: Vec<u8> = (0..=place)
+                .flat_map(|k| field(1, if k == place { b"s" } else { b"" }))
+                .collect();
+            let node = [inputs, field(4, operator.as_bytes())].concat();
+            field(7, &[field(1, &node), tensor("s", kind, raw)].concat())
+        };
+        let large = [1.0f32, 1.0, 1e5, 1e5].map(f32::to_le_bytes).concat();
+        let double = [1.0f32, 1.0, 2.0, 2.0].map(f32::to_le_bytes).concat();
+        for (operator, place) in [("Resize", 2), ("Upsample", 1)] {
+            let refused = check(&model(operator, place, 1, &large)).expect_err("large factors");
+            assert!(refused.contains("[1, 1, 100000, 100000] times as large"), "{refused}");
+            assert_eq!(check(&model(operator, place, 1, &double)), Ok(1));
+        }
+        for (operator, place) in [("TopK", 1), ("Loop", 0)] {
+            let refused = check(&model(operator, place, 7, &(1i64 << 62).to_le_bytes())).expect_err("a large number");
+            assert!(refused.contains("4611686018427388000"), "{refused}");
+            assert_eq!(check(&model(operator, place, 7, &44i64.to_le_bytes())), Ok(1));
+        }
+    }
+
+    #[test]
+    fn graphs_have_a_length_that_a_stack_holds() {
+        let graph = |n: usize| field_of(7, &field(1, &field(4, b"Identity")).repeat(n));
+        assert_eq!(check(&graph(runtime::MOST)), Ok(runtime::MOST));
+        assert!(check(&graph(25_000)).is_err_and(|e| e.contains("25000 operators")));
+        let branch = |n: usize| {
+            let inside = field_of(6, &field(1, &field(4, b"Identity")).repeat(n));
+            field_of(7, &field_of(1, &field_of(5, &inside)))
+        };
+        assert_eq!(check(&branch(runtime::SHALLOW)), Ok(1));
+        assert!(check(&branch(runtime::SHALLOW + 1)).is_err());
     }
 }
