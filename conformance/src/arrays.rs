@@ -2,7 +2,7 @@
 
 use babybench::Model;
 use babybench::model::{
-    BiasType, CamLight, DynType, EqualityKind, GainType, GeomType, JointType, ObjType, TextureType, TrnType,
+    BiasType, CamLight, DynType, EqualityKind, GainType, GeomType, JointType, ObjType, TextureType, TrnType, Wrap,
 };
 
 fn ids(values: &[usize]) -> Vec<f64> {
@@ -325,7 +325,7 @@ fn of_equalities(m: &Model) -> Named {
 }
 
 fn of_tendons(m: &Model) -> Named {
-    let wraps: Vec<(usize, f64)> = m.tendon_wrap.iter().flatten().copied().collect();
+    let wraps: Vec<[f64; 3]> = m.tendon_wrap.iter().flatten().map(wrap).collect();
     let starts = m.tendon_wrap.iter().scan(0, |next, wrap| {
         *next += wrap.len();
         Some((*next - wrap.len()) as f64)
@@ -344,9 +344,22 @@ fn of_tendons(m: &Model) -> Named {
         ("tendon_lengthspring", flat(&m.tendon_lengthspring)),
         ("tendon_stiffness", m.tendon_stiffness.clone()),
         ("tendon_damping", m.tendon_damping.clone()),
-        ("wrap_objid", wraps.iter().map(|&(joint, _)| joint as f64).collect()),
-        ("wrap_prm", wraps.iter().map(|&(_, coef)| coef).collect()),
+        ("wrap_type", wraps.iter().map(|wrap| wrap[0]).collect()),
+        ("wrap_objid", wraps.iter().map(|wrap| wrap[1]).collect()),
+        ("wrap_prm", wraps.iter().map(|wrap| wrap[2]).collect()),
     ]
+}
+
+/// Returns MuJoCo's type, object and parameter of what a tendon runs along.
+fn wrap(wrap: &Wrap) -> [f64; 3] {
+    let side = |side: Option<usize>| side.map_or(-1.0, |site| site as f64);
+    match *wrap {
+        Wrap::Joint { joint, coef } => [1.0, joint as f64, coef],
+        Wrap::Pulley { divisor } => [2.0, -1.0, divisor],
+        Wrap::Site { site } => [3.0, site as f64, 0.0],
+        Wrap::Sphere { geom, side: site } => [4.0, geom as f64, side(site)],
+        Wrap::Cylinder { geom, side: site } => [5.0, geom as f64, side(site)],
+    }
 }
 
 fn of_sensors(m: &Model) -> Named {

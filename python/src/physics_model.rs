@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use babybench::Model;
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
 use babybench::mjcf_loader::{LoadError, load, load_str};
-use babybench::model::{Arrays, CamLight, Flags, IntegratorType, Keyframe, SensorType, SolverType};
+use babybench::model::{Arrays, CamLight, Flags, IntegratorType, Keyframe, SensorType, SolverType, Wrap};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
 use babybench::render::{RenderError, Scenery};
 use numpy::{PyArray1, PyArrayMethods};
@@ -383,8 +383,10 @@ impl PhysicsModel {
         let wraps: Vec<_> = m.tendon_wrap.iter().flatten().collect();
         let numbers: Vec<usize> = m.tendon_wrap.iter().map(Vec::len).collect();
         all.set_item("tendon_num", numbers[..].to_array(py)?)?;
-        all.set_item("wrap_objid", PyArray1::from_iter(py, wraps.iter().map(|w| w.0 as i32)))?;
-        all.set_item("wrap_prm", PyArray1::from_iter(py, wraps.iter().map(|w| w.1)))?;
+        let wraps: Vec<(i32, i32, f64)> = wraps.into_iter().map(wrap).collect();
+        all.set_item("wrap_type", PyArray1::from_iter(py, wraps.iter().map(|w| w.0)))?;
+        all.set_item("wrap_objid", PyArray1::from_iter(py, wraps.iter().map(|w| w.1)))?;
+        all.set_item("wrap_prm", PyArray1::from_iter(py, wraps.iter().map(|w| w.2)))?;
         let stages = m.sensor_type.iter().map(|kind| kind.datatype() as i32);
         all.set_item("sensor_datatype", PyArray1::from_iter(py, stages))?;
         let dims = m.sensor_type.iter().map(|kind| kind.dim() as i32);
@@ -392,6 +394,18 @@ impl PhysicsModel {
         all.set_item("numeric_data", m.numeric_data.clone())?;
         all.set_item("text_data", &m.text_data)?;
         Ok(all)
+    }
+}
+
+/// Returns MuJoCo's type, object and parameter of what a tendon runs along.
+fn wrap(wrap: &Wrap) -> (i32, i32, f64) {
+    let side = |side: Option<usize>| side.map_or(-1.0, |site| site as f64);
+    match *wrap {
+        Wrap::Joint { joint, coef } => (1, joint as i32, coef),
+        Wrap::Pulley { divisor } => (2, -1, divisor),
+        Wrap::Site { site } => (3, site as i32, 0.0),
+        Wrap::Sphere { geom, side: site } => (4, geom as i32, side(site)),
+        Wrap::Cylinder { geom, side: site } => (5, geom as i32, side(site)),
     }
 }
 

@@ -8,7 +8,8 @@ use super::attribute::{Attr, TEXT};
 use super::custom::{Key, Numeric, Text};
 use super::document::{Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
 use super::relation::{
-    ConnectEquality, Equality, Exclude, JointEquality, Pair, Tendon, TendonEquality, WeldEquality, Wrap,
+    ConnectEquality, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint,
+    TendonLooks, TendonSite, WeldEquality,
 };
 use super::schema::{self, Rule};
 use super::sensor;
@@ -47,7 +48,7 @@ static VISUAL: Rule = rule("visual", &[], &[&GLOBAL, &MAP, &QUALITY, &HEADLIGHT,
 static STATISTIC: Rule = rule("statistic", &[Statistic::ATTRIBUTES], &[]);
 
 static DEFAULT_EQUALITY: Rule = rule("equality", &[Equality::ATTRIBUTES], &[]);
-static DEFAULT_TENDON: Rule = rule("tendon", &[Tendon::ATTRIBUTES], &[]);
+static DEFAULT_TENDON: Rule = rule("tendon", &[Tendon::ATTRIBUTES, TendonLooks::ATTRIBUTES], &[]);
 static DEFAULT: Rule = rule(
     schema::DEFAULT,
     &[CLASS_NAME],
@@ -122,9 +123,17 @@ static EQUALITY: Rule = rule(
     &[&EQUALITY_CONNECT, &EQUALITY_JOINT, &EQUALITY_TENDON, &EQUALITY_WELD],
 );
 
-static TENDON_JOINT: Rule = rule("joint", &[Wrap::ATTRIBUTES], &[]);
+static TENDON_JOINT: Rule = rule("joint", &[TendonJoint::ATTRIBUTES], &[]);
+static TENDON_SITE: Rule = rule("site", &[TendonSite::ATTRIBUTES], &[]);
+static TENDON_GEOM: Rule = rule("geom", &[TendonGeom::ATTRIBUTES], &[]);
+static PULLEY: Rule = rule("pulley", &[Pulley::ATTRIBUTES], &[]);
 static FIXED: Rule = rule("fixed", &[CLASS, Tendon::ATTRIBUTES], &[&TENDON_JOINT]);
-static TENDON: Rule = rule("tendon", &[], &[&FIXED]);
+static SPATIAL: Rule = rule(
+    "spatial",
+    &[CLASS, Tendon::ATTRIBUTES, TendonLooks::ATTRIBUTES],
+    &[&TENDON_SITE, &TENDON_GEOM, &PULLEY],
+);
+static TENDON: Rule = rule("tendon", &[], &[&FIXED, &SPATIAL]);
 
 /// What all actuators have.
 const DRIVE: Groups = Actuator::ATTRIBUTES;

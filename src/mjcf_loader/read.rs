@@ -10,7 +10,7 @@ use super::document::{
     Body, BodyFrame, Camera, Compiler, Document, FreeJoint, Geom, Inertial, Joint, Light, Site, Size,
 };
 use super::error::{ErrorKind, LoadError};
-use super::relation::{Equality, Exclude, Pair, Tendon, Wrap};
+use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{DEFAULT, Element};
 use super::sensor::Sensor;
 use super::settings::{Root, Visual};
@@ -44,7 +44,7 @@ impl Class {
             "light" => self.light.apply(e),
             "pair" => self.pair.apply(e),
             "equality" => self.equality.apply(e),
-            "tendon" => self.tendon.apply(e),
+            "tendon" => self.tendon.string(e),
             "material" => self.material.apply(e),
             "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" => {
                 return self.actuator.drive(e);
@@ -191,8 +191,8 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
         ("contact", _) => document.excludes.push(Exclude::read(e)),
         ("equality", _) => document.equalities.push(with(&class()?.equality, e, Equality::hold)),
         ("tendon", _) => {
-            let mut tendon = with(&class()?.tendon, e, Tendon::apply);
-            tendon.wrap = e.children.iter().map(Wrap::read).collect();
+            let mut tendon = with(&class()?.tendon, e, Tendon::string);
+            tendon.thread(e);
             document.tendons.push(tendon);
         }
         ("actuator", _) => {

@@ -2,7 +2,7 @@
 
 use crate::math::Vec3;
 
-use super::attribute::Sign::{Any, NonNegative, Unit};
+use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
 use super::attribute::{FLAG, Kind, Store, TEXT, Value, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
@@ -105,10 +105,62 @@ impl Equality {
 }
 
 table! {
-    /// A `<joint>` of a tendon.
-    element Wrap {
+    /// A `<joint>` of a fixed tendon.
+    element TendonJoint {
         "joint" joint: String = String::new(), TEXT, required, "Joint.";
         "coef" coef: f64 = 0.0, real(Any), required, "Length of the tendon per coordinate of the joint.";
+    }
+}
+
+table! {
+    /// A `<site>` of a spatial tendon.
+    element TendonSite {
+        "site" site: String = String::new(), TEXT, required, "Site that the tendon passes through.";
+    }
+}
+
+table! {
+    /// A `<geom>` of a spatial tendon.
+    element TendonGeom {
+        "geom" geom: String = String::new(), TEXT, required, "Sphere or cylinder that the tendon wraps around, between two sites.";
+        "sidesite" sidesite: Option<String> = None, TEXT, own, "Site on whose side of the geom the tendon stays; one inside of it makes the tendon pass inside.";
+    }
+}
+
+table! {
+    /// A `<pulley>` of a spatial tendon.
+    element Pulley {
+        "divisor" divisor: f64 = 0.0, real(Positive), required, "What the length after the pulley is divided by.";
+    }
+}
+
+/// The elements that a tendon runs along, by name.
+#[derive(Clone)]
+pub(super) enum Along {
+    Joint(TendonJoint),
+    Site(TendonSite),
+    Geom(TendonGeom),
+    Pulley(Pulley),
+}
+
+impl Along {
+    fn read(e: &Element) -> Self {
+        match e.name {
+            "site" => Self::Site(TendonSite::read(e)),
+            "geom" => Self::Geom(TendonGeom::read(e)),
+            "pulley" => Self::Pulley(Pulley::read(e)),
+            _ => Self::Joint(TendonJoint::read(e)),
+        }
+    }
+
+    /// Returns the place in the text.
+    pub fn at(&self) -> usize {
+        match self {
+            Self::Joint(joint) => joint.at,
+            Self::Site(site) => site.at,
+            Self::Geom(geom) => geom.at,
+            Self::Pulley(pulley) => pulley.at,
+        }
     }
 }
 
@@ -138,9 +190,11 @@ impl Store for SpringLength {
 }
 
 table! {
-    /// `<tendon><fixed>`.
+    /// Attributes of `<tendon><fixed>` and `<tendon><spatial>`.
     element Tendon {
-        also wrap: Vec<Wrap> = Vec::new();
+        also path: Vec<Along> = Vec::new();
+        also spatial: bool = false;
+        also looks: TendonLooks = TendonLooks::initial();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
         "range" range: [f64; 2] = [0.0; 2], reals(2, Any), "Shortest and longest length.";
@@ -155,8 +209,28 @@ table! {
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         check "group", int(0, MAX_GROUP), "Visual group. Ignored: tendons are not drawn.";
-        check "width", real(NonNegative), "Width in MuJoCo's viewer, m. Ignored: tendons are not drawn.";
+    }
+}
+
+table! {
+    /// Attributes that only spatial tendons have, beside those of all.
+    group TendonLooks {
+        "width" width: f64 = 0.003, real(Any), "Width in MuJoCo's viewer, m, which must be positive. Otherwise ignored: tendons are not drawn.";
         check "rgba", reals(4, Unit), "Colour in MuJoCo's viewer. Ignored: tendons are not drawn.";
         check "material", TEXT, "Material in MuJoCo's viewer. Ignored: tendons are not drawn.";
+    }
+}
+
+impl Tendon {
+    /// Reads the element, `<fixed>`, `<spatial>` or a default, without what it runs along.
+    pub fn string(&mut self, e: &Element) {
+        self.apply(e);
+        self.looks.apply(e);
+    }
+
+    /// Reads what it runs along.
+    pub fn thread(&mut self, e: &Element) {
+        self.spatial = e.name == "spatial";
+        self.path = e.children.iter().map(Along::read).collect();
     }
 }

@@ -150,6 +150,53 @@ pub enum EqualityKind {
     },
 }
 
+/// What a tendon runs along (MuJoCo's `mjtWrap`). A fixed tendon has joints only, a spatial one everything else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wrap {
+    /// A joint of one coordinate, which counts times `coef` in the length.
+    Joint {
+        /// The joint.
+        joint: usize,
+        /// Length of the tendon per coordinate.
+        coef: f64,
+    },
+    /// A pulley: what follows counts divided by `divisor` in the length.
+    Pulley {
+        /// The divisor, which is positive.
+        divisor: f64,
+    },
+    /// A site, which the tendon passes through.
+    Site {
+        /// The site.
+        site: usize,
+    },
+    /// A sphere between two sites, around which the tendon wraps where it is in the way.
+    Sphere {
+        /// The geom.
+        geom: usize,
+        /// The site on whose side the tendon stays; one inside of the sphere makes the tendon pass through it and touch it from inside.
+        side: Option<usize>,
+    },
+    /// A cylinder without ends, likewise.
+    Cylinder {
+        /// The geom.
+        geom: usize,
+        /// The site on whose side the tendon stays.
+        side: Option<usize>,
+    },
+}
+
+impl Wrap {
+    /// Returns the body of a site or a geom.
+    pub(crate) fn body(&self, model: &super::Arrays) -> Option<usize> {
+        match *self {
+            Self::Site { site } => Some(model.site_bodyid[site]),
+            Self::Sphere { geom, .. } | Self::Cylinder { geom, .. } => Some(model.geom_bodyid[geom]),
+            Self::Joint { .. } | Self::Pulley { .. } => None,
+        }
+    }
+}
+
 /// What an actuator acts on: `actuator_trnid` is its id (MuJoCo's `mjtTrn`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TrnType {

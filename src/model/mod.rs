@@ -13,7 +13,7 @@ pub use complete::Model;
 pub(crate) use complete::{CameraPose, Constants, LightPose, WeldPose};
 pub use elements::{
     BiasType, CamLight, ConeType, DynType, EqualityKind, Flags, GainType, GeomType, IntegratorType, JacobianFormat,
-    JointType, Keyframe, Light, Material, Options, SolverType, Statistic, TrnType,
+    JointType, Keyframe, Light, Material, Options, SolverType, Statistic, TrnType, Wrap,
 };
 internals!(use elements::{Builtin, Mark, SameFrame, Texture, TextureType, Visual});
 pub use sensor::{DataType, ObjType, SensorType};
@@ -305,11 +305,11 @@ arrays! {
 
     /// Tendon names.
     tendon_name: Vec<String>,
-    /// Joints and coefficients of each fixed tendon, in document order.
-    tendon_wrap: Vec<Vec<(usize, f64)>>,
+    /// What each tendon runs along, in document order.
+    tendon_wrap: Vec<Vec<Wrap>>,
     /// Whether `tendon_range` applies.
     tendon_limited: Vec<bool>,
-    /// Limits, rad.
+    /// Shortest and longest length; m for spatial tendons.
     tendon_range: Vec<[f64; 2]>,
     /// Distance at which a limit becomes active.
     tendon_margin: Vec<f64>,
@@ -458,6 +458,16 @@ sizes! {
 }
 
 impl Arrays {
+    /// Tells whether a tendon is spatial, its length one in space.
+    pub fn tendon_is_spatial(&self, tendon: usize) -> bool {
+        !matches!(self.tendon_wrap[tendon].first(), Some(Wrap::Joint { .. }))
+    }
+
+    /// Returns the number of what all tendons run along.
+    pub fn nwrap(&self) -> usize {
+        self.tendon_wrap.iter().map(Vec::len).sum()
+    }
+
     /// Returns the joint that an actuator acts on, if it acts on one.
     pub fn actuator_joint(&self, actuator: usize) -> Option<usize> {
         match self.actuator_trntype[actuator] {

@@ -13,6 +13,7 @@ mod dynamics;
 mod engine;
 mod free_body;
 mod params;
+mod patterns;
 #[cfg(feature = "rapier")]
 pub mod rapier;
 mod ray;

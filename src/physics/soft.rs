@@ -122,6 +122,7 @@ impl SoftEngine {
             kinematics(&self.model, s);
             com_pos(&self.model, s);
             cameras(&self.model, s);
+            tendons(&self.model, &self.topology, s);
         });
         vectorized!(crb(&self.model, &self.topology, s));
         vectorized!(self.bodies.update(&self.model, s));
@@ -143,8 +144,8 @@ impl SoftEngine {
         check_input(&self.model, &self.topology, s)?;
         self.fwd_position(s)?;
         self.mark(Some(Stage::Forces));
-        vectorized!(fwd_velocity(&self.model, s, &mut self.bias));
-        vectorized!(fwd_actuation(&self.model, &mut self.bodies, s));
+        vectorized!(fwd_velocity(&self.model, &self.topology, s, &mut self.bias));
+        vectorized!(fwd_actuation(&self.model, &self.topology, &mut self.bodies, s));
         self.mark(Some(Stage::Solver));
         match self.model.opt.solver {
             SolverType::Newton | SolverType::Cg => {

@@ -131,6 +131,24 @@ table! {
         pub cinert: [[f64; 10]; model.nbody()] = [0.0; 10];
         /// Composite inertias of subtrees (nbody).
         pub(crate) crb: [Inertia; model.nbody()] = [0.0; 10];
+        /// Lengths of the tendons (ntendon): coordinates of their joints, rad or m, times their coefficients; m for spatial ones.
+        pub ten_length: [f64; model.ntendon()] = 0.0;
+        /// Rates of the lengths of the tendons (ntendon).
+        pub ten_velocity: [f64; model.ntendon()] = 0.0;
+        /// Derivatives of the lengths of the tendons by the degrees of freedom that change them, one tendon after another.
+        pub(crate) ten_j: [f64; topology.tendons.len()] = 0.0;
+        /// Whether the length of each tendon has a derivative (ntendon), be it zero: whether points that follow each other are on
+        /// different bodies of which one can move.
+        pub(crate) ten_entries: [bool; model.ntendon()] = true;
+        /// First point of each tendon in `wrap_xpos` (ntendon).
+        pub ten_wrapadr: [usize; model.ntendon()] = 0;
+        /// Number of points of each tendon (ntendon); none for fixed ones.
+        pub ten_wrapnum: [usize; model.ntendon()] = 0;
+        /// Points that spatial tendons run through (twice the number of what they run along), world, m: sites, and where a tendon comes
+        /// onto a geom and leaves it. Zeros for a pulley, where the tendon is interrupted.
+        pub wrap_xpos: [Vec3; 2 * model.nwrap()] = [0.0; 3];
+        /// What each of these points is on: a geom, or -1 for a site, -2 for a pulley.
+        pub wrap_obj: [i32; 2 * model.nwrap()] = 0;
         /// Motion axes by tile: six values for each lane, zeros where there is none.
         pub(crate) cdof_lanes: [[Lanes; 6]; topology.tiles.rows()] = [[0.0; 4]; 6];
         /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal.
@@ -145,10 +163,6 @@ table! {
         pub cvel: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Rates of the motion axes (nv): rotation, translation, 1/s.
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Lengths of the tendons (ntendon): coordinates of their joints, rad or m, times their coefficients.
-        pub ten_length: [f64; model.ntendon()] = 0.0;
-        /// Rates of the lengths of the tendons (ntendon).
-        pub ten_velocity: [f64; model.ntendon()] = 0.0;
         /// Lengths of the actuators (nu): the coordinate of the joint, rad or m, times the gear.
         pub actuator_length: [f64; model.nu()] = 0.0;
         /// Rates of the lengths of the actuators (nu); zero where actuators are switched off.

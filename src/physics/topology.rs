@@ -2,6 +2,7 @@
 
 use crate::model::Arrays;
 use crate::physics::params::Params;
+use crate::physics::patterns::{self, DofRows};
 use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 
 /// The structure of the tree of a [`crate::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
@@ -32,6 +33,8 @@ pub struct Topology {
     /// Tiles that move each body, with how many of their lanes do.
     body_tiles: Vec<(u32, u32)>,
     body_tile_adr: Vec<usize>,
+    /// Degrees of freedom that can change the length of each tendon.
+    pub(crate) tendons: DofRows,
 }
 
 impl Topology {
@@ -71,8 +74,10 @@ impl Topology {
             tiles: Pattern::with_capacity(nv, nv),
             body_tiles: Vec::new(),
             body_tile_adr: Vec::new(),
+            tendons: DofRows::default(),
         };
         topology.deal_tiles(model);
+        topology.tendons = patterns::tendons(model, &topology);
         topology
     }
 
@@ -231,5 +236,12 @@ impl Topology {
             Some(d) => self.dof_chain(d),
             None => &[],
         }
+    }
+
+    /// Returns the degrees of freedom that move each of two bodies and not the other, ascending.
+    pub(crate) fn apart(&self, a: usize, b: usize) -> (&[u32], &[u32]) {
+        let (chain_a, chain_b) = (self.body_chain(a), self.body_chain(b));
+        let shared = chain_a.iter().zip(chain_b).take_while(|(a, b)| a == b).count();
+        (&chain_a[shared..], &chain_b[shared..])
     }
 }

@@ -42,6 +42,8 @@ struct Writer<'a> {
     joints: Vec<JointName>,
     geoms: Vec<String>,
     sites: Vec<String>,
+    /// Geoms that a tendon may wrap around.
+    rounds: Vec<String>,
     tendons: Vec<String>,
     limited_tendons: Vec<String>,
     actuators: Vec<String>,
@@ -63,6 +65,7 @@ pub fn document(language: &Language, seed: u64) -> Node {
         joints: Vec::new(),
         geoms: Vec::new(),
         sites: Vec::new(),
+        rounds: Vec::new(),
         tendons: Vec::new(),
         limited_tendons: Vec::new(),
         actuators: Vec::new(),
@@ -260,6 +263,10 @@ impl Writer<'_> {
             let geom = self.geom();
             world.children.push(geom);
         }
+        for _ in 0..self.dice.pick(&[0, 1, 2]) {
+            let site = self.site();
+            world.children.push(site);
+        }
         for _ in 0..self.dice.pick(&[1, 1, 2, 3]) {
             let body = self.body(0, false);
             world.children.push(body);
@@ -302,7 +309,7 @@ impl Writer<'_> {
             let geom = self.geom();
             body.children.push(geom);
         }
-        if self.dice.chance(0.4) {
+        for _ in 0..self.dice.pick(&[0, 0, 0, 1, 1, 2]) {
             let site = self.site();
             body.children.push(site);
         }
@@ -394,6 +401,9 @@ impl Writer<'_> {
             .dice
             .pick(&["sphere", "capsule", "box", "cylinder", "ellipsoid", "box", "capsule"]);
         let mut geom = Node::new("geom").with("name", name.as_str()).with("type", shape);
+        if ["sphere", "cylinder"].contains(&shape) {
+            self.rounds.push(name.clone());
+        }
         self.geoms.push(name);
         self.class(&mut geom, "class");
         let mut size = [0; 3].map(|_| self.dice.magnitude(0.03, 0.15));

@@ -313,21 +313,26 @@ const TENDON: &[Rule] = &[
     ("damping", Drawn(0.4, |d| d.log(0.01, 5.0))),
     ("user", Nothing),
     ("group", Nothing),
-    ("width", Nothing),
-    ("rgba", Nothing),
-    ("material", Nothing),
 ];
+
+const SPATIAL: &[Rule] = &[("width", Nothing), ("rgba", Nothing), ("material", Nothing)];
 
 const WRAP: &[Rule] = &[
     ("joint", Placed(&["slider", "lower"])),
     ("coef", Drawn(1.0, |d| d.reals(1, 2.0))),
 ];
+const WRAP_SITE: &[Rule] = &[("site", Placed(&["tip"]))];
+const WRAP_GEOM: &[Rule] = &[
+    ("geom", Placed(&["hand", "ball"])),
+    ("sidesite", Placed(&["skin", "corner", "inner"])),
+];
+const PULLEY: &[Rule] = &[("divisor", Drawn(1.0, |d| d.log(0.3, 4.0)))];
 
 const ACTUATOR: &[Rule] = &[
     ("name", Placed(&[])),
     ("joint", Placed(&["slider", "lower"])),
     ("jointinparent", Placed(&["slider", "lower"])),
-    ("tendon", Placed(&["pull", "loose"])),
+    ("tendon", Placed(&["pull", "loose", "string"])),
     ("forcelimited", Placed(&[])),
     ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
     ("forcerange", Drawn(0.4, |d| d.range(2.0))),
@@ -412,7 +417,7 @@ const ON_SITE: &[Rule] = &[("site", Placed(&["tip"]))];
 const OF_JOINT: &[Rule] = &[("joint", Placed(&["slider"]))];
 const OF_BALL: &[Rule] = &[("joint", Placed(&["swing"]))];
 const OF_LIMIT: &[Rule] = &[("joint", Placed(&["lower"]))];
-const OF_TENDON: &[Rule] = &[("tendon", Placed(&["pull"]))];
+const OF_TENDON: &[Rule] = &[("tendon", Placed(&["pull", "string"]))];
 const OF_ACTUATOR: &[Rule] = &[("actuator", Placed(&["hold"]))];
 const OF_SUBTREE: &[Rule] = &[("body", Placed(&["hand"]))];
 const OF_FRAME: &[Rule] = &[("objtype", Placed(&["xbody"])), ("objname", Placed(&["hand"]))];
@@ -474,6 +479,10 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("tendon", &[]),
     ("tendon/fixed", &[CLASS, TENDON]),
     ("tendon/fixed/joint", &[WRAP]),
+    ("tendon/spatial", &[CLASS, TENDON, SPATIAL]),
+    ("tendon/spatial/site", &[WRAP_SITE]),
+    ("tendon/spatial/geom", &[WRAP_GEOM]),
+    ("tendon/spatial/pulley", &[PULLEY]),
     ("actuator", &[]),
     ("actuator/general", &[CLASS, ACTUATOR, CONTROL, ACTIVATION, LAW]),
     ("actuator/motor", &[CLASS, ACTUATOR, CONTROL]),

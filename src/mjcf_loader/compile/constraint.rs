@@ -1,12 +1,10 @@
-//! Compiles contact pairs, equalities and tendons.
+//! Compiles contact pairs and equalities.
 
-use super::context::{Context, Ids, User};
+use super::context::{Context, Ids};
 use crate::math::quat_normalize;
 use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::relation::{
-    ConnectEquality, Equality, Held, JointEquality, Tendon, TendonEquality, WeldEquality, Wrap,
-};
+use crate::mjcf_loader::error::LoadError;
+use crate::mjcf_loader::relation::{ConnectEquality, Equality, Held, JointEquality, TendonEquality, WeldEquality};
 use crate::model::{Arrays, EqualityKind};
 
 /// Compiles explicit pairs and excludes, both sorted by the pair of bodies.
@@ -165,50 +163,5 @@ pub(super) fn compile_equality(
     arrays.eq_active0.push(equality.active);
     arrays.eq_solref.push(equality.solref);
     arrays.eq_solimp.push(equality.solimp);
-    Ok(())
-}
-
-/// MuJoCo takes such a tendon, but lets its length depend on both coefficients and its force on the last alone.
-const JOINT_TWICE: &str = "the tendon names this joint twice";
-
-/// Compiles a tendon.
-pub(super) fn compile_tendon(
-    context: &Context,
-    tendon: &Tendon,
-    user: &User,
-    ids: &Ids,
-    arrays: &mut Arrays,
-) -> Result<(), LoadError> {
-    if tendon.wrap.is_empty() {
-        return Err(context.invalid(tendon.at, "the tendon has no joints"));
-    }
-    let mut wrap = Vec::with_capacity(tendon.wrap.len());
-    for Wrap { at, joint, coef } in &tendon.wrap {
-        let joint = ids.scalar_joint(context, arrays, *at, "joint", joint)?;
-        if wrap.iter().any(|&(other, _)| other == joint) {
-            return Err(context.error(*at, ErrorKind::Invalid(JOINT_TWICE)));
-        }
-        wrap.push((joint, *coef));
-    }
-    arrays.tendon_user.push(user.of(context, tendon.at, &tendon.user)?);
-    arrays.tendon_name.push(tendon.name.clone());
-    arrays.tendon_wrap.push(wrap);
-    arrays
-        .tendon_limited
-        .push(context.limited(tendon.at, "range", tendon.limited, tendon.range)?);
-    arrays.tendon_range.push(tendon.range);
-    arrays.tendon_margin.push(tendon.margin);
-    arrays.tendon_solref_lim.push(tendon.solref_limit);
-    arrays.tendon_solimp_lim.push(tendon.solimp_limit);
-    let [shortest, longest] = tendon.springlength.0;
-    if shortest > longest {
-        return Err(context.invalid(tendon.at, "springlength must be the shorter and then the longer length"));
-    }
-    arrays.tendon_lengthspring.push([shortest, longest]);
-    arrays.tendon_frictionloss.push(tendon.frictionloss);
-    arrays.tendon_solref_fri.push(tendon.solref_friction);
-    arrays.tendon_solimp_fri.push(tendon.solimp_friction);
-    arrays.tendon_stiffness.push(tendon.stiffness);
-    arrays.tendon_damping.push(tendon.damping);
     Ok(())
 }

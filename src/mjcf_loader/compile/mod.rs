@@ -9,6 +9,7 @@ mod fluid;
 mod geometry;
 mod sensor;
 mod surface;
+mod tendon;
 
 use context::{Context, Ids, User};
 pub(crate) use geometry::bounding_radius;
@@ -59,7 +60,7 @@ pub(super) fn compile(
     let users = document.tendons.iter().map(|tendon| &tendon.user);
     let user = User::new("nuser_tendon", document.size.nuser_tendon, users);
     for tendon in &document.tendons {
-        constraint::compile_tendon(&context, tendon, &user, &ids, &mut arrays)?;
+        tendon::compile_tendon(&context, tendon, &user, &ids, &mut arrays)?;
     }
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
     sensor::compile_sensors(&context, document, &ids, &mut arrays)?;

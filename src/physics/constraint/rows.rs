@@ -5,12 +5,11 @@ use crate::model::{ConeType, EqualityKind, JointType, Model};
 use crate::physics::constraint::append::{Rows, Spec};
 use crate::physics::constraint::impedance::is_solref;
 use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS, connected_points, impedance, weld_points};
-use crate::physics::dynamics::{tendon_length, tendon_velocity};
 use crate::physics::state::{Contact, State};
 use crate::physics::tiles::{Lanes, total};
 use crate::physics::topology::Topology;
 
-/// Builds the constraint rows. Keeps those of dry friction, which are always the same.
+/// Builds the constraint rows. Keeps those of dry friction of joints, which are always the same.
 #[derive(Clone, Debug, Default)]
 pub struct RowBuilder {
     friction: Efc,
@@ -42,20 +41,6 @@ impl RowBuilder {
                 rows.row(0.0, 0.0, 0.0, spec);
             }
         }
-        for t in 0..model.ntendon() {
-            let loss = model.tendon_frictionloss[t];
-            if loss > 0.0 {
-                let spec = Spec {
-                    solref: model.tendon_solref_fri[t],
-                    solimp: model.tendon_solimp_fri[t],
-                    diag: model.tendon_invweight0[t],
-                };
-                if tendons(&mut rows, (ConstraintType::FrictionTendon, t), &[(t, 1.0)]) {
-                    rows.block_mut().frictionloss = loss;
-                    rows.row(0.0, 0.0, 0.0, spec);
-                }
-            }
-        }
         Self {
             damping: friction.vel.clone(),
             friction,
@@ -84,7 +69,8 @@ impl RowBuilder {
             equalities(&mut rows, s);
         }
         if flags.frictionloss {
-            self.add_friction(model, rows.efc, s);
+            self.add_friction(rows.efc, s);
+            tendon_friction(&mut rows, s);
         }
         if flags.limit {
             joint_limits(&mut rows, s);
@@ -97,9 +83,9 @@ impl RowBuilder {
         s.efc = efc;
     }
 
-    /// Appends dry friction.
+    /// Appends dry friction of joints.
     #[inline(always)]
-    fn add_friction(&self, model: &Model, efc: &mut Efc, s: &State) {
+    fn add_friction(&self, efc: &mut Efc, s: &State) {
         let f = &self.friction;
         let (row, col, jac) = (efc.pos.len(), efc.cols.len(), efc.jac.len());
         efc.blocks.extend(f.blocks.iter().map(|b| Block {
@@ -120,10 +106,7 @@ impl RowBuilder {
             to.extend_from_slice(from);
         }
         for (b, damping) in f.blocks.iter().zip(&self.damping) {
-            let v = match b.kind {
-                ConstraintType::FrictionTendon => tendon_velocity(model, s, b.id),
-                _ => s.qvel[b.id],
-            };
+            let v = s.qvel[b.id];
             efc.vel.push(v);
             efc.aref.push(0.0 - damping * v);
         }
@@ -230,7 +213,7 @@ fn polynomial(c: &[f64; 5], x: f64) -> (f64, f64) {
 /// Appends the row of an equality of tendons: the length of tendon 1 is a polynomial of that of tendon 2, or constant without one.
 fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usize, Option<usize>), c: [f64; 5]) {
     let model = rows.model;
-    let displacement = |t: usize| tendon_length(model, &s.qpos, t) - model.tendon_length0[t];
+    let displacement = |t: usize| s.ten_length[t] - model.tendon_length0[t];
     let mut pos = displacement(first) - s.params.eq_offset[id];
     let mut diag = model.tendon_invweight0[first];
     let mut scales = [(first, 1.0), (first, 0.0)];
@@ -241,7 +224,7 @@ fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usiz
         scales[1] = (second, -slope);
     }
     let count = if second.is_some() { 2 } else { 1 };
-    if tendons(rows, (ConstraintType::Equality, id), &scales[..count]) {
+    if tendons(rows, s, (ConstraintType::Equality, id), &scales[..count]) {
         let spec = Spec {
             solref: model.eq_solref[id],
             solimp: model.eq_solimp[id],
@@ -253,30 +236,40 @@ fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usiz
 
 /// Starts a block with one row on the lengths of tendons, each with a scale. Returns whether there is one: as with equalities without
 /// effect, MuJoCo drops a row that nothing moves, where the Jacobian is dense.
-fn tendons(rows: &mut Rows, (kind, id): (ConstraintType, usize), scales: &[(usize, f64)]) -> bool {
-    let model = rows.model;
+fn tendons(rows: &mut Rows, s: &State, (kind, id): (ConstraintType, usize), scales: &[(usize, f64)]) -> bool {
+    let (model, topology) = (rows.model, rows.topology);
     rows.block(kind, id, 1);
-    let entries = || {
-        let of = |&(t, scale): &(usize, f64)| {
-            let wrap = model.tendon_wrap[t].iter();
-            wrap.map(move |&(j, coef)| (model.jnt_dofadr[j], scale * coef))
-        };
-        scales.iter().flat_map(of)
+    let row = |k: usize| match scales.get(k) {
+        Some(&(t, scale)) => (topology.tendons.row(t), &s.ten_j[topology.tendons.range(t)], scale),
+        None => (&[][..], &[][..], 0.0),
     };
-    // ascending, whatever the order in the model
-    let mut from = 0;
-    while let Some(d) = entries().map(|e| e.0).filter(|d| *d >= from).min() {
-        let value: f64 = entries().filter(|e| e.0 == d).map(|e| e.1).sum();
-        rows.entry(d, value);
-        from = d + 1;
+    let ((dofs_a, arms_a, a), (dofs_b, arms_b, b)) = (row(0), row(1));
+    // both are ascending
+    let (mut i, mut k) = (0, 0);
+    loop {
+        let next = |dofs: &[u32], at: usize| dofs.get(at).copied().unwrap_or(u32::MAX);
+        let (next_a, next_b) = (next(dofs_a, i), next(dofs_b, k));
+        let d = next_a.min(next_b);
+        if d == u32::MAX {
+            break;
+        }
+        if next_a == d {
+            rows.entry(d as usize, a * arms_a[i]);
+            i += 1;
+        }
+        if next_b == d {
+            rows.entry(d as usize, b * arms_b[k]);
+            k += 1;
+        }
     }
     let block = *rows.block_mut();
     let moves = rows.efc.jac[block.jac..].iter().flatten().any(|v| *v != 0.0);
-    if !moves && !model.opt.jacobian.is_sparse(model.nv) {
+    let sparse = || model.opt.jacobian.is_sparse(model.nv);
+    let keeps = moves || sparse() && scales.iter().any(|&(t, _)| s.ten_entries[t]);
+    if !keeps {
         rows.drop_block();
-        return false;
     }
-    true
+    keeps
 }
 
 /// Appends the six rows of a weld: translation, rotation.
@@ -394,6 +387,28 @@ fn ball_limit(rows: &mut Rows, s: &State, j: usize) {
     }
 }
 
+/// Appends a row for each tendon that has dry friction.
+#[inline(always)]
+fn tendon_friction(rows: &mut Rows, s: &State) {
+    let model = rows.model;
+    for t in 0..model.ntendon() {
+        let loss = model.tendon_frictionloss[t];
+        if loss > 0.0 && tendons(rows, s, (ConstraintType::FrictionTendon, t), &[(t, 1.0)]) {
+            let spec = Spec {
+                solref: model.tendon_solref_fri[t],
+                solimp: model.tendon_solimp_fri[t],
+                diag: model.tendon_invweight0[t],
+            };
+            rows.block_mut().frictionloss = loss;
+            let damping = rows.row(0.0, 0.0, 0.0, spec);
+            let (efc, v) = (&mut *rows.efc, s.ten_velocity[t]);
+            if let (Some(vel), Some(aref)) = (efc.vel.last_mut(), efc.aref.last_mut()) {
+                (*vel, *aref) = (v, 0.0 - damping * v);
+            }
+        }
+    }
+}
+
 /// Appends a row for each limit of a tendon that is within its margin.
 #[inline(always)]
 fn tendon_limits(rows: &mut Rows, s: &State) {
@@ -402,7 +417,7 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
         if !model.tendon_limited[t] {
             continue;
         }
-        let length = tendon_length(model, &s.qpos, t);
+        let length = s.ten_length[t];
         let margin = model.tendon_margin[t];
         let spec = Spec {
             solref: model.tendon_solref_lim[t],
@@ -411,7 +426,7 @@ fn tendon_limits(rows: &mut Rows, s: &State) {
         };
         for (side, limit) in [(-1.0, model.tendon_range[t][0]), (1.0, model.tendon_range[t][1])] {
             let dist = side * (limit - length);
-            if dist < margin && tendons(rows, (ConstraintType::LimitTendon, t), &[(t, -side)]) {
+            if dist < margin && tendons(rows, s, (ConstraintType::LimitTendon, t), &[(t, -side)]) {
                 rows.row(dist, margin, dist - margin, spec);
             }
         }

@@ -5,6 +5,7 @@ use crate::physics::dynamics::applied::xfrc_accumulate;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
 use crate::physics::dynamics::{activation, transmission};
 use crate::physics::state::State;
+use crate::physics::topology::Topology;
 
 /// Computes `act_dot, actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
 ///
@@ -12,8 +13,9 @@ use crate::physics::state::State;
 /// those of the joint or the tendon. What all actuators together do to a joint may be limited. Where it has an activation, that takes the place of the control. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
 /// of range are clamped. `bodies` must be up to date.
 #[inline(always)]
-pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
-    s.qfrc_actuator.fill(0.0);
+pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
+    let mut forces = std::mem::take(&mut s.qfrc_actuator);
+    forces.fill(0.0);
     let acting = if model.opt.flags.actuation { model.nu() } else { 0 };
     s.actuator_force[acting..].fill(0.0);
     for i in 0..acting {
@@ -34,8 +36,8 @@ pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
             s.act_dot[k] = activation::rate(model, i, s.act[k], ctrl);
             ctrl = activation::acting(model, i, s.act[k], s.act_dot[k]);
         }
-        let length = gear * transmission::length(model, &s.qpos, i);
-        let velocity = gear * transmission::velocity(model, &s.qvel, i);
+        let length = gear * transmission::length(model, s, i);
+        let velocity = gear * transmission::velocity(model, topology, s, i);
         let affine = |p: [f64; 3]| p[0] + p[1] * length + p[2] * velocity;
         let gain = match model.actuator_gaintype[i] {
             GainType::Fixed => model.actuator_gainprm[i][0],
@@ -53,10 +55,11 @@ pub fn fwd_actuation(model: &Model, bodies: &mut Articulated, s: &mut State) {
             force = force.max(lo).min(hi);
         }
         s.actuator_force[i] = force;
-        for (d, arm) in transmission::moment(model, i) {
-            s.qfrc_actuator[d] += arm * gear * force;
+        for (d, arm) in transmission::moment(model, topology, s, i) {
+            forces[d] += arm * gear * force;
         }
     }
+    s.qfrc_actuator = forces;
     for (j, &[low, high]) in model.jnt_actfrcrange.iter().enumerate() {
         // as in MuJoCo, without actuators there is no force that is too small, either
         if acting > 0 && model.jnt_actfrclimited[j] {

@@ -9,7 +9,7 @@ use crate::model::{
 use crate::physics::MAXVAL;
 use crate::physics::dynamics::kinematics::local_to_global;
 use crate::physics::dynamics::transmission::moment;
-use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendon_length};
+use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendons};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -21,6 +21,7 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
     let mut s = State::new(model, &topology);
     kinematics(model, &mut s);
     com_pos(model, &mut s);
+    tendons(model, &topology, &mut s);
     crb(model, &topology, &mut s);
     let diagonal = (0..model.nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
     let dof_m0: Vec<f64> = diagonal.collect();
@@ -32,12 +33,10 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
         dof_invweight0,
         jnt_stiffness,
         dof_damping,
-        tendon_length0: (0..model.ntendon())
-            .map(|t| tendon_length(model, &model.qpos0, t))
-            .collect(),
-        tendon_lengthspring: (0..model.ntendon()).map(|t| slack(model, t)).collect(),
+        tendon_length0: s.ten_length.clone(),
+        tendon_lengthspring: slack(model, &topology),
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
-        actuator_biasprm: (0..model.nu()).map(|i| bias(model, i, &dof_m0)).collect(),
+        actuator_biasprm: (0..model.nu()).map(|i| bias(model, &topology, &s, i, &dof_m0)).collect(),
         stat: statistics(model, &s, &dof_m0),
         weld_poses: weld_poses(model, &s),
         connect_anchors: connect_anchors(model, &s),
@@ -51,13 +50,13 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
 ///
 /// That of a servo with gain `k` on a mass `m` is `2 ratio sqrt(k m)`; the mass is that of the joints at `qpos0`, seen through the
 /// gear.
-fn bias(model: &Arrays, actuator: usize, dof_m0: &[f64]) -> [f64; 3] {
+fn bias(model: &Arrays, topology: &Topology, s: &State, actuator: usize, dof_m0: &[f64]) -> [f64; 3] {
     let ([k, ..], [constant, stiffness, ratio]) = (model.actuator_gainprm[actuator], model.actuator_biasprm[actuator]);
     if k != -stiffness || ratio <= 0.0 {
         return model.actuator_biasprm[actuator];
     }
     let gear = model.actuator_gear[actuator];
-    let seen = moment(model, actuator).map(|(d, arm)| (dof_m0[d], (gear * arm) * (gear * arm)));
+    let seen = moment(model, topology, s, actuator).map(|(d, arm)| (dof_m0[d], (gear * arm) * (gear * arm)));
     let mass: f64 = seen
         .filter(|(_, square)| *square > MINVAL)
         .map(|(m, square)| m / square)
@@ -82,12 +81,21 @@ fn springs(model: &Arrays, dof_invweight0: &[f64]) -> (Vec<f64>, Vec<f64>) {
     (stiffness, damping)
 }
 
-/// Returns the lengths between which a tendon's spring is slack: as given, else that in the springs' rest configuration.
-fn slack(model: &Arrays, tendon: usize) -> [f64; 2] {
-    match model.tendon_lengthspring[tendon] {
-        [-1.0, -1.0] => [tendon_length(model, &model.qpos_spring, tendon); 2],
-        given => given,
+/// Returns the lengths between which each tendon's spring is slack: as given, else that in the springs' rest configuration.
+fn slack(model: &Arrays, topology: &Topology) -> Vec<[f64; 2]> {
+    const AT_REST: [f64; 2] = [-1.0; 2];
+    let mut lengths = model.tendon_lengthspring.clone();
+    if lengths.contains(&AT_REST) {
+        let mut s = State::new(model, topology);
+        s.qpos.clone_from(&model.qpos_spring);
+        kinematics(model, &mut s);
+        com_pos(model, &mut s);
+        tendons(model, topology, &mut s);
+        let found = lengths.iter_mut().zip(&s.ten_length);
+        let at_rest = found.filter(|(length, _)| **length == AT_REST);
+        at_rest.for_each(|(length, &found)| *length = [found; 2]);
     }
+    lengths
 }
 
 /// Computes the relative poses at `qpos0` of the welds that are to hold them.
@@ -239,8 +247,9 @@ impl<'a> Weights<'a> {
     }
 
     fn tendon(&mut self, t: usize) -> f64 {
-        let wrap = self.model.tendon_wrap[t].iter();
-        let jac: Vec<(usize, f64)> = wrap.map(|&(j, c)| (self.model.jnt_dofadr[j], c)).collect();
+        let rows = &self.topology.tendons;
+        let entries = rows.row(t).iter().zip(&self.s.ten_j[rows.range(t)]);
+        let jac: Vec<(usize, f64)> = entries.map(|(&d, &arm)| (d as usize, arm)).collect();
         self.of(&jac)
     }
 }

@@ -60,7 +60,7 @@ impl Derivative {
             let gear = if muscle { 1.0 } else { s.params.actuator_gear[i] };
             self.entries.clear();
             self.entries
-                .extend(transmission::moment(model, i).map(|(d, arm)| (d, arm * gear)));
+                .extend(transmission::moment(model, topology, s, i).map(|(d, arm)| (d, arm * gear)));
             out.add_square(topology, &self.entries, slope);
         }
     }
@@ -70,11 +70,11 @@ impl Derivative {
         for (d, damping) in s.params.dof_damping.iter().enumerate() {
             out.add(topology, d, d, -damping);
         }
-        for (wrap, damping) in model.tendon_wrap.iter().zip(&model.tendon_damping) {
+        for (t, damping) in model.tendon_damping.iter().enumerate() {
             if *damping > 0.0 {
+                let entries = topology.tendons.row(t).iter().zip(&s.ten_j[topology.tendons.range(t)]);
                 self.entries.clear();
-                self.entries
-                    .extend(wrap.iter().map(|&(j, coef)| (model.jnt_dofadr[j], coef)));
+                self.entries.extend(entries.map(|(&d, &arm)| (d as usize, arm)));
                 out.add_square(topology, &self.entries, -damping);
             }
         }

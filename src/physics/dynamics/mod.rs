@@ -16,9 +16,11 @@ mod integrate;
 mod kinematics;
 mod post_constraint;
 mod sensor;
+mod tendon;
 mod transmission;
 mod tree_matrix;
 mod velocity;
+mod wrap;
 
 pub use actuation::fwd_actuation;
 pub use articulated::{Articulated, Damping};
@@ -30,4 +32,5 @@ pub use integrate::{Integrator, RungeKutta};
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;
 pub use sensor::{SubtreeScratch, sensors};
-pub use velocity::{BiasScratch, fwd_velocity, tendon_length, tendon_velocity};
+pub use tendon::tendons;
+pub use velocity::{BiasScratch, fwd_velocity};

@@ -1,8 +1,8 @@
 //! What actuators act on: their lengths, and how these change with the coordinates.
 
 use crate::model::{Arrays, Model, TrnType};
-use crate::physics::dynamics::tendon_length;
 use crate::physics::state::State;
+use crate::physics::topology::Topology;
 
 /// Returns the gear by which an actuator's length follows from what it acts on. Muscles of an actuation model act on joints themselves.
 pub(super) fn gear(s: &State, actuator: usize) -> f64 {
@@ -15,28 +15,34 @@ pub(super) fn gear(s: &State, actuator: usize) -> f64 {
 
 /// Returns the coordinate of a joint or the length of a tendon that an actuator acts on, without its gear.
 #[inline(always)]
-pub(super) fn length(model: &Model, qpos: &[f64], actuator: usize) -> f64 {
+pub(super) fn length(model: &Model, s: &State, actuator: usize) -> f64 {
     let id = model.actuator_trnid[actuator];
     match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent => qpos[model.jnt_qposadr[id]],
-        TrnType::Tendon => tendon_length(model, qpos, id),
+        TrnType::Joint | TrnType::JointInParent => s.qpos[model.jnt_qposadr[id]],
+        TrnType::Tendon => s.ten_length[id],
     }
 }
 
 /// Returns the rate of [`length`].
 #[inline(always)]
-pub(super) fn velocity(model: &Model, qvel: &[f64], actuator: usize) -> f64 {
-    moment(model, actuator).map(|(d, arm)| arm * qvel[d]).sum()
+pub(super) fn velocity(model: &Model, topology: &Topology, s: &State, actuator: usize) -> f64 {
+    let moment = moment(model, topology, s, actuator);
+    moment.map(|(d, arm)| arm * s.qvel[d]).sum()
 }
 
 /// Iterates over the degrees of freedom that an actuator acts on, with the derivative of [`length`] by each.
 #[inline(always)]
-pub(super) fn moment(model: &Arrays, actuator: usize) -> impl Iterator<Item = (usize, f64)> {
+pub(super) fn moment<'a>(
+    model: &Arrays,
+    topology: &'a Topology,
+    s: &'a State,
+    actuator: usize,
+) -> impl Iterator<Item = (usize, f64)> + use<'a> {
     let id = model.actuator_trnid[actuator];
-    let (joint, wrap): (_, &[(usize, f64)]) = match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent => (Some(model.jnt_dofadr[id]), &[]),
-        TrnType::Tendon => (None, &model.tendon_wrap[id]),
+    let (joint, dofs, arms): (_, &[u32], &[f64]) = match model.actuator_trntype[actuator] {
+        TrnType::Joint | TrnType::JointInParent => (Some(model.jnt_dofadr[id]), &[], &[]),
+        TrnType::Tendon => (None, topology.tendons.row(id), &s.ten_j[topology.tendons.range(id)]),
     };
     let joint = joint.into_iter().map(|d| (d, 1.0));
-    joint.chain(wrap.iter().map(|&(j, coef)| (model.jnt_dofadr[j], coef)))
+    joint.chain(dofs.iter().zip(arms).map(|(&d, &arm)| (d as usize, arm)))
 }

@@ -1,11 +1,12 @@
 //! Velocities, bias forces and passive forces.
 
 use crate::math::{quat_at, quat_normalize, rotation_between};
-use crate::model::{Arrays, JointType, Model};
+use crate::model::{JointType, Model};
 use crate::physics::dynamics::fluid::{gravity_compensation, medium};
 use crate::physics::dynamics::transmission;
 use crate::physics::spatial::*;
 use crate::physics::state::State;
+use crate::physics::topology::Topology;
 
 /// Computes `cvel` and `cdof_dot` from `qvel`.
 #[inline(always)]
@@ -45,31 +46,27 @@ pub struct BiasScratch {
     force: Vec<Spatial>,
 }
 
-/// Computes the lengths of tendons and actuators, and their rates: `ten_length, ten_velocity, actuator_length, actuator_velocity`.
+/// Computes the lengths of actuators and their rates: `actuator_length, actuator_velocity`.
 #[inline(always)]
-fn lengths(model: &Model, s: &mut State) {
-    for t in 0..model.ntendon() {
-        s.ten_length[t] = tendon_length(model, &s.qpos, t);
-        s.ten_velocity[t] = tendon_velocity(model, s, t);
-    }
+fn lengths(model: &Model, topology: &Topology, s: &mut State) {
     // as in MuJoCo, which leaves the rates of the lengths out with the forces
     let acting = model.opt.flags.actuation;
     for i in 0..model.nu() {
         let gear = transmission::gear(s, i);
-        s.actuator_length[i] = gear * transmission::length(model, &s.qpos, i);
+        s.actuator_length[i] = gear * transmission::length(model, s, i);
         s.actuator_velocity[i] = if acting {
-            gear * transmission::velocity(model, &s.qvel, i)
+            gear * transmission::velocity(model, topology, s, i)
         } else {
             0.0
         };
     }
 }
 
-/// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`, lengths of tendons and actuators and their rates: springs `-k (q - springref)`, dampers `-d v`, and the recursive
+/// Computes `cvel, cdof_dot, qfrc_bias, qfrc_passive`, lengths of actuators and their rates: springs `-k (q - springref)`, dampers `-d v`, and the recursive
 /// Newton-Euler algorithm at zero joint acceleration.
 #[inline(always)]
-pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
-    lengths(model, s);
+pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: &mut BiasScratch) {
+    lengths(model, topology, s);
     com_vel(model, s);
     let nb = model.nbody();
     scratch.acc.resize(nb, [0.0; 6]);
@@ -102,7 +99,7 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
         s.qfrc_bias[d] = dot6(&s.cdof[d], &scratch.force[model.dof_bodyid[d]]);
     }
     if model.opt.flags.passive {
-        passive(model, s);
+        passive(model, topology, s);
     } else {
         s.qfrc_passive.fill(0.0);
     }
@@ -110,7 +107,7 @@ pub fn fwd_velocity(model: &Model, s: &mut State, scratch: &mut BiasScratch) {
 
 /// Computes `qfrc_passive`: springs and dampers of joints and tendons, compensated gravity, the medium.
 #[inline(always)]
-fn passive(model: &Model, s: &mut State) {
+fn passive(model: &Model, topology: &Topology, s: &mut State) {
     for d in 0..model.nv {
         s.qfrc_passive[d] = -s.params.dof_damping[d] * s.qvel[d];
     }
@@ -137,7 +134,7 @@ fn passive(model: &Model, s: &mut State) {
         }
     }
     for t in 0..model.ntendon() {
-        pull(model, s, t);
+        pull(model, topology, s, t);
     }
     gravity_compensation(model, s);
     medium(model, s);
@@ -145,12 +142,11 @@ fn passive(model: &Model, s: &mut State) {
 
 /// Adds the force of a tendon's spring and damper to `qfrc_passive`.
 #[inline(always)]
-fn pull(model: &Model, s: &mut State, tendon: usize) {
+fn pull(model: &Model, topology: &Topology, s: &mut State, tendon: usize) {
     let (stiffness, damping) = (model.tendon_stiffness[tendon], model.tendon_damping[tendon]);
     if stiffness == 0.0 && damping == 0.0 {
         return;
     }
-    let wrap = &model.tendon_wrap[tendon];
     let (length, [shortest, longest]) = (s.ten_length[tendon], model.tendon_lengthspring[tendon]);
     let mut force = 0.0;
     if length > longest {
@@ -159,21 +155,8 @@ fn pull(model: &Model, s: &mut State, tendon: usize) {
         force = stiffness * (shortest - length);
     }
     force -= damping * s.ten_velocity[tendon];
-    for &(j, coef) in wrap {
-        s.qfrc_passive[model.jnt_dofadr[j]] += coef * force;
+    let row = topology.tendons.range(tendon);
+    for (&d, arm) in topology.tendons.row(tendon).iter().zip(&s.ten_j[row]) {
+        s.qfrc_passive[d as usize] += arm * force;
     }
-}
-
-/// Returns the length of a fixed tendon at positions `qpos`.
-#[inline(always)]
-pub fn tendon_length(model: &Arrays, qpos: &[f64], tendon: usize) -> f64 {
-    let wrap = model.tendon_wrap[tendon].iter();
-    wrap.map(|&(j, coef)| coef * qpos[model.jnt_qposadr[j]]).sum()
-}
-
-/// Returns the rate of a tendon's length.
-#[inline(always)]
-pub fn tendon_velocity(model: &Arrays, s: &State, tendon: usize) -> f64 {
-    let wrap = model.tendon_wrap[tendon].iter();
-    wrap.map(|&(j, coef)| coef * s.qvel[model.jnt_dofadr[j]]).sum()
 }

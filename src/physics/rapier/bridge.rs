@@ -213,6 +213,7 @@ impl Bridge {
         kinematics(model, s);
         com_pos(model, s);
         cameras(model, s);
+        tendons(model, topology, s);
         crb(model, topology, s);
         self.inertia.update(model, s);
         stage(Stage::Collision);
@@ -225,8 +226,8 @@ impl Bridge {
         stage(Stage::Constraints);
         self.builder.build(model, topology, s);
         stage(Stage::Forces);
-        fwd_velocity(model, s, &mut self.bias);
-        fwd_actuation(model, &mut self.inertia, s);
+        fwd_velocity(model, topology, s, &mut self.bias);
+        fwd_actuation(model, topology, &mut self.inertia, s);
         stage(Stage::Solver);
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Checks that Rapier's multibodies can represent a model.
 
-use crate::model::{EqualityKind, GeomType, JointType, Model};
+use crate::model::{EqualityKind, GeomType, JointType, Model, Wrap};
 use crate::physics::rapier::RapierError;
 use crate::physics::topology::Topology;
 
@@ -27,7 +27,11 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
             let what = "a tendon cannot have dry friction";
             return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
         }
-        let pair = matches!(model.tendon_wrap[t][..], [(a, x), (b, y)]
+        if model.tendon_is_spatial(t) {
+            let what = "spatial tendons are not supported";
+            return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
+        }
+        let pair = matches!(model.tendon_wrap[t][..], [Wrap::Joint { joint: a, coef: x }, Wrap::Joint { joint: b, coef: y }]
             if a != b && x != 0.0 && y != 0.0 && tree(a) == tree(b));
         if model.tendon_limited[t] && !pair {
             let what = "a limited tendon must span two joints of the same tree";

@@ -114,7 +114,50 @@ impl Writer<'_> {
             }
             section.children.push(tendon);
         }
+        for _ in 0..if self.sites.len() < 2 || self.dice.chance(0.5) {
+            0
+        } else {
+            self.dice.rng.usize(1..3)
+        } {
+            let tendon = self.spatial();
+            section.children.push(tendon);
+        }
         section
+    }
+
+    /// Strings a spatial tendon: sites, at times a geom between two of them or a pulley.
+    fn spatial(&mut self) -> Node {
+        let mut tendon = Node::new("spatial").with("name", self.name("t"));
+        self.class(&mut tendon, "class");
+        self.language.dress(&mut tendon, "tendon/spatial", false, &mut self.dice);
+        self.decide_limits(&mut tendon);
+        let (mut last, mut branch) = (self.sites.len(), 0);
+        for left in (0..self.dice.rng.usize(2..6)).rev() {
+            let mut next = self.dice.rng.usize(..self.sites.len());
+            if next == last {
+                next = (next + 1) % self.sites.len();
+            }
+            last = next;
+            let site = Node::new("site").with("site", self.sites[next].as_str());
+            tendon.children.push(site);
+            branch += 1;
+            if left > 0 && !self.rounds.is_empty() && self.dice.chance(0.5) {
+                let geom = self.dice.rng.usize(..self.rounds.len());
+                let mut geom = Node::new("geom").with("geom", self.rounds[geom].as_str());
+                if self.dice.chance(0.5) {
+                    let side = self.dice.rng.usize(..self.sites.len());
+                    geom.set("sidesite", self.sites[side].as_str());
+                }
+                tendon.children.push(geom);
+            } else if left > 1 && branch > 1 && self.dice.chance(0.2) {
+                let mut pulley = Node::new("pulley");
+                self.language
+                    .dress(&mut pulley, "tendon/spatial/pulley", false, &mut self.dice);
+                tendon.children.push(pulley);
+                (last, branch) = (self.sites.len(), 0);
+            }
+        }
+        tendon
     }
 
     pub(super) fn actuator(&mut self) -> Node {

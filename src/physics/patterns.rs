@@ -1,0 +1,80 @@
+//! Which degrees of freedom move what is not a body: tendons.
+
+use std::ops::Range;
+
+use crate::model::{Arrays, Wrap};
+use crate::physics::topology::Topology;
+
+/// A sparse row over the degrees of freedom for each of some elements.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DofRows {
+    /// First entry of each row, and one past the last.
+    adr: Vec<usize>,
+    /// Degrees of freedom of each row, ascending.
+    dofs: Vec<u32>,
+}
+
+impl DofRows {
+    /// Makes rows of degrees of freedom, which may come in any order and more than once.
+    fn new(rows: impl Iterator<Item = Vec<u32>>) -> Self {
+        let mut all = Self::default();
+        all.adr.push(0);
+        for mut row in rows {
+            row.sort_unstable();
+            row.dedup();
+            all.dofs.extend(row);
+            all.adr.push(all.dofs.len());
+        }
+        all
+    }
+
+    /// Returns the entries of a row among those of all rows.
+    #[inline]
+    pub(crate) fn range(&self, row: usize) -> Range<usize> {
+        self.adr[row]..self.adr[row + 1]
+    }
+
+    /// Returns the degrees of freedom of a row, ascending.
+    #[inline]
+    pub(crate) fn row(&self, row: usize) -> &[u32] {
+        &self.dofs[self.range(row)]
+    }
+
+    /// Returns the number of entries of all rows.
+    pub(crate) fn len(&self) -> usize {
+        self.dofs.len()
+    }
+}
+
+/// Returns the degrees of freedom that can change the length of each tendon.
+pub(super) fn tendons(model: &Arrays, topology: &Topology) -> DofRows {
+    let of = |t: usize| {
+        let joints = model.tendon_wrap[t].iter().filter_map(|along| match *along {
+            Wrap::Joint { joint, .. } => Some(model.jnt_dofadr[joint] as u32),
+            _ => None,
+        });
+        let mut row: Vec<u32> = joints.collect();
+        for [a, b] in neighbours(model, t).filter(|[a, b]| a != b) {
+            let (chain_a, chain_b) = topology.apart(a, b);
+            row.extend(chain_a);
+            row.extend(chain_b);
+        }
+        row
+    };
+    DofRows::new((0..model.ntendon()).map(of))
+}
+
+/// Iterates over the bodies of what follows each other along a spatial tendon.
+fn neighbours(model: &Arrays, t: usize) -> impl Iterator<Item = [usize; 2]> {
+    let pairs = model.tendon_wrap[t].windows(2);
+    let direct = pairs.filter_map(|pair| Some([pair[0].body(model)?, pair[1].body(model)?]));
+    // past a geom that is not in the way
+    let sites = model.tendon_wrap[t].windows(3);
+    let past = sites.filter_map(|three| match three {
+        [first @ Wrap::Site { .. }, Wrap::Sphere { .. } | Wrap::Cylinder { .. }, last @ Wrap::Site { .. }] => {
+            Some([first.body(model)?, last.body(model)?])
+        }
+        _ => None,
+    });
+    direct.chain(past)
+}
