@@ -66,6 +66,8 @@ limits! {
         pairs: usize = 20_000,
         /// MJCF: numbers in all keyframes together.
         key_numbers: usize = 4_194_304,
+        /// MJCF: steps of the simulations that look for the lengths of muscles.
+        lengthrange_steps: usize = 1_000_000,
         /// MJCF: the largest magnitude of a number. Products of a few such numbers stay finite.
         real: f64 = 1e30,
         /// Physics: pairs of geoms in large scenes whose boxes overlap.

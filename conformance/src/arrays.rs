@@ -197,11 +197,17 @@ pub fn unrecorded(m: &Model) -> Named {
     let transmission = |kind: &TrnType| match kind {
         TrnType::Joint => 0.0,
         TrnType::JointInParent => 1.0,
+        TrnType::SliderCrank => 2.0,
         TrnType::Tendon => 3.0,
+        TrnType::Site => 4.0,
+        TrnType::Body => 5.0,
     };
     let kinds = |all: &[ObjType]| all.iter().map(|kind| f64::from(kind.code())).collect();
     let keys = |of: fn(&babybench::model::Keyframe) -> &[f64]| m.keys.iter().flat_map(of).copied().collect();
+    let wraps = m.tendon_wrap.iter().flatten();
     vec![
+        ("wrap_type", wraps.map(|along| wrap(along)[0]).collect()),
+        ("actuator_cranklength", m.actuator_cranklength.clone()),
         ("body_user", users(&m.body_user)),
         ("jnt_user", users(&m.jnt_user)),
         ("jnt_actfrclimited", flags(&m.jnt_actfrclimited)),
@@ -344,7 +350,6 @@ fn of_tendons(m: &Model) -> Named {
         ("tendon_lengthspring", flat(&m.tendon_lengthspring)),
         ("tendon_stiffness", m.tendon_stiffness.clone()),
         ("tendon_damping", m.tendon_damping.clone()),
-        ("wrap_type", wraps.iter().map(|wrap| wrap[0]).collect()),
         ("wrap_objid", wraps.iter().map(|wrap| wrap[1]).collect()),
         ("wrap_prm", wraps.iter().map(|wrap| wrap[2]).collect()),
     ]
@@ -375,10 +380,17 @@ fn of_sensors(m: &Model) -> Named {
 
 /// Returns the actuator arrays, reduced to what the model keeps.
 pub fn actuators(m: &Model) -> Named {
-    let bias = |kind: &BiasType| if *kind == BiasType::None { 0.0 } else { 1.0 };
+    let bias = |kind: &BiasType| match kind {
+        BiasType::None => 0.0,
+        BiasType::Affine => 1.0,
+        BiasType::Muscle => 2.0,
+    };
+    let seconds = m.actuator_trnid.iter().zip(&m.actuator_refid);
+    let trnid = seconds.flat_map(|(&id, second)| [id as f64, second.map_or(-1.0, |id| id as f64)]);
+    let trnid = trnid.collect();
     vec![
-        ("actuator_trnid", ids(&m.actuator_trnid)),
-        ("actuator_gear", m.actuator_gear.clone()),
+        ("actuator_trnid", trnid),
+        ("actuator_gear", flat(&m.actuator_gear6)),
         ("actuator_ctrllimited", flags(&m.actuator_ctrllimited)),
         ("actuator_ctrlrange", flat(&m.actuator_ctrlrange)),
         ("actuator_forcelimited", flags(&m.actuator_forcelimited)),
@@ -397,8 +409,13 @@ pub fn activations(m: &Model) -> Named {
         DynType::Integrator => 1.0,
         DynType::Filter => 2.0,
         DynType::FilterExact => 3.0,
+        DynType::Muscle => 4.0,
     };
-    let gain = |kind: &GainType| if *kind == GainType::Fixed { 0.0 } else { 1.0 };
+    let gain = |kind: &GainType| match kind {
+        GainType::Fixed => 0.0,
+        GainType::Affine => 1.0,
+        GainType::Muscle => 2.0,
+    };
     let numbers = m.actuator_actadr.iter().map(|adr| f64::from(u8::from(adr.is_some())));
     vec![
         ("na", vec![m.na as f64]),
@@ -515,17 +532,11 @@ fn of_views(m: &Model) -> Named {
     ]
 }
 
-/// Cuts the rows of MuJoCo's arrays to the width of ours, after checking that the rest is unused (0 or -1). Parameters of actuators
-/// beyond the third are not looked at: muscles alone use them.
+/// Cuts the rows of MuJoCo's arrays to the width of ours, after checking that the rest is unused (0 or -1).
 ///
 /// `mat_texid` holds one texture per role, of which the models use the second (colour).
 pub fn narrowed(name: &str, recorded: &[f64]) -> Vec<f64> {
     let (wide, first, keep) = match name {
-        "actuator_trnid" => (2, 0, 1),
-        "actuator_gear" => (6, 0, 1),
-        "actuator_dynprm" | "actuator_gainprm" | "actuator_biasprm" => {
-            return recorded.chunks(10).flat_map(|row| &row[..3]).copied().collect();
-        }
         "mat_texid" => (10, 1, 1),
         _ => return recorded.to_vec(),
     };
@@ -556,6 +567,14 @@ pub fn derived(m: &Model) -> Named {
         ("meansize", vec![s.meansize]),
         ("extent", vec![s.extent]),
         ("center", s.center.to_vec()),
+    ]
+}
+
+/// Returns those of actuators, which no recording has.
+pub fn derived_unrecorded(m: &Model) -> Named {
+    vec![
+        ("actuator_acc0", m.actuator_acc0.clone()),
+        ("actuator_length0", m.actuator_length0.clone()),
     ]
 }
 

@@ -4,7 +4,9 @@ use babybench::assets::AssetSource;
 use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
 use babybench::physics::compile;
 
-use crate::arrays::{activations, actuators, derived, looks, names, narrowed, options, physical, unrecorded};
+use crate::arrays::{
+    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, options, physical, unrecorded,
+};
 use crate::mujoco::{Mujoco, Simulation};
 
 /// Relative tolerance of compiled numbers; absolute below 1.
@@ -41,9 +43,6 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         }
         ErrorKind::BadNumber { .. } => Some("not a number, infinity and hexadecimal numbers"),
         ErrorKind::WrongCount { found: 0, .. } => Some("attributes without a value, which MuJoCo takes for absent"),
-        ErrorKind::WrongCount { attribute: "gear", .. } => {
-            Some("gears beyond the first, which scalar joints do not use")
-        }
         ErrorKind::UnknownName { name, .. } if name.is_empty() => Some("references without a name"),
         ErrorKind::MissingAttribute("geom1" | "geom2") => Some("contact pairs of a single geom"),
         ErrorKind::MissingAttribute("target") => Some("cameras without the target of their mode"),
@@ -106,7 +105,8 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
         .chain(looks(model))
         .chain(options(model));
     let compiled = compiled.map(|(name, values)| (name, values, TOLERANCE));
-    let derived = derived(model).into_iter().map(|(name, values)| (name, values, DERIVED));
+    let derived = derived(model).into_iter().chain(derived_unrecorded(model));
+    let derived = derived.map(|(name, values)| (name, values, DERIVED));
     let mut all = Vec::new();
     for (name, ours, limit) in compiled.chain(derived) {
         let theirs = simulation.model_array(name).or_else(|| simulation.model_value(name));

@@ -58,6 +58,7 @@ numbers! {
     BiasType => i32, |v| match v {
         BiasType::None => 0,
         BiasType::Affine => 1,
+        BiasType::Muscle => 2,
     };
     SensorType => i32, |v| v.code();
     ObjType => i32, |v| v.code();
@@ -66,10 +67,12 @@ numbers! {
         DynType::Integrator => 1,
         DynType::Filter => 2,
         DynType::FilterExact => 3,
+        DynType::Muscle => 4,
     };
     GainType => i32, |v| match v {
         GainType::Fixed => 0,
         GainType::Affine => 1,
+        GainType::Muscle => 2,
     };
 }
 

@@ -188,7 +188,7 @@ fields! { model_fields, model_fields_mut, Arrays;
         tendon_stiffness = tendon_stiffness, tendon_damping = tendon_damping, tendon_invweight0 = tendon_invweight0,
         actuator_ctrlrange = actuator_ctrlrange, actuator_forcerange = actuator_forcerange,
         actuator_actrange = actuator_actrange;
-    GEAR => actuator_gear = actuator_gear;
+    GEAR => actuator_gear = actuator_gear6;
     PRM => actuator_dynprm = actuator_dynprm, actuator_gainprm = actuator_gainprm, actuator_biasprm = actuator_biasprm;
 }
 

@@ -100,7 +100,13 @@ impl PhysicsModel {
         let written = memory.as_slice()?;
         if written != &current.seen[..] {
             let mut fault = Ok(());
-            let model = current.model.edited(|arrays| fault = read_model(written, arrays));
+            let model = current.model.edited(|arrays| {
+                fault = read_model(written, arrays);
+                // the engine has the first of the six gears apart
+                for (first, gears) in arrays.actuator_gear.iter_mut().zip(&arrays.actuator_gear6) {
+                    *first = gears[0];
+                }
+            });
             fault.map_err(|(name, index, value)| {
                 let name = name.replacen("opt_", "opt.", 1);
                 PyValueError::new_err(format!(

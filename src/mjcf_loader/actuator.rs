@@ -14,24 +14,65 @@ use super::words::{BIASES, DYNAMICS, GAINS, TRI, Tri};
 /// Parameters that an element may write, as many as MuJoCo has room for.
 const PARAMETERS: usize = 10;
 
+/// Returns parameters of which only the first is not 0.
+const fn first(value: f64) -> [f64; PARAMETERS] {
+    let mut all = [0.0; PARAMETERS];
+    all[0] = value;
+    all
+}
+
 table! {
     /// Attributes of all actuators, and what the others decide.
     element Actuator {
         also control: Control = Control::initial();
         also activation: Activation = Activation::initial();
         also law: Law = Law::initial();
+        also target: Target = Target::initial();
+        also at_site: AtSite = AtSite::initial();
+        also on_body: OnBody = OnBody::initial();
         also inheritrange: f64 = 0.0;
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "joint" joint: Option<String> = None, TEXT, own, transmission, "Joint that it drives.";
-        "jointinparent" jointinparent: Option<String> = None, TEXT, own, transmission, "Joint that it drives, in place of `joint`: the same for the joints that actuators may have here.";
-        "tendon" tendon: Option<String> = None, TEXT, own, transmission, "Tendon that it pulls, in place of `joint`.";
         "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
         "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the control.";
         "forcerange" forcerange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force.";
-        "lengthrange" lengthrange: [f64; 2] = [0.0; 2], reals(2, Any), own, "Shortest and longest length. Kept, and used by muscles alone.";
-        "gear" gear: f64 = 1.0, real(Any), "Ratio of the force on the joint or the tendon to the actuator's force.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         check "group", int(i32::MIN as i64, i32::MAX as i64), "Group. Ignored: groups are for viewers.";
+    }
+}
+
+table! {
+    /// Attributes of all actuators but adhesion: what they act on.
+    group Target {
+        "joint" joint: Option<String> = None, TEXT, own, transmission, "Joint that it drives.";
+        "jointinparent" jointinparent: Option<String> = None, TEXT, own, transmission, "Joint that it drives, in place of `joint`: the same for the joints that actuators may have here.";
+        "tendon" tendon: Option<String> = None, TEXT, own, transmission, "Tendon that it pulls, in place of `joint`.";
+        "cranksite" cranksite: Option<String> = None, TEXT, own, transmission, "Site at the end of the crank of a slider-crank, in place of `joint`.";
+        "slidersite" slidersite: Option<String> = None, TEXT, own, "Site of the slider of a slider-crank, which moves along its z axis.";
+        "cranklength" cranklength: f64 = 0.0, real(Any), "Length of the rod between both sites of a slider-crank, m.";
+        "lengthrange" lengthrange: [f64; 2] = [0.0; 2], reals(2, Any), own, "Shortest and longest length, for muscles; where the second is not the greater, both are found by simulation.";
+        "gear" gear: [f64; 6] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], some(1, 6, Any), "Ratio of the force on the joint or the tendon to the actuator's force; for a site force and torque in its frame, or in that of `refsite`.";
+    }
+}
+
+table! {
+    /// Attributes of actuators that may act on a site.
+    group AtSite {
+        "site" site: Option<String> = None, TEXT, own, transmission, "Site that it pushes and turns, in place of `joint`.";
+        "refsite" refsite: Option<String> = None, TEXT, own, "Site in whose frame it does so, on the body of which it acts in the opposite direction.";
+    }
+}
+
+table! {
+    /// The attribute of actuators that may press contacts together.
+    group OnBody {
+        "body" body: Option<String> = None, TEXT, own, transmission, "Body whose contacts it presses together, in place of `joint`.";
+    }
+}
+
+table! {
+    /// The attribute of `<adhesion>`.
+    group Adhesion {
+        "gain" gain: Option<f64> = None, real(NonNegative), "Force of adhesion at a control of 1, N; 1 if no default gives another.";
     }
 }
 
@@ -52,12 +93,12 @@ table! {
 table! {
     /// Attributes of `<general>` beyond those of other actuators.
     group Law {
-        "dyntype" dyntype: DynType = DynType::None, DYNAMICS, "How the activation follows the control: not at all, as its integral, or filtered, where `filterexact` is integrated exactly.";
-        "gaintype" gaintype: GainType = GainType::Fixed, GAINS, "Whether the gain is a constant, or affine in length and velocity.";
-        "biastype" biastype: BiasType = BiasType::None, BIASES, "Whether there is a bias, affine in length and velocity.";
-        "dynprm" dynprm: [f64; 3] = [1.0, 0.0, 0.0], some(1, PARAMETERS, Any), "Time constant of a filter, s. Others, which muscles alone use, are ignored.";
-        "gainprm" gainprm: [f64; 3] = [1.0, 0.0, 0.0], some(1, PARAMETERS, Any), "Gain: constant, by length, by velocity. Others, which muscles alone use, are ignored.";
-        "biasprm" biasprm: [f64; 3] = [0.0; 3], some(1, PARAMETERS, Any), "Bias: constant, by length, by velocity; a third that is positive where the second is minus the gain is a damping ratio. Others, which muscles alone use, are ignored.";
+        "dyntype" dyntype: DynType = DynType::None, DYNAMICS, "How the activation follows the control: not at all, as its integral, filtered, where `filterexact` is integrated exactly, or as that of a muscle.";
+        "gaintype" gaintype: GainType = GainType::Fixed, GAINS, "Whether the gain is a constant, affine in length and velocity, or the active force of a muscle.";
+        "biastype" biastype: BiasType = BiasType::None, BIASES, "Whether there is a bias: affine in length and velocity, or the passive force of a muscle.";
+        "dynprm" dynprm: [f64; PARAMETERS] = first(1.0), some(1, PARAMETERS, Any), "Time constant of a filter, s; of a muscle `timeconst` and `tausmooth`.";
+        "gainprm" gainprm: [f64; PARAMETERS] = first(1.0), some(1, PARAMETERS, Any), "Gain: constant, by length, by velocity; of a muscle `range`, `force`, `scale`, `lmin`, `lmax`, `vmax`, `fpmax`, `fvmax`.";
+        "biasprm" biasprm: [f64; PARAMETERS] = first(0.0), some(1, PARAMETERS, Any), "Bias: constant, by length, by velocity; a third that is positive where the second is minus the gain is a damping ratio; of a muscle as the gain.";
         "actlimited" actlimited: Tri = Tri::Auto, TRI, "Whether `actrange` is enforced.";
         "actearly" actearly: bool = false, FLAG, "Whether the force follows from the activation at the end of the step.";
         "actdim" actdim: i32 = -1, int(i32::MIN as i64, i32::MAX as i64), "Number of activations, which follows from `dyntype`: another is an error.";
@@ -98,9 +139,28 @@ table! {
     }
 }
 
+table! {
+    /// Attributes of `<muscle>`.
+    group Muscle {
+        "timeconst" timeconst: [f64; 2] = [-1.0; 2], reals(2, Any), "Time constants of activation and deactivation, s; 0.01 and 0.04 if no default gives others.";
+        "tausmooth" tausmooth: Option<f64> = None, real(NonNegative), "Width of the transition between them, in differences of control and activation.";
+        "range" range: [f64; 2] = [-1.0; 2], reals(2, Any), "What the ends of `lengthrange` are in optimal lengths; 0.75 and 1.05 if no default gives others.";
+        "force" force: f64 = -1.0, real(Any), "Isometric force, N; negative for that which `scale` gives.";
+        "scale" scale: f64 = -1.0, real(Any), "Isometric force times the acceleration per unit force at `qpos0`; 200 if no default gives another.";
+        "lmin" lmin: f64 = -1.0, real(Any), "Shortest length with an active force, optimal lengths; 0.5 if no default gives another.";
+        "lmax" lmax: f64 = -1.0, real(Any), "Longest length with an active force, optimal lengths; 1.6 if no default gives another.";
+        "vmax" vmax: f64 = -1.0, real(Any), "Speed at which an unloaded muscle shortens, optimal lengths/s; 1.5 if no default gives another.";
+        "fpmax" fpmax: f64 = -1.0, real(Any), "Passive force at `lmax`, isometric forces; 1.3 if no default gives another.";
+        "fvmax" fvmax: f64 = -1.0, real(Any), "Active force when stretched fastest, isometric forces; 1.2 if no default gives another.";
+    }
+}
+
 const TWO_DAMPINGS: &str = "kv and dampratio are two ways to say the same: give one of them";
 const TWO_CTRL_RANGES: &str = "ctrlrange and inheritrange are two ways to say the same: give one of them";
 const TWO_ACT_RANGES: &str = "actrange and inheritrange are two ways to say the same: give one of them";
+const NEGATIVE_ADHESION: &str = "the ctrlrange of adhesion must not be negative";
+const NO_CRANK: &str = "slidersite and cranklength are for slider-cranks: give cranksite, too";
+const NO_SITE: &str = "refsite needs the attribute site";
 const NEGATIVE_DAMPING: &str = "the ctrlrange of a damper must not be negative";
 
 impl Actuator {
@@ -112,6 +172,17 @@ impl Actuator {
         self.apply(e);
         self.control.apply(e);
         self.activation.apply(e);
+        self.target.apply(e);
+        self.at_site.apply(e);
+        self.on_body.apply(e);
+        let given = |names: &[&str]| e.values().any(|(name, _)| names.contains(&name));
+        let elsewhere = given(&["joint", "jointinparent", "tendon", "site", "body"]);
+        if elsewhere && given(&["slidersite", "cranklength"]) {
+            return Err(NO_CRANK);
+        }
+        if given(&["joint", "jointinparent", "tendon", "cranksite", "body"]) && given(&["refsite"]) {
+            return Err(NO_SITE);
+        }
         // what the elements below have in common with `general` they have by other names
         self.law.apply(e);
         match e.name {
@@ -123,11 +194,13 @@ impl Actuator {
             "velocity" => {
                 let kv = Speed::read(e).kv.unwrap_or(self.law.gainprm[0]);
                 self.law.gainprm[0] = kv;
-                self.law.biasprm = [0.0, 0.0, -kv];
+                self.law.biasprm = first(0.0);
+                self.law.biasprm[2] = -kv;
                 self.decide(DynType::None, GainType::Fixed, BiasType::Affine);
             }
             "damper" => {
-                self.law.gainprm = [0.0, 0.0, -Speed::read(e).kv.unwrap_or(0.0)];
+                self.law.gainprm = first(0.0);
+                self.law.gainprm[2] = -Speed::read(e).kv.unwrap_or(0.0);
                 self.control.limited = Tri::Yes;
                 self.decide(DynType::None, GainType::Affine, BiasType::None);
                 if self.ctrlrange.iter().any(|&end| end < 0.0) {
@@ -135,6 +208,15 @@ impl Actuator {
                 }
             }
             "cylinder" => self.cylinder(e),
+            "adhesion" => {
+                self.law.gainprm[0] = Adhesion::read(e).gain.unwrap_or(self.law.gainprm[0]);
+                (self.law.gaintype, self.law.biastype) = (GainType::Fixed, BiasType::None);
+                self.control.limited = Tri::Yes;
+                if self.ctrlrange.iter().any(|&end| end < 0.0) {
+                    return Err(NEGATIVE_ADHESION);
+                }
+            }
+            "muscle" => self.muscle(&Muscle::read(e)),
             _ => {}
         }
         Ok(())
@@ -184,7 +266,48 @@ impl Actuator {
         let area = cylinder.diameter.map(|diameter| PI / 4.0 * diameter * diameter);
         self.law.dynprm[0] = cylinder.timeconst.unwrap_or(self.law.dynprm[0]);
         self.law.gainprm[0] = area.or(cylinder.area).unwrap_or(self.law.gainprm[0]);
-        self.law.biasprm = cylinder.bias.unwrap_or(self.law.biasprm);
+        if let Some(bias) = cylinder.bias {
+            self.law.biasprm[..3].copy_from_slice(&bias);
+        }
         self.decide(DynType::Filter, GainType::Fixed, BiasType::Affine);
+    }
+
+    /// Fills what neither the element nor a default gives with a muscle's own values: where a parameter has that of other actuators,
+    /// nothing was given.
+    fn muscle(&mut self, muscle: &Muscle) {
+        const TIMES: [f64; 2] = [0.01, 0.04];
+        const FORCES: [f64; 9] = [0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2];
+        let Muscle {
+            range,
+            force,
+            scale,
+            lmin,
+            lmax,
+            vmax,
+            fpmax,
+            fvmax,
+            ..
+        } = *muscle;
+        let forces = [range[0], range[1], force, scale, lmin, lmax, vmax, fpmax, fvmax];
+        let law = &mut self.law;
+        fill(&mut law.dynprm, &TIMES, &muscle.timeconst);
+        fill(&mut law.gainprm, &FORCES, &forces);
+        law.dynprm[2] = muscle.tausmooth.unwrap_or(law.dynprm[2]);
+        law.biasprm[..9].copy_from_slice(&law.gainprm[..9]);
+        self.decide(DynType::Muscle, GainType::Muscle, BiasType::Muscle);
+    }
+}
+
+/// Fills parameters: where they are those of an actuator that nothing is given of, with `own`, and then with those of `given` that are
+/// not negative.
+fn fill(parameters: &mut [f64; PARAMETERS], own: &[f64], given: &[f64]) {
+    let untouched = first(1.0);
+    for (k, (own, given)) in own.iter().zip(given).enumerate() {
+        if parameters[k] == untouched[k] {
+            parameters[k] = *own;
+        }
+        if *given >= 0.0 {
+            parameters[k] = *given;
+        }
     }
 }

@@ -14,7 +14,7 @@ use super::surface::{Material, Texture};
 use super::table::table;
 use super::words::{CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
 
-pub(super) use super::settings::{Compiler, Size};
+pub(super) use super::settings::{Compiler, LengthRange, Size};
 pub(super) use super::words::{Frame, Orientation, Tri};
 
 table! {
@@ -170,9 +170,30 @@ table! {
     /// `<frame>` in a body: a pose that what it holds, but for an `inertial`, is placed in. Frames follow those that they are in.
     element BodyFrame {
         also within: Option<usize> = None;
+        also copy: Option<Copied> = None;
         "name" name: String = String::new(), TEXT, own, "Name.";
         check "childclass", TEXT, "Default class of the elements in it that name none.";
         with frame: Frame;
+    }
+}
+
+/// Which copy of what a `<replicate>` holds a frame is for: its pose is the step from the copy before.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Copied {
+    /// Number of the copy, from 0 on.
+    pub number: usize,
+    /// Frame of the copy before, if there is one.
+    pub previous: Option<usize>,
+}
+
+table! {
+    /// `<replicate>` in a body: copies of what it holds, of which each is placed by the one before. Names get the number of the copy.
+    element Replicate {
+        "count" count: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), required, "Number of copies; none where it is not positive.";
+        "sep" sep: String = String::new(), TEXT, "What stands between a name and the number of the copy.";
+        "offset" offset: Vec3 = [0.0; 3], reals(3, Any), "Step from copy to copy, m, in the frame of the one before.";
+        "euler" euler: Vec3 = [0.0; 3], reals(3, Any), "Turn from copy to copy as Euler angles.";
+        check "childclass", TEXT, "Default class of the elements in it that name none.";
     }
 }
 
@@ -180,6 +201,7 @@ table! {
 pub(super) struct Document {
     pub model: String,
     pub compiler: Compiler,
+    pub lengthrange: LengthRange,
     pub option: Options,
     pub visual: model::Visual,
     pub statistic: Statistic,

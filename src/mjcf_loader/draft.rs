@@ -119,7 +119,12 @@ impl Draft {
             actuators: document.actuators.iter().map(|actuator| actuator.at).collect(),
             tree,
         };
-        Ok(Spec { arrays, places })
+        let lengthrange = document.lengthrange;
+        Ok(Spec {
+            arrays,
+            places,
+            lengthrange,
+        })
     }
 
     /// Returns the position of a body in its parent, m; `None` if there is no such body.
@@ -163,11 +168,12 @@ impl Draft {
         self.document.actuators.iter_mut().map(|actuator| DraftActuator {
             name: &actuator.name,
             joint: actuator
+                .target
                 .joint
                 .as_ref()
-                .or(actuator.jointinparent.as_ref())
+                .or(actuator.target.jointinparent.as_ref())
                 .map_or("", String::as_str),
-            gear: &mut actuator.gear,
+            gear: &mut actuator.target.gear[0],
             user: &mut actuator.user,
         })
     }

@@ -3,17 +3,21 @@
 
 use crate::model::{Flags, Options, SensorType, Statistic};
 
-use super::actuator::{Activation, Actuator, Control, Cylinder, Filter, Law, Servo, Speed};
+use super::actuator::{
+    Activation, Actuator, Adhesion, AtSite, Control, Cylinder, Filter, Law, Muscle, OnBody, Servo, Speed, Target,
+};
 use super::attribute::{Attr, TEXT};
 use super::custom::{Key, Numeric, Text};
-use super::document::{Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Site, Size};
+use super::document::{
+    Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Replicate, Site, Size,
+};
 use super::relation::{
     ConnectEquality, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint,
     TendonLooks, TendonSite, WeldEquality,
 };
 use super::schema::{self, Rule};
 use super::sensor;
-use super::settings::{Global, Headlight, Map, Quality, Rgba, Root, Scale};
+use super::settings::{Global, Headlight, LengthRange, Map, Quality, Rgba, Root, Scale};
 use super::surface::{Material, Texture};
 use super::table::Table;
 
@@ -34,7 +38,8 @@ const CLASS_NAME: Groups = &[&[Attr::new(
     String::new,
 )]];
 
-static COMPILER: Rule = rule("compiler", &[Compiler::ATTRIBUTES], &[]);
+static LENGTHRANGE: Rule = rule("lengthrange", &[LengthRange::ATTRIBUTES], &[]);
+static COMPILER: Rule = rule("compiler", &[Compiler::ATTRIBUTES], &[&LENGTHRANGE]);
 static FLAG: Rule = rule("flag", &[Flags::ATTRIBUTES], &[]);
 static OPTION: Rule = rule("option", &[Options::ATTRIBUTES], &[&FLAG]);
 static SIZE: Rule = rule("size", &[Size::ATTRIBUTES], &[]);
@@ -69,6 +74,8 @@ static DEFAULT: Rule = rule(
         &INTVELOCITY,
         &DAMPER,
         &CYLINDER,
+        &MUSCLE,
+        &ADHESION,
         &MATERIAL,
     ],
 );
@@ -88,7 +95,7 @@ static BODY: Rule = rule(
     "body",
     &[Body::ATTRIBUTES],
     &[
-        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME,
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE,
     ],
 );
 /// In the world it can hold what the world can, which the reader checks.
@@ -96,10 +103,21 @@ static FRAME: Rule = rule(
     "frame",
     &[BodyFrame::ATTRIBUTES],
     &[
-        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME,
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE,
     ],
 );
-static WORLDBODY: Rule = rule("worldbody", &[], &[&BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME]);
+static REPLICATE: Rule = rule(
+    "replicate",
+    &[Replicate::ATTRIBUTES],
+    &[
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE,
+    ],
+);
+static WORLDBODY: Rule = rule(
+    "worldbody",
+    &[],
+    &[&BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE],
+);
 
 static PAIR: Rule = rule("pair", &[CLASS, Pair::ATTRIBUTES], &[]);
 static EXCLUDE: Rule = rule("exclude", &[Exclude::ATTRIBUTES], &[]);
@@ -137,45 +155,99 @@ static TENDON: Rule = rule("tendon", &[], &[&FIXED, &SPATIAL]);
 
 /// What all actuators have.
 const DRIVE: Groups = Actuator::ATTRIBUTES;
+/// What they act on, and where.
+const TARGET: Groups = Target::ATTRIBUTES;
+const SITE_TARGET: Groups = AtSite::ATTRIBUTES;
 static GENERAL: Rule = rule(
     "general",
     &[
         CLASS,
         DRIVE,
+        TARGET,
+        SITE_TARGET,
+        OnBody::ATTRIBUTES,
         Control::ATTRIBUTES,
         Activation::ATTRIBUTES,
         Law::ATTRIBUTES,
     ],
     &[],
 );
-static MOTOR: Rule = rule("motor", &[CLASS, DRIVE, Control::ATTRIBUTES], &[]);
+static MOTOR: Rule = rule("motor", &[CLASS, DRIVE, TARGET, SITE_TARGET, Control::ATTRIBUTES], &[]);
 static POSITION: Rule = rule(
     "position",
-    &[CLASS, DRIVE, Control::ATTRIBUTES, Servo::ATTRIBUTES, Filter::ATTRIBUTES],
+    &[
+        CLASS,
+        DRIVE,
+        TARGET,
+        SITE_TARGET,
+        Control::ATTRIBUTES,
+        Servo::ATTRIBUTES,
+        Filter::ATTRIBUTES,
+    ],
     &[],
 );
-static VELOCITY: Rule = rule("velocity", &[CLASS, DRIVE, Control::ATTRIBUTES, Speed::ATTRIBUTES], &[]);
+static VELOCITY: Rule = rule(
+    "velocity",
+    &[
+        CLASS,
+        DRIVE,
+        TARGET,
+        SITE_TARGET,
+        Control::ATTRIBUTES,
+        Speed::ATTRIBUTES,
+    ],
+    &[],
+);
 static INTVELOCITY: Rule = rule(
     "intvelocity",
     &[
         CLASS,
         DRIVE,
+        TARGET,
+        SITE_TARGET,
         Control::ATTRIBUTES,
         Activation::ATTRIBUTES,
         Servo::ATTRIBUTES,
     ],
     &[],
 );
-static DAMPER: Rule = rule("damper", &[CLASS, DRIVE, Speed::ATTRIBUTES], &[]);
+static DAMPER: Rule = rule("damper", &[CLASS, DRIVE, TARGET, SITE_TARGET, Speed::ATTRIBUTES], &[]);
 static CYLINDER: Rule = rule(
     "cylinder",
-    &[CLASS, DRIVE, Control::ATTRIBUTES, Cylinder::ATTRIBUTES],
+    &[
+        CLASS,
+        DRIVE,
+        TARGET,
+        SITE_TARGET,
+        Control::ATTRIBUTES,
+        Cylinder::ATTRIBUTES,
+    ],
+    &[],
+);
+static MUSCLE: Rule = rule(
+    "muscle",
+    &[CLASS, DRIVE, TARGET, Control::ATTRIBUTES, Muscle::ATTRIBUTES],
+    &[],
+);
+static ADHESION: Rule = rule(
+    "adhesion",
+    &[CLASS, DRIVE, OnBody::ATTRIBUTES, Adhesion::ATTRIBUTES],
     &[],
 );
 static ACTUATOR: Rule = rule(
     "actuator",
     &[],
-    &[&GENERAL, &MOTOR, &POSITION, &VELOCITY, &INTVELOCITY, &DAMPER, &CYLINDER],
+    &[
+        &GENERAL,
+        &MOTOR,
+        &POSITION,
+        &VELOCITY,
+        &INTVELOCITY,
+        &DAMPER,
+        &CYLINDER,
+        &MUSCLE,
+        &ADHESION,
+    ],
 );
 
 /// Defines the rule of every kind of sensor, and that of their section.

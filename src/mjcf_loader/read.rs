@@ -7,7 +7,8 @@ use crate::model::{JointType, Options, Statistic};
 use super::actuator::Actuator;
 use super::custom::{Key, Numeric, Text};
 use super::document::{
-    Body, BodyFrame, Camera, Compiler, Document, FreeJoint, Geom, Inertial, Joint, Light, Site, Size,
+    Body, BodyFrame, Camera, Compiler, Copied, Document, FreeJoint, Geom, Inertial, Joint, LengthRange, Light,
+    Orientation, Replicate, Site, Size,
 };
 use super::error::{ErrorKind, LoadError};
 use super::relation::{Equality, Exclude, Pair, Tendon};
@@ -46,7 +47,8 @@ impl Class {
             "equality" => self.equality.apply(e),
             "tendon" => self.tendon.string(e),
             "material" => self.material.apply(e),
-            "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" => {
+            "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
+            | "adhesion" => {
                 return self.actuator.drive(e);
             }
             _ => {}
@@ -128,6 +130,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     let mut document = Document {
         model: Root::read(root).model,
         compiler: Compiler::initial(),
+        lengthrange: LengthRange::initial(),
         option: Options::initial(),
         visual: Visual::default().compiled(),
         statistic: Statistic::initial(),
@@ -153,6 +156,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     let sections = |name: &'static str| root.children.iter().filter(move |e| e.name == name);
     for section in sections("compiler") {
         document.compiler.section(section);
+        section.children.iter().for_each(|e| document.lengthrange.apply(e));
     }
     for section in sections(DEFAULT) {
         classes.read(section, None)?;
@@ -170,7 +174,14 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
             "size" => document.size.apply(section),
             "visual" => section.children.iter().for_each(|e| visual.apply(e)),
             "statistic" => document.statistic.apply(section),
-            "worldbody" => content(section, (0, None), MAIN, &classes, &mut document)?,
+            "worldbody" => {
+                let spot = Spot {
+                    body: 0,
+                    within: None,
+                    suffix: "",
+                };
+                content(section, spot, MAIN, &classes, &mut document)?;
+            }
             _ => section
                 .children
                 .iter()
@@ -210,10 +221,18 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
     Ok(())
 }
 
+/// Where elements are put, and what is added to their names.
+#[derive(Clone, Copy)]
+struct Spot<'a> {
+    body: usize,
+    within: Option<usize>,
+    suffix: &'a str,
+}
+
 /// Reads what hangs on a body, or stands in a frame of it, and its child bodies depth first.
 fn content(
     parent: &Element,
-    (body, within): (usize, Option<usize>),
+    spot: Spot,
     around: &str,
     classes: &Classes,
     document: &mut Document,
@@ -222,17 +241,76 @@ fn content(
         let inner = e.text("childclass").unwrap_or(around);
         match e.name {
             "body" => {
-                let id = child(e, (body, within), inner, classes, document)?;
-                content(e, (id, None), inner, classes, document)?;
+                let body = child(e, spot, inner, classes, document)?;
+                let within = None;
+                content(e, Spot { body, within, ..spot }, inner, classes, document)?;
             }
             "frame" => {
-                let id = frame(e, within, inner, classes, document)?;
-                content(e, (body, Some(id)), inner, classes, document)?;
+                let within = Some(frame(e, spot, inner, classes, document)?);
+                content(e, Spot { within, ..spot }, inner, classes, document)?;
             }
-            _ => attach(e, (body, within), around, classes, &mut document.bodies)?,
+            "replicate" => {
+                let (mut number, mut previous) = (0, None);
+                while let Some((id, suffix)) = copy(e, spot, (number, previous), inner, classes, document)? {
+                    let (within, suffix) = (Some(id), suffix.as_str());
+                    content(e, Spot { within, suffix, ..spot }, inner, classes, document)?;
+                    (number, previous) = (number + 1, within);
+                }
+            }
+            _ => attach(e, spot, around, classes, &mut document.bodies)?,
         }
     }
     Ok(())
+}
+
+/// Adds the frame of a copy of what a `<replicate>` holds; returns it with what is added to the names in it, and nothing when there are
+/// enough. It is kept out of `content`, which recurses, so that its stack frames stay small.
+#[inline(never)]
+fn copy(
+    e: &Element,
+    spot: Spot,
+    (number, previous): (usize, Option<usize>),
+    inner: &str,
+    classes: &Classes,
+    document: &mut Document,
+) -> Result<Option<(usize, String)>, LoadError> {
+    known(e, inner, classes)?;
+    let Replicate {
+        at,
+        count,
+        sep,
+        offset,
+        euler,
+    } = Replicate::read(e);
+    let count = usize::try_from(count).unwrap_or(0);
+    if number >= count {
+        return Ok(None);
+    }
+    let limit = classes.tree.limits.elements;
+    if document.frames.len() >= limit {
+        let what = "frames and copies of elements";
+        return Err(classes.error(e, ErrorKind::TooMuch { what, limit }));
+    }
+    let mut frame = BodyFrame {
+        at,
+        within: spot.within,
+        copy: Some(Copied { number, previous }),
+        ..BodyFrame::initial()
+    };
+    frame.frame.pos = offset;
+    frame.frame.orientation = Orientation::Euler(euler);
+    document.frames.push(frame);
+    // inner copies are told apart before outer ones
+    let digits = count.to_string().len();
+    let suffix = format!("{sep}{number:0digits$}{}", spot.suffix);
+    Ok(Some((document.frames.len() - 1, suffix)))
+}
+
+/// Adds to a name that is given.
+fn rename(name: &mut String, spot: Spot) {
+    if !name.is_empty() {
+        name.push_str(spot.suffix);
+    }
 }
 
 /// Checks that a default class for children exists.
@@ -246,50 +324,35 @@ fn known(e: &Element, class: &str, classes: &Classes) -> Result<(), LoadError> {
 
 /// Adds a child body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn child(
-    e: &Element,
-    (parent, within): (usize, Option<usize>),
-    inner: &str,
-    classes: &Classes,
-    document: &mut Document,
-) -> Result<usize, LoadError> {
+fn child(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut Document) -> Result<usize, LoadError> {
     known(e, inner, classes)?;
-    let body = Body {
-        parent,
-        within,
+    let mut body = Body {
+        parent: spot.body,
+        within: spot.within,
         ..Body::read(e)
     };
+    rename(&mut body.name, spot);
     document.bodies.push(body);
     Ok(document.bodies.len() - 1)
 }
 
 /// Adds a frame. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn frame(
-    e: &Element,
-    within: Option<usize>,
-    inner: &str,
-    classes: &Classes,
-    document: &mut Document,
-) -> Result<usize, LoadError> {
+fn frame(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut Document) -> Result<usize, LoadError> {
     known(e, inner, classes)?;
-    let frame = BodyFrame {
-        within,
+    let mut frame = BodyFrame {
+        within: spot.within,
         ..BodyFrame::read(e)
     };
+    rename(&mut frame.name, spot);
     document.frames.push(frame);
     Ok(document.frames.len() - 1)
 }
 
 /// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn attach(
-    e: &Element,
-    (id, within): (usize, Option<usize>),
-    around: &str,
-    classes: &Classes,
-    bodies: &mut [Body],
-) -> Result<(), LoadError> {
+fn attach(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
+    let (id, within) = (spot.body, spot.within);
     let body = &mut bodies[id];
     match e.name {
         // which the rules keep out of the world itself, but not out of frames in it
@@ -301,7 +364,8 @@ fn attach(
         }
         "inertial" => body.inertial = Some(Inertial::read(e)),
         "freejoint" => {
-            let FreeJoint { at, name, group } = FreeJoint::read(e);
+            let FreeJoint { at, mut name, group } = FreeJoint::read(e);
+            rename(&mut name, spot);
             body.joints.push(Joint {
                 at,
                 name,
@@ -311,23 +375,32 @@ fn attach(
             });
         }
         "joint" => {
-            let joint = with(&classes.of(e, around)?.joint, e, Joint::apply);
+            let mut joint = with(&classes.of(e, around)?.joint, e, Joint::apply);
+            rename(&mut joint.name, spot);
             body.joints.push(Joint { within, ..joint });
         }
         "geom" => {
-            let geom = with(&classes.of(e, around)?.geom, e, Geom::apply);
+            let mut geom = with(&classes.of(e, around)?.geom, e, Geom::apply);
+            rename(&mut geom.name, spot);
             body.geoms.push(Geom { within, ..geom });
         }
         "site" => {
-            let site = with(&classes.of(e, around)?.site, e, Site::apply);
+            let mut site = with(&classes.of(e, around)?.site, e, Site::apply);
+            rename(&mut site.name, spot);
             body.sites.push(Site { within, ..site });
         }
         "camera" => {
-            let camera = with(&classes.of(e, around)?.camera, e, Camera::apply);
+            let mut camera = with(&classes.of(e, around)?.camera, e, Camera::apply);
+            rename(&mut camera.name, spot);
+            // MuJoCo looks for the body that it aims at among the copies
+            camera.target.iter_mut().for_each(|target| rename(target, spot));
             body.cameras.push(Camera { within, ..camera });
         }
         "light" => {
-            let light = with(&classes.of(e, around)?.light, e, Light::apply);
+            let mut light = with(&classes.of(e, around)?.light, e, Light::apply);
+            rename(&mut light.name, spot);
+            // MuJoCo looks for the body that it aims at among the copies
+            light.target.iter_mut().for_each(|target| rename(target, spot));
             body.lights.push(Light { within, ..light });
         }
         _ => {}

@@ -68,7 +68,7 @@ fn check_below(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Resu
 /// Tells whether an element may hold another once only.
 fn once(parent: &str, child: &str) -> bool {
     match parent {
-        "visual" | "option" => true,
+        "visual" | "option" | "compiler" => true,
         DEFAULT => child != DEFAULT,
         "body" => child == "inertial",
         _ => false,

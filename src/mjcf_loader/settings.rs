@@ -38,6 +38,52 @@ table! {
     }
 }
 
+/// Which actuators get their `lengthrange` by simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LengthRangeMode {
+    None,
+    Muscle,
+    All,
+}
+
+/// Muscles, or muscles and what programs define, of which there is nothing here.
+const LENGTH_RANGES: Words<LengthRangeMode> = words! {
+    "none" => LengthRangeMode::None,
+    "muscle" => LengthRangeMode::Muscle,
+    "muscleuser" => LengthRangeMode::Muscle,
+    "all" => LengthRangeMode::All,
+};
+
+/// How the `lengthrange` of actuators is found that do not give it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LengthRange {
+    pub mode: LengthRangeMode,
+    pub useexisting: bool,
+    pub uselimit: bool,
+    pub accel: f64,
+    pub maxforce: f64,
+    pub timeconst: f64,
+    pub timestep: f64,
+    pub inttotal: f64,
+    pub interval: f64,
+    pub tolrange: f64,
+}
+
+table! {
+    fields LengthRange {
+        "mode" mode: LengthRangeMode = LengthRangeMode::Muscle, LENGTH_RANGES, "Which actuators get their `lengthrange`.";
+        "useexisting" useexisting: bool = true, FLAG, "Whether a `lengthrange` that is given counts.";
+        "uselimit" uselimit: bool = false, FLAG, "Whether the limit of the joint or the tendon counts.";
+        "accel" accel: f64 = 20.0, real(Any), "Norm of the acceleration with which the actuator is pulled and pushed in a simulation.";
+        "maxforce" maxforce: f64 = 0.0, real(Any), "Greatest norm of the force that does it; 0 for no bound.";
+        "timeconst" timeconst: f64 = 1.0, real(Any), "Time constant at which velocities are slowed down, s.";
+        "timestep" timestep: f64 = 0.01, real(Any), "Time step of the simulation, s; 0 for that of the model.";
+        "inttotal" inttotal: f64 = 10.0, real(Any), "Duration of the simulation in each direction, s.";
+        "interval" interval: f64 = 2.0, real(Any), "Time at its end in which the length is measured, s.";
+        "tolrange" tolrange: f64 = 0.05, real(Any), "How much the length may change in that time, relative to the range.";
+    }
+}
+
 const INTEGRATORS: Words<IntegratorType> = words! {
     "Euler" => IntegratorType::Euler,
     "RK4" => IntegratorType::Rk4,

@@ -1,7 +1,9 @@
 //! The content of a document, before the constants that need dynamics.
 
 use super::error::{ErrorKind, LoadError};
+use super::settings::LengthRange;
 use super::xml::Tree;
+use crate::limits::Limits;
 use crate::model::Arrays;
 
 /// The content of an MJCF document, checked and with MuJoCo's ids and units, like MuJoCo's `mjSpec`.
@@ -12,6 +14,7 @@ use crate::model::Arrays;
 pub struct Spec {
     pub(super) arrays: Arrays,
     pub(super) places: Places,
+    pub(super) lengthrange: LengthRange,
 }
 
 /// The places of the elements in their document.
@@ -35,6 +38,11 @@ impl Places {
     /// Returns an error at a tendon.
     pub fn tendon_error(&self, tendon: usize, message: &'static str) -> LoadError {
         self.tree.error(self.tendons[tendon], ErrorKind::Invalid(message))
+    }
+
+    /// Returns the limits that the document was read within.
+    pub fn limits(&self) -> &Limits {
+        &self.tree.limits
     }
 
     /// Returns an error at an actuator.
@@ -80,8 +88,8 @@ impl Spec {
         &self.arrays.name
     }
 
-    /// Returns the arrays, without the constants that need dynamics, and the places of the elements.
-    pub(crate) fn into_parts(self) -> (Arrays, Places) {
-        (self.arrays, self.places)
+    /// Returns the arrays, without the constants that need dynamics, the places of the elements, and how lengths of actuators are found.
+    pub(crate) fn into_parts(self) -> (Arrays, Places, LengthRange) {
+        (self.arrays, self.places, self.lengthrange)
     }
 }

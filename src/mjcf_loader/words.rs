@@ -74,9 +74,12 @@ pub(super) const DYNAMICS: Words<DynType> = words! {
     "integrator" => DynType::Integrator,
     "filter" => DynType::Filter,
     "filterexact" => DynType::FilterExact,
+    "muscle" => DynType::Muscle,
 };
-pub(super) const GAINS: Words<GainType> = words! { "fixed" => GainType::Fixed, "affine" => GainType::Affine };
-pub(super) const BIASES: Words<BiasType> = words! { "none" => BiasType::None, "affine" => BiasType::Affine };
+pub(super) const GAINS: Words<GainType> =
+    words! { "fixed" => GainType::Fixed, "affine" => GainType::Affine, "muscle" => GainType::Muscle };
+pub(super) const BIASES: Words<BiasType> =
+    words! { "none" => BiasType::None, "affine" => BiasType::Affine, "muscle" => BiasType::Muscle };
 
 /// An orientation as written.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use super::{Arrays, EqualityKind, Statistic};
+use super::{Arrays, EqualityKind, Options, Statistic};
 use crate::math::{Mat3, Quat, Vec3};
 
 /// Owns the complete arrays of a compiled scene; they can be read, but not changed.
@@ -61,7 +61,11 @@ pub(crate) struct Constants {
     /// See [`Arrays::tendon_invweight0`].
     pub tendon_invweight0: Vec<f64>,
     /// See [`Arrays::actuator_biasprm`].
-    pub actuator_biasprm: Vec<[f64; 3]>,
+    pub actuator_biasprm: Vec<[f64; 10]>,
+    /// See [`Arrays::actuator_acc0`].
+    pub actuator_acc0: Vec<f64>,
+    /// See [`Arrays::actuator_length0`].
+    pub actuator_length0: Vec<f64>,
     /// The statistics, given or computed.
     pub stat: Statistic,
     /// The relative pose of each weld that is to hold that at `qpos0`.
@@ -113,6 +117,8 @@ impl Model {
         arrays.tendon_lengthspring = constants.tendon_lengthspring;
         arrays.tendon_invweight0 = constants.tendon_invweight0;
         arrays.actuator_biasprm = constants.actuator_biasprm;
+        arrays.actuator_acc0 = constants.actuator_acc0;
+        arrays.actuator_length0 = constants.actuator_length0;
         arrays.stat = constants.stat;
         for pose in constants.weld_poses {
             if let EqualityKind::Weld { relpos, relquat, .. } = &mut arrays.eq_kind[pose.equality] {
@@ -133,6 +139,19 @@ impl Model {
             (light.pos0, light.poscom0, light.dir0) = (pose.pos0, pose.poscom0, pose.dir0);
         }
         Self { arrays }
+    }
+
+    /// Returns the model with other options, to simulate something of it.
+    pub(crate) fn with_options(&self, edit: impl FnOnce(&mut Options)) -> Self {
+        let mut arrays = self.arrays.clone();
+        edit(&mut arrays.opt);
+        Self { arrays }
+    }
+
+    /// Returns the model with the ranges of lengths of its actuators.
+    pub(crate) fn with_lengthrange(mut self, ranges: Vec<[f64; 2]>) -> Self {
+        self.arrays.actuator_lengthrange = ranges;
+        self
     }
 
     /// Returns a model with other numbers: what a program has that writes into MuJoCo's `mjModel` between two steps. Constants that

@@ -340,10 +340,16 @@ arrays! {
     actuator_name: Vec<String>,
     /// Kind of what it acts on.
     actuator_trntype: Vec<TrnType>,
-    /// Joint or tendon that it acts on.
+    /// Joint, tendon, site or body that it acts on; the site of the crank of a slider-crank.
     actuator_trnid: Vec<usize>,
+    /// Reference site of a site, site of the slider of a slider-crank (MuJoCo's second `actuator_trnid`).
+    actuator_refid: Vec<Option<usize>>,
+    /// Length of the rod of a slider-crank, m.
+    actuator_cranklength: Vec<f64>,
     /// Gear, the first of MuJoCo's six.
     actuator_gear: Vec<f64>,
+    /// All six gears of MuJoCo's, of which sites use more than the first: force and torque per unit of the actuator's force.
+    actuator_gear6: Vec<[f64; 6]>,
     /// Whether `actuator_ctrlrange` applies.
     actuator_ctrllimited: Vec<bool>,
     /// Limits of the control.
@@ -352,12 +358,13 @@ arrays! {
     actuator_forcelimited: Vec<bool>,
     /// Limits of the force before the gear, N m.
     actuator_forcerange: Vec<[f64; 2]>,
-    /// Shortest and longest length, which only muscles of MuJoCo's use.
+    /// Shortest and longest length, which only MuJoCo's muscles use: as given, else found by simulation where `<lengthrange>` of
+    /// `<compiler>` asks for it.
     actuator_lengthrange: Vec<[f64; 2]>,
     /// How the activation follows the control.
     actuator_dyntype: Vec<DynType>,
     /// Parameters of the activation; see [`DynType`].
-    actuator_dynprm: Vec<[f64; 3]>,
+    actuator_dynprm: Vec<[f64; 10]>,
     /// Address of the activation; `None` without one.
     actuator_actadr: Vec<Option<usize>>,
     /// Whether `actuator_actrange` applies.
@@ -369,11 +376,15 @@ arrays! {
     /// Gain type.
     actuator_gaintype: Vec<GainType>,
     /// Gain parameters; see [`GainType`].
-    actuator_gainprm: Vec<[f64; 3]>,
+    actuator_gainprm: Vec<[f64; 10]>,
     /// Bias type.
     actuator_biastype: Vec<BiasType>,
     /// Bias parameters; see [`BiasType`]. The damping of a servo that is given by its damping ratio is that at `qpos0`.
-    actuator_biasprm: Vec<[f64; 3]>,
+    actuator_biasprm: Vec<[f64; 10]>,
+    /// Norm of the acceleration at `qpos0` per unit of its force.
+    actuator_acc0: Vec<f64>,
+    /// Length at `qpos0`.
+    actuator_length0: Vec<f64>,
     /// User data, `nuser_actuator` values each.
     actuator_user: Vec<Vec<f64>>,
 
@@ -472,7 +483,7 @@ impl Arrays {
     pub fn actuator_joint(&self, actuator: usize) -> Option<usize> {
         match self.actuator_trntype[actuator] {
             TrnType::Joint | TrnType::JointInParent => Some(self.actuator_trnid[actuator]),
-            TrnType::Tendon => None,
+            TrnType::SliderCrank | TrnType::Tendon | TrnType::Site | TrnType::Body => None,
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::mjcf_loader::{LoadError, Places, Spec};
 use crate::model::{Arrays, Constants, JointType, Model, SameFrame};
 use crate::physics::contact::needs_convex;
 use crate::physics::dynamics::{MAX_WEIGHT, constants};
+use crate::physics::length_range;
 use crate::physics::world::ContactRules;
 
 const NO_ACCELERATION: &str =
@@ -33,15 +34,16 @@ const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of
 /// ```
 ///
 /// # Errors
-/// A joint-space inertia at `qpos0` that is singular, numbers that are not finite; with the place of the element.
+/// A joint-space inertia at `qpos0` that is singular, numbers that are not finite, muscles whose lengths have no bounds; with the place
+/// of the element.
 #[doc(alias = "mj_compile")]
 pub fn compile(spec: Spec) -> Result<Model, LoadError> {
-    let (arrays, places) = spec.into_parts();
+    let (arrays, places, lengthrange) = spec.into_parts();
     let constants = constants(&arrays);
     check(&arrays, &constants, &places)?;
     let model = Model::new(arrays, constants);
     check_convex(&model, &places)?;
-    Ok(model)
+    length_range::complete(model, &lengthrange, &places)
 }
 
 /// Refuses other convex collision than MuJoCo's default where two geoms may touch whose contacts it finds.

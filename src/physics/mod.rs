@@ -12,6 +12,7 @@ pub(crate) mod contact;
 mod dynamics;
 mod engine;
 mod free_body;
+mod length_range;
 mod params;
 mod patterns;
 #[cfg(feature = "rapier")]

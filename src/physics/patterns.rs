@@ -1,8 +1,8 @@
-//! Which degrees of freedom move what is not a body: tendons.
+//! Which degrees of freedom move what is not a body: tendons, and what actuators act on.
 
 use std::ops::Range;
 
-use crate::model::{Arrays, Wrap};
+use crate::model::{Arrays, TrnType, Wrap};
 use crate::physics::topology::Topology;
 
 /// A sparse row over the degrees of freedom for each of some elements.
@@ -64,6 +64,20 @@ pub(super) fn tendons(model: &Arrays, topology: &Topology) -> DofRows {
     DofRows::new((0..model.ntendon()).map(of))
 }
 
+/// Returns the degrees of freedom on which each actuator acts that has a moment of its own: on a site, a slider-crank, contacts.
+pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {
+    let chain = |site: usize| topology.body_chain(model.site_bodyid[site]);
+    let of = |i: usize| {
+        let (id, reference) = (model.actuator_trnid[i], model.actuator_refid[i]);
+        match model.actuator_trntype[i] {
+            TrnType::Joint | TrnType::JointInParent | TrnType::Tendon => Vec::new(),
+            TrnType::Body => (0..model.nv as u32).collect(),
+            TrnType::SliderCrank | TrnType::Site => [chain(id), reference.map_or(&[][..], chain)].concat(),
+        }
+    };
+    DofRows::new((0..model.nu()).map(of))
+}
+
 /// Iterates over the bodies of what follows each other along a spatial tendon.
 fn neighbours(model: &Arrays, t: usize) -> impl Iterator<Item = [usize; 2]> {
     let pairs = model.tendon_wrap[t].windows(2);
@@ -71,9 +85,11 @@ fn neighbours(model: &Arrays, t: usize) -> impl Iterator<Item = [usize; 2]> {
     // past a geom that is not in the way
     let sites = model.tendon_wrap[t].windows(3);
     let past = sites.filter_map(|three| match three {
-        [first @ Wrap::Site { .. }, Wrap::Sphere { .. } | Wrap::Cylinder { .. }, last @ Wrap::Site { .. }] => {
-            Some([first.body(model)?, last.body(model)?])
-        }
+        [
+            first @ Wrap::Site { .. },
+            Wrap::Sphere { .. } | Wrap::Cylinder { .. },
+            last @ Wrap::Site { .. },
+        ] => Some([first.body(model)?, last.body(model)?]),
         _ => None,
     });
     direct.chain(past)

@@ -135,6 +135,7 @@ impl SoftEngine {
         }
         self.mark(Some(Stage::Constraints));
         vectorized!(self.rows.build(&self.model, &self.topology, s));
+        transmissions(&self.model, &self.topology, s);
         Ok(())
     }
 

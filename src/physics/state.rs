@@ -149,6 +149,8 @@ table! {
         pub wrap_xpos: [Vec3; 2 * model.nwrap()] = [0.0; 3];
         /// What each of these points is on: a geom, or -1 for a site, -2 for a pulley.
         pub wrap_obj: [i32; 2 * model.nwrap()] = 0;
+        /// Derivatives of the lengths of actuators on sites, slider-cranks and contacts by the degrees of freedom, one after another.
+        pub(crate) actuator_moment: [f64; topology.actuators.len()] = 0.0;
         /// Motion axes by tile: six values for each lane, zeros where there is none.
         pub(crate) cdof_lanes: [[Lanes; 6]; topology.tiles.rows()] = [[0.0; 4]; 6];
         /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal.
@@ -163,7 +165,8 @@ table! {
         pub cvel: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Rates of the motion axes (nv): rotation, translation, 1/s.
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Lengths of the actuators (nu): the coordinate of the joint, rad or m, times the gear.
+        /// Lengths of the actuators (nu): the coordinate of the joint or the length of the tendon, rad or m, times the gear; of a site
+        /// its displacement from the reference site along the gears; of a slider-crank that of the slider.
         pub actuator_length: [f64; model.nu()] = 0.0;
         /// Rates of the lengths of the actuators (nu); zero where actuators are switched off.
         pub actuator_velocity: [f64; model.nu()] = 0.0;

@@ -35,6 +35,8 @@ pub struct Topology {
     body_tile_adr: Vec<usize>,
     /// Degrees of freedom that can change the length of each tendon.
     pub(crate) tendons: DofRows,
+    /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
+    pub(crate) actuators: DofRows,
 }
 
 impl Topology {
@@ -75,9 +77,11 @@ impl Topology {
             body_tiles: Vec::new(),
             body_tile_adr: Vec::new(),
             tendons: DofRows::default(),
+            actuators: DofRows::default(),
         };
         topology.deal_tiles(model);
         topology.tendons = patterns::tendons(model, &topology);
+        topology.actuators = patterns::actuators(model, &topology);
         topology
     }
 

@@ -34,6 +34,7 @@ mod scene;
 mod scene_file;
 mod senses;
 mod snapshot;
+mod strings;
 mod tasks;
 mod touch;
 mod vector;

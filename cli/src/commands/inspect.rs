@@ -8,11 +8,11 @@ use babybench::config::{Compat, Delays};
 use babybench::formats::png::write_png;
 use babybench::mimo::joint_part;
 use babybench::mjcf_loader::elements;
-use babybench::model::EqualityKind;
+use babybench::model::{EqualityKind, TrnType};
 use babybench::report::skin::draw_skin;
 use babybench::runs::replay;
 use babybench::sensors::Component;
-use babybench::{Blueprint, Env};
+use babybench::{Blueprint, Env, Model};
 use clap::Args;
 
 use super::keys::list_keys;
@@ -198,13 +198,23 @@ fn write_actuators(out: &mut impl Write, env: &Env) -> io::Result<()> {
     for i in 0..model.nu() {
         let joint = match model.actuator_joint(i) {
             Some(joint) => &model.jnt_name[joint],
-            None => &model.tendon_name[model.actuator_trnid[i]],
+            None => target(model, i),
         };
         let [lo, hi] = model.actuator_forcerange[i];
         let (name, gear) = (&model.actuator_name[i], model.actuator_gear[i]);
         writeln!(out, "{i:>4} {name:34} {joint:34} {gear:>9} {lo:>8} {hi:>8}")?;
     }
     Ok(())
+}
+
+/// Returns the name of what an actuator acts on that is no joint.
+fn target(model: &Model, actuator: usize) -> &String {
+    let id = model.actuator_trnid[actuator];
+    match model.actuator_trntype[actuator] {
+        TrnType::SliderCrank | TrnType::Site => &model.site_name[id],
+        TrnType::Body => &model.body_name[id],
+        _ => &model.tendon_name[id],
+    }
 }
 
 /// Writes the action space and the observation space.

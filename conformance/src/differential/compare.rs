@@ -131,7 +131,9 @@ impl Sides {
         let measured = all.filter_map(|distance| {
             let mut limit = distance.limit;
             // springs and dampers may follow from inverse weights
-            if distance.name.ends_with("invweight0") || ["jnt_stiffness", "dof_damping"].contains(&distance.name) {
+            if distance.name.ends_with("invweight0")
+                || ["jnt_stiffness", "dof_damping", "actuator_acc0"].contains(&distance.name)
+            {
                 if self.condition > CONDITION {
                     return None;
                 }

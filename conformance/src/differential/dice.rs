@@ -70,6 +70,19 @@ impl Dice {
         numbers(&ends)
     }
 
+    /// Writes the gain or the bias of a muscle.
+    pub fn muscle(&mut self) -> String {
+        let (low, high) = (self.log(0.3, 0.9), self.log(0.95, 1.5));
+        let force = if self.chance(0.5) {
+            "-1".to_owned()
+        } else {
+            self.log(0.1, 20.0)
+        };
+        let (scale, lmin, lmax) = (self.log(1.0, 300.0), self.log(0.2, 0.9), self.log(1.1, 2.0));
+        let (vmax, fpmax, fvmax) = (self.log(0.3, 5.0), self.log(0.3, 3.0), self.log(0.9, 2.0));
+        format!("{low} {high} {force} {scale} {lmin} {lmax} {vmax} {fpmax} {fvmax}")
+    }
+
     /// Writes an axis, at times one of the coordinates.
     pub fn axis(&mut self) -> String {
         match self.rng.usize(..5) {

@@ -82,6 +82,12 @@ impl Writer<'_> {
             compiler.set("autolimits", "false");
         }
         self.language.dress(&mut compiler, "compiler", false, &mut self.dice);
+        if self.dice.chance(0.1) {
+            let mut settings = Node::new("lengthrange");
+            self.language
+                .dress(&mut settings, "compiler/lengthrange", false, &mut self.dice);
+            compiler.children.push(settings);
+        }
         let mut root = Node::new("mujoco");
         root.children.push(compiler);
         let option = self.option();
@@ -169,7 +175,7 @@ impl Writer<'_> {
             class.set("class", name.as_str());
             self.classes.push(name);
         }
-        const HOLDS: [(&str, &str); 13] = [
+        const HOLDS: [(&str, &str); 15] = [
             ("joint", "worldbody/body/joint"),
             ("geom", "worldbody/body/geom"),
             ("site", "worldbody/body/site"),
@@ -183,6 +189,8 @@ impl Writer<'_> {
             ("intvelocity", "actuator/intvelocity"),
             ("damper", "actuator/damper"),
             ("cylinder", "actuator/cylinder"),
+            ("muscle", "actuator/muscle"),
+            ("adhesion", "actuator/adhesion"),
         ];
         for (name, path) in HOLDS {
             // actuators share one default, of which each decides a part
@@ -222,7 +230,7 @@ impl Writer<'_> {
         for (range, limited) in RANGES {
             // the others are limited by their kind
             let always = match limited {
-                "ctrllimited" => node.name == "damper",
+                "ctrllimited" => ["damper", "adhesion"].contains(&node.name.as_str()),
                 "actlimited" => node.name != "general",
                 _ => false,
             };
@@ -271,6 +279,7 @@ impl Writer<'_> {
             let body = self.body(0, false);
             world.children.push(body);
         }
+        self.replicate(&mut world);
         self.frame(&mut world);
         world
     }
@@ -318,8 +327,43 @@ impl Writer<'_> {
             let child = self.body(depth + 1, moves);
             body.children.push(child);
         }
+        if depth < DEPTH {
+            self.replicate(&mut body);
+        }
         self.frame(&mut body);
         body
+    }
+
+    /// Adds copies of a geom or a body, to which nothing refers: their names are not those that are written.
+    fn replicate(&mut self, parent: &mut Node) {
+        if self.dice.chance(0.95) {
+            return;
+        }
+        let mut copies = Node::new("replicate");
+        self.class(&mut copies, "childclass");
+        self.language
+            .dress(&mut copies, "worldbody/body/frame/replicate", false, &mut self.dice);
+        let known = (
+            self.bodies.len(),
+            self.joints.len(),
+            self.geoms.len(),
+            self.sites.len(),
+            self.rounds.len(),
+        );
+        let held = if self.dice.chance(0.5) {
+            self.geom()
+        } else {
+            self.body(DEPTH, false)
+        };
+        copies.children.push(held);
+        self.bodies.truncate(known.0);
+        self.joints.truncate(known.1);
+        self.geoms.truncate(known.2);
+        self.sites.truncate(known.3);
+        self.rounds.truncate(known.4);
+        let mut frame = Node::new("frame");
+        frame.children.push(copies);
+        parent.children.push(frame);
     }
 
     /// Puts some of what a body holds into a frame, at times into frames in each other.

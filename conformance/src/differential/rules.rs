@@ -27,7 +27,7 @@ pub const RIVALS: [&[&str]; 7] = [
     &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
     &["pos", "fromto"],
     &["diaginertia", "fullinertia"],
-    &["joint", "jointinparent", "tendon"],
+    &["joint", "jointinparent", "tendon", "site", "cranksite", "body"],
     &["kv", "dampratio"],
     &["ctrlrange", "inheritrange"],
     &["actrange", "inheritrange"],
@@ -330,16 +330,45 @@ const PULLEY: &[Rule] = &[("divisor", Drawn(1.0, |d| d.log(0.3, 4.0)))];
 
 const ACTUATOR: &[Rule] = &[
     ("name", Placed(&[])),
-    ("joint", Placed(&["slider", "lower"])),
-    ("jointinparent", Placed(&["slider", "lower"])),
-    ("tendon", Placed(&["pull", "loose", "string"])),
     ("forcelimited", Placed(&[])),
     ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
     ("forcerange", Drawn(0.4, |d| d.range(2.0))),
-    ("gear", Drawn(0.5, |d| d.reals(1, 5.0))),
-    ("lengthrange", Drawn(0.1, |d| d.range(1.0))),
     ("user", Nothing),
     ("group", Nothing),
+];
+
+const TARGET: &[Rule] = &[
+    ("joint", Placed(&["slider", "lower"])),
+    ("jointinparent", Placed(&["slider", "lower"])),
+    ("tendon", Placed(&["pull", "loose", "string"])),
+    ("cranksite", Placed(&[])),
+    ("slidersite", Placed(&[])),
+    ("cranklength", Placed(&[])),
+    (
+        "gear",
+        Drawn(0.5, |d| {
+            let n = d.pick(&[1, 1, 1, 3, 6]);
+            d.reals(n, 5.0)
+        }),
+    ),
+    ("lengthrange", Drawn(0.1, |d| d.range(1.0))),
+];
+/// Those of an actuator on sites, whose documents are those of the element `general`.
+const AT_SITE: &[Rule] = &[("site", Placed(&["tip"])), ("refsite", Placed(&[]))];
+const ON_BODY: &[Rule] = &[("body", Placed(&["hand", "ball"]))];
+const ADHESION: &[Rule] = &[
+    ("gain", Drawn(0.8, |d| d.log(0.5, 50.0))),
+    (
+        "ctrlrange",
+        Drawn(1.0, |d| format!("{} {}", d.log(0.01, 0.3), d.log(0.5, 2.0))),
+    ),
+];
+/// Targets of which the motors of the document of [`super::single`] have one each.
+const SLIDER_CRANK: &[Rule] = &[
+    ("cranksite", Placed(&["tip"])),
+    ("slidersite", Placed(&["skin", "ground"])),
+    ("cranklength", Placed(&["0.3", "2"])),
+    ("refsite", Placed(&["tip", "inner"])),
 ];
 
 const CONTROL: &[Rule] = &[("ctrllimited", Placed(&[]))];
@@ -383,6 +412,43 @@ const CYLINDER: &[Rule] = &[
     ("area", Drawn(0.5, |d| d.log(0.1, 5.0))),
     ("diameter", Drawn(0.3, |d| d.log(0.1, 3.0))),
     ("bias", Drawn(0.4, |d| d.reals(3, 2.0))),
+];
+
+const MUSCLE: &[Rule] = &[
+    (
+        "timeconst",
+        Drawn(0.4, |d| format!("{} {}", d.log(0.001, 0.3), d.log(0.001, 0.3))),
+    ),
+    ("tausmooth", Drawn(0.3, |d| d.log(0.01, 2.0))),
+    (
+        "range",
+        Drawn(0.4, |d| format!("{} {}", d.log(0.3, 0.9), d.log(0.95, 1.5))),
+    ),
+    ("force", Drawn(0.4, |d| d.log(0.1, 20.0))),
+    ("scale", Drawn(0.3, |d| d.log(1.0, 300.0))),
+    ("lmin", Drawn(0.3, |d| d.log(0.2, 0.9))),
+    ("lmax", Drawn(0.3, |d| d.log(1.1, 2.0))),
+    ("vmax", Drawn(0.3, |d| d.log(0.3, 5.0))),
+    ("fpmax", Drawn(0.3, |d| d.log(0.3, 3.0))),
+    ("fvmax", Drawn(0.3, |d| d.log(0.9, 2.0))),
+];
+
+/// Settings of the simulations that find the lengths of muscles. MuJoCo hangs in simulations that diverge, so muscles of random documents
+/// have lengths, and these are taken.
+const LENGTH_RANGE: &[Rule] = &[
+    (
+        "mode",
+        Drawn(0.5, |d| d.pick(&["none", "muscle", "muscleuser"]).to_owned()),
+    ),
+    ("useexisting", Drawn(0.3, |_| "true".to_owned())),
+    ("uselimit", Word(0.3)),
+    ("accel", Drawn(0.3, |d| d.log(1.0, 50.0))),
+    ("maxforce", Drawn(0.3, |d| d.log(0.001, 0.01))),
+    ("timeconst", Drawn(0.3, |d| d.log(0.1, 3.0))),
+    ("timestep", Drawn(0.3, |d| d.pick(&["0", "0.004", "0.02"]).to_owned())),
+    ("inttotal", Drawn(0.3, |d| d.pick(&["0.3", "3"]).to_owned())),
+    ("interval", Drawn(0.3, |d| d.pick(&["1", "20"]).to_owned())),
+    ("tolrange", Drawn(0.3, |d| d.pick(&["-1", "0.1"]).to_owned())),
 ];
 
 /// Writes one to ten parameters of an actuator, of which three have a meaning.
@@ -438,6 +504,7 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
 /// The attributes of each element that changes physics, by its path.
 pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("compiler", &[COMPILER]),
+    ("compiler/lengthrange", &[LENGTH_RANGE]),
     ("option", &[OPTION]),
     ("option/flag", &[FLAG]),
     ("statistic", &[STATISTIC]),
@@ -459,6 +526,21 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     (
         "worldbody/body/frame",
         &[&[("name", Nothing), ("childclass", Placed(&["stiff"]))], FRAME],
+    ),
+    (
+        "worldbody/body/frame/replicate",
+        &[&[
+            ("count", Drawn(1.0, |d| d.rng.usize(1..4).to_string())),
+            ("sep", Drawn(0.3, |_| "_".to_owned())),
+            ("offset", Drawn(0.8, |d| d.reals(3, 0.4))),
+            (
+                "euler",
+                Drawn(0.5, |d| {
+                    [d.coordinate(3.0), d.coordinate(3.0), d.coordinate(3.0)].join(" ")
+                }),
+            ),
+            ("childclass", Placed(&["stiff"])),
+        ]],
     ),
     ("worldbody/body/inertial", &[INERTIAL, FRAME]),
     ("worldbody/body/joint", &[CLASS, JOINT]),
@@ -484,13 +566,30 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("tendon/spatial/geom", &[WRAP_GEOM]),
     ("tendon/spatial/pulley", &[PULLEY]),
     ("actuator", &[]),
-    ("actuator/general", &[CLASS, ACTUATOR, CONTROL, ACTIVATION, LAW]),
-    ("actuator/motor", &[CLASS, ACTUATOR, CONTROL]),
-    ("actuator/position", &[CLASS, ACTUATOR, CONTROL, SERVO, FILTER]),
-    ("actuator/velocity", &[CLASS, ACTUATOR, CONTROL, SPEED]),
-    ("actuator/intvelocity", &[CLASS, ACTUATOR, CONTROL, ACTIVATION, SERVO]),
-    ("actuator/damper", &[CLASS, ACTUATOR, SPEED]),
-    ("actuator/cylinder", &[CLASS, ACTUATOR, CONTROL, CYLINDER]),
+    (
+        "actuator/general",
+        &[CLASS, ACTUATOR, TARGET, AT_SITE, ON_BODY, CONTROL, ACTIVATION, LAW],
+    ),
+    (
+        "actuator/motor",
+        &[CLASS, SLIDER_CRANK, ACTUATOR, TARGET, AT_SITE, CONTROL],
+    ),
+    (
+        "actuator/position",
+        &[CLASS, ACTUATOR, TARGET, AT_SITE, CONTROL, SERVO, FILTER],
+    ),
+    ("actuator/velocity", &[CLASS, ACTUATOR, TARGET, AT_SITE, CONTROL, SPEED]),
+    (
+        "actuator/intvelocity",
+        &[CLASS, ACTUATOR, TARGET, AT_SITE, CONTROL, ACTIVATION, SERVO],
+    ),
+    ("actuator/damper", &[CLASS, ACTUATOR, TARGET, AT_SITE, SPEED]),
+    (
+        "actuator/cylinder",
+        &[CLASS, ACTUATOR, TARGET, AT_SITE, CONTROL, CYLINDER],
+    ),
+    ("actuator/muscle", &[CLASS, ACTUATOR, TARGET, CONTROL, MUSCLE]),
+    ("actuator/adhesion", &[CLASS, ADHESION, ACTUATOR, ON_BODY]),
     ("sensor", &[]),
     ("sensor/touch", &[ON_SITE, SENSOR]),
     ("sensor/accelerometer", &[ON_SITE, SENSOR]),

@@ -1,17 +1,21 @@
 //! Compiles actuators.
 
 use super::context::{Context, Ids, User};
-use crate::mjcf_loader::actuator::Actuator;
+use crate::mjcf_loader::actuator::{Actuator, Target};
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, BiasType, DynType, GainType, TrnType};
 
 const FILTERED: &str =
     "inheritrange is for actuators whose control or integral is a position, and this one has a filter";
-const IN_PARENT: &str = "inheritrange needs the attribute joint, not jointinparent";
+const IN_PARENT: &str = "inheritrange needs the attribute joint or tendon";
+const NO_ROD: &str = "cranklength of a slider-crank must be positive";
 const WITHOUT_RANGE: &str = "inheritrange is used, but the joint or the tendon has no range";
 const NO_ACTIVATION: &str = "actrange applies, but the actuator has no activation: set dyntype, or actlimited to false";
 const STATELESS: &str = "actdim must be 0 or left out where dyntype is none";
+const RANGE: &str = "the second number of the range of a muscle must be the greater";
+const CURVE: &str = "a muscle needs lmin < 1 < lmax";
+const SCALES: &str = "scale, vmax, fpmax and fvmax of a muscle must be positive";
 const STATEFUL: &str = "actdim must be 1 or left out: each activation is one number";
 
 /// Compiles the actuators, whose user data all get the length of the longest or of `nuser_actuator`.
@@ -25,17 +29,21 @@ pub(super) fn compile_actuators(
     let users = User::new("nuser_actuator", document.size.nuser_actuator, users);
     for actuator in &document.actuators {
         let user = users.of(context, actuator.at, &actuator.user)?;
-        let (trntype, trnid) = transmission(context, actuator, ids, arrays)?;
+        let (trntype, trnid, refid) = transmission(context, actuator, ids, arrays)?;
         let range = match trntype {
-            TrnType::Tendon => arrays.tendon_range[trnid],
-            TrnType::Joint | TrnType::JointInParent => arrays.jnt_range[trnid],
+            TrnType::Tendon => Some(arrays.tendon_range[trnid]),
+            TrnType::Joint | TrnType::JointInParent => Some(arrays.jnt_range[trnid]),
+            TrnType::SliderCrank | TrnType::Site | TrnType::Body => None,
         };
         let (ctrlrange, actrange) = ranges(context, actuator, range)?;
         let limited = |attribute, limited, range| context.limited(actuator.at, attribute, limited, range);
         arrays.actuator_name.push(actuator.name.clone());
         arrays.actuator_trntype.push(trntype);
         arrays.actuator_trnid.push(trnid);
-        arrays.actuator_gear.push(actuator.gear);
+        arrays.actuator_refid.push(refid);
+        arrays.actuator_cranklength.push(actuator.target.cranklength);
+        arrays.actuator_gear.push(actuator.target.gear[0]);
+        arrays.actuator_gear6.push(actuator.target.gear);
         arrays
             .actuator_ctrllimited
             .push(limited("ctrlrange", actuator.control.limited, ctrlrange)?);
@@ -44,7 +52,7 @@ pub(super) fn compile_actuators(
             .actuator_forcelimited
             .push(limited("forcerange", actuator.forcelimited, actuator.forcerange)?);
         arrays.actuator_forcerange.push(actuator.forcerange);
-        arrays.actuator_lengthrange.push(actuator.lengthrange);
+        arrays.actuator_lengthrange.push(actuator.target.lengthrange);
         let law = &actuator.law;
         arrays
             .actuator_actlimited
@@ -56,38 +64,67 @@ pub(super) fn compile_actuators(
     Ok(())
 }
 
-/// Returns what an actuator acts on: kind and id.
+/// Returns what an actuator acts on: kind, id, and the second id of kinds that have two.
 fn transmission(
     context: &Context,
     actuator: &Actuator,
     ids: &Ids,
     arrays: &Arrays,
-) -> Result<(TrnType, usize), LoadError> {
+) -> Result<(TrnType, usize, Option<usize>), LoadError> {
     let at = actuator.at;
-    let joint = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
-    if let Some(name) = &actuator.joint {
-        Ok((TrnType::Joint, joint("joint", name)?))
-    } else if let Some(name) = &actuator.jointinparent {
-        Ok((TrnType::JointInParent, joint("jointinparent", name)?))
-    } else if let Some(name) = &actuator.tendon {
-        Ok((TrnType::Tendon, ids.tendon.find(context.tree, at, "tendon", name)?))
+    let Target {
+        joint,
+        jointinparent,
+        tendon,
+        cranksite,
+        slidersite,
+        cranklength,
+        ..
+    } = &actuator.target;
+    let find_joint = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
+    let find_site = |attribute, name: &String| ids.site.find(context.tree, at, attribute, name);
+    if let Some(name) = joint {
+        Ok((TrnType::Joint, find_joint("joint", name)?, None))
+    } else if let Some(name) = jointinparent {
+        Ok((TrnType::JointInParent, find_joint("jointinparent", name)?, None))
+    } else if let Some(name) = tendon {
+        Ok((
+            TrnType::Tendon,
+            ids.tendon.find(context.tree, at, "tendon", name)?,
+            None,
+        ))
+    } else if let Some(name) = cranksite {
+        let Some(slider) = slidersite else {
+            return Err(context.error(at, ErrorKind::MissingAttribute("slidersite")));
+        };
+        if *cranklength <= 0.0 {
+            return Err(context.invalid(at, NO_ROD));
+        }
+        let crank = find_site("cranksite", name)?;
+        Ok((TrnType::SliderCrank, crank, Some(find_site("slidersite", slider)?)))
+    } else if let Some(name) = &actuator.at_site.site {
+        let reference = actuator.at_site.refsite.as_ref().filter(|name| !name.is_empty());
+        let reference = reference.map(|name| find_site("refsite", name)).transpose()?;
+        Ok((TrnType::Site, find_site("site", name)?, reference))
+    } else if let Some(name) = &actuator.on_body.body {
+        Ok((TrnType::Body, ids.body.find(context.tree, at, "body", name)?, None))
     } else {
         Err(context.error(at, ErrorKind::MissingAttribute("joint")))
     }
 }
 
 /// Returns the ranges of control and activation: as given, or in the proportion `inheritrange` to that of what it acts on.
-fn ranges(context: &Context, actuator: &Actuator, range: [f64; 2]) -> Result<([f64; 2], [f64; 2]), LoadError> {
+fn ranges(context: &Context, actuator: &Actuator, range: Option<[f64; 2]>) -> Result<([f64; 2], [f64; 2]), LoadError> {
     let (law, given) = (&actuator.law, (actuator.ctrlrange, actuator.activation.range));
     let servo =
         law.gaintype == GainType::Fixed && law.biastype == BiasType::Affine && law.gainprm[0] == -law.biasprm[1];
     if !servo || actuator.inheritrange <= 0.0 {
         return Ok(given);
     }
-    let [low, high] = range;
+    let [low, high] = range.unwrap_or_default();
     let wrong = match law.dyntype {
         DynType::Filter => Some(FILTERED),
-        _ if actuator.jointinparent.is_some() => Some(IN_PARENT),
+        _ if range.is_none() || actuator.target.jointinparent.is_some() => Some(IN_PARENT),
         _ if low == high => Some(WITHOUT_RANGE),
         _ => None,
     };
@@ -106,6 +143,13 @@ fn ranges(context: &Context, actuator: &Actuator, range: [f64; 2]) -> Result<([f
 fn compile_law(context: &Context, actuator: &Actuator, arrays: &mut Arrays) -> Result<(), LoadError> {
     let law = &actuator.law;
     let stateful = law.dyntype != DynType::None;
+    let muscle = [
+        (law.gaintype == GainType::Muscle).then_some(&law.gainprm),
+        (law.biastype == BiasType::Muscle).then_some(&law.biasprm),
+    ];
+    if let Some(wrong) = muscle.into_iter().flatten().find_map(check_muscle) {
+        return Err(context.invalid(actuator.at, wrong));
+    }
     let wrong = match law.actdim {
         _ if !stateful && arrays.actuator_actlimited.last() == Some(&true) => Some(NO_ACTIVATION),
         1.. if !stateful => Some(STATELESS),
@@ -125,4 +169,17 @@ fn compile_law(context: &Context, actuator: &Actuator, arrays: &mut Arrays) -> R
     arrays.actuator_biastype.push(law.biastype);
     arrays.actuator_biasprm.push(law.biasprm);
     Ok(())
+}
+
+/// Returns what is wrong with the gain or the bias of a muscle.
+fn check_muscle(&[low, high, _, scale, lmin, lmax, vmax, fpmax, fvmax, _]: &[f64; 10]) -> Option<&'static str> {
+    if low >= high {
+        Some(RANGE)
+    } else if lmin >= 1.0 || lmax <= 1.0 {
+        Some(CURVE)
+    } else if [scale, vmax, fpmax, fvmax].iter().any(|&v| v <= 0.0) {
+        Some(SCALES)
+    } else {
+        None
+    }
 }

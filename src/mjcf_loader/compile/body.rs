@@ -7,8 +7,10 @@ use super::fluid::fluid;
 use super::geometry::{
     EPS, Solid, bounding_radius, inertia, merge, normalize, orientation, principal, segment, size_count, volume,
 };
-use crate::math::{MINVAL, QUAT_ID, Quat, Vec3};
-use crate::mjcf_loader::document::{Body, Camera, Document, Frame, Geom, Joint, Light, Orientation, Site, Tri};
+use crate::math::{MINVAL, QUAT_ID, Quat, Vec3, add, quat_rotate};
+use crate::mjcf_loader::document::{
+    Body, BodyFrame, Camera, Copied, Document, Frame, Geom, Joint, Light, Orientation, Site, Tri,
+};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::settings::single;
 use crate::model::{self, Arrays, CamLight, GeomType, JointType};
@@ -527,4 +529,29 @@ fn check_moving_masses(context: &Context, document: &Document, arrays: &Arrays) 
         }
     }
     Ok(())
+}
+
+/// Returns the pose of a copy of what a `<replicate>` holds; `own` are the positions of the frames before it. As in MuJoCo 3.3.0 the step
+/// to a copy is turned as the copy two before it is, and its own turn is that of all steps at once.
+pub(super) fn copied(
+    context: &Context,
+    frame: &BodyFrame,
+    copy: Copied,
+    own: &[Vec3],
+) -> Result<(Vec3, Quat), LoadError> {
+    let turned = |times: usize| {
+        let mut step = frame.frame;
+        if let Orientation::Euler(angles) = &mut step.orientation {
+            angles.iter_mut().for_each(|angle| *angle *= times as f64);
+        }
+        quat_of(context, frame.at, &step)
+    };
+    let pos = match copy.previous {
+        Some(previous) => add(
+            own[previous],
+            quat_rotate(turned(copy.number.saturating_sub(2))?, frame.frame.pos),
+        ),
+        None => [0.0; 3],
+    };
+    Ok((pos, turned(copy.number)?))
 }

@@ -19,6 +19,7 @@ use super::document::Document;
 use super::error::LoadError;
 use super::xml::Tree;
 use crate::assets::AssetSource;
+use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
 /// Compiles the document into everything but what needs dynamics. Images are looked up in `source`, relative to `dir`, and
@@ -37,8 +38,14 @@ pub(super) fn compile(
         compiler: &document.compiler,
         frames: Vec::with_capacity(document.frames.len()),
     };
+    // poses in what the frames stand in
+    let mut own: Vec<Vec3> = Vec::with_capacity(document.frames.len());
     for frame in &document.frames {
-        let (pos, quat) = (frame.frame.pos, body::quat_of(&context, frame.at, &frame.frame)?);
+        let (pos, quat) = match frame.copy {
+            Some(copy) => body::copied(&context, frame, copy, &own)?,
+            None => (frame.frame.pos, body::quat_of(&context, frame.at, &frame.frame)?),
+        };
+        own.push(pos);
         let pose = context.placed(frame.within, pos, quat);
         context.frames.push(pose);
     }

@@ -2,6 +2,7 @@
 
 use crate::math::MINVAL;
 use crate::model::{DynType, Model};
+use crate::physics::dynamics::muscle;
 
 /// Returns the time constant of an actuator's filter, s, which is never 0.
 fn time_constant(model: &Model, actuator: usize) -> f64 {
@@ -14,6 +15,7 @@ pub fn rate(model: &Model, actuator: usize, act: f64, ctrl: f64) -> f64 {
         DynType::None => 0.0,
         DynType::Integrator => ctrl,
         DynType::Filter | DynType::FilterExact => (ctrl - act) / time_constant(model, actuator),
+        DynType::Muscle => muscle::rate(&model.actuator_dynprm[actuator], ctrl, act),
     }
 }
 
@@ -120,7 +122,7 @@ mod tests {
              <velocity joint='j' kv='4'/>",
         );
         // 2 ratio sqrt(k m / gear^2) of a mass of 2 kg
-        assert_eq!(engine.model().actuator_biasprm[1], [0.0, -8.0, -2.0]);
+        assert_eq!(engine.model().actuator_biasprm[1][..3], [0.0, -8.0, -2.0]);
         let mut state = engine.new_state();
         (state.qpos[0], state.qvel[0]) = (0.25, 0.5);
         state.ctrl = vec![0.5, 1.0, 2.0];

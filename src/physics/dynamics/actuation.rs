@@ -3,14 +3,14 @@
 use crate::model::{BiasType, GainType, Model};
 use crate::physics::dynamics::applied::xfrc_accumulate;
 use crate::physics::dynamics::articulated::{Articulated, Damping};
-use crate::physics::dynamics::{activation, transmission};
+use crate::physics::dynamics::{activation, muscle, transmission};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
 /// Computes `act_dot, actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
 ///
 /// An actuator gives `clamp(gain ctrl + bias)`, times its gear on the joint or the tendon; its length and velocity are gear times
-/// those of the joint or the tendon. What all actuators together do to a joint may be limited. Where it has an activation, that takes the place of the control. Where muscles take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
+/// those of the joint or the tendon. What all actuators together do to a joint may be limited. Where it has an activation, that takes the place of the control. Where muscles of an actuation model take its place, `clamp(gain ctrl torque)` acts on the joint itself. Controls out
 /// of range are clamped. `bodies` must be up to date.
 #[inline(always)]
 pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulated, s: &mut State) {
@@ -36,16 +36,19 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
             s.act_dot[k] = activation::rate(model, i, s.act[k], ctrl);
             ctrl = activation::acting(model, i, s.act[k], s.act_dot[k]);
         }
-        let length = gear * transmission::length(model, s, i);
-        let velocity = gear * transmission::velocity(model, topology, s, i);
-        let affine = |p: [f64; 3]| p[0] + p[1] * length + p[2] * velocity;
+        let length = transmission::length(model, s, i, gear);
+        let velocity = transmission::velocity(model, topology, s, i, gear);
+        let affine = |p: &[f64; 10]| p[0] + p[1] * length + p[2] * velocity;
         let gain = match model.actuator_gaintype[i] {
             GainType::Fixed => model.actuator_gainprm[i][0],
-            GainType::Affine => affine(model.actuator_gainprm[i]),
+            GainType::Affine => affine(&model.actuator_gainprm[i]),
+            GainType::Muscle => muscle::gain(model, i, length, velocity),
         };
         let mut force = gain * ctrl;
-        if model.actuator_biastype[i] == BiasType::Affine {
-            force += affine(model.actuator_biasprm[i]);
+        match model.actuator_biastype[i] {
+            BiasType::None => {}
+            BiasType::Affine => force += affine(&model.actuator_biasprm[i]),
+            BiasType::Muscle => force += muscle::bias(model, i, length),
         }
         if let Some(torque) = muscle {
             force *= torque;
@@ -55,8 +58,8 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
             force = force.max(lo).min(hi);
         }
         s.actuator_force[i] = force;
-        for (d, arm) in transmission::moment(model, topology, s, i) {
-            forces[d] += arm * gear * force;
+        for (d, arm) in transmission::moment(model, topology, s, i, gear) {
+            forces[d] += arm * force;
         }
     }
     s.qfrc_actuator = forces;

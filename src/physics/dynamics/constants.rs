@@ -8,8 +8,9 @@ use crate::model::{
 };
 use crate::physics::MAXVAL;
 use crate::physics::dynamics::kinematics::local_to_global;
-use crate::physics::dynamics::transmission::moment;
-use crate::physics::dynamics::{Articulated, com_pos, crb, kinematics, tendons};
+use crate::physics::dynamics::springs::{bias, slack, springs};
+use crate::physics::dynamics::transmission::{dense_moment, length, transmissions};
+use crate::physics::dynamics::{Articulated, Damping, com_pos, crb, kinematics, tendons};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -22,6 +23,7 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
     kinematics(model, &mut s);
     com_pos(model, &mut s);
     tendons(model, &topology, &mut s);
+    transmissions(model, &topology, &mut s);
     crb(model, &topology, &mut s);
     let diagonal = (0..model.nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
     let dof_m0: Vec<f64> = diagonal.collect();
@@ -36,7 +38,13 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
         tendon_length0: s.ten_length.clone(),
         tendon_lengthspring: slack(model, &topology),
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
-        actuator_biasprm: (0..model.nu()).map(|i| bias(model, &topology, &s, i, &dof_m0)).collect(),
+        actuator_acc0: (0..model.nu()).map(|i| weights.actuator(i)).collect(),
+        actuator_length0: (0..model.nu())
+            .map(|i| length(model, &s, i, model.actuator_gear[i]))
+            .collect(),
+        actuator_biasprm: (0..model.nu())
+            .map(|i| bias(model, &topology, &s, i, &dof_m0))
+            .collect(),
         stat: statistics(model, &s, &dof_m0),
         weld_poses: weld_poses(model, &s),
         connect_anchors: connect_anchors(model, &s),
@@ -44,58 +52,6 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
         light_poses: light_poses(model, &s),
         dof_m0,
     }
-}
-
-/// Returns the bias of an actuator, with the damping that its damping ratio asks for.
-///
-/// That of a servo with gain `k` on a mass `m` is `2 ratio sqrt(k m)`; the mass is that of the joints at `qpos0`, seen through the
-/// gear.
-fn bias(model: &Arrays, topology: &Topology, s: &State, actuator: usize, dof_m0: &[f64]) -> [f64; 3] {
-    let ([k, ..], [constant, stiffness, ratio]) = (model.actuator_gainprm[actuator], model.actuator_biasprm[actuator]);
-    if k != -stiffness || ratio <= 0.0 {
-        return model.actuator_biasprm[actuator];
-    }
-    let gear = model.actuator_gear[actuator];
-    let seen = moment(model, topology, s, actuator).map(|(d, arm)| (dof_m0[d], (gear * arm) * (gear * arm)));
-    let mass: f64 = seen
-        .filter(|(_, square)| *square > MINVAL)
-        .map(|(m, square)| m / square)
-        .sum();
-    [constant, stiffness, -(ratio * 2.0 * (k * mass).sqrt())]
-}
-
-/// Returns stiffness of the joints and damping of the degrees of freedom: as given, else those that give a joint alone the time
-/// constant and the damping ratio of its `springdamper`.
-fn springs(model: &Arrays, dof_invweight0: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let (mut stiffness, mut damping) = (model.jnt_stiffness.clone(), model.dof_damping.clone());
-    for (j, &[timeconst, ratio]) in model.jnt_springdamper.iter().enumerate() {
-        if timeconst <= 0.0 || ratio <= 0.0 {
-            continue;
-        }
-        let dofs = model.jnt_dofadr[j]..model.jnt_dofadr[j] + model.jnt_type[j].nv();
-        let weight: f64 = dof_invweight0[dofs.clone()].iter().sum();
-        let inertia = dofs.len() as f64 / weight.max(MINVAL);
-        stiffness[j] = inertia / (timeconst * timeconst * ratio * ratio).max(MINVAL);
-        damping[dofs].fill(2.0 * inertia / timeconst.max(MINVAL));
-    }
-    (stiffness, damping)
-}
-
-/// Returns the lengths between which each tendon's spring is slack: as given, else that in the springs' rest configuration.
-fn slack(model: &Arrays, topology: &Topology) -> Vec<[f64; 2]> {
-    const AT_REST: [f64; 2] = [-1.0; 2];
-    let mut lengths = model.tendon_lengthspring.clone();
-    if lengths.contains(&AT_REST) {
-        let mut s = State::new(model, topology);
-        s.qpos.clone_from(&model.qpos_spring);
-        kinematics(model, &mut s);
-        com_pos(model, &mut s);
-        tendons(model, topology, &mut s);
-        let found = lengths.iter_mut().zip(&s.ten_length);
-        let at_rest = found.filter(|(length, _)| **length == AT_REST);
-        at_rest.for_each(|(length, &found)| *length = [found; 2]);
-    }
-    lengths
 }
 
 /// Computes the relative poses at `qpos0` of the welds that are to hold them.
@@ -244,6 +200,15 @@ impl<'a> Weights<'a> {
             sums[k / 3] += self.of(&jac);
         }
         sums.map(|sum| sum / 3.0)
+    }
+
+    /// Computes the norm of the acceleration per unit of an actuator's force.
+    fn actuator(&mut self, i: usize) -> f64 {
+        dense_moment(self.model, self.topology, self.s, i, &mut self.b);
+        self.bodies
+            .solve(self.model, self.s, Damping::Without, &self.b, &mut self.x);
+        self.b.fill(0.0);
+        self.x.iter().map(|a| a * a).sum::<f64>().sqrt()
     }
 
     fn tendon(&mut self, t: usize) -> f64 {

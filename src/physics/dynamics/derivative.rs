@@ -5,8 +5,8 @@ use crate::model::{BiasType, GainType, IntegratorType, Model};
 use crate::physics::dynamics::constants::is_simple;
 use crate::physics::dynamics::ellipsoid::{swim_slopes, swims};
 use crate::physics::dynamics::fluid::medium_slopes;
-use crate::physics::dynamics::transmission;
 use crate::physics::dynamics::tree_matrix::TreeMatrix;
+use crate::physics::dynamics::{muscle, transmission};
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -59,8 +59,7 @@ impl Derivative {
             let muscle = s.muscle_torque.get(i).is_some() && model.actuator_biastype[i] == BiasType::None;
             let gear = if muscle { 1.0 } else { s.params.actuator_gear[i] };
             self.entries.clear();
-            self.entries
-                .extend(transmission::moment(model, topology, s, i).map(|(d, arm)| (d, arm * gear)));
+            self.entries.extend(transmission::moment(model, topology, s, i, gear));
             out.add_square(topology, &self.entries, slope);
         }
     }
@@ -171,10 +170,16 @@ impl Derivative {
 /// too.
 fn force_slope(model: &Model, s: &State, i: usize) -> f64 {
     let mut slope = match model.actuator_biastype[i] {
-        BiasType::None => 0.0,
+        // MuJoCo's does not depend on the velocity
+        BiasType::None | BiasType::Muscle => 0.0,
         BiasType::Affine => model.actuator_biasprm[i][2],
     };
-    if model.actuator_gaintype[i] == GainType::Affine {
+    let gain = match model.actuator_gaintype[i] {
+        GainType::Fixed => 0.0,
+        GainType::Affine => model.actuator_gainprm[i][2],
+        GainType::Muscle => muscle::gain_slope(model, i, s.actuator_length[i], s.actuator_velocity[i]),
+    };
+    if gain != 0.0 {
         // the control as it is given, not as it is clamped, and the activation at the start of the step: so MuJoCo has it
         let ctrl = match model.actuator_actadr[i] {
             Some(k) => s.act[k],
@@ -182,7 +187,7 @@ fn force_slope(model: &Model, s: &State, i: usize) -> f64 {
         };
         let torque = s.muscle_torque.get(i).copied();
         let muscle = torque.filter(|_| model.actuator_biastype[i] == BiasType::None);
-        slope += model.actuator_gainprm[i][2] * ctrl * muscle.unwrap_or(1.0);
+        slope += gain * ctrl * muscle.unwrap_or(1.0);
     }
     slope
 }
@@ -195,16 +200,18 @@ mod tests {
     use crate::physics::{Engine, SoftEngine, SoftOptions, compile};
 
     /// A free body with limbs that branch, dampers, a medium, tendons along a limb, actuators with velocity terms.
-    const LIMBS: &str = r#"<mujoco><option density="300" viscosity="2" wind="0.3 0.1 0"><flag contact="disable"/></option><worldbody>
-        <body pos="0 0 1"><freejoint/><geom type="box" size=".1 .2 .05" density="300"/>
+    const LIMBS: &str = r#"<mujoco><option density="300" viscosity="2" wind="0.3 0.1 0"><flag contact="disable"/></option><worldbody><site name="fixed" pos=".1 -.5 .8"/>
+        <body pos="0 0 1"><freejoint/><geom type="box" size=".1 .2 .05" density="300"/><geom name="ball" size=".05"/>
           <body pos=".2 0 .1"><joint name="a" axis="0 1 0" damping=".3"/><joint name="b" axis="1 0 0"/><geom type="capsule" size=".04 .1"/>
-            <body pos=".2 0 0"><joint name="c" axis="0 0 1"/><geom type="box" size=".05 .02 .1" pos=".1 0 0"/></body>
+            <body pos=".2 0 0"><joint name="c" axis="0 0 1"/><geom type="box" size=".05 .02 .1" pos=".1 0 0"/><site name="end" pos=".2 0 0"/></body>
           </body>
           <body pos="-.2 0 .1"><joint name="d" type="slide" axis="1 0 0"/><joint name="e"/><geom type="box" size=".03 .1 .06" pos=".1 0 0"/></body>
         </body></worldbody>
-        <tendon><fixed name="t" damping="1.5"><joint joint="a" coef="1"/><joint joint="c" coef="-.5"/></fixed></tendon>
+        <tendon><fixed name="t" damping="1.5"><joint joint="a" coef="1"/><joint joint="c" coef="-.5"/></fixed>
+          <spatial name="s" damping="2"><site site="fixed"/><geom geom="ball"/><site site="end"/></spatial></tendon>
         <actuator><position joint="b" kp="3" kv=".4" gear="2"/><damper joint="d" kv="2" ctrlrange="0 1"/><velocity tendon="t" kv=".7"/>
           <general joint="e" dyntype="integrator" gaintype="affine" gainprm="1 0 .5" biastype="affine" biasprm="0 0 -.3"/>
+          <muscle tendon="s" lengthrange=".4 1.6"/><motor site="end" refsite="fixed" gear="1 2 3 .1 .2 .3"/>
         </actuator></mujoco>"#;
 
     fn engine() -> SoftEngine {
@@ -221,8 +228,8 @@ mod tests {
         for (k, q) in s.qpos.iter_mut().enumerate().skip(7) {
             *q = 0.2 * (k % 4) as f64 - 0.35;
         }
-        s.ctrl = vec![0.3, 0.8, 0.2, 0.5];
-        s.act = vec![0.4];
+        s.ctrl = vec![0.3, 0.8, 0.2, 0.5, 0.9, 0.1];
+        s.act = vec![0.4, 0.7];
         s
     }
 

@@ -1,6 +1,8 @@
 //! What actuators act on: their lengths, and how these change with the coordinates.
 
+use crate::math::*;
 use crate::model::{Arrays, Model, TrnType};
+use crate::physics::spatial::{Spatial, angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
@@ -13,20 +15,22 @@ pub(super) fn gear(s: &State, actuator: usize) -> f64 {
     }
 }
 
-/// Returns the coordinate of a joint or the length of a tendon that an actuator acts on, without its gear.
+/// Returns the length of an actuator with a gear on what it acts on.
 #[inline(always)]
-pub(super) fn length(model: &Model, s: &State, actuator: usize) -> f64 {
+pub(super) fn length(model: &Arrays, s: &State, actuator: usize, gear: f64) -> f64 {
     let id = model.actuator_trnid[actuator];
     match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent => s.qpos[model.jnt_qposadr[id]],
-        TrnType::Tendon => s.ten_length[id],
+        TrnType::Joint | TrnType::JointInParent => gear * s.qpos[model.jnt_qposadr[id]],
+        TrnType::Tendon => gear * s.ten_length[id],
+        // from the position stage, with the gear
+        TrnType::SliderCrank | TrnType::Site | TrnType::Body => s.actuator_length[actuator],
     }
 }
 
 /// Returns the rate of [`length`].
 #[inline(always)]
-pub(super) fn velocity(model: &Model, topology: &Topology, s: &State, actuator: usize) -> f64 {
-    let moment = moment(model, topology, s, actuator);
+pub(super) fn velocity(model: &Model, topology: &Topology, s: &State, actuator: usize, gear: f64) -> f64 {
+    let moment = moment(model, topology, s, actuator, gear);
     moment.map(|(d, arm)| arm * s.qvel[d]).sum()
 }
 
@@ -37,12 +41,200 @@ pub(super) fn moment<'a>(
     topology: &'a Topology,
     s: &'a State,
     actuator: usize,
+    gear: f64,
 ) -> impl Iterator<Item = (usize, f64)> + use<'a> {
     let id = model.actuator_trnid[actuator];
-    let (joint, dofs, arms): (_, &[u32], &[f64]) = match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent => (Some(model.jnt_dofadr[id]), &[], &[]),
-        TrnType::Tendon => (None, topology.tendons.row(id), &s.ten_j[topology.tendons.range(id)]),
+    let (joint, rows, arms, gear): (_, _, &[f64], _) = match model.actuator_trntype[actuator] {
+        TrnType::Joint | TrnType::JointInParent => (Some(model.jnt_dofadr[id]), None, &[], gear),
+        TrnType::Tendon => (None, Some((&topology.tendons, id)), &s.ten_j, gear),
+        TrnType::SliderCrank | TrnType::Site | TrnType::Body => {
+            (None, Some((&topology.actuators, actuator)), &s.actuator_moment, 1.0)
+        }
     };
-    let joint = joint.into_iter().map(|d| (d, 1.0));
-    joint.chain(dofs.iter().zip(arms).map(|(&d, &arm)| (d as usize, arm)))
+    let (dofs, arms): (&[u32], &[f64]) =
+        rows.map_or((&[][..], &[][..]), |(rows, k)| (rows.row(k), &arms[rows.range(k)]));
+    let joint = joint.into_iter().map(move |d| (d, gear));
+    joint.chain(dofs.iter().zip(arms).map(move |(&d, &arm)| (d as usize, gear * arm)))
+}
+
+/// Computes the derivative of an actuator's length by the degrees of freedom (nv).
+pub(in crate::physics) fn dense_moment(
+    model: &Arrays,
+    topology: &Topology,
+    s: &State,
+    actuator: usize,
+    out: &mut [f64],
+) {
+    out.fill(0.0);
+    for (d, arm) in moment(model, topology, s, actuator, s.params.actuator_gear[actuator]) {
+        out[d] += arm;
+    }
+}
+
+/// Computes lengths and moments of actuators on sites, slider-cranks and contacts: `actuator_length`, `actuator_moment`. Poses, `cdof`
+/// and contacts with their rows must be up to date.
+#[inline(always)]
+pub fn transmissions(model: &Arrays, topology: &Topology, s: &mut State) {
+    for i in 0..model.nu() {
+        match model.actuator_trntype[i] {
+            TrnType::Joint | TrnType::JointInParent | TrnType::Tendon => {}
+            TrnType::SliderCrank | TrnType::Site | TrnType::Body => own(model, topology, s, i),
+        }
+    }
+}
+
+/// Computes one of them; kept out of the code that is compiled twice.
+#[inline(never)]
+fn own(model: &Arrays, topology: &Topology, s: &mut State, i: usize) {
+    let row = topology.actuators.range(i);
+    s.actuator_moment[row.clone()].fill(0.0);
+    let mut arms = std::mem::take(&mut s.actuator_moment);
+    let mut moment = Moment {
+        model,
+        topology,
+        dofs: topology.actuators.row(i),
+        arms: &mut arms[row],
+    };
+    s.actuator_length[i] = match (model.actuator_trntype[i], model.actuator_refid[i]) {
+        (TrnType::SliderCrank, Some(slider)) => moment.crank(s, i, slider),
+        (TrnType::Site, Some(reference)) => moment.between(s, i, reference),
+        (TrnType::Site, None) => moment.at_site(s, i),
+        _ => moment.contacts(s, model.actuator_trnid[i]),
+    };
+    s.actuator_moment = arms;
+}
+
+/// The moment of an actuator in the making.
+struct Moment<'a> {
+    model: &'a Arrays,
+    topology: &'a Topology,
+    dofs: &'a [u32],
+    arms: &'a mut [f64],
+}
+
+impl Moment<'_> {
+    /// Adds to the entries of some degrees of freedom, which ascend, what follows from their motion axes.
+    fn add(&mut self, s: &State, chain: &[u32], arm: impl Fn(&Spatial) -> f64) {
+        let mut place = 0;
+        for &d in chain {
+            while self.dofs[place] < d {
+                place += 1;
+            }
+            self.arms[place] += arm(&s.cdof[d as usize]);
+        }
+    }
+
+    /// Returns the offset of a point of a body from the centre that its motion axes are about.
+    fn offset(&self, s: &State, body: usize, point: Vec3) -> Vec3 {
+        sub(point, s.subtree_com[self.model.body_rootid[body]])
+    }
+
+    /// Returns the gears of an actuator, translation and rotation.
+    fn gears(&self, s: &State, i: usize) -> [Vec3; 2] {
+        let [_, y, z, rotation @ ..] = self.model.actuator_gear6[i];
+        [[s.params.actuator_gear[i], y, z], rotation]
+    }
+
+    /// Applies a wrench in the frame of a site, which has no length.
+    fn at_site(&mut self, s: &State, i: usize) -> f64 {
+        let site = self.model.actuator_trnid[i];
+        let [force, torque] = self.gears(s, i).map(|gear| mat_vec(&s.site_xmat[site], gear));
+        let body = self.model.site_bodyid[site];
+        let offset = self.offset(s, body, s.site_xpos[site]);
+        self.add(s, self.topology.body_chain(body), |axis| {
+            dot(velocity_at(axis, offset), force) + dot(angular(axis), torque)
+        });
+        0.0
+    }
+
+    /// Moves a site in the frame of another one; returns how far it is along the gears.
+    fn between(&mut self, s: &State, i: usize, reference: usize) -> f64 {
+        let site = self.model.actuator_trnid[i];
+        let gears = self.gears(s, i);
+        let frame = &s.site_xmat[reference];
+        let bodies = [site, reference].map(|site| self.model.site_bodyid[site]);
+        let points = [s.site_xpos[site], s.site_xpos[reference]];
+        let mut length = 0.0;
+        if gears[0] != [0.0; 3] {
+            length += dot(mat_t_vec(frame, sub(points[0], points[1])), gears[0]);
+        }
+        if gears[1] != [0.0; 3] {
+            // MuJoCo has the frames of the sites before those of their bodies
+            let [own, other] = [site, reference].map(|site| {
+                let body = self.model.site_bodyid[site];
+                quat_mul(self.model.site_quat[site], s.xquat[body])
+            });
+            length += dot(rotation_between(other, own), gears[1]);
+        }
+        let [force, torque] = gears.map(|gear| mat_vec(frame, gear));
+        let (moved, held) = self.topology.apart(bodies[0], bodies[1]);
+        for (k, chain) in [moved, held].into_iter().enumerate() {
+            let offset = self.offset(s, bodies[k], points[k]);
+            let sign = if k == 0 { 1.0 } else { -1.0 };
+            self.add(s, chain, |axis| {
+                sign * (dot(velocity_at(axis, offset), force) + dot(angular(axis), torque))
+            });
+        }
+        length
+    }
+
+    /// Moves a slider along its axis, at the other end of a rod from a crank; returns its place relative to that of the crank. Out of
+    /// reach the rod stands across the axis.
+    fn crank(&mut self, s: &State, i: usize, slider: usize) -> f64 {
+        let (site, rod, gear) = (
+            self.model.actuator_trnid[i],
+            self.model.actuator_cranklength[i],
+            s.params.actuator_gear[i],
+        );
+        let axis = column(&s.site_xmat[slider], 2);
+        let way = sub(s.site_xpos[site], s.site_xpos[slider]);
+        let along = dot(way, axis);
+        let square = along * along + rod * rod - dot(way, way);
+        // the length, and its derivatives by `way` and `axis`
+        let (length, by_way, by_axis) = if square <= 0.0 {
+            (along, axis, way)
+        } else {
+            let root = square.sqrt();
+            let share = 1.0 - along / root;
+            (
+                along - root,
+                add_scaled(scale(axis, share), way, 1.0 / root),
+                scale(way, share),
+            )
+        };
+        let bodies = [site, slider].map(|site| self.model.site_bodyid[site]);
+        let offsets = [site, slider].map(|site| self.offset(s, self.model.site_bodyid[site], s.site_xpos[site]));
+        self.add(s, self.topology.body_chain(bodies[0]), |cdof| {
+            gear * dot(velocity_at(cdof, offsets[0]), by_way)
+        });
+        self.add(s, self.topology.body_chain(bodies[1]), |cdof| {
+            let turned = dot(cross(angular(cdof), axis), by_axis);
+            gear * (turned - dot(velocity_at(cdof, offsets[1]), by_way))
+        });
+        gear * length
+    }
+
+    /// Presses the contacts of a body together: the mean over their normals, those in the gap among them.
+    fn contacts(&mut self, s: &State, body: usize) -> f64 {
+        let mut count = 0.0;
+        for contact in &s.contact {
+            let bodies = contact.geom.map(|g| self.model.geom_bodyid[g]);
+            let acts = contact.efc_address.is_some() || contact.dist >= contact.includemargin;
+            if !acts || !bodies.contains(&body) {
+                continue;
+            }
+            count += 1.0;
+            let normal = row(&contact.frame, 0);
+            let (first, second) = self.topology.apart(bodies[0], bodies[1]);
+            for (k, chain) in [first, second].into_iter().enumerate() {
+                let offset = self.offset(s, bodies[k], contact.pos);
+                let sign = if k == 0 { -1.0 } else { 1.0 };
+                self.add(s, chain, |axis| sign * dot(velocity_at(axis, offset), normal));
+            }
+        }
+        if count > 0.0 {
+            self.arms.iter_mut().for_each(|arm| *arm *= -1.0 / count);
+        }
+        0.0
+    }
 }

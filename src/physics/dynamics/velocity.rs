@@ -53,9 +53,9 @@ fn lengths(model: &Model, topology: &Topology, s: &mut State) {
     let acting = model.opt.flags.actuation;
     for i in 0..model.nu() {
         let gear = transmission::gear(s, i);
-        s.actuator_length[i] = gear * transmission::length(model, s, i);
+        s.actuator_length[i] = transmission::length(model, s, i, gear);
         s.actuator_velocity[i] = if acting {
-            gear * transmission::velocity(model, topology, s, i)
+            transmission::velocity(model, topology, s, i, gear)
         } else {
             0.0
         };

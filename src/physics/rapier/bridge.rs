@@ -225,6 +225,7 @@ impl Bridge {
         }
         stage(Stage::Constraints);
         self.builder.build(model, topology, s);
+        transmissions(model, topology, s);
         stage(Stage::Forces);
         fwd_velocity(model, topology, s, &mut self.bias);
         fwd_actuation(model, topology, &mut self.inertia, s);

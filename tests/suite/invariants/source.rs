@@ -202,7 +202,10 @@ fn invariant_7_unsupported_mjcf_is_an_error_that_names_the_element() {
             "ball",
             r#"<mujoco><worldbody><body><joint type="ball"/><geom size=".1"/></body></worldbody></mujoco>"#,
         ),
-        ("spatial", r#"<mujoco><tendon><spatial name="a"/></tendon></mujoco>"#),
+        (
+            "composite",
+            r#"<mujoco><worldbody><body><composite type="cable"/></body></worldbody></mujoco>"#,
+        ),
         (
             "extension",
             r#"<mujoco><extension><plugin plugin="a"/></extension></mujoco>"#,

@@ -129,7 +129,8 @@ impl Writer<'_> {
     fn spatial(&mut self) -> Node {
         let mut tendon = Node::new("spatial").with("name", self.name("t"));
         self.class(&mut tendon, "class");
-        self.language.dress(&mut tendon, "tendon/spatial", false, &mut self.dice);
+        self.language
+            .dress(&mut tendon, "tendon/spatial", false, &mut self.dice);
         self.decide_limits(&mut tendon);
         let (mut last, mut branch) = (self.sites.len(), 0);
         for left in (0..self.dice.rng.usize(2..6)).rev() {
@@ -168,7 +169,7 @@ impl Writer<'_> {
         } else {
             self.dice.rng.usize(1..5)
         } {
-            const KINDS: [&str; 9] = [
+            const KINDS: [&str; 12] = [
                 "general",
                 "general",
                 "general",
@@ -178,6 +179,9 @@ impl Writer<'_> {
                 "intvelocity",
                 "damper",
                 "cylinder",
+                "muscle",
+                "muscle",
+                "adhesion",
             ];
             let (kind, name) = (self.dice.pick(&KINDS), self.name("a"));
             let joint = joints[self.dice.rng.usize(..joints.len())].clone();
@@ -189,7 +193,10 @@ impl Writer<'_> {
             } else {
                 (self.dice.pick(&["joint", "joint", "joint", "jointinparent"]), joint)
             };
-            let mut node = Node::new(kind).with("name", name).with(target, object);
+            let mut node = Node::new(kind).with("name", name);
+            if !self.elsewhere(&mut node) {
+                node.set(target, object);
+            }
             self.class(&mut node, "class");
             self.language
                 .dress(&mut node, &format!("actuator/{kind}"), false, &mut self.dice);
@@ -198,6 +205,31 @@ impl Writer<'_> {
             section.children.push(node);
         }
         section
+    }
+
+    /// Draws what an actuator acts on that is neither a joint nor a tendon; returns whether it does.
+    fn elsewhere(&mut self, node: &mut Node) -> bool {
+        let body = self.bodies[self.dice.rng.usize(..self.bodies.len())].clone();
+        if node.name == "adhesion" || node.name == "general" && self.dice.chance(0.08) {
+            node.set("body", body);
+            return true;
+        }
+        if self.sites.len() < 2 || self.dice.chance(0.7) {
+            return false;
+        }
+        let sites = self.sites.clone();
+        let [site, other] = self.two(&sites);
+        if node.name == "muscle" || self.dice.chance(0.3) {
+            node.set("cranksite", site);
+            node.set("slidersite", other);
+            node.set("cranklength", self.dice.log(0.1, 2.0));
+        } else {
+            node.set("site", site);
+            if self.dice.chance(0.5) {
+                node.set("refsite", other);
+            }
+        }
+        true
     }
 
     /// Gives an actuator the ranges and numbers that its kind must have, and takes off those that it may not have.
@@ -210,7 +242,31 @@ impl Writer<'_> {
             "intvelocity" if !in_default && node.get("actrange").is_none() && node.get("inheritrange").is_none() => {
                 node.set("actrange", self.dice.range(1.0));
             }
-            "general" if !in_default => {
+            "adhesion" => {
+                let ends = [self.dice.uniform(0.0, 0.5), self.dice.uniform(0.5, 2.0)];
+                node.set("ctrlrange", numbers(&ends));
+            }
+            // MuJoCo hangs where it looks for the lengths of muscles and the simulation diverges
+            "muscle" if !in_default => {
+                let ends = [self.dice.uniform(-1.0, 0.2), self.dice.uniform(0.3, 1.0)];
+                node.set("lengthrange", numbers(&ends));
+            }
+            // what a default makes a muscle would have lengths to look for
+            "general" if in_default => {
+                for kind in ["gaintype", "biastype"] {
+                    if node.get(kind) == Some("muscle") {
+                        node.unset(kind);
+                    }
+                }
+            }
+            "general" => {
+                for (kind, parameters) in [("gaintype", "gainprm"), ("biastype", "biasprm")] {
+                    if node.get(kind) == Some("muscle") {
+                        node.set(parameters, self.dice.muscle());
+                    }
+                }
+                let ends = [self.dice.uniform(-1.0, 0.2), self.dice.uniform(0.3, 1.0)];
+                node.set("lengthrange", numbers(&ends));
                 let stateful = node.get("dyntype").is_some_and(|kind| kind != "none");
                 if !stateful && self.dice.chance(0.95) {
                     node.unset("actrange");

@@ -1,0 +1,176 @@
+//! How far an actuator can shorten and lengthen: a simulation of each direction while a document is compiled.
+
+use std::sync::Arc;
+
+use crate::math::MINVAL;
+use crate::mjcf_loader::{LengthRange, LengthRangeMode, LoadError, Places};
+use crate::model::{BiasType, GainType, IntegratorType, Model, TrnType};
+use crate::physics::dynamics::{Articulated, Damping, com_pos, dense_moment, kinematics, tendons, transmissions};
+use crate::physics::engine::Engine;
+use crate::physics::soft::{SoftEngine, SoftOptions};
+use crate::physics::state::State;
+
+const UNSTABLE: &str = "the simulation that looks for its lengthrange is unstable: give lengthrange, or a smaller timestep in \
+    <lengthrange> of <compiler>";
+const EMPTY: &str = "its length does not change in the simulation that looks for its lengthrange: give lengthrange";
+const ENDLESS: &str = "its length goes on changing in the simulation that looks for its lengthrange: limit what it acts on, or give \
+    lengthrange";
+const LONG: &str = "the simulation that looks for its lengthrange has too many steps: give lengthrange, or a smaller inttotal in \
+    <lengthrange> of <compiler>";
+
+/// Completes `actuator_lengthrange` as MuJoCo's `mj_setLengthRange` does: by what is given, by the limit of the joint or tendon, or by
+/// pulling and pushing at the actuator for some time, with nothing else but equalities and limits.
+///
+/// # Errors
+/// Lengths that do not come to rest, or do not change.
+pub(super) fn complete(model: Model, settings: &LengthRange, places: &Places) -> Result<Model, LoadError> {
+    let asked: Vec<usize> = (0..model.nu()).filter(|&i| is_asked(&model, settings, i)).collect();
+    if asked.is_empty() {
+        return Ok(model);
+    }
+    let mut ranges = model.actuator_lengthrange.clone();
+    let mut search = None;
+    let limit = places.limits().lengthrange_steps;
+    let mut steps = 0.0;
+    for i in asked {
+        let (id, kind) = (model.actuator_trnid[i], model.actuator_trntype[i]);
+        let limited = match kind {
+            TrnType::Joint | TrnType::JointInParent if model.jnt_limited[id] => Some(model.jnt_range[id]),
+            TrnType::Tendon if model.tendon_limited[id] => Some(model.tendon_range[id]),
+            _ => None,
+        };
+        if let Some(range) = limited.filter(|_| settings.uselimit) {
+            ranges[i] = range;
+            continue;
+        }
+        let search = search.get_or_insert_with(|| Search::new(&model, settings));
+        steps += 2.0 * settings.inttotal / search.engine.model().opt.timestep;
+        if steps > limit as f64 {
+            return Err(places.actuator_error(i, LONG));
+        }
+        ranges[i] = search.range(i).map_err(|message| places.actuator_error(i, message))?;
+    }
+    Ok(model.with_lengthrange(ranges))
+}
+
+/// Tells whether an actuator needs a range that it does not have.
+fn is_asked(model: &Model, settings: &LengthRange, i: usize) -> bool {
+    let muscle = model.actuator_gaintype[i] == GainType::Muscle || model.actuator_biastype[i] == BiasType::Muscle;
+    let wanted = match settings.mode {
+        LengthRangeMode::None => false,
+        LengthRangeMode::Muscle => muscle,
+        LengthRangeMode::All => true,
+    };
+    let [shortest, longest] = model.actuator_lengthrange[i];
+    wanted && !(settings.useexisting && shortest < longest)
+}
+
+/// The simulation.
+struct Search<'a> {
+    settings: &'a LengthRange,
+    engine: SoftEngine,
+    bodies: Articulated,
+    moment: Vec<f64>,
+    response: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    fn new(model: &Model, settings: &'a LengthRange) -> Self {
+        let model = model.with_options(|opt| {
+            // whatever the document says, these are on and those are off
+            let flags = &mut opt.flags;
+            for on in [
+                &mut flags.constraint,
+                &mut flags.equality,
+                &mut flags.limit,
+                &mut flags.warmstart,
+                &mut flags.refsafe,
+                &mut flags.eulerdamp,
+            ] {
+                *on = true;
+            }
+            for off in [
+                &mut flags.frictionloss,
+                &mut flags.contact,
+                &mut flags.passive,
+                &mut flags.gravity,
+                &mut flags.actuation,
+            ] {
+                *off = false;
+            }
+            if settings.timestep > 0.0 {
+                opt.timestep = settings.timestep;
+            }
+            // its two halves of a step have no others
+            if opt.integrator == IntegratorType::Rk4 {
+                opt.integrator = IntegratorType::Euler;
+            }
+        });
+        let nv = model.nv;
+        Self {
+            settings,
+            engine: SoftEngine::new(Arc::new(model), SoftOptions::default()),
+            bodies: Articulated::default(),
+            moment: vec![0.0; nv],
+            response: vec![0.0; nv],
+        }
+    }
+
+    /// Returns the shortest and the longest length of an actuator.
+    fn range(&mut self, i: usize) -> Result<[f64; 2], &'static str> {
+        let (short, long) = (self.pull(i, -1.0)?, self.pull(i, 1.0)?);
+        let found = [short[0], long[1]];
+        let width = found[1] - found[0];
+        if width.is_nan() || width <= 0.0 {
+            return Err(EMPTY);
+        }
+        let converged = |[low, high]: [f64; 2]| high - low <= self.settings.tolrange * width;
+        if converged(short) && converged(long) {
+            Ok(found)
+        } else {
+            Err(ENDLESS)
+        }
+    }
+
+    /// Pulls (-1) or pushes (1) at an actuator for `inttotal`. Returns the least and the greatest length of the last `interval`.
+    fn pull(&mut self, i: usize, side: f64) -> Result<[f64; 2], &'static str> {
+        let settings = self.settings;
+        let mut s = self.engine.new_state();
+        let mut seen: Option<[f64; 2]> = None;
+        let slower = pxfm::f_exp(-self.engine.model().opt.timestep / settings.timeconst.max(0.01));
+        while s.time < settings.inttotal {
+            s.qvel.iter_mut().for_each(|v| *v *= slower);
+            self.push(&mut s, i, side);
+            self.engine.step(&mut s).map_err(|_| UNSTABLE)?;
+            let length = s.actuator_length[i];
+            if s.time > settings.inttotal - settings.interval {
+                let [low, high] = seen.unwrap_or([length; 2]);
+                seen = Some([low.min(length), high.max(length)]);
+            }
+        }
+        Ok(seen.unwrap_or_default())
+    }
+
+    /// Applies the force along the moment of an actuator that accelerates the model as much as `accel` says.
+    fn push(&mut self, s: &mut State, i: usize, side: f64) {
+        let (model, topology) = (self.engine.model().clone(), self.engine.topology());
+        kinematics(&model, s);
+        com_pos(&model, s);
+        tendons(&model, topology, s);
+        transmissions(&model, topology, s);
+        self.bodies.update(&model, s);
+        dense_moment(&model, topology, s, i, &mut self.moment);
+        self.bodies
+            .solve(&model, s, Damping::Without, &self.moment, &mut self.response);
+        let norm = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let scale = side * self.settings.accel / norm(&self.response).max(MINVAL);
+        for (force, arm) in s.qfrc_applied.iter_mut().zip(&self.moment) {
+            *force = arm * scale;
+        }
+        let (total, most) = (norm(&s.qfrc_applied), self.settings.maxforce);
+        if most > 0.0 && total > most {
+            let scale = most / total.max(MINVAL);
+            s.qfrc_applied.iter_mut().for_each(|force| *force *= scale);
+        }
+    }
+}
