@@ -6,6 +6,7 @@
 //!   spend; loops by the latter.
 //! - `crowd`: a step in a vector of many environments against the same steps in one environment alone, one thread, by processor time:
 //!   what it costs that environments take turns in the caches.
+//! - `rates`: an environment whose eyes see 30 pictures a second against one that draws in every step, by processor time.
 //! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
 //! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps; how long it takes to make one.
 
@@ -306,6 +307,39 @@ fn eyes(name: &str, blueprint: &Blueprint) {
     );
 }
 
+/// Both make the same steps; the actions do not depend on what is seen.
+fn rates(name: &str, config: &Config) {
+    let rated = Config {
+        vision_rate: Some(30.0),
+        ..config.clone()
+    };
+    let [mut every, mut some] = [config.clone(), rated].map(|config| {
+        let mut env = Env::new(config).expect("available");
+        env.reset(Some(0)).expect("no divergence");
+        env
+    });
+    let actions = |_| {
+        let mut actions = Vec::new();
+        every.sample_action(&mut actions);
+        actions
+    };
+    let actions: Vec<Vec<f32>> = (0..PAIRS * EYE_STEPS).map(actions).collect();
+    let run = |env: &mut Env, action: &[f32]| {
+        if black_box(env.step(action).expect("no divergence")).truncated {
+            env.reset(Some(0)).expect("no divergence");
+        }
+    };
+    let what = format!("rates/{name}, 30 Hz over every step");
+    pair(
+        &what,
+        [EYE_STEPS, 1],
+        cpu_time,
+        &actions,
+        |a| run(&mut every, a),
+        |a| run(&mut some, a),
+    );
+}
+
 /// Receives and sends half of the environments, twice.
 fn halves_of(len: usize) -> impl FnMut(&mut VectorEnv, &[f32]) {
     let (mut next, mut turn) = (Vec::with_capacity(ENVS), Vec::with_capacity(ENVS * len));
@@ -374,6 +408,9 @@ fn main() {
         } else {
             "without eyes"
         };
+        if wants(&format!("rates/{name}")) && config.vision_active {
+            rates(name, &config);
+        }
         let blueprint = Blueprint::new(config).expect("available");
         if wants(&format!("eyes/{name}")) && blueprint.config().vision_active {
             self::eyes(name, &blueprint);

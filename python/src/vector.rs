@@ -256,6 +256,9 @@ impl VectorEnv {
             let counts: Vec<i64> = regards.iter().map(|&r| r as i64).collect();
             dict.set_item(intern!(py, "regards"), shaped(py, &counts, &[n, 4])?)?;
         }
+        if let Some(ages) = infos.vision_age {
+            dict.set_item(intern!(py, "vision_age"), PyArray1::from_slice(py, ages))?;
+        }
         if let (Some(outcomes), Some(terms)) = (infos.outcomes, infos.reward_terms) {
             let success = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_success));
             let failure = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_failure));

@@ -31,6 +31,7 @@ const SHAPING: [Shaping; 5] = [
             "vision_foveation_right",
             "noise_vision",
             "delay_vision",
+            "vision_rate",
         ],
         reason: "it shapes what the eyes see, and they are off; set `vision_active: true`",
     },
@@ -50,7 +51,13 @@ const SHAPING: [Shaping; 5] = [
     },
     Shaping {
         off: |c| !c.touch_enabled(),
-        keys: &["touch_pooled", "pain_active", "noise_touch", "delay_touch"],
+        keys: &[
+            "touch_pooled",
+            "pain_active",
+            "noise_touch",
+            "delay_touch",
+            "touch_rate",
+        ],
         reason: "it needs touch, which is off; set `touch_active: true` and a `touch_scale` above 0",
     },
     Shaping {
@@ -105,6 +112,11 @@ impl Config {
                 "the Python code that `compat: reference` follows has no finger touch with `behavior: hand_regard`; \
                  set `touch_fingers: false` or `touch_active: false`",
             ),
+            Compat::Reference if self.rates().next().is_some() => {
+                let (key, rate) = self.rates().next().unwrap_or(("vision_rate", 0.0));
+                let reason = "the Python code that `compat: reference` follows looks and feels in every step";
+                return Some((key, format!("{rate:?}"), reason.to_string()));
+            }
             Compat::Reference if self.vision_active && self.vision_resolution > self.render_size => (
                 "vision_resolution",
                 self.vision_resolution.to_string(),

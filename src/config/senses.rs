@@ -1,7 +1,7 @@
 //! How senses mature: delays and eyes.
 
 use super::choices::DelayUnit;
-use super::table::{Delays, EyeOptions};
+use super::table::{Config, Delays, EyeOptions};
 
 /// Length of a physics step of BabyBench's scenes, ms, in which delays are counted.
 const PHYSICS_STEP_MS: f64 = 5.0;
@@ -25,6 +25,14 @@ impl Delays {
     /// Returns the delay of a sense that has one of its own, or that of all senses.
     pub fn of(&self, own: Option<f64>) -> f64 {
         own.unwrap_or(self.sensory)
+    }
+}
+
+impl Config {
+    /// Iterates over the rates of senses that have one of their own, Hz, by key.
+    pub(crate) fn rates(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let rates = [("vision_rate", self.vision_rate), ("touch_rate", self.touch_rate)];
+        rates.into_iter().filter_map(|(key, rate)| Some((key, rate?)))
     }
 }
 

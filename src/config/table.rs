@@ -44,6 +44,10 @@ const DEVIATION: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
 const ACUITY_AGE: KeyKind = KeyKind::NoneOr { min: 0.0, max: 36.0 };
 const STRENGTH: KeyKind = KeyKind::Number { min: 0.0, max: 1000.0 };
 const OWN_STRENGTH: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1000.0 };
+const RATE: KeyKind = KeyKind::NoneOr {
+    min: 0.01,
+    max: 10_000.0,
+};
 const SHARE: KeyKind = KeyKind::Number { min: 0.0, max: 1.0 };
 const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
 const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
@@ -140,6 +144,7 @@ config! {
         vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels.";
         vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The images of each eye that are observed.";
         vision_threads: u32 = 1, EYES, "Threads that draw the eyes of an environment alone: 2 is faster by the clock, to the same bytes." + "Vectors of environments have threads of their own, and draw each environment with one.";
+        vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees in a second, Hz; none for one in each step." + "Between two of them the last one is observed; environments of other seeds see theirs in other steps.";
         @group eyes: EyeOptions, "How sharp the eyes see, and where (`vision_acuity` ...).", "How sharp the eyes see, and where." {
             acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
             acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";
@@ -153,6 +158,7 @@ config! {
         touch_active: bool = true, Bool, "Touch is observed." + "See [`Config::touch_enabled`].";
         touch_scale: f64 = 1.0, SCALE, "Factor on the distance between sensors; 0 switches touch off.";
         touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports.";
+        touch_rate: Option<f64> = None, RATE, "How often the skin feels in a second, Hz; none for every step." + "In between, touch, pain and what is pooled are as they were last.";
         touch_response: TouchResponse = TouchResponse::Nearest, Choice(TouchResponse::NAMES), "How sensors share a force.";
         @parts touch = BodyParts { eyes: false, ..BodyParts::all(true) }, "Parts that have touch sensors (`touch_hands` ...)." {
             hands as touch_hands, "The hands have touch sensors.";

@@ -115,7 +115,8 @@ impl<'a> Parts<'a> {
         scene.forget();
         scene.reset_actuators();
         self.env.action_delay.rest();
-        self.env.senses.reset();
+        let phase = self.env.phase();
+        self.env.senses.reset(phase);
     }
 
     /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the
@@ -187,6 +188,7 @@ impl<'a> Parts<'a> {
     /// # Errors
     /// As the renderer.
     pub fn observe(&mut self) -> Result<(), EnvError> {
+        self.env.senses.advance();
         self.env.sense()
     }
 

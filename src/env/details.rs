@@ -14,6 +14,9 @@ pub struct InfoDetails {
     /// How far each hand is off the axis of each eye, rad, if the behavior is
     /// `hand_regard`. Less than 15 degrees count. None right after a reset or a restored snapshot.
     pub gaze_angles: Option<PerEyeAndHand<f64>>,
+    /// How old the pictures are that the eyes show, s, without their delay, if there is a
+    /// [`vision_rate`](crate::Config::vision_rate). None right after a reset or a restored snapshot.
+    pub vision_age: Option<f64>,
 }
 
 impl InfoDetails {
@@ -29,7 +32,7 @@ impl InfoDetails {
         if let Some(parts) = &mut self.touched_parts {
             parts.each_mut().into_iter().for_each(Vec::clear);
         }
-        self.gaze_angles = None;
+        (self.gaze_angles, self.vision_age) = (None, None);
     }
 
     /// Brings the names up to date with the lists of geoms, which have grown or been cleared.

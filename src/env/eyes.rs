@@ -32,15 +32,13 @@ use crate::sensors::EyeImages;
 pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Result<(), EnvError> {
     let mut on_gpus: Vec<&mut Env> = Vec::new();
     for env in environments {
-        let state = &env.physics.state;
-        let Some(vision) = &mut env.senses.vision else { continue };
+        let Some(vision) = &env.senses.vision else { continue };
         env.physics.check_shape()?;
         if vision.renderer().shared_gpu().is_some() {
             on_gpus.push(env);
             continue;
         }
-        vision.draw(state, env.senses.eyes.each_mut().map(EyeImages::buffers))?;
-        env.senses.transform_eyes(&mut env.rng);
+        env.senses.observe_eyes(&env.physics.state, &mut env.rng)?;
     }
     draw_on_gpus(&mut on_gpus)?;
     Ok(())
@@ -49,7 +47,7 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
 /// Draws what the eyes of environments see that GPUs draw, in one submission for each.
 fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
     let mut batches: Vec<Batch> = Vec::new();
-    for env in &mut *environments {
+    for env in environments.iter_mut().filter(|env| env.senses.eyes_look()) {
         let state = &env.physics.state;
         let Some(vision) = &env.senses.vision else { continue };
         let Some(gpu) = vision.renderer().shared_gpu() else {

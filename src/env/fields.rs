@@ -121,7 +121,8 @@ impl InfoDetails {
         let angles = self
             .gaze_angles
             .map(|angles| ("gaze_angles", InfoValue::Angles(angles)));
-        parts.into_iter().flatten().chain(angles)
+        let age = self.vision_age.map(|age| ("vision_age", InfoValue::Number(age)));
+        parts.into_iter().flatten().chain(angles).chain(age)
     }
 }
 

@@ -5,6 +5,7 @@ mod action_delay;
 mod age;
 mod blueprint;
 mod by_hand;
+mod clock;
 mod details;
 mod engines;
 pub(crate) mod error;
@@ -378,7 +379,7 @@ impl Env {
         } = self.play();
         task.begin(&mut scene, &mut goals.desired);
         self.action_delay.rest();
-        self.senses.reset();
+        self.senses.reset(self.phase());
         self.episode.ready = true;
         self.sense()?;
         self.judge();
@@ -419,12 +420,14 @@ impl Env {
             return Err(e);
         }
         self.mark(Some(EnvStage::Senses));
+        self.senses.advance();
         self.sense()?;
         self.judge();
         if let BehaviorInfo::Task(info) = &mut self.info.behavior {
             info.episode_return += self.episode.reward;
         }
         self.track();
+        self.date_pictures();
         let steps = &mut self.episode.steps;
         self.info.steps = match self.blueprint.config().compat {
             Compat::Api => *steps + 1,
@@ -463,6 +466,19 @@ impl Env {
     /// Counts what the behavior counts.
     fn track(&mut self) {
         self.task.inform(TaskEvent::Step(&self.physics.state), &mut self.info);
+    }
+
+    /// Notes how old the pictures are that the eyes show.
+    fn date_pictures(&mut self) {
+        let age = self.senses.vision_age();
+        self.info.details.vision_age = age.map(|steps| steps as f64 * self.blueprint.dt());
+    }
+
+    /// Returns where in their periods the senses begin an episode that do not look in every step: a number from 0 to 1 that follows
+    /// from the generator without drawing from it, so that environments with other seeds look in other steps.
+    fn phase(&self) -> f64 {
+        let word = self.rng.clone().word();
+        (word >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     fn sense(&mut self) -> Result<(), EnvError> {

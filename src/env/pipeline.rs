@@ -3,7 +3,7 @@
 use crate::config::{Compat, Config, Delays};
 use crate::model::Model;
 use crate::sensors::EYES;
-use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Noise, Sense, Signal, Transform};
+use crate::sensors::transform::{Acuity, AcuityOptions, Delay, Foveation, Hold, Noise, Sense, Signal, Transform};
 use crate::spaces::NumpyRng;
 
 /// A transform, and whether the configuration asked for it.
@@ -13,20 +13,30 @@ struct Stage {
     configured: bool,
 }
 
+/// The transforms of a sense.
+#[derive(Clone, Default)]
+struct Chain {
+    stages: Vec<Stage>,
+    /// For a sense that does not look in every step: what it saw last, after so many stages. Those behind, a delay and what a program
+    /// added, go on in every step.
+    hold: Option<(usize, Hold)>,
+}
+
 /// The transforms of all senses.
 #[derive(Clone, Default)]
 pub(super) struct Pipeline {
     /// By sense, in the order of [`Sense::ALL`].
-    chains: [Vec<Stage>; Sense::ALL.len()],
+    chains: [Chain; Sense::ALL.len()],
 }
 
 impl Pipeline {
     /// Sets up the transforms that a configuration asks for, of a sense whose signals have the size of `like`: acuity,
     /// foveation, noise, delay.
     pub fn configure(&mut self, model: &Model, config: &Config, sense: Sense, like: &Signal<'_>) {
+        let chain = &mut self.chains[sense as usize];
         let mut add = |transform: Box<dyn Transform>| {
             let configured = true;
-            self.chains[sense as usize].push(Stage { transform, configured });
+            chain.stages.push(Stage { transform, configured });
         };
         if let &Signal::Eye { height, width, .. } = like {
             let eye = usize::from(sense == Sense::EyeRight);
@@ -40,42 +50,65 @@ impl Pipeline {
             let magnitudes = matches!(like, Signal::Skin(values) if values.width() == 1);
             add(Box::new(if magnitudes { noise.of_magnitudes() } else { noise }));
         }
+        if sense.rate(config).is_some() {
+            chain.hold = Some((chain.stages.len(), Hold::new(like)));
+        }
         let steps = effective(config, config.delays.of(delay));
         if steps > 0 {
-            add(Box::new(Delay::new(steps, Delays::step_ms(config.frame_skip), like)));
+            let transform = Box::new(Delay::new(steps, Delays::step_ms(config.frame_skip), like));
+            let configured = true;
+            chain.stages.push(Stage { transform, configured });
         }
     }
 
     /// Returns whether a sense has transforms.
     pub fn changes(&self, sense: Sense) -> bool {
-        !self.chains[sense as usize].is_empty()
+        let chain = &self.chains[sense as usize];
+        !chain.stages.is_empty() || chain.hold.is_some()
     }
 
     /// Returns the transforms of a sense.
     pub fn of(&self, sense: Sense) -> impl Iterator<Item = &dyn Transform> {
-        self.chains[sense as usize].iter().map(|stage| &*stage.transform)
+        self.chains[sense as usize].stages.iter().map(|stage| &*stage.transform)
     }
 
-    /// Transforms what a sense reports.
-    pub fn apply(&mut self, sense: Sense, mut signal: Signal<'_>, rng: &mut NumpyRng) {
-        for stage in &mut self.chains[sense as usize] {
-            stage.transform.apply(signal.reborrow(), rng);
+    /// Transforms what a sense reports. If it has not looked in this step, it is what it saw last.
+    pub fn apply(&mut self, sense: Sense, mut signal: Signal<'_>, looked: bool, rng: &mut NumpyRng) {
+        let Chain { stages, hold } = &mut self.chains[sense as usize];
+        let mut apply = |stages: &mut [Stage], signal: &mut Signal<'_>| {
+            for stage in stages {
+                stage.transform.apply(signal.reborrow(), rng);
+            }
+        };
+        match hold {
+            None => apply(stages, &mut signal),
+            Some((at, hold)) => {
+                let (of_looks, of_steps) = stages.split_at_mut(*at);
+                if looked {
+                    apply(of_looks, &mut signal);
+                    hold.keep(&signal);
+                } else {
+                    hold.show(&mut signal);
+                }
+                apply(of_steps, &mut signal);
+            }
         }
     }
 
     /// Appends a transform.
     pub fn add(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         let configured = false;
-        self.chains[sense as usize].push(Stage { transform, configured });
+        self.chains[sense as usize].stages.push(Stage { transform, configured });
     }
 
     /// Takes over the transforms that were added to another, which the configuration did not ask for.
     pub fn take_added(&mut self, other: &mut Self) {
         for (own, others) in self.chains.iter_mut().zip(&mut other.chains) {
-            let (configured, added) = std::mem::take(others).into_iter().partition(|stage| stage.configured);
-            *others = configured;
+            let stages = std::mem::take(&mut others.stages);
+            let (configured, added) = stages.into_iter().partition(|stage| stage.configured);
+            others.stages = configured;
             let added: Vec<Stage> = added;
-            own.extend(added);
+            own.stages.extend(added);
         }
     }
 
@@ -87,30 +120,42 @@ impl Pipeline {
     /// Appends what the transforms remember.
     pub fn save(&self, out: &mut Vec<u8>) {
         let mut memory = Vec::new();
-        for stage in self.chains.iter().flatten() {
-            memory.clear();
-            stage.transform.save(&mut memory);
-            out.extend_from_slice(&(memory.len() as u64).to_le_bytes());
-            out.extend_from_slice(&memory);
+        for chain in &self.chains {
+            for stage in &chain.stages {
+                stage.transform.save(&mut memory);
+                append_part(out, &mut memory);
+            }
+            if let Some((_, hold)) = &chain.hold {
+                hold.save(&mut memory);
+                append_part(out, &mut memory);
+            }
         }
     }
 
     /// Takes over what the same transforms saved, from the front of `bytes`; `false` if it is something else.
     pub fn load(&mut self, bytes: &mut &[u8]) -> bool {
-        self.stages_mut().all(|stage| {
-            let part = take_part(bytes);
-            part.is_some_and(|part| stage.transform.load(part))
+        self.chains.iter_mut().all(|Chain { stages, hold }| {
+            let loaded = stages
+                .iter_mut()
+                .all(|stage| take_part(bytes).is_some_and(|part| stage.transform.load(part)));
+            let held = hold
+                .as_mut()
+                .is_none_or(|(_, hold)| take_part(bytes).is_some_and(|part| hold.load(part)));
+            loaded && held
         })
     }
 
     /// Returns the memory of all transforms, bytes.
     pub fn memory(&self) -> usize {
-        let stages = self.chains.iter().flatten();
-        stages.map(|stage| stage.transform.memory()).sum()
+        let of_chain = |chain: &Chain| {
+            let stages = chain.stages.iter().map(|stage| stage.transform.memory());
+            stages.sum::<usize>() + chain.hold.as_ref().map_or(0, |(_, hold)| hold.memory())
+        };
+        self.chains.iter().map(of_chain).sum()
     }
 
     fn stages_mut(&mut self) -> impl Iterator<Item = &mut Stage> {
-        self.chains.iter_mut().flatten()
+        self.chains.iter_mut().flat_map(|chain| &mut chain.stages)
     }
 }
 
@@ -133,6 +178,12 @@ pub(super) fn optics(
         transforms.push(Box::new(Foveation::new(strength, height, width)));
     }
     transforms
+}
+
+/// Moves a part to the end of bytes, behind its length.
+pub(super) fn append_part(out: &mut Vec<u8>, part: &mut Vec<u8>) {
+    out.extend_from_slice(&(part.len() as u64).to_le_bytes());
+    out.append(part);
 }
 
 /// Takes a part behind its length from the front of bytes.

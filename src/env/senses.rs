@@ -2,6 +2,7 @@
 
 use crate::actuation::Actuation;
 use crate::config::VisionOutput;
+use crate::env::clock::Clock;
 use crate::env::pipeline::Pipeline;
 use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
@@ -30,6 +31,8 @@ pub struct Senses {
     numbers: [Option<Vec<f64>>; Sense::ALL.len()],
     pub(super) eyes: [EyeImages; 2],
     pub(super) pipeline: Pipeline,
+    /// When the eyes look and when the skin feels, if not in every step.
+    pub(super) clocks: [Option<Clock>; 2],
     /// Touch and pain after their transforms, where they have any.
     touch_values: SkinValues,
     pain_values: SkinValues,
@@ -80,6 +83,7 @@ impl Senses {
             vision_deferred: false,
             known: true,
             pipeline: Pipeline::default(),
+            clocks: [config.vision_rate, config.touch_rate].map(|rate| Some(Clock::new(rate?, blueprint.dt()))),
             touch_values: empty(touch.as_ref().map(Touch::felt)),
             pain_values: empty(pain.as_ref().map(Pain::felt)),
             touch,
@@ -167,13 +171,46 @@ impl Senses {
     fn transform(&mut self, sense: Sense, rng: &mut NumpyRng) {
         if self.pipeline.changes(sense) {
             let mut pipeline = std::mem::take(&mut self.pipeline);
-            pipeline.apply(sense, self.signal(sense), rng);
+            let looked = self.looks(sense);
+            pipeline.apply(sense, self.signal(sense), looked, rng);
             self.pipeline = pipeline;
         }
     }
 
-    /// Forgets the last episode.
-    pub(super) fn reset(&mut self) {
+    /// Returns the clock of a sense that does not look in every step.
+    fn clock(&self, sense: Sense) -> Option<&Clock> {
+        match sense {
+            Sense::EyeLeft | Sense::EyeRight => self.clocks[0].as_ref(),
+            Sense::Touch | Sense::TouchPooled | Sense::Pain => self.clocks[1].as_ref(),
+            Sense::Proprioception | Sense::Vestibular => None,
+        }
+    }
+
+    /// Returns whether a sense looks in the present step.
+    fn looks(&self, sense: Sense) -> bool {
+        self.clock(sense).is_none_or(Clock::is_due)
+    }
+
+    /// Returns whether the eyes look in the present step.
+    pub(super) fn eyes_look(&self) -> bool {
+        self.looks(Sense::EyeLeft)
+    }
+
+    /// Returns how many steps ago the pictures were drawn that the eyes show, before delays, if they have a rate of their own.
+    pub(super) fn vision_age(&self) -> Option<u64> {
+        self.clock(Sense::EyeLeft).map(Clock::age)
+    }
+
+    /// Goes on by a step.
+    pub(super) fn advance(&mut self) {
+        self.clocks.iter_mut().flatten().for_each(Clock::advance);
+    }
+
+    /// Forgets the last episode. The phase, from 0 to 1, decides in which steps senses look that do not look in every step.
+    pub(super) fn reset(&mut self, phase: f64) {
+        for clock in self.clocks.iter_mut().flatten() {
+            clock.reset(phase);
+        }
         if let Some(pain) = &mut self.pain {
             pain.reset();
         }
@@ -199,16 +236,36 @@ impl Senses {
             v.observe(state, numbers_of(&mut self.numbers, Sense::Vestibular));
             self.transform(Sense::Vestibular, rng);
         }
-        if let (Some(v), false) = (&mut self.vision, self.vision_deferred) {
-            v.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
-            self.transform_eyes(rng);
+        if !self.vision_deferred {
+            self.observe_eyes(state, rng)?;
         }
         self.known = true;
         Ok(())
     }
 
-    /// Observes touch and what follows from it.
+    /// Draws what the eyes see, if they look now, and transforms it.
+    pub(super) fn observe_eyes(&mut self, state: &State, rng: &mut NumpyRng) -> Result<(), EnvError> {
+        let looks = self.eyes_look();
+        let Some(vision) = &mut self.vision else { return Ok(()) };
+        if looks {
+            vision.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
+        }
+        self.transform_eyes(rng);
+        Ok(())
+    }
+
+    /// Observes touch and what follows from it, if the skin feels now, and transforms it.
     fn observe_skin(&mut self, model: &Model, state: &State, rng: &mut NumpyRng) {
+        if self.looks(Sense::Touch) {
+            self.feel(model, state);
+        }
+        for sense in [Sense::Touch, Sense::TouchPooled, Sense::Pain] {
+            self.transform(sense, rng);
+        }
+    }
+
+    /// Lets the skin feel.
+    fn feel(&mut self, model: &Model, state: &State) {
         let Some(touch) = &mut self.touch else { return };
         touch.observe(model, state);
         if self.pipeline.changes(Sense::Touch) {
@@ -223,9 +280,6 @@ impl Senses {
                 self.pain_values.copy_from(pain.felt());
             }
         }
-        for sense in [Sense::Touch, Sense::TouchPooled, Sense::Pain] {
-            self.transform(sense, rng);
-        }
     }
 
     /// Transforms the images that have just been drawn.
@@ -237,7 +291,8 @@ impl Senses {
 
     /// Wakes the thread that draws the second eye, as both will be drawn in a moment.
     pub(super) fn prepare(&self) {
-        if let Some(vision) = &self.vision {
+        let look = self.clocks[0].as_ref().is_none_or(Clock::will_be_due);
+        if let (Some(vision), true) = (&self.vision, look) {
             vision.renderer().prepare();
         }
     }

@@ -65,6 +65,15 @@ impl Sense {
             Self::EyeLeft | Self::EyeRight => (noise.vision, delay.vision),
         }
     }
+
+    /// Returns how often a second it looks, if a configuration gives it a rate of its own.
+    pub(crate) fn rate(self, config: &Config) -> Option<f64> {
+        match self {
+            Self::Proprioception | Self::Vestibular => None,
+            Self::Touch | Self::TouchPooled | Self::Pain => config.touch_rate,
+            Self::EyeLeft | Self::EyeRight => config.vision_rate,
+        }
+    }
 }
 
 /// Hands the entries of an observation to a macro, in their order: first proprioception, which every environment has, then the others,

@@ -14,6 +14,8 @@ pub struct Infos<'a> {
     /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
     /// behavior is `hand_regard`.
     pub regards: Option<&'a [u64]>,
+    /// How old the pictures are that the eyes show (N), s, if there is a [`vision_rate`](crate::Config::vision_rate).
+    pub vision_age: Option<&'a [f64]>,
     /// Success and failure (N) of tasks that report them.
     pub outcomes: Option<&'a [Outcome]>,
     /// What the rewards of such tasks depend on beside goals, (N, len): [`Goal::terms`](crate::env::Goal::terms).
@@ -27,6 +29,7 @@ pub(super) struct InfoRows {
     steps: Vec<u64>,
     touches: Vec<u8>,
     regards: Vec<u64>,
+    ages: Vec<f64>,
     outcomes: Vec<Outcome>,
     terms: Vec<f64>,
 }
@@ -38,6 +41,7 @@ impl InfoRows {
             steps: vec![0; n],
             touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
             regards: vec![0; 4 * n * usize::from(layout.regards)],
+            ages: vec![0.0; n * usize::from(layout.ages)],
             outcomes: vec![Outcome::default(); n * usize::from(layout.terms.is_some())],
             terms: vec![0.0; n * layout.terms.unwrap_or_default()],
         }
@@ -58,6 +62,10 @@ impl InfoRows {
                 }
             }
         }
+        if self.layout.ages {
+            // a reset looks
+            self.ages[row] = info.details.vision_age.unwrap_or_default();
+        }
         if self.layout.regards {
             let counts = info.behavior.regards().unwrap_or_default();
             self.regards[4 * row..4 * (row + 1)].copy_from_slice(&counts);
@@ -70,6 +78,7 @@ impl InfoRows {
             steps: &self.steps[..n],
             touches: self.layout.geoms.map(|geoms| &self.touches[..2 * geoms * n]),
             regards: self.layout.regards.then(|| &self.regards[..4 * n]),
+            vision_age: self.layout.ages.then(|| &self.ages[..n]),
             outcomes: self.layout.terms.map(|_| &self.outcomes[..n]),
             reward_terms: self.layout.terms.map(|len| &self.terms[..n * len]),
         }

@@ -18,6 +18,8 @@ pub(super) struct Layout {
     pub geoms: Option<usize>,
     /// Whether any environment's behavior is `hand_regard`.
     pub regards: bool,
+    /// Whether the eyes have a rate of their own.
+    pub ages: bool,
     /// Number of terms of the rewards, if the tasks report outcomes.
     pub terms: Option<usize>,
 }
@@ -31,6 +33,7 @@ impl Layout {
             layout.entries = env.observation().values().map(|values| values.map(|v| v.len()));
             layout.sensors = env.senses().touch().map_or(0, |touch| touch.layout().len());
             layout.regards |= env.info().behavior.regards().is_some();
+            layout.ages |= env.config().vision_active && env.config().vision_rate.is_some();
             layout.terms = env.info().behavior.task().is_some().then(|| env.goal().terms.len());
             if env.info().behavior.touches().is_some() {
                 layout.geoms = layout.geoms.max(Some(env.model().ngeom()));

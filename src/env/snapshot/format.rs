@@ -211,8 +211,13 @@ pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
     let defaults = Config::default();
     // senses that came after the first snapshots tell themselves apart where they are on, so that older snapshots stay readable
     let is_added = |key| !EARLY.contains(&key) && Sense::ALL.iter().any(|sense| sense.switch() == key);
-    let remembers = config.delays != Delays::default() || config.pain_active;
+    let rated = config.rates().next().is_some();
+    let remembers = config.delays != Delays::default() || config.pain_active || rated;
     let shapes = |key: &&Key| {
+        // rates, too, came later
+        if !rated && ["vision_rate", "touch_rate"].contains(&key.name) {
+            return false;
+        }
         ["Delays", "Pain"].contains(&key.section)
             || key.name == "touch_pooled"
             || is_added(key.name) && key.value(config) != key.value(&defaults)

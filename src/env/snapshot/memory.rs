@@ -3,19 +3,23 @@
 use super::SnapshotError;
 use super::format::damaged;
 use crate::env::Env;
-use crate::env::pipeline::take_part;
+use crate::env::pipeline::{append_part, take_part};
 
 impl Env {
     /// Appends what actions on their way, pain and transforms remember, each part behind its length.
     pub(in crate::env) fn save_memory(&self, out: &mut Vec<u8>) {
         let mut part = Vec::new();
         self.action_delay.save(&mut part);
-        append(out, &mut part);
+        append_part(out, &mut part);
         if let Some(pain) = &self.senses.pain {
             pain.save(&mut part);
         }
-        append(out, &mut part);
+        append_part(out, &mut part);
         self.senses.pipeline.save(out);
+        for clock in self.senses.clocks.iter().flatten() {
+            clock.save(&mut part);
+            append_part(out, &mut part);
+        }
     }
 
     /// Takes over what [`Env::save_memory`] wrote; changes nothing if it is something else.
@@ -38,12 +42,10 @@ impl Env {
             Some(sense) => sense.load(pain),
             None => pain.is_empty(),
         };
-        self.action_delay.load(motor) && felt && self.senses.pipeline.load(bytes) && bytes.is_empty()
+        let senses = &mut self.senses;
+        let sensed = self.action_delay.load(motor) && felt && senses.pipeline.load(bytes);
+        let mut clocks = senses.clocks.iter_mut().flatten();
+        let timed = clocks.all(|clock| take_part(bytes).is_some_and(|part| clock.load(part)));
+        sensed && timed && bytes.is_empty()
     }
-}
-
-/// Moves a part to the end of bytes, behind its length.
-fn append(out: &mut Vec<u8>, part: &mut Vec<u8>) {
-    out.extend_from_slice(&(part.len() as u64).to_le_bytes());
-    out.append(part);
 }

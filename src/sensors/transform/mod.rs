@@ -34,12 +34,14 @@ mod acuity;
 mod delay;
 mod fourier;
 mod foveation;
+mod hold;
 mod noise;
 
 internals!(use acuity::{Acuity, AcuityOptions, acuity_cutoff});
 pub(super) use delay::Waiting;
 internals!(use delay::{Delay, DelayLine});
 internals!(use foveation::Foveation);
+pub(crate) use hold::Hold;
 internals!(use noise::Noise);
 
 pub use crate::sensors::sense::Sense;

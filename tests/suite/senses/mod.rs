@@ -3,6 +3,7 @@
 mod delays;
 mod eyes;
 mod infants;
+mod rates;
 #[cfg(feature = "npz")]
 mod readers;
 mod skin;

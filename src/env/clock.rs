@@ -1,0 +1,131 @@
+//! When senses look that do not look in every step.
+
+/// The clock of a sense with a rate of its own. It looks at the start of an episode, and then whenever the number of looks that its
+/// rate asks for grows by one: a step comes too late by less than its length, and the rate holds on average.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    /// Looks for each step, at most 1.
+    per_step: f64,
+    /// How far the first look after that of the start is on its way, from 0 to 1.
+    phase: f64,
+    /// Steps since the start of the episode.
+    steps: u64,
+    /// Steps since the last look.
+    age: u64,
+}
+
+impl Clock {
+    /// Creates the clock of a sense that looks `rate` times a second in an environment whose steps take `dt` s.
+    pub fn new(rate: f64, dt: f64) -> Self {
+        Self {
+            per_step: (rate * dt).min(1.0),
+            phase: 0.0,
+            steps: 0,
+            age: 0,
+        }
+    }
+
+    /// Begins an episode, with a look. Environments with other phases, from 0 to 1, look in other steps, so that the work of many is
+    /// spread.
+    pub fn reset(&mut self, phase: f64) {
+        (self.phase, self.steps, self.age) = (phase, 0, 0);
+    }
+
+    /// Goes on by a step.
+    pub fn advance(&mut self) {
+        self.steps += 1;
+        self.age = if self.is_due_at(self.steps) { 0 } else { self.age + 1 };
+    }
+
+    /// Returns whether the sense looks in the present step.
+    pub fn is_due(&self) -> bool {
+        self.age == 0
+    }
+
+    /// Returns whether it will look in the next step.
+    pub fn will_be_due(&self) -> bool {
+        self.is_due_at(self.steps + 1)
+    }
+
+    fn is_due_at(&self, step: u64) -> bool {
+        let looks = |step: u64| (step as f64 * self.per_step + self.phase).floor();
+        looks(step) > looks(step - 1)
+    }
+
+    /// Returns the number of steps since the last look.
+    pub fn age(&self) -> u64 {
+        self.age
+    }
+
+    /// Appends what it remembers, for a snapshot.
+    pub fn save(&self, out: &mut Vec<u8>) {
+        for word in [self.phase.to_bits(), self.steps, self.age] {
+            out.extend_from_slice(&word.to_le_bytes());
+        }
+    }
+
+    /// Takes over what [`Clock::save`] wrote; `false` if the bytes are something else.
+    pub fn load(&mut self, bytes: &[u8]) -> bool {
+        let (words, rest) = bytes.as_chunks::<8>();
+        let &[phase, steps, age] = words else { return false };
+        let (phase, [steps, age]) = (f64::from_le_bytes(phase), [steps, age].map(u64::from_le_bytes));
+        // no run is that long, and counting on from there does not overflow
+        if !rest.is_empty() || !(0.0..1.0).contains(&phase) || steps > 1 << 62 || age > steps {
+            return false;
+        }
+        (self.phase, self.steps, self.age) = (phase, steps, age);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The steps of the first hundred in which a clock of 30 looks a second looks, 200 steps a second.
+    fn looks(phase: f64) -> Vec<u64> {
+        let mut clock = Clock::new(30.0, 0.005);
+        clock.reset(phase);
+        assert!(clock.is_due());
+        let mut due = |step: u64| {
+            let foretold = clock.will_be_due();
+            clock.advance();
+            assert_eq!(clock.is_due(), foretold);
+            clock.is_due().then_some(step)
+        };
+        (1..=100).filter_map(&mut due).collect()
+    }
+
+    #[test]
+    fn the_rate_holds_on_average_whatever_the_phase() {
+        assert_eq!(looks(0.0), [7, 14, 20, 27, 34, 40, 47, 54, 60, 67, 74, 80, 87, 94, 100]);
+        for phase in [0.1, 0.5, 0.99] {
+            assert!((14..=16).contains(&looks(phase).len()), "{phase}");
+        }
+        assert_ne!(looks(0.0), looks(0.5));
+    }
+
+    #[test]
+    fn a_rate_beyond_the_steps_looks_in_each() {
+        let mut clock = Clock::new(1000.0, 0.005);
+        clock.reset(0.7);
+        for _ in 0..1000 {
+            clock.advance();
+            assert!(clock.is_due());
+        }
+    }
+
+    #[test]
+    fn it_goes_on_from_what_it_saved() {
+        let mut clock = Clock::new(30.0, 0.01);
+        clock.reset(0.3);
+        (0..5).for_each(|_| clock.advance());
+        let (mut bytes, mut other) = (Vec::new(), Clock::new(30.0, 0.01));
+        clock.save(&mut bytes);
+        assert!(other.load(&bytes) && !other.load(&bytes[1..]) && !other.load(&[0xff; 24]));
+        for _ in 0..50 {
+            (clock.advance(), other.advance());
+            assert_eq!((clock.is_due(), clock.age()), (other.is_due(), other.age()));
+        }
+    }
+}
