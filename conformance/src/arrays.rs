@@ -225,9 +225,15 @@ pub fn unrecorded(m: &Model) -> Named {
         ("cam_pos0", flat(&m.cam_pos0)),
         ("cam_poscom0", flat(&m.cam_poscom0)),
         ("cam_mat0", flat(&m.cam_mat0)),
+        ("sensor_dim", ids(&m.sensor_dim)),
         (
-            "sensor_dim",
-            m.sensor_type.iter().map(|kind| kind.dim() as f64).collect(),
+            "sensor_datatype",
+            m.sensor_datatype.iter().map(|kind| f64::from(*kind as u8)).collect(),
+        ),
+        ("sensor_needstage", ids(&m.sensor_needstage)),
+        (
+            "cam_resolution",
+            m.cam_resolution.iter().flatten().map(|&v| v as f64).collect(),
         ),
         ("sensor_objtype", kinds(&m.sensor_objtype)),
         ("sensor_reftype", kinds(&m.sensor_reftype)),

@@ -34,7 +34,7 @@ impl IntoException for RenderError {
 }
 
 table! { ARRAYS, array, Arrays,
-    body_gravcomp geom_fluid body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
+    body_gravcomp sensor_needstage geom_fluid body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
     cam_targetbodyid tendon_lengthspring tendon_stiffness tendon_damping
 }
 
@@ -393,9 +393,9 @@ impl PhysicsModel {
         all.set_item("wrap_type", PyArray1::from_iter(py, wraps.iter().map(|w| w.0)))?;
         all.set_item("wrap_objid", PyArray1::from_iter(py, wraps.iter().map(|w| w.1)))?;
         all.set_item("wrap_prm", PyArray1::from_iter(py, wraps.iter().map(|w| w.2)))?;
-        let stages = m.sensor_type.iter().map(|kind| kind.datatype() as i32);
+        let stages = m.sensor_datatype.iter().map(|kind| *kind as i32);
         all.set_item("sensor_datatype", PyArray1::from_iter(py, stages))?;
-        let dims = m.sensor_type.iter().map(|kind| kind.dim() as i32);
+        let dims = m.sensor_dim.iter().map(|dim| *dim as i32);
         all.set_item("sensor_dim", PyArray1::from_iter(py, dims))?;
         all.set_item("numeric_data", m.numeric_data.clone())?;
         all.set_item("text_data", &m.text_data)?;

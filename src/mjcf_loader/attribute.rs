@@ -159,10 +159,18 @@ pub(super) enum Rivals {
     Orientation,
     Inertia,
     Transmission,
+    First,
+    Second,
 }
 
 impl Rivals {
-    pub const ALL: [Rivals; 3] = [Rivals::Orientation, Rivals::Inertia, Rivals::Transmission];
+    pub const ALL: [Rivals; 5] = [
+        Rivals::Orientation,
+        Rivals::Inertia,
+        Rivals::Transmission,
+        Rivals::First,
+        Rivals::Second,
+    ];
 }
 
 /// An attribute: one line of a table.
@@ -222,6 +230,20 @@ impl Attr {
     pub const fn transmission(self) -> Attr {
         Attr {
             rivals: Some(Rivals::Transmission),
+            ..self
+        }
+    }
+
+    pub const fn first(self) -> Attr {
+        Attr {
+            rivals: Some(Rivals::First),
+            ..self
+        }
+    }
+
+    pub const fn second(self) -> Attr {
+        Attr {
+            rivals: Some(Rivals::Second),
             ..self
         }
     }

@@ -107,10 +107,10 @@ table! {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it looks at in modes `targetbody` and `targetbodycom`.";
+        "resolution" resolution: [f64; 2] = [1.0; 2], INTS, "Width and height of the picture, pixels, for `camprojection` alone: pictures have the size that the caller asks for.";
         "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view, degrees.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         check "ipd", real(Any), "Distance of a person's eyes for stereoscopic pictures, m. Ignored: pictures are not stereoscopic.";
-        check "resolution", INTS, "Pixels of a real camera. Ignored: pictures have the size that the caller asks for.";
         with frame: Frame;
     }
 }

@@ -268,6 +268,7 @@ sensor_rules!(
     Torque,
     Magnetometer,
     RangeFinder,
+    CamProjection,
     JointPos,
     JointVel,
     TendonPos,
@@ -296,7 +297,13 @@ sensor_rules!(
     SubtreeCom,
     SubtreeLinVel,
     SubtreeAngMom,
+    GeomDist,
+    GeomNormal,
+    GeomFromTo,
+    EPotential,
+    EKinetic,
     Clock,
+    User,
 );
 
 static NUMERIC: Rule = rule("numeric", &[Numeric::ATTRIBUTES], &[]);

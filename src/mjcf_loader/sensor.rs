@@ -1,9 +1,9 @@
 //! Tables of sensors: what all have, and what each kind refers to.
 
-use crate::model::SensorType;
+use crate::model::{DataType, ObjType, SensorType};
 
 use super::attribute::Sign::NonNegative;
-use super::attribute::{Attr, Kind, TEXT, Words, real, words};
+use super::attribute::{Attr, Kind, TEXT, Words, int, real, words};
 use super::schema::Element;
 use super::table::{Table, table};
 
@@ -88,6 +88,60 @@ table! {
     }
 }
 
+table! {
+    /// What a sensor of a camera's picture refers to.
+    group InPicture {
+        "site" site: String = String::new(), TEXT, required, "Site that is seen.";
+        "camera" camera: String = String::new(), TEXT, required, "Camera that sees it.";
+    }
+}
+
+table! {
+    /// What a sensor between geoms refers to.
+    group Between {
+        "geom1" geom1: Option<String> = None, TEXT, first, "First geom.";
+        "body1" body1: Option<String> = None, TEXT, first, "Body whose geoms are the first.";
+        "geom2" geom2: Option<String> = None, TEXT, second, "Second geom.";
+        "body2" body2: Option<String> = None, TEXT, second, "Body whose geoms are the second.";
+    }
+}
+
+/// Greatest number of values of a sensor that a program fills.
+const MAX_USER: i64 = 1000;
+
+/// Stages of a step, by MuJoCo's numbers.
+const STAGES: Words<usize> = words! { "none" => 0, "pos" => 1, "vel" => 2, "acc" => 3 };
+
+const DATA: Words<DataType> = words! {
+    "real" => DataType::Real,
+    "positive" => DataType::Positive,
+    "axis" => DataType::Axis,
+    "quaternion" => DataType::Quaternion,
+};
+
+/// Kinds of objects that a sensor of a program's own may name.
+const OBJECTS: Words<ObjType> = words! {
+    "body" => ObjType::Body,
+    "xbody" => ObjType::XBody,
+    "joint" => ObjType::Joint,
+    "geom" => ObjType::Geom,
+    "site" => ObjType::Site,
+    "camera" => ObjType::Camera,
+    "tendon" => ObjType::Tendon,
+    "actuator" => ObjType::Actuator,
+};
+
+table! {
+    /// What a sensor that a program fills says about itself.
+    group OfUser {
+        "dim" dim: usize = 0, int(0, MAX_USER), required, "Number of its values.";
+        "needstage" needstage: usize = 3, STAGES, "Stage of a step after which the program fills it, for the program.";
+        "datatype" datatype: DataType = DataType::Real, DATA, "Kind of its values, which says how a cutoff acts on them.";
+        "objtype" objtype: Option<ObjType> = None, OBJECTS, "Kind of an object that it is about, for the program.";
+        "objname" objname: Option<String> = None, TEXT, "Name of that object.";
+    }
+}
+
 /// What a sensor refers to, by name.
 #[derive(Clone)]
 pub(super) enum Object {
@@ -98,6 +152,9 @@ pub(super) enum Object {
     Actuator(String),
     Subtree(String),
     Frame(OfFrame, InFrame),
+    Picture(InPicture),
+    Between(Between),
+    User(OfUser),
 }
 
 /// The groups of attributes of a table.
@@ -122,7 +179,10 @@ pub(super) const fn tables(kind: SensorType) -> &'static [Groups] {
         }
         FrameLinAcc | FrameAngAcc => &[OfFrame::ATTRIBUTES, Sensor::ATTRIBUTES],
         SubtreeCom | SubtreeLinVel | SubtreeAngMom => &[OfSubtree::ATTRIBUTES, Sensor::ATTRIBUTES],
-        Clock => &[Sensor::ATTRIBUTES],
+        CamProjection => &[InPicture::ATTRIBUTES, Sensor::ATTRIBUTES],
+        GeomDist | GeomNormal | GeomFromTo => &[Between::ATTRIBUTES, Sensor::ATTRIBUTES],
+        User => &[OfUser::ATTRIBUTES, Sensor::ATTRIBUTES],
+        EPotential | EKinetic | Clock => &[Sensor::ATTRIBUTES],
     }
 }
 
@@ -130,8 +190,19 @@ impl Sensor {
     /// Reads a sensor of any kind; its attributes tell what it refers to.
     pub fn of(e: &Element) -> Self {
         let named = |attribute: &str| e.text(attribute).map(str::to_owned);
-        let kind = SensorType::ALL.iter().find(|kind| kind.name() == e.name);
-        let object = if let Some(site) = named("site") {
+        let kind = SensorType::ALL.iter().find(|kind| kind.name() == e.name).copied();
+        let kind = kind.unwrap_or(SensorType::Clock);
+        let object = match kind {
+            SensorType::CamProjection => Some(Object::Picture(InPicture::read(e))),
+            SensorType::User => Some(Object::User(OfUser::read(e))),
+            SensorType::GeomDist | SensorType::GeomNormal | SensorType::GeomFromTo => {
+                Some(Object::Between(Between::read(e)))
+            }
+            _ => None,
+        };
+        let object = if let Some(object) = object {
+            object
+        } else if let Some(site) = named("site") {
             Object::Site(site)
         } else if let Some(joint) = named("joint") {
             Object::Joint(joint)
@@ -147,7 +218,7 @@ impl Sensor {
             Object::Nothing
         };
         Self {
-            kind: kind.copied().unwrap_or(SensorType::Clock),
+            kind,
             object,
             ..Self::read(e)
         }

@@ -260,6 +260,8 @@ arrays! {
     cam_poscom0: Vec<Vec3>,
     /// Orientation at `qpos0` in the world.
     cam_mat0: Vec<Mat3>,
+    /// Width and height of its picture for sensors, pixels.
+    cam_resolution: Vec<[usize; 2]>,
     /// Vertical field of view, degrees.
     cam_fovy: Vec<f64>,
     /// Numbers for programs, `nuser_cam` for each camera. They mean nothing to physics and pictures.
@@ -404,6 +406,12 @@ arrays! {
     sensor_cutoff: Vec<f64>,
     /// Standard deviation of noise, for programs: sensors are exact.
     sensor_noise: Vec<f64>,
+    /// How many numbers it gives.
+    sensor_dim: Vec<usize>,
+    /// Kind of its numbers.
+    sensor_datatype: Vec<DataType>,
+    /// Stage of a step after which it can be read: 1 positions, 2 velocities, 3 accelerations; 0 where a user's says none.
+    sensor_needstage: Vec<usize>,
     /// First entry in `sensordata`.
     sensor_adr: Vec<usize>,
     /// Numbers for programs, `nuser_sensor` for each sensor.
@@ -521,7 +529,7 @@ impl Arrays {
 
     /// Returns the length of `sensordata`.
     pub fn nsensordata(&self) -> usize {
-        self.sensor_type.iter().map(|kind| kind.dim()).sum()
+        self.sensor_dim.iter().sum()
     }
 
     /// Returns whether `body` is `ancestor` or lies below it; false for a body that does not exist.

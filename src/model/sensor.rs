@@ -26,7 +26,7 @@ macro_rules! sensors {
                 match self { $(Self::$kind => $code,)* }
             }
 
-            /// Returns how many numbers such a sensor gives.
+            /// Returns how many numbers such a sensor gives; `sensor_dim` has those of a user's.
             pub const fn dim(self) -> usize {
                 match self { $(Self::$kind => $dim,)* }
             }
@@ -56,6 +56,8 @@ sensors! {
     Magnetometer = 6, "magnetometer", 3, Real;
     /// Distance to the nearest geom along the z axis of a site, m; -1 where there is none.
     RangeFinder = 7, "rangefinder", 1, Positive;
+    /// Where a camera has a site in its picture, pixels: to the right and down from the upper left corner.
+    CamProjection = 8, "camprojection", 2, Real;
     /// Coordinate of a hinge or slide, rad or m.
     JointPos = 9, "jointpos", 1, Real;
     /// Velocity of a hinge or slide, rad/s or m/s.
@@ -112,8 +114,34 @@ sensors! {
     SubtreeLinVel = 35, "subtreelinvel", 3, Real;
     /// Angular momentum of a body and those below it about that centre of mass, kg m^2/s.
     SubtreeAngMom = 36, "subtreeangmom", 3, Real;
+    /// Least signed distance of two geoms, or of the geoms of bodies, m; the cutoff where that is greater.
+    GeomDist = 37, "distance", 1, Positive;
+    /// Direction from the first of these to the second, in the world; zero where they are further apart than the cutoff.
+    GeomNormal = 38, "normal", 3, Axis;
+    /// The points of both that are nearest to each other, m, in the world; zero likewise.
+    GeomFromTo = 39, "fromto", 6, Real;
+    /// Energy of heights and springs, J.
+    EPotential = 40, "e_potential", 1, Real;
+    /// Energy of motion, J.
+    EKinetic = 41, "e_kinetic", 1, Real;
     /// Time, s.
     Clock = 42, "clock", 1, Real;
+    /// What a program writes: `sensor_dim` numbers of its own, which no step touches.
+    User = 44, "user", 0, Real;
+}
+
+impl SensorType {
+    /// Returns MuJoCo's number of the stage of a step after which such a sensor can be read: 1 positions, 2 velocities, 3 accelerations.
+    pub(crate) const fn needstage(self) -> usize {
+        use SensorType::*;
+        match self {
+            Velocimeter | Gyro | JointVel | TendonVel | ActuatorVel | BallAngVel | JointLimitVel | TendonLimitVel
+            | FrameLinVel | FrameAngVel | SubtreeLinVel | SubtreeAngMom => 2,
+            Touch | Accelerometer | Force | Torque | ActuatorFrc | JointActFrc | JointLimitFrc | TendonLimitFrc
+            | FrameLinAcc | FrameAngAcc | User => 3,
+            _ => 1,
+        }
+    }
 }
 
 /// The kind of a sensor's numbers.

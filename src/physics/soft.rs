@@ -44,7 +44,7 @@ pub struct SoftEngine {
     dual: Dual,
     integrator: Integrator,
     stages: RungeKutta,
-    subtrees: SubtreeScratch,
+    sensor_scratch: SensorScratch,
     bias: BiasScratch,
     bodies: Articulated,
     probe: Option<Probe>,
@@ -90,7 +90,7 @@ impl SoftModel {
             dual: Dual::default(),
             integrator: Integrator::default(),
             stages: RungeKutta::default(),
-            subtrees: SubtreeScratch::default(),
+            sensor_scratch: SensorScratch::default(),
             bias: BiasScratch::default(),
             bodies: Articulated::default(),
             probe: None,
@@ -162,7 +162,7 @@ impl SoftEngine {
         vectorized!({
             rne_post_constraint(&self.model, s, self.options.double_weld_torque);
             if self.model.opt.flags.sensor {
-                sensors(&self.model, s, &mut self.subtrees);
+                sensors(&self.model, s, &mut self.sensor_scratch);
             }
         });
         Ok(())

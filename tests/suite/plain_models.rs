@@ -227,6 +227,71 @@ fn a_ball_joint_swings_about_all_axes_up_to_its_limit() {
     assert!((0.2..0.35).contains(&angle), "{angle}");
 }
 
+#[test]
+fn an_ellipsoid_falls_through_a_medium_as_fast_as_its_drag_allows() {
+    let mut engine = engine(
+        r#"<mujoco><option density="1000" integrator="implicit"/><worldbody><body pos="0 0 2"><freejoint/>
+             <geom type="ellipsoid" size=".1 .2 .05" density="3000" fluidshape="ellipsoid"/></body></worldbody></mujoco>"#,
+    );
+    let model = engine.model().clone();
+    assert_eq!(model.geom_fluid[0][..6], [1.0, 0.5, 0.25, 1.5, 1.0, 1.0]);
+    let mut state = engine.new_state();
+    for _ in 0..2000 {
+        engine.step(&mut state).expect("steps");
+    }
+    // weight and drag; nothing floats in this model of a medium
+    let area = std::f64::consts::PI * 0.1 * 0.2;
+    let speed = (model.body_mass[1] * 9.81 / (1000.0 * 0.5 * area)).sqrt();
+    assert!(
+        (state.qvel[2] + speed).abs() < 1e-6 * speed,
+        "{} {speed}",
+        state.qvel[2]
+    );
+}
+
+#[test]
+fn sensors_between_geoms_and_of_energies_and_pictures() {
+    let mut engine = engine(
+        r#"<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/>
+             <camera name="eye" pos="0 -2 1" xyaxes="1 0 0 0 0 1" fovy="90" resolution="200 100"/>
+             <body name="cube" pos="0 0 1"><joint type="slide" axis="0 0 1" stiffness="8" springref=".5" armature=".5"/>
+               <geom name="cube" type="box" size=".1 .1 .1" mass="2"/><site name="top" pos="0 0 .1"/></body>
+             <body name="egg" pos="1 0 1"><geom name="egg" type="ellipsoid" size=".2 .1 .1"/></body></worldbody>
+             <sensor><distance geom1="cube" geom2="floor" cutoff="5"/><normal geom1="cube" geom2="floor" cutoff="5"/>
+               <fromto geom1="cube" geom2="floor" cutoff="5"/><distance body1="cube" body2="egg" cutoff="5"/>
+               <distance body1="cube" body2="egg" cutoff=".5"/><normal body1="cube" body2="egg" cutoff=".5"/>
+               <e_potential/><e_kinetic/><camprojection site="top" camera="eye"/><user dim="2"/></sensor></mujoco>"#,
+    );
+    let model = engine.model().clone();
+    let mut state = engine.new_state();
+    state.qvel[0] = 3.0;
+    let user = model.sensor_adr[9];
+    state.sensordata[user..].copy_from_slice(&[4.0, 5.0]);
+    engine.forward(&mut state).expect("computes");
+    let value = |i: usize| &state.sensordata[model.sensor_adr[i]..][..model.sensor_dim[i]];
+    let near = |i: usize, expected: &[f64]| {
+        let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-5;
+        assert!(
+            value(i).len() == expected.len() && value(i).iter().zip(expected).all(close),
+            "{i}: {:?}",
+            value(i)
+        );
+    };
+    near(0, &[0.9]);
+    near(1, &[0.0, 0.0, -1.0]);
+    assert_eq!([value(2)[2], value(2)[5]].map(|v| (v * 1e6).round()), [0.9e6, 0.0]);
+    near(3, &[0.7]);
+    near(4, &[0.5]);
+    near(5, &[0.0; 3]);
+    // heights and a spring; mass and armature
+    let egg = model.body_mass[2];
+    near(6, &[(2.0 + egg) * 9.81 + 0.5 * 8.0 * 0.25]);
+    near(7, &[0.5 * 2.5 * 9.0]);
+    // as far above the middle as it is a twentieth of the depth
+    near(8, &[100.0, 50.0 - 2.5]);
+    near(9, &[4.0, 5.0]);
+}
+
 /// The kinetic energy of a model, by its inertia matrix, J.
 fn free_energy(model: &babybench::Model, s: &State) -> f64 {
     let mass = &model.body_inertia[1];
@@ -307,7 +372,7 @@ fn sensors_measure_what_they_say() {
     let mut state = engine.new_state();
     (state.qpos[7], state.qvel[2], state.qvel[6]) = (0.5, -1.0, 2.0);
     engine.forward(&mut state).expect("finite");
-    let value = |i: usize| &state.sensordata[model.sensor_adr[i]..][..model.sensor_type[i].dim()];
+    let value = |i: usize| &state.sensordata[model.sensor_adr[i]..][..model.sensor_dim[i]];
     let near = |i: usize, expected: &[f64]| {
         let worst = value(i)
             .iter()

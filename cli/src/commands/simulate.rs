@@ -183,7 +183,7 @@ impl Simulate {
             writeln!(out, "  joint {label}: {}", shown(&state.qpos[adr..adr + n]))?;
         }
         for (i, name) in model.sensor_name.iter().enumerate() {
-            let (adr, dim) = (model.sensor_adr[i], model.sensor_type[i].dim());
+            let (adr, dim) = (model.sensor_adr[i], model.sensor_dim[i]);
             let label = if name.is_empty() {
                 model.sensor_type[i].name()
             } else {

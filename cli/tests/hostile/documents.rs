@@ -66,7 +66,10 @@ const WORLDS: &[(&str, &str)] = &[
         "inertia in the world",
         "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>",
     ),
-    ("ball joint", "<body><joint type='ball'/><geom size='1'/></body>"),
+    (
+        "ball joint",
+        "<body><joint type='ball' range='10 60'/><geom size='1'/></body>",
+    ),
     (
         "range upside down",
         "<body><joint range='1 -1' limited='true'/><geom size='1'/></body>",

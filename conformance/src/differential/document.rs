@@ -44,6 +44,7 @@ struct Writer<'a> {
     sites: Vec<String>,
     /// Geoms that a tendon may wrap around.
     rounds: Vec<String>,
+    cameras: Vec<String>,
     tendons: Vec<String>,
     limited_tendons: Vec<String>,
     actuators: Vec<String>,
@@ -66,6 +67,7 @@ pub fn document(language: &Language, seed: u64) -> Node {
         geoms: Vec::new(),
         sites: Vec::new(),
         rounds: Vec::new(),
+        cameras: Vec::new(),
         tendons: Vec::new(),
         limited_tendons: Vec::new(),
         actuators: Vec::new(),
@@ -321,6 +323,13 @@ impl Writer<'_> {
         for _ in 0..self.dice.pick(&[0, 0, 0, 1, 1, 2]) {
             let site = self.site();
             body.children.push(site);
+        }
+        if self.dice.chance(0.1) {
+            let name = self.name("v");
+            let place = self.dice.reals(3, 0.5);
+            let camera = Node::new("camera").with("name", name.as_str()).with("pos", place);
+            body.children.push(camera.with("zaxis", self.dice.reals(3, 1.0)));
+            self.cameras.push(name);
         }
         let moves = moves || joints;
         while depth < DEPTH && self.bodies.len() < BODIES && self.dice.chance(0.5) {

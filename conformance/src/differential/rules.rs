@@ -23,7 +23,7 @@ use How::{Drawn, Nothing, Placed, Word};
 pub type Rule = (&'static str, How);
 
 /// Attributes of which an element may have one at most.
-pub const RIVALS: [&[&str]; 7] = [
+pub const RIVALS: [&[&str]; 9] = [
     &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
     &["pos", "fromto"],
     &["diaginertia", "fullinertia"],
@@ -31,6 +31,8 @@ pub const RIVALS: [&[&str]; 7] = [
     &["kv", "dampratio"],
     &["ctrlrange", "inheritrange"],
     &["actrange", "inheritrange"],
+    &["geom1", "body1"],
+    &["geom2", "body2"],
 ];
 
 const CLASS: &[Rule] = &[("class", Placed(&["stiff"]))];
@@ -489,6 +491,27 @@ const OF_SUBTREE: &[Rule] = &[("body", Placed(&["hand"]))];
 const OF_FRAME: &[Rule] = &[("objtype", Placed(&["xbody"])), ("objname", Placed(&["hand"]))];
 const IN_FRAME: &[Rule] = &[("reftype", Placed(&["xbody"])), ("refname", Placed(&["child"]))];
 
+const IN_PICTURE: &[Rule] = &[("site", Placed(&["tip"])), ("camera", Placed(&["still"]))];
+const BETWEEN: &[Rule] = &[
+    ("geom1", Placed(&["ball"])),
+    ("body1", Placed(&["mid"])),
+    ("geom2", Placed(&["ball"])),
+    ("body2", Placed(&["second"])),
+];
+const REACH: &[Rule] = &[
+    ("name", Nothing),
+    ("user", Nothing),
+    ("noise", Nothing),
+    ("cutoff", Drawn(0.9, |d| d.log(0.05, 5.0))),
+];
+const OF_USER: &[Rule] = &[
+    ("dim", Placed(&["1", "4"])),
+    ("needstage", Nothing),
+    ("datatype", Nothing),
+    ("objtype", Nothing),
+    ("objname", Nothing),
+];
+
 /// Elements none of whose attributes changes physics.
 pub const WITHOUT_PHYSICS: &[&str] = &[
     "mujoco",
@@ -627,7 +650,14 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("sensor/subtreecom", &[OF_SUBTREE, SENSOR]),
     ("sensor/subtreelinvel", &[OF_SUBTREE, SENSOR]),
     ("sensor/subtreeangmom", &[OF_SUBTREE, SENSOR]),
+    ("sensor/camprojection", &[IN_PICTURE, SENSOR]),
+    ("sensor/distance", &[BETWEEN, REACH]),
+    ("sensor/normal", &[BETWEEN, REACH]),
+    ("sensor/fromto", &[BETWEEN, REACH]),
+    ("sensor/e_potential", &[SENSOR]),
+    ("sensor/e_kinetic", &[SENSOR]),
     ("sensor/clock", &[UNIT_SENSOR]),
+    ("sensor/user", &[OF_USER, UNIT_SENSOR]),
 ];
 
 /// Tells whether an element, or the section that it stands in, is said to change no physics.

@@ -54,9 +54,6 @@ _SIZES = (
     ),
     *("nkey", "nlight", "nexclude"),
 )
-_POSITION, _VELOCITY, _ACCELERATION = 1, 2, 3
-_VELOCITY_SENSORS = frozenset({2, 3, 10, 12, 14, 20, 23, 30, 31, 35, 36})
-_ACCELERATION_SENSORS = frozenset({0, 1, 4, 5, 15, 16, 21, 24, 32, 33})
 
 
 class FixedArray(np.ndarray[Any, np.dtype[Any]]):
@@ -391,15 +388,6 @@ def matrix_places(m: MjModel) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return places
 
 
-def _stages(m: MjModel) -> NDArray[np.int32]:
-    def stage(kind: int) -> int:
-        if kind in _VELOCITY_SENSORS:
-            return _VELOCITY
-        return _ACCELERATION if kind in _ACCELERATION_SENSORS else _POSITION
-
-    return np.array([stage(int(kind)) for kind in m.sensor_type], np.int32)
-
-
 _DERIVED: dict[str, Callable[[MjModel], Any]] = {
     "dof_M0": lambda m: m._compiled("dof_m0"),
     "dof_Madr": _matrix_addresses,
@@ -412,7 +400,6 @@ _DERIVED: dict[str, Callable[[MjModel], Any]] = {
     "exclude_signature": lambda m: m._compiled("exclude").reshape(-1, 2) @ np.array([1 << 16, 1], np.int32),
     "actuator_trnid": lambda m: np.stack([m._compiled("actuator_trnid"), np.full(m.nu, -1, np.int32)], axis=1),
     "actuator_actnum": lambda m: (m._compiled("actuator_actadr") >= 0).astype(np.int32),
-    "sensor_needstage": _stages,
     "tendon_adr": lambda m: _starts(m.tendon_num),
     "numeric_size": lambda m: np.array([len(data) for data in m._extras["numeric_data"]], np.int32),
     "numeric_adr": lambda m: _starts(m.numeric_size),

@@ -118,7 +118,7 @@ fn in_order(model: &Model, usual: &Model) -> Option<Difference> {
         };
         compare!(part(), model[i], usual[j]:
             geom_type geom_size geom_pos geom_quat geom_contype geom_conaffinity geom_condim geom_priority geom_friction
-            geom_solmix geom_solref geom_solimp geom_margin geom_gap geom_rgba);
+            geom_solmix geom_solref geom_solimp geom_margin geom_gap geom_fluid geom_rgba);
         let (found, expected) = (look(model, i), look(usual, j));
         if found != expected {
             return Some(differs(part(), "geom_matid", &found, &expected));

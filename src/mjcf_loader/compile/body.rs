@@ -465,6 +465,10 @@ fn compile_camera(
     arrays.cam_pos.push(pos);
     arrays.cam_quat.push(quat);
     arrays.cam_fovy.push(camera.fovy);
+    if camera.resolution.iter().any(|v| *v < 0.0) {
+        return Err(context.invalid(camera.at, "a camera cannot have a negative resolution"));
+    }
+    arrays.cam_resolution.push(camera.resolution.map(|v| v as usize));
     Ok(())
 }
 

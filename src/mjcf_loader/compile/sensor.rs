@@ -3,7 +3,7 @@
 use super::context::{Context, Ids, User};
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::sensor::{FrameOf, InFrame, Object, OfFrame, Sensor};
+use crate::mjcf_loader::sensor::{Between, FrameOf, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
 use crate::model::{Arrays, DataType, JointType, ObjType, SensorType};
 
 /// Compiles the sensors, whose values follow one another.
@@ -18,8 +18,21 @@ pub(super) fn compile_sensors(
     let mut adr = 0;
     for sensor in &document.sensors {
         let user = users.of(context, sensor.at, &sensor.user)?;
-        let axis = matches!(sensor.kind.datatype(), DataType::Axis | DataType::Quaternion);
-        if axis && sensor.cutoff > 0.0 {
+        let (dim, data, stage) = match &sensor.object {
+            Object::User(user) => (user.dim, user.datatype, user.needstage),
+            _ => (sensor.kind.dim(), sensor.kind.datatype(), sensor.kind.needstage()),
+        };
+        let count = match data {
+            DataType::Axis => 3,
+            DataType::Quaternion => 4,
+            DataType::Real | DataType::Positive => dim,
+        };
+        if dim != count {
+            return Err(context.invalid(sensor.at, "an axis needs dim=\"3\", a quaternion dim=\"4\""));
+        }
+        let axis = matches!(data, DataType::Axis | DataType::Quaternion);
+        // that of a normal bounds a distance
+        if axis && sensor.cutoff > 0.0 && sensor.kind != SensorType::GeomNormal {
             return Err(context.invalid(sensor.at, "an axis or a quaternion has no cutoff; remove it"));
         }
         let (object, reference) = sensed(context, sensor, ids, arrays)?;
@@ -31,9 +44,12 @@ pub(super) fn compile_sensors(
         arrays.sensor_refid.push(reference.1);
         arrays.sensor_cutoff.push(sensor.cutoff);
         arrays.sensor_noise.push(sensor.noise);
+        arrays.sensor_dim.push(dim);
+        arrays.sensor_datatype.push(data);
+        arrays.sensor_needstage.push(stage);
         arrays.sensor_adr.push(adr);
         arrays.sensor_user.push(user);
-        adr += sensor.kind.dim();
+        adr += dim;
     }
     Ok(())
 }
@@ -64,6 +80,18 @@ fn sensed(context: &Context, sensor: &Sensor, ids: &Ids, arrays: &Arrays) -> Res
         }
         Object::Actuator(name) => (ObjType::Actuator, Some(ids.actuator.find(tree, at, "actuator", name)?)),
         Object::Frame(of, within) => return frames(context, at, of, within, ids),
+        Object::Between(between) => return two(context, at, between, ids),
+        Object::Picture(InPicture { site, camera }) => {
+            let site = ids.site.find(tree, at, "site", site)?;
+            let camera = ids.camera.find(tree, at, "camera", camera)?;
+            return Ok(((ObjType::Site, Some(site)), (ObjType::Camera, Some(camera))));
+        }
+        Object::User(OfUser { objtype, objname, .. }) => match (objtype, objname) {
+            (None, None) => NOTHING,
+            (Some(_), None) => return Err(context.error(at, ErrorKind::MissingAttribute("objname"))),
+            (None, Some(_)) => return Err(context.error(at, ErrorKind::MissingAttribute("objtype"))),
+            (Some(kind), Some(name)) => (*kind, Some(any(context, at, *kind, name, ids)?)),
+        },
     };
     Ok((object, NOTHING))
 }
@@ -110,4 +138,34 @@ fn frames(
         (None, Some(_)) => return Err(context.error(at, ErrorKind::MissingAttribute("reftype"))),
     };
     Ok((object, reference))
+}
+
+/// Finds an object of any kind by its name.
+fn any(context: &Context, at: usize, kind: ObjType, name: &str, ids: &Ids) -> Result<usize, LoadError> {
+    let names = match kind {
+        ObjType::Joint => &ids.joint,
+        ObjType::Geom => &ids.geom,
+        ObjType::Site => &ids.site,
+        ObjType::Camera => &ids.camera,
+        ObjType::Tendon => &ids.tendon,
+        ObjType::Actuator => &ids.actuator,
+        ObjType::Unknown | ObjType::Body | ObjType::XBody => &ids.body,
+    };
+    names.find(context.tree, at, "objname", name)
+}
+
+/// Finds the two geoms, or bodies with geoms, that a sensor is between.
+fn two(context: &Context, at: usize, between: &Between, ids: &Ids) -> Result<(Sensed, Sensed), LoadError> {
+    let find = |geom: &Option<String>, body: &Option<String>, [of_geom, of_body]: [&'static str; 2]| match (geom, body)
+    {
+        (Some(name), _) => Ok((ObjType::Geom, Some(ids.geom.find(context.tree, at, of_geom, name)?))),
+        (None, Some(name)) => Ok((ObjType::Body, Some(ids.body.find(context.tree, at, of_body, name)?))),
+        (None, None) => Err(context.error(at, ErrorKind::MissingAttribute(of_geom))),
+    };
+    let first = find(&between.geom1, &between.body1, ["geom1", "body1"])?;
+    let second = find(&between.geom2, &between.body2, ["geom2", "body2"])?;
+    if first == second {
+        return Err(context.invalid(at, "a sensor cannot be between something and itself"));
+    }
+    Ok((first, second))
 }

@@ -41,6 +41,7 @@ mod box_edge;
 mod box_face;
 mod capsule_box;
 mod convex;
+mod distance;
 mod epa;
 pub(crate) mod frame;
 mod gjk;
@@ -51,6 +52,8 @@ mod round;
 mod support;
 #[cfg(test)]
 mod tests;
+
+pub use distance::{Span, distance};
 
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use crate::model::GeomType;

@@ -202,8 +202,8 @@ mod tests {
     /// A free body with limbs that branch, dampers, a medium, tendons along a limb, actuators with velocity terms.
     const LIMBS: &str = r#"<mujoco><option density="300" viscosity="2" wind="0.3 0.1 0"><flag contact="disable"/></option><worldbody><site name="fixed" pos=".1 -.5 .8"/>
         <body pos="0 0 1"><freejoint/><geom type="box" size=".1 .2 .05" density="300"/><geom name="ball" size=".05"/>
-          <body pos=".2 0 .1"><joint name="a" axis="0 1 0" damping=".3"/><joint name="b" axis="1 0 0"/><geom type="capsule" size=".04 .1"/>
-            <body pos=".2 0 0"><joint name="c" axis="0 0 1"/><geom type="box" size=".05 .02 .1" pos=".1 0 0"/><site name="end" pos=".2 0 0"/></body>
+          <body pos=".2 0 .1"><joint name="a" axis="0 1 0" damping=".3"/><joint name="b" axis="1 0 0"/><geom type="capsule" size=".04 .1" fluidshape="ellipsoid" fluidcoef=".6 .3 1.2 .8 .5"/>
+            <body pos=".2 0 0"><joint name="c" axis="0 0 1"/><geom type="box" size=".05 .02 .1" pos=".1 0 0" fluidshape="ellipsoid"/><site name="end" pos=".2 0 0"/></body>
           </body>
           <body pos="-.2 0 .1"><joint name="d" type="slide" axis="1 0 0"/><joint name="e"/><geom type="box" size=".03 .1 .06" pos=".1 0 0"/></body>
         </body></worldbody>

@@ -33,7 +33,7 @@ pub use inertia::mul_m;
 pub use integrate::{Integrator, RungeKutta};
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;
-pub use sensor::{SubtreeScratch, sensors};
+pub use sensor::{SensorScratch, sensors};
 pub use tendon::tendons;
 pub(in crate::physics) use transmission::dense_moment;
 pub use transmission::transmissions;

@@ -41,7 +41,7 @@ pub struct Bridge {
     aims: ContactAims,
     integrator: Integrator,
     bias: BiasScratch,
-    subtrees: SubtreeScratch,
+    sensor_scratch: SensorScratch,
     builder: RowBuilder,
     inertia: Articulated,
     force: Vec<f64>,
@@ -85,7 +85,7 @@ impl Bridge {
             aims: ContactAims::default(),
             integrator: Integrator::default(),
             bias: BiasScratch::default(),
-            subtrees: SubtreeScratch::default(),
+            sensor_scratch: SensorScratch::default(),
             builder: RowBuilder::new(&model, &topology),
             inertia: Articulated::default(),
             force: Vec::with_capacity(model.nv),
@@ -269,7 +269,7 @@ impl Bridge {
         read_welds(&self.rig, model, s, sets);
         rne_post_constraint(model, s, self.options.double_weld_torque);
         if model.opt.flags.sensor {
-            sensors(model, s, &mut self.subtrees);
+            sensors(model, s, &mut self.sensor_scratch);
         }
         check_output(model, s)?;
         check_contacts(model, s)

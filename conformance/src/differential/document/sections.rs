@@ -293,7 +293,8 @@ impl Writer<'_> {
             let mut node = Node::new(kind);
             let of_limit = kind.contains("limit");
             let attribute = match kind {
-                "clock" => None,
+                "clock" | "e_potential" | "e_kinetic" | "user" => None,
+                "distance" | "normal" | "fromto" => Some("geom1"),
                 _ if kind.starts_with("frame") => Some("objname"),
                 _ if kind.starts_with("subtree") => Some("body"),
                 _ if kind.starts_with("joint") || kind.starts_with("ball") => Some("joint"),
@@ -312,7 +313,10 @@ impl Writer<'_> {
                 _ => self.sites.clone(),
             };
             match attribute {
+                None if kind == "user" => node.set("dim", self.dice.pick(&["0", "1", "3"])),
                 None => {}
+                Some("geom1") if self.between(&mut node) => {}
+                Some("geom1") => continue,
                 Some("objname") if self.framed(&mut node) => {}
                 Some("objname") => continue,
                 Some(_) if objects.is_empty() => continue,
@@ -321,11 +325,36 @@ impl Writer<'_> {
                     node.set(attribute, object);
                 }
             }
+            if kind == "camprojection" {
+                if self.cameras.is_empty() {
+                    continue;
+                }
+                let camera = self.dice.rng.usize(..self.cameras.len());
+                node.set("camera", self.cameras[camera].as_str());
+            }
             self.language
                 .dress(&mut node, &format!("sensor/{kind}"), false, &mut self.dice);
             section.children.push(node);
         }
         section
+    }
+
+    /// Draws the two geoms or bodies that a sensor is between; returns whether there are two.
+    fn between(&mut self, node: &mut Node) -> bool {
+        let (geoms, bodies) = (self.geoms.clone(), self.bodies.clone());
+        if geoms.len() < 2 || bodies.len() < 2 {
+            return false;
+        }
+        let ([geom1, geom2], [body1, body2]) = (self.two(&geoms), self.two(&bodies));
+        for (geom, body, [of_geom, of_body]) in [(geom1, body1, ["geom1", "body1"]), (geom2, body2, ["geom2", "body2"])]
+        {
+            if self.dice.chance(0.7) {
+                node.set(of_geom, geom);
+            } else {
+                node.set(of_body, body);
+            }
+        }
+        true
     }
 
     /// Draws the object of a sensor of a frame, and at times that in whose frame it measures; returns whether there is one.

@@ -1,6 +1,9 @@
 //! MuJoCo's `sensordata`: the values of the model's sensors.
 
+mod between;
+mod energy;
 mod frame;
+mod picture;
 mod subtree;
 mod touch;
 
@@ -12,25 +15,40 @@ use crate::physics::spatial::{angular, linear, torque_at};
 use crate::physics::state::State;
 
 use frame::{frame, spatial_acceleration, spatial_velocity};
-pub use subtree::SubtreeScratch;
+use subtree::SubtreeScratch;
+
+/// The working memory of sensors.
+#[derive(Clone, Debug, Default)]
+pub struct SensorScratch {
+    subtrees: SubtreeScratch,
+    between: between::Between,
+}
 
 /// Computes `sensordata` from everything else. `scratch` keeps its memory between steps.
-pub fn sensors(model: &Model, s: &mut State, scratch: &mut SubtreeScratch) {
+pub fn sensors(model: &Model, s: &mut State, scratch: &mut SensorScratch) {
     let needs_subtrees = |kind: &SensorType| matches!(kind, SensorType::SubtreeLinVel | SensorType::SubtreeAngMom);
     if model.sensor_type.iter().any(needs_subtrees) {
-        scratch.update(model, s);
+        scratch.subtrees.update(model, s);
     }
     let mut data = std::mem::take(&mut s.sensordata);
     for sensor in 0..model.nsensor() {
-        let (kind, adr, cutoff) = (
+        let (kind, adr, dim) = (
             model.sensor_type[sensor],
             model.sensor_adr[sensor],
-            model.sensor_cutoff[sensor],
+            model.sensor_dim[sensor],
         );
-        let values = &mut data[adr..adr + kind.dim()];
-        values.copy_from_slice(&value(model, s, scratch, sensor)[..kind.dim()]);
+        let (values, cutoff) = (&mut data[adr..adr + dim], model.sensor_cutoff[sensor]);
+        match kind {
+            SensorType::User => {}
+            SensorType::GeomDist | SensorType::GeomNormal | SensorType::GeomFromTo => {
+                values.copy_from_slice(&scratch.between.value(model, s, sensor)[..dim]);
+                // the cutoff is for the distance
+                continue;
+            }
+            _ => values.copy_from_slice(&value(model, s, &scratch.subtrees, sensor)[..dim]),
+        }
         if cutoff > 0.0 {
-            match kind.datatype() {
+            match model.sensor_datatype[sensor] {
                 DataType::Real => values.iter_mut().for_each(|v| *v = v.clamp(-cutoff, cutoff)),
                 DataType::Positive => values.iter_mut().for_each(|v| *v = v.min(cutoff)),
                 DataType::Axis | DataType::Quaternion => {}
@@ -70,7 +88,12 @@ fn value(model: &Model, s: &State, scratch: &SubtreeScratch, sensor: usize) -> [
         SubtreeCom => vector(s.subtree_com[id]),
         SubtreeLinVel => vector(scratch.linvel[id]),
         SubtreeAngMom => vector(scratch.angmom[id]),
+        CamProjection => picture::projection(model, s, id, model.sensor_refid[sensor].unwrap_or(0)),
+        EPotential => scalar(energy::potential(model, s)),
+        EKinetic => scalar(energy::kinetic(model, s)),
         Clock => scalar(s.time),
+        // these are not computed here
+        GeomDist | GeomNormal | GeomFromTo | User => scalar(0.0),
     }
 }
 

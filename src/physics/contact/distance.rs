@@ -1,0 +1,143 @@
+//! The distance of two geoms, apart or in each other, and the points of both where it is measured (MuJoCo 3.3.0's `mj_geomDistance`).
+
+use super::epa::epa;
+use super::gjk::{Limits, Simplex, gjk};
+use super::polytope::Polytope;
+use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
+use super::{BIG, ContactOptions, ContactPoint, PlacedGeom, Scratch, add_scaled, collide, sub};
+use crate::math::{Vec3, unit};
+use crate::model::GeomType;
+
+/// A distance, and the points between which it is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Distance, m; negative where the geoms are in each other.
+    pub dist: f64,
+    /// Point of the first geom, m.
+    pub from: Vec3,
+    /// Point of the second geom, m.
+    pub to: Vec3,
+}
+
+/// Measures the distance of two geoms as far as it is below `most`, m; `points` is working memory. Planes have no distance from planes.
+///
+/// Where convex collision measures it, MuJoCo has the points in the order of the types of the geoms, whichever is asked for first.
+pub fn distance(
+    first: &PlacedGeom,
+    second: &PlacedGeom,
+    most: f64,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+    points: &mut Vec<ContactPoint>,
+) -> Option<Span> {
+    use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Sphere};
+    let turned = first.kind > second.kind;
+    let (a, b) = if turned { (second, first) } else { (first, second) };
+    let (rod, egg, cuboid) = (
+        |g| Cylinder::new(g, 0.0),
+        |g| Ellipsoid::new(g, 0.0),
+        |g| Cuboid::new(g, 0.0),
+    );
+    let mut find = Search {
+        a,
+        b,
+        most,
+        options,
+        polytope: &mut scratch.polytope,
+    };
+    let span = match (a.kind, b.kind) {
+        (Sphere, Egg) => find.rounded(Point::new(a), Ball::new(a, 0.0), egg(b)),
+        (Pill, Egg) => find.rounded(Segment::new(a), Capsule::new(a, 0.0), egg(b)),
+        (Pill, Rod) => find.rounded(Segment::new(a), Capsule::new(a, 0.0), rod(b)),
+        (Egg, Egg) => find.whole(egg(a), egg(b)),
+        (Egg, Rod) => find.whole(egg(a), rod(b)),
+        (Egg, Box) => find.whole(egg(a), cuboid(b)),
+        (Rod, Rod) => find.whole(rod(a), rod(b)),
+        (Rod, Box) => find.whole(rod(a), cuboid(b)),
+        (Box, Box) => find.whole(cuboid(a), cuboid(b)),
+        _ => {
+            points.clear();
+            collide(a, b, most, options, scratch, points);
+            return nearest(points, most, if turned { -1.0 } else { 1.0 });
+        }
+    };
+    (span.dist < most).then_some(span)
+}
+
+/// Returns the span of the nearest of some contacts.
+fn nearest(points: &[ContactPoint], most: f64, sign: f64) -> Option<Span> {
+    let (mut dist, mut found) = (most, None);
+    for point in points {
+        if point.dist < dist {
+            (dist, found) = (point.dist, Some(point));
+        }
+    }
+    found.map(|point| Span {
+        dist,
+        from: add_scaled(point.pos, point.normal(), -0.5 * sign * dist),
+        to: add_scaled(point.pos, point.normal(), 0.5 * sign * dist),
+    })
+}
+
+/// Two convex geoms whose distance is looked for.
+struct Search<'a, 'g> {
+    a: &'a PlacedGeom<'g>,
+    b: &'a PlacedGeom<'g>,
+    most: f64,
+    options: &'a ContactOptions,
+    polytope: &'a mut Polytope,
+}
+
+impl Search<'_, '_> {
+    fn limits(&self, grown: f64) -> Limits {
+        Limits {
+            tolerance: self.options.ccd_tolerance,
+            iterations: self.options.ccd_iterations,
+            cutoff: self.most + grown,
+            stop_at_same_centre: self.options.quirks.same_centre_is_no_contact,
+        }
+    }
+
+    /// Measures from a sphere or capsule, which is all that is near its `core`.
+    fn rounded<O: Support>(&mut self, core: impl Support, whole: impl Support, other: O) -> Span {
+        let (core, radius) = (Difference { a: core, b: other }, self.a.size[0]);
+        let limits = self.limits(radius);
+        let closest = gjk(&core, self.a.pos, self.b.pos, &limits, &mut Simplex::default());
+        if closest.distance <= limits.tolerance {
+            return self.whole(whole, core.b);
+        }
+        let (towards, _) = unit(sub(closest.b, closest.a));
+        let dist = closest.distance - radius;
+        Span {
+            dist: if dist > self.most { BIG } else { dist },
+            from: add_scaled(closest.a, towards, radius),
+            to: closest.b,
+        }
+    }
+
+    fn whole(&mut self, a: impl Support, b: impl Support) -> Span {
+        let (shape, limits, mut simplex) = (Difference { a, b }, self.limits(0.0), Simplex::default());
+        let closest = gjk(&shape, self.a.pos, self.b.pos, &limits, &mut simplex);
+        if closest.distance > limits.tolerance || simplex.len < 2 {
+            return Span {
+                dist: closest.distance,
+                from: closest.a,
+                to: closest.b,
+            };
+        }
+        let overlap = epa(&shape, &simplex, limits.tolerance, limits.iterations, self.polytope);
+        // without a depth MuJoCo takes the geoms for touching, at no point
+        overlap.map_or(
+            Span {
+                dist: 0.0,
+                from: [0.0; 3],
+                to: [0.0; 3],
+            },
+            |overlap| Span {
+                dist: -overlap.depth,
+                from: overlap.a,
+                to: overlap.b,
+            },
+        )
+    }
+}

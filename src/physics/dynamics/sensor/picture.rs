@@ -1,0 +1,26 @@
+//! Where cameras have points in their pictures.
+
+use std::f64::consts::PI;
+
+use crate::math::*;
+use crate::model::Model;
+use crate::physics::state::State;
+
+/// Returns where a site is in the picture of a camera, pixels to the right and down from the upper left corner, with zeros behind it.
+pub(super) fn projection(model: &Model, s: &State, site: usize, camera: usize) -> [f64; 4] {
+    let [x, y, z] = mat_t_vec(&s.cam_xmat[camera], sub(s.site_xpos[site], s.cam_xpos[camera]));
+    let [width, height] = model.cam_resolution[camera].map(|pixels| pixels as f64);
+    let focal = 0.5 / pxfm::f_tan(model.cam_fovy[camera] * PI / 360.0) * height;
+    // never a division by what is next to nothing; the camera looks along -z
+    let depth = match z {
+        z if z.abs() >= MINVAL => z,
+        z if z < 0.0 => -MINVAL,
+        _ => MINVAL,
+    };
+    [
+        (0.5 * width * z - focal * x) / depth,
+        (0.5 * height * z + focal * y) / depth,
+        0.0,
+        0.0,
+    ]
+}
