@@ -324,8 +324,8 @@ fn actuators_are_checked() {
     told("velocity jointinparent='x'", "jointinparent: there is no joint \"x\"");
     told("motor joint='j' actrange='0 1'", "unknown attribute \"actrange\"");
     told(
-        "general joint='j' dyntype='muscle'",
-        "dyntype=\"muscle\": not one of none, integrator, filter, filterexact",
+        "general joint='j' dyntype='user'",
+        "dyntype=\"user\": not one of none, integrator, filter, filterexact, muscle",
     );
     told("general joint='j' actrange='0 1'", NO_ACTIVATION);
     told("general joint='j' actrange='0 1' actlimited='false'", "");

@@ -187,7 +187,7 @@ fn what_is_no_tendon_is_refused() {
         ),
         (
             r#"<motor cranksite="end" cranklength="1"/>"#,
-            "missing attribute \"slidersite\"",
+            "attribute \"slidersite\" is required",
         ),
         (
             r#"<motor cranksite="end" slidersite="wall"/>"#,
