@@ -9,7 +9,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use babybench::config::Scene;
+use babybench::config::{Compat, Scene};
 use babybench::env::PartNames;
 use babybench::eval::{Evaluation, Score};
 use babybench::runs::{TrainingLog, write_scene};
@@ -115,7 +115,7 @@ fn run(blueprint: &Blueprint, policies: &[Option<Vec<f64>>], seed: u64) -> Resul
 /// Scores episodes as a training log is scored (its first record never counts).
 fn score(infos: Vec<Info>) -> Result<f64, Box<dyn std::error::Error>> {
     let log: Vec<Info> = infos.first().cloned().into_iter().chain(infos).collect();
-    Ok(Score::new(&log)?.value)
+    Ok(Score::new(&log, Compat::Api)?.value)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

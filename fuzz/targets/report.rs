@@ -8,6 +8,7 @@ mod log;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
+use babybench::config::Compat;
 use babybench::eval::Score;
 use babybench::report::Report;
 use babybench::runs::logs::{evaluation_path, read_training, training_path};
@@ -38,7 +39,7 @@ fuzz_target!(|data: &[u8]| {
         std::fs::write(evaluation_path(folder, 0), &evaluation).expect("a file");
     }
     if let Ok(records) = read_training(folder) {
-        if let Ok(score) = Score::new(&records) {
+        if let Ok(score) = Score::new(&records, Compat::Api) {
             assert!((0.0..=1.0).contains(&score.value), "a score of {}", score.value);
             let _ = score.to_text(None);
         }

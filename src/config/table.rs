@@ -157,7 +157,7 @@ config! {
     "Touch" {
         touch_active: bool = true, Bool, "Touch is observed." + "See [`Config::touch_enabled`].";
         touch_scale: f64 = 1.0, SCALE, "Factor on the distance between sensors; 0 switches touch off.";
-        touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports.";
+        touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports; `normal` exists under `compat: api` only, `normal_force` under `compat: reference` only.";
         touch_rate: Option<f64> = None, RATE, "How often the skin feels in a second, Hz; none for every step." + "In between, touch, pain and what is pooled are as they were last.";
         touch_response: TouchResponse = TouchResponse::Nearest, Choice(TouchResponse::NAMES), "How sensors share a force.";
         @parts touch = BodyParts { eyes: false, ..BodyParts::all(true) }, "Parts that have touch sensors (`touch_hands` ...)." {

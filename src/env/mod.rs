@@ -12,6 +12,7 @@ pub(crate) mod error;
 mod eyes;
 mod fields;
 pub(crate) mod info;
+mod notices;
 pub(crate) mod observation;
 mod outcome;
 mod physics;

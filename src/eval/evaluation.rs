@@ -6,9 +6,11 @@ use thiserror::Error;
 
 use super::film::{Film, FilmError, RoomFilm};
 use super::scores::{MAX_EPISODES, Score, ScoreError};
+use crate::config::Compat;
 use crate::env::Env;
 use crate::formats::avi::DEFAULT_FPS;
 use crate::runs::logs::{EvaluationLog, LogError, read_recent, training_path};
+use crate::runs::scene_compat;
 
 /// An error of an evaluation.
 #[derive(Debug, Error)]
@@ -54,17 +56,19 @@ pub enum EvaluationError {
     },
 }
 
-/// Returns the score of the training log in the folder of a run.
+/// Returns the score of the training log in the folder of a run, by the rule of the configuration in its scene ([`Score::counted`]);
+/// without one by that of `compat: api`.
 ///
 /// # Errors
 /// No log, a damaged one, one without score.
 pub fn eval_logs(save_dir: impl AsRef<Path>) -> Result<Score, EvaluationError> {
-    score(training_path(save_dir), None)
+    let compat = scene_compat(save_dir.as_ref());
+    score(training_path(save_dir), None, compat)
 }
 
 /// Returns the score of a training log, which must be of a behavior, if one is given.
-fn score(path: PathBuf, behavior: Option<&str>) -> Result<Score, EvaluationError> {
-    // the oldest never counts
+fn score(path: PathBuf, behavior: Option<&str>, compat: Compat) -> Result<Score, EvaluationError> {
+    // under compat: reference the oldest never counts
     let records = read_recent(&path, MAX_EPISODES + 1)?.records;
     let found = records.first().map(|r| r.behavior.name());
     match (found, behavior) {
@@ -72,7 +76,7 @@ fn score(path: PathBuf, behavior: Option<&str>) -> Result<Score, EvaluationError
             let [found, expected] = [found, expected].map(str::to_string);
             Err(EvaluationError::Behavior { path, found, expected })
         }
-        _ => Score::new(&records).map_err(|source| EvaluationError::Score { path, source }),
+        _ => Score::new(&records, compat).map_err(|source| EvaluationError::Score { path, source }),
     }
 }
 
@@ -106,6 +110,7 @@ fn score(path: PathBuf, behavior: Option<&str>) -> Result<Score, EvaluationError
 pub struct Evaluation<'f> {
     /// The name of the behavior or the task.
     behavior: String,
+    compat: Compat,
     save_dir: PathBuf,
     log: EvaluationLog,
     film: Option<Box<dyn Film + 'f>>,
@@ -125,6 +130,7 @@ impl<'f> Evaluation<'f> {
     pub fn new(env: &Env) -> Self {
         Self {
             behavior: env.info().behavior.name().to_string(),
+            compat: env.config().compat,
             save_dir: PathBuf::from(&env.config().save_dir),
             log: EvaluationLog::default(),
             film: None,
@@ -175,7 +181,7 @@ impl<'f> Evaluation<'f> {
     /// # Errors
     /// No log, a damaged one, one of another behavior, one without score.
     pub fn eval_logs(&self) -> Result<Score, EvaluationError> {
-        score(training_path(&self.save_dir), Some(&self.behavior))
+        score(training_path(&self.save_dir), Some(&self.behavior), self.compat)
     }
 
     /// Discards the steps since the last end.

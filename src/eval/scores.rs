@@ -1,7 +1,7 @@
 //! The preliminary achievement scores of a training log, and their parts.
 //!
-//! As the kit computes them, from the same records: the oldest of the last 10,001 records is left out, so that of a
-//! log of at most 10,001 records the first one never counts (the kit starts its logs with an empty one).
+//! As the kit computes them, but that every episode counts: the kit leaves out the first record of a log, as it starts its logs
+//! with an empty one. Under `compat: reference` the oldest of the last 10,001 records is left out, whatever it holds.
 
 mod serial;
 
@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use crate::config::Compat;
 use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, PartNames, PerEyeAndHand, PerHand, SCORED_PARTS as PARTS};
 use crate::json;
 use crate::model::Model;
@@ -28,7 +29,7 @@ pub enum ScoreError {
     Empty,
     /// There are no steps in the records that count.
     #[error(
-        "the training log has no steps that count ({records} records; the oldest never counts): \
+        "the training log has no steps that count ({records} records; under compat: reference the oldest never counts): \
          train for at least two episodes, then score"
     )]
     NoSteps {
@@ -72,13 +73,13 @@ pub enum ScoreParts {
 }
 
 impl Score {
-    /// Computes the score of the records of a training log.
+    /// Computes the score of the records of a training log, of which those count that [`Score::counted`] returns.
     ///
     /// # Errors
     /// A log without records, steps or behavior.
-    pub fn new(records: &[Info]) -> Result<Self, ScoreError> {
+    pub fn new(records: &[Info], compat: Compat) -> Result<Self, ScoreError> {
         let first = records.first().ok_or(ScoreError::Empty)?;
-        let chosen = Self::counted(records);
+        let chosen = Self::counted(records, compat);
         let (episodes, steps) = (chosen.len(), steps(chosen));
         let (value, parts) = match first.behavior {
             BehaviorInfo::None | BehaviorInfo::Task(_) => return Err(ScoreError::NoBehavior),
@@ -127,9 +128,14 @@ impl Score {
         self
     }
 
-    /// Returns the records that count.
-    pub fn counted(records: &[Info]) -> &[Info] {
-        let first = records.len().saturating_sub(MAX_EPISODES).max(1);
+    /// Returns the records that count: the last 10,000, without the empty record with which the kit starts its logs; under
+    /// [`Compat::Reference`] without the first record of the log, whatever it holds.
+    pub fn counted(records: &[Info], compat: Compat) -> &[Info] {
+        let left_out = match compat {
+            Compat::Api => records.iter().take_while(|record| record.steps == 0).count(),
+            Compat::Reference => 1,
+        };
+        let first = records.len().saturating_sub(MAX_EPISODES).max(left_out);
         records.get(first..).unwrap_or_default()
     }
 

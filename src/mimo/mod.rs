@@ -9,6 +9,7 @@ mod parts;
 mod placement;
 mod room;
 mod scene;
+mod standards;
 
 internals!(use anatomy::{BodyKind, body_kind});
 pub use assets::embedded;
@@ -30,3 +31,4 @@ pub use room::{RoomError, scene_assets};
 pub(crate) use scene::document_path;
 internals!(use scene::{DOCUMENT, build_scene});
 pub use scene::{SceneError, Version, build_model, scene_xml};
+pub use standards::{GrowthStandard, Lms};

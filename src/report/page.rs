@@ -261,14 +261,14 @@ fn curve_section(run: &Run) -> Markup {
     html! {
         section {
             h2 { "Learning curve" }
-            p { (what) " As in the score, the first record of the log does not count." }
+            p { (what) @if run.compat() == Compat::Reference { " As in the score, the first record of the log does not count." } }
             figure.chart { (chart) }
         }
     }
 }
 
 fn gaze_section(run: &mut Run) -> Markup {
-    let compat = run.config.as_ref().map_or(Compat::Api, |c| c.compat);
+    let compat = run.compat();
     let gaze = run.model.as_ref().and_then(|m| Gaze::new(m, &run.evaluations, compat));
     let Some(gaze) = gaze else {
         if !run.evaluations.is_empty() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::ReportError;
-use crate::config::{Behavior, Config, Scene};
+use crate::config::{Behavior, Compat, Config, Scene};
 use crate::env::Info;
 use crate::eval::{Score, Touchables};
 use crate::mimo::{build_model, embedded};
@@ -96,7 +96,10 @@ impl Run {
         let score = if training.is_empty() || tasks {
             None
         } else {
-            Score::new(&training).map_err(|e| notices.push(e.to_string())).ok()
+            let compat = config.as_ref().map_or(Compat::Api, |c| c.compat);
+            Score::new(&training, compat)
+                .map_err(|e| notices.push(e.to_string()))
+                .ok()
         };
         let score = score.map(|score| skin.map_or(score.clone(), |skin| score.within_reach(skin)));
         Ok(Self {
@@ -126,7 +129,8 @@ impl Run {
         if let Some(other) = other.filter(|&other| other != own) {
             return Err(refused(format!("its behavior is {other}")));
         }
-        let records = Score::counted(&records).to_vec();
+        let compat = scene_config(dir).map_or(Compat::Api, |c| c.compat);
+        let records = Score::counted(&records, compat).to_vec();
         if records.is_empty() {
             return Err(refused("its training log has no episodes".to_string()));
         }
@@ -136,9 +140,14 @@ impl Run {
         Ok(())
     }
 
+    /// Returns what the run follows where the API page and the Python code disagree.
+    pub fn compat(&self) -> Compat {
+        self.config.as_ref().map_or(Compat::Api, |config| config.compat)
+    }
+
     /// Returns the records that count for the score.
     pub fn counted(&self) -> &[Info] {
-        Score::counted(&self.training)
+        Score::counted(&self.training, self.compat())
     }
 
     /// Returns the parts that each hand touched, each with the share of episodes in which it did: in training, or,

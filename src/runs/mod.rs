@@ -57,10 +57,9 @@ pub use logs::{EvaluationLog, LogError, TrainingLog, TrainingTotals, read_traini
 pub use many::RunVector;
 #[cfg(feature = "npz")]
 internals!(use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images});
-#[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
 pub use scene_file::{SceneFileError, read_config, read_scene, write_scene};
 internals!(use scene_file::{
-    KeptScene, SceneFile, complete_scene, complete_scene_from, keep_scene, write_scene_from,
+    KeptScene, SceneFile, complete_scene, complete_scene_from, keep_scene, scene_compat, write_scene_from,
 });
 pub use training::{RunEnv, RunError, for_evaluation, make_env, start_training};

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::assets::{AssetSource, DirAssets, directory, resolve};
-use crate::config::{Behavior, Config, ConfigError};
+use crate::config::{Behavior, Compat, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
@@ -254,6 +254,12 @@ pub fn read_config(xml: &str) -> Result<Config, SceneFileError> {
 pub(crate) fn scene_config(save_dir: &Path) -> Option<Config> {
     let bytes = files::read(&save_dir.join(SCENE), Limits::DEFAULT.document_bytes as u64).ok()?;
     read_config(std::str::from_utf8(&bytes).ok()?).ok()
+}
+
+/// Returns what a run follows where the API page and the Python code disagree: that of the configuration in its scene, or the page,
+/// if there is none that can be read.
+pub fn scene_compat(save_dir: &Path) -> Compat {
+    scene_config(save_dir).map_or(Compat::Api, |config| config.compat)
 }
 
 /// Writes the configuration as an XML comment, without the explanations of its keys.

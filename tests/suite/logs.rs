@@ -189,8 +189,8 @@ fn bad_logs_say_what_to_do() {
         behavior: BehaviorInfo::None,
         ..Info::default()
     }];
-    assert_eq!(Score::new(&none), Err(ScoreError::NoBehavior));
-    assert_eq!(Score::new(&[]), Err(ScoreError::Empty));
+    assert_eq!(Score::new(&none, Compat::Api), Err(ScoreError::NoBehavior));
+    assert_eq!(Score::new(&[], Compat::Api), Err(ScoreError::Empty));
     let regard = |steps| Info {
         steps,
         behavior: BehaviorInfo::HandRegard {
@@ -198,9 +198,12 @@ fn bad_logs_say_what_to_do() {
         },
         ..Info::default()
     };
-    assert_eq!(Score::new(&[regard(5)]), Err(ScoreError::NoSteps { records: 1 }));
     assert_eq!(
-        Score::new(&[regard(5), regard(0)]),
+        Score::new(&[regard(5)], Compat::Reference),
+        Err(ScoreError::NoSteps { records: 1 })
+    );
+    assert_eq!(
+        Score::new(&[regard(5), regard(0)], Compat::Reference),
         Err(ScoreError::NoSteps { records: 2 })
     );
 }
@@ -218,14 +221,30 @@ fn scores_are_those_of_the_specification() {
         ..Info::default()
     };
     let records = [touch(&[1, 2, 3], &[9]), touch(&[5, 6], &[7]), touch(&[6], &[])];
-    let score = Score::new(&records).expect("a score");
+    let score = Score::new(&records, Compat::Reference).expect("a score");
     assert_eq!((score.value, score.parts_per_episode), (3.0 / 68.0, Some(2.0)));
     assert!(
         score
             .to_text(None)
             .contains("2 episodes, 2000 steps count; 2.0 parts touched in an episode")
     );
-    assert_eq!(Score::new(&records[..1]).expect("a score").value, 0.0);
+    assert_eq!(
+        Score::new(&records[..1], Compat::Reference).expect("a score").value,
+        0.0
+    );
+    // of the kit's logs, which start with an empty record, both rules leave that out alone
+    let all = Score::new(&records, Compat::Api).expect("a score");
+    assert_eq!(
+        (all.value, all.episodes, all.parts_per_episode),
+        (7.0 / 68.0, 3, Some(8.0 / 3.0))
+    );
+    let mut kit = vec![Info {
+        steps: 0,
+        ..touch(&[], &[])
+    }];
+    kit.extend(records.clone());
+    assert_eq!(Score::new(&kit, Compat::Reference), Ok(all.clone()));
+    assert_eq!(Score::new(&kit, Compat::Api), Ok(all));
     let regard = |n, steps| Info {
         steps,
         behavior: BehaviorInfo::HandRegard {
@@ -233,15 +252,15 @@ fn scores_are_those_of_the_specification() {
         },
         ..Info::default()
     };
-    let score = Score::new(&[regard(100, 100), regard(3, 10), regard(1, 30)]).expect("a score");
+    let score = Score::new(&[regard(100, 100), regard(3, 10), regard(1, 30)], Compat::Reference).expect("a score");
     assert_eq!((score.value, score.parts_per_episode), (0.1, None));
     assert_eq!(score.fractions(), Some([0.1; 4].into()));
     // of more than 10,001 records the last 10,000 count
     let mut many = vec![touch(&[1, 2], &[3]); 5];
     many.extend(vec![touch(&[7], &[]); 10_000]);
-    let score = Score::new(&many).expect("a score");
+    let score = Score::new(&many, Compat::Reference).expect("a score");
     assert_eq!((score.value, score.episodes), (1.0 / 68.0, 10_000));
-    let exactly = Score::new(&many[4..]).expect("a score");
+    let exactly = Score::new(&many[4..], Compat::Reference).expect("a score");
     assert_eq!((exactly.value, exactly.episodes), (1.0 / 68.0, 10_000));
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::common::*;
-use babybench::config::{Behavior, Scene};
+use babybench::config::{Behavior, Compat, Scene};
 use babybench::env::{BehaviorInfo, Info, Outcome, PartNames, PerHand, TaskInfo};
 use babybench::eval::{MAX_EPISODES, Score};
 use babybench::formats::pickle::{self, Value};
@@ -98,7 +98,10 @@ fn a_resumed_log_is_that_of_one_run() {
     assert_eq!((recent.total, recent.records.len()), (12_000, TrainingLog::RECENT));
     assert!(log.records() == expected && expected.ends_with(&recent.records));
     assert!(read_training(folder.path()).expect("a log") == expected);
-    assert_eq!(Score::new(&recent.records), Score::new(&expected));
+    assert_eq!(
+        Score::new(&recent.records, Compat::Api),
+        Score::new(&expected, Compat::Api)
+    );
     let mut log = log.clone();
     push(&mut log, 12_000..12_001);
     assert_eq!(log.records().len(), 12_001);

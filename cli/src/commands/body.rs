@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use babybench::mimo::{BodyFigures, Version};
+use babybench::mimo::{BodyFigures, GrowthStandard, Lms, Version};
 use babybench::{Env, Model};
 
 /// Ages of the authors' figures, months.
@@ -109,6 +109,24 @@ pub fn write(out: &mut impl Write, env: &Env, age: f64) -> io::Result<()> {
             let gear = model.actuator_gear[k];
             line(&format!("gear {name}"), gear, strength_age, Some(&row), "N m")?;
         }
+    }
+    write_standards(out, figures, age)
+}
+
+/// Writes where length and weight lie among infants of an age.
+fn write_standards(out: &mut impl Write, figures: BodyFigures, age: f64) -> io::Result<()> {
+    writeln!(
+        out,
+        "  among infants (WHO Child Growth Standards 2006): z-score, and -2, 0 and +2 standard deviations"
+    )?;
+    for standard in GrowthStandard::at(age) {
+        let mut line = |what: &str, value: f64, lms: Lms, unit: &str| {
+            let [low, middle, high] = [-2.0, 0.0, 2.0].map(|z| lms.value(z));
+            let (z, what) = (lms.z(value), format!("{what} of {}", standard.of));
+            writeln!(out, "  {what:27} {z:>+9.1}  {low:.1}, {middle:.1}, {high:.1} {unit}")
+        };
+        line("length", 100.0 * figures.stature, standard.length, "cm")?;
+        line("weight", figures.mass, standard.weight, "kg")?;
     }
     Ok(())
 }

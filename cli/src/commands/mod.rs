@@ -29,6 +29,8 @@ use babybench::{Blueprint, Env};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::print::note;
+
 /// BabyBench in Rust: the infant model MIMo, its scenes and senses
 #[derive(Parser)]
 #[command(version, about)]
@@ -110,6 +112,14 @@ impl Source {
 
     /// Builds the blueprint of a configuration.
     fn build(&self, config: Config) -> Result<Blueprint, Box<dyn Error>> {
+        let blueprint = self.build_from_assets(config)?;
+        for notice in blueprint.notices() {
+            note!("note: {notice}");
+        }
+        Ok(blueprint)
+    }
+
+    fn build_from_assets(&self, config: Config) -> Result<Blueprint, Box<dyn Error>> {
         let Some(dir) = &self.assets else {
             return Ok(Blueprint::new(config)?);
         };

@@ -152,11 +152,13 @@ impl Train {
             say!("Details: babybench report {dir}")?;
             return Ok(());
         }
-        match Score::new(&log.recent().records) {
+        match Score::new(&log.recent().records, config.compat) {
             Ok(score) => {
                 say!("{score}")?;
                 if score.episodes == 0 {
-                    say!("No record counts yet (the oldest never does); train for at least two episodes")?;
+                    say!(
+                        "No record counts yet (under compat: reference the oldest never does); train for at least two episodes"
+                    )?;
                 }
                 say!("Details: babybench score {dir}, babybench report {dir}")?;
             }

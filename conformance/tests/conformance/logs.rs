@@ -38,7 +38,7 @@ fn the_kits_logs_give_the_kits_scores() {
             e["episodes"].as_u64().expect("a number"),
             "{file}"
         );
-        let score = Score::new(&records).expect("a score");
+        let score = Score::new(&records, Compat::Reference).expect("a score");
         show!("{file}: {} (kit {})", score.value, e["score"]);
         assert_eq!(
             score.value.to_bits(),
@@ -169,7 +169,7 @@ fn random_actions_score_as_the_references_do() {
         env.reset(None).expect("no divergence");
         let records = env.log().expect("a log").records();
         assert_eq!(records.len(), 21);
-        Score::new(records).expect("a score").value
+        Score::new(records, Compat::Reference).expect("a score").value
     };
     let scores: Vec<f64> = seeds.map(score).collect();
     std::fs::remove_dir_all(&folder).expect("the folder was made");

@@ -1,5 +1,6 @@
 //! Training in many environments at once, and the random policies to compare with.
 
+use babybench::config::Compat;
 use babybench::eval::Score;
 use babybench::runs::RunVector;
 use babybench::{Blueprint, Info, VectorOptions};
@@ -125,7 +126,7 @@ impl Training {
     /// # Errors
     /// A log without episodes.
     pub fn score(&self) -> Result<f64, Error> {
-        Ok(Score::new(self.envs.log().records())?.value)
+        Ok(Score::new(self.envs.log().records(), Compat::Api)?.value)
     }
 
     /// Returns the episodes so far.

@@ -4,14 +4,77 @@ use maud::{Markup, html};
 
 use super::{embed, grouped, percent, step_time};
 use crate::config::{Behavior, Compat};
-use crate::env::{EYE_HAND_PAIRS, Outcome, PartNames};
+use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, Outcome, PartNames};
 use crate::eval::Score;
 use crate::report::run::{Evaluated, Run};
 use crate::report::strip::{frames, moments};
 
-/// Returns the score that an evaluation episode has alone.
-fn episode_score(evaluated: &Evaluated) -> Option<f64> {
-    Score::of_episode(evaluated.log.info.last()?, evaluated.log.len() as u64)
+/// What an evaluation episode counted by itself. Under `compat: reference` counters and lists go on from episode to episode.
+#[derive(Default)]
+struct Alone {
+    /// Parts that each hand touched; where lists go on, those that are new.
+    parts: Option<[usize; 2]>,
+    /// Steps with a hand in view.
+    counts: Option<[u64; 4]>,
+    /// The score that the episode has alone, if its record tells.
+    score: Option<f64>,
+}
+
+/// Returns what an episode counted by itself; `before` is the end of the episode before it.
+fn alone(evaluated: &Evaluated, before: Option<&Info>) -> Alone {
+    let (Some(first), Some(last)) = (evaluated.log.info.first(), evaluated.log.info.last()) else {
+        return Alone::default();
+    };
+    let steps = evaluated.log.len() as u64;
+    if let (Some(start), Some(end)) = (first.behavior.touches(), last.behavior.touches()) {
+        // lists that go on start with those of the episode before
+        let old = before.and_then(|info| info.behavior.touches());
+        let old = old.filter(|old| old.iter().zip(start).all(|(old, start)| start.starts_with(old)));
+        let old = old.map_or([0; 2], |old| old.map(<[usize]>::len));
+        let parts = std::array::from_fn(|hand| end[hand].len().saturating_sub(old[hand]));
+        let score = Score::of_episode(last, steps).filter(|_| old == [0; 2]);
+        return Alone {
+            parts: Some(parts),
+            score,
+            ..Alone::default()
+        };
+    }
+    let Some((start, end)) = first.behavior.regards().zip(last.behavior.regards()) else {
+        return Alone {
+            score: Score::of_episode(last, steps),
+            ..Alone::default()
+        };
+    };
+    // in one step a counter grows by one at most
+    let follows = |old: &[u64; 4]| start.iter().zip(old).all(|(now, old)| now.wrapping_sub(*old) <= 1);
+    let old = before
+        .and_then(|info| info.behavior.regards())
+        .filter(|_| !follows(&[0; 4]));
+    let old = match old.filter(follows) {
+        Some(old) => old,
+        None if follows(&[0; 4]) => [0; 4],
+        // what came before is not in the log
+        None => start,
+    };
+    let counts: [u64; 4] = std::array::from_fn(|k| end[k].saturating_sub(old[k]));
+    let behavior = BehaviorInfo::HandRegard { counts: counts.into() };
+    Alone {
+        counts: Some(counts),
+        score: behavior.score(steps),
+        ..Alone::default()
+    }
+}
+
+/// Returns what each episode counted by itself.
+fn all_alone(run: &Run) -> Vec<Alone> {
+    let goes_on = run.compat() == Compat::Reference;
+    let mut before: Option<&Evaluated> = None;
+    let each = run.evaluations.iter().map(|evaluated| {
+        let last = before.replace(evaluated);
+        let last = last.filter(|last| goes_on && last.episode.checked_add(1) == Some(evaluated.episode));
+        alone(evaluated, last.and_then(|last| last.log.info.last()))
+    });
+    each.collect()
 }
 
 /// Draws the section: key frames of the best episode with a video, and a table of all.
@@ -19,8 +82,14 @@ pub(super) fn evaluation_section(run: &mut Run) -> Markup {
     if run.evaluations.is_empty() {
         return html! {};
     }
-    let scores: Vec<Option<f64>> = run.evaluations.iter().map(episode_score).collect();
-    let with_video = || run.evaluations.iter().zip(&scores).filter(|(e, _)| e.video.is_some());
+    let counted = all_alone(run);
+    let scores = counted.iter().map(|alone| alone.score);
+    let with_video = || {
+        run.evaluations
+            .iter()
+            .zip(scores.clone())
+            .filter(|(e, _)| e.video.is_some())
+    };
     let best = with_video().max_by(|a, b| {
         a.1.unwrap_or(0.0)
             .total_cmp(&b.1.unwrap_or(0.0))
@@ -41,7 +110,7 @@ pub(super) fn evaluation_section(run: &mut Run) -> Markup {
         section {
             h2 { "Evaluation" }
             (strip)
-            (evaluation_table(run, &scores))
+            (evaluation_table(run, &counted))
         }
     };
     run.notices.extend(notice);
@@ -93,7 +162,7 @@ fn outcome(outcome: &Outcome) -> &'static str {
 }
 
 /// Draws the table of all episodes.
-fn evaluation_table(run: &Run, scores: &[Option<f64>]) -> Markup {
+fn evaluation_table(run: &Run, counted: &[Alone]) -> Markup {
     let touch = run.behavior == Behavior::SelfTouch;
     let regard = run.behavior == Behavior::HandRegard;
     let of_task = |e: &Evaluated| e.log.info.last().is_some_and(|info| info.behavior.task().is_some());
@@ -107,28 +176,29 @@ fn evaluation_table(run: &Run, scores: &[Option<f64>]) -> Markup {
                 @if touch || regard { th.number { "score of the episode" } }
                 @if task { th.number { "return" } th { "outcome" } }
             } }
-            @for (evaluated, score) in run.evaluations.iter().zip(scores) {
+            @for (evaluated, alone) in run.evaluations.iter().zip(counted) {
                 @let steps = evaluated.log.len();
                 tr {
                     td { (evaluated.episode) } td.number { (grouped(steps as u64)) }
+                    @if let Some(parts) = alone.parts { @for n in parts { td.number { (n) } } }
+                    @if let Some(counts) = alone.counts {
+                        @for n in counts { td.number { (percent(n as f64 / steps as f64)) } }
+                    }
                     @if let Some(info) = evaluated.log.info.last() {
-                        @if let Some(touches) = info.behavior.touches() {
-                            @for list in touches { td.number { (list.len()) } }
-                        }
-                        @if let Some(counts) = info.behavior.regards() {
-                            @for n in counts { td.number { (percent(n as f64 / steps as f64)) } }
-                        }
                         @if let Some(task) = info.behavior.task() {
                             td.number { (format!("{:.3}", task.episode_return)) }
                             td { (outcome(&task.outcome)) }
                         }
                     }
-                    @if let Some(score) = score { td.number { b { (format!("{score:.3}")) } } }
+                    @if touch || regard { td.number { b { (alone.score.map_or("–".to_string(), |score| format!("{score:.3}"))) } } }
                 }
             }
         } }
-        @if run.config.as_ref().is_some_and(|c| c.compat == Compat::Reference) && run.evaluations.len() > 1 {
-            p.note { "Under compat: reference counters carry over from episode to episode." }
+        @if touch && run.compat() == Compat::Reference && run.evaluations.len() > 1 {
+            p.note {
+                "Under compat: reference the lists of touched parts go on from episode to episode: the table has those that were new in "
+                "each, and what an episode would score alone is not known but for the first."
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Acuity: the blurred vision of infants.
 
-use super::fourier::{Fourier, Plane};
+use super::fourier::{Fourier, Mirrored, Plane};
 use super::{Signal, Transform};
 use crate::spaces::NumpyRng;
 
@@ -51,14 +51,15 @@ pub struct AcuityOptions {
     pub age: f64,
     /// Height of the field of view, degrees; pixels are square.
     pub fovy: f64,
-    /// Whether to follow the authors' Python code, which truncates instead of rounding, is half a
-    /// frequency off in images of odd size, and takes the field of view to be that of the longer side.
+    /// Whether to follow the authors' Python code, which blurs across the borders, as if images went on with their opposite
+    /// side, truncates instead of rounding, is half a frequency off in images of odd size, and takes the field of view to be that of
+    /// the longer side.
     pub reference: bool,
 }
 
 /// Blurs colours and gray as an eye of some age sees them. The spectrum of the image is multiplied by a transfer function
 /// that is 1 up to 0.1 cycles per degree and falls to 0.01 at the cut-off of the age, in a straight line over the
-/// logarithms of both; distances and ids stay.
+/// logarithms of both; distances and ids stay. Beyond its border an image goes on as its mirror image.
 #[derive(Clone, Debug)]
 pub struct Acuity {
     options: AcuityOptions,
@@ -66,20 +67,39 @@ pub struct Acuity {
     width: usize,
     /// Column by column.
     transfer: Vec<f64>,
-    /// Whether the transfer function is the same for a frequency and its negative, so that real pictures stay real.
-    symmetric: bool,
-    fourier: Fourier,
+    filter: Filter,
     plane: Plane,
+}
+
+/// How images go on beyond their border.
+#[derive(Clone, Debug)]
+enum Filter {
+    /// As their mirror image.
+    Mirrored(Box<Mirrored>),
+    /// With their opposite side, as the authors' code has it.
+    Wrapped {
+        fourier: Box<Fourier>,
+        /// Whether the transfer function is the same for a frequency and its negative, so that real pictures stay real.
+        symmetric: bool,
+    },
 }
 
 impl Acuity {
     /// Creates the blur of images of `height` by `width` pixels.
     pub fn new(options: AcuityOptions, height: usize, width: usize) -> Self {
-        let odd = height % 2 == 1 || width % 2 == 1;
+        let (transfer, filter) = if options.reference {
+            let filter = Filter::Wrapped {
+                fourier: Box::new(Fourier::new(height, width)),
+                symmetric: height % 2 == 0 && width % 2 == 0,
+            };
+            (transfer_of_waves(options, height, width), filter)
+        } else {
+            let filter = Filter::Mirrored(Box::new(Mirrored::new(height, width)));
+            (transfer_of_half_waves(options, height, width), filter)
+        };
         Self {
-            transfer: transfer(options, height, width),
-            symmetric: !(options.reference && odd),
-            fourier: Fourier::new(height, width),
+            transfer,
+            filter,
             plane: Plane::new(height * width),
             options,
             height,
@@ -90,34 +110,66 @@ impl Acuity {
     /// Returns the transfer function at the frequency of `v` waves over the height and `u` over the width, each from half
     /// the pixels below zero on.
     pub fn transfer(&self, v: isize, u: isize) -> f64 {
-        let (v, u) = (v.rem_euclid(self.height as isize), u.rem_euclid(self.width as isize));
-        self.transfer[u as usize * self.height + v as usize]
+        if self.options.reference {
+            let (v, u) = (v.rem_euclid(self.height as isize), u.rem_euclid(self.width as isize));
+            return self.transfer[u as usize * self.height + v as usize];
+        }
+        let (down, across) = (v as f64 / self.height as f64, u as f64 / self.width as f64);
+        let per_degree = self.height as f64 / self.options.fovy;
+        gain(
+            (across * across + down * down).sqrt() * per_degree,
+            slope(self.options.age),
+        )
+    }
+
+    /// Returns the highest spatial frequency that images of this size can hold, cycles per degree: half a wave per pixel.
+    pub fn resolution(&self) -> f64 {
+        0.5 * self.height as f64 / self.options.fovy
+    }
+
+    /// Filters both parts of the plane. Returns whether real pictures have stayed real.
+    fn filter(&mut self) -> bool {
+        match &mut self.filter {
+            Filter::Mirrored(mirrored) => {
+                mirrored.filter(&mut self.plane, &self.transfer);
+                true
+            }
+            Filter::Wrapped { fourier, symmetric } => {
+                fourier.filter(&mut self.plane, &self.transfer);
+                *symmetric
+            }
+        }
     }
 
     /// Blurs an image in place; `channels` values for each pixel.
     fn blur(&mut self, image: &mut [u8], channels: usize) {
         // a symmetric transfer function keeps real images real: two channels go through as real and imaginary part of
         // one
-        let together = if self.symmetric { 2 } else { 1 };
-        let rounding = if self.options.reference { EXACT } else { 0.5 };
+        let (mirrored, symmetric) = match self.filter {
+            Filter::Mirrored(_) => (true, true),
+            Filter::Wrapped { symmetric, .. } => (false, symmetric),
+        };
+        let together = if symmetric { 2 } else { 1 };
+        let rounding = if mirrored { 0.5 } else { EXACT };
         for first in (0..channels).step_by(together) {
             let second = Some(first + 1).filter(|&s| together == 2 && s < channels);
             for (k, pixel) in image.chunks_exact(channels).enumerate() {
                 self.plane.re[k] = f64::from(pixel[first]);
                 self.plane.im[k] = second.map_or(0.0, |s| f64::from(pixel[s]));
             }
-            self.fourier.filter(&mut self.plane, &self.transfer);
+            let real = self.filter();
             for (k, pixel) in image.chunks_exact_mut(channels).enumerate() {
                 let (re, im) = (self.plane.re[k], self.plane.im[k]);
-                let magnitude = if self.symmetric {
-                    re.abs()
-                } else {
-                    (re * re + im * im).sqrt()
+                let (value, other) = match (mirrored, real) {
+                    (true, _) => (re, im),
+                    // the authors' code takes the magnitude of what should be real
+                    (false, true) => (re.abs(), im.abs()),
+                    (false, false) => ((re * re + im * im).sqrt(), 0.0),
                 };
                 // conversion cuts off and clips
-                pixel[first] = (magnitude + rounding) as u8;
+                pixel[first] = (value + rounding) as u8;
                 if let Some(second) = second {
-                    pixel[second] = (im.abs() + rounding) as u8;
+                    pixel[second] = (other + rounding) as u8;
                 }
             }
         }
@@ -127,42 +179,64 @@ impl Acuity {
 /// Added before the fraction is cut off, for whole numbers that rounding has made a little smaller.
 const EXACT: f64 = 1e-9;
 
-/// Returns the transfer function of all frequencies, column by column, in the order of a Fourier transform.
-fn transfer(options: AcuityOptions, height: usize, width: usize) -> Vec<f64> {
-    let (h, w) = (height as f64, width as f64);
-    // from 1 at 0.1 cycles per degree to 0.01 at the cut-off: two decades down over log10(cutoff) + 1 decades across
-    let slope = -2.0 / (1.0 + pxfm::f_log10(acuity_cutoff(options.age)));
-    let per_degree = if options.reference { h.max(w) } else { h } / options.fovy;
-    let frequency = |index: usize, size: usize| {
-        // the order of a Fourier transform, which starts at frequency 0, to that of frequencies
-        let centred = (index + size / 2) % size;
-        let middle = if options.reference {
-            size as f64 / 2.0
-        } else {
-            (size / 2) as f64
-        };
-        (centred as f64 - middle) / size as f64
-    };
+/// Returns the exponent of the transfer function: from 1 at 0.1 cycles per degree to 0.01 at the cut-off, two decades down over
+/// log10(cutoff) + 1 decades across.
+fn slope(age: f64) -> f64 {
+    -2.0 / (1.0 + pxfm::f_log10(acuity_cutoff(age)))
+}
+
+/// Returns the transfer function at a frequency, cycles per degree.
+fn gain(frequency: f64, slope: f64) -> f64 {
+    if frequency < 0.1 {
+        1.0
+    } else {
+        pxfm::f_pow(10.0 * frequency, slope).clamp(0.01, 0.99)
+    }
+}
+
+/// Returns the transfer function of all frequencies, column by column; `frequency` is that of an index, of a number of pixels,
+/// cycles per pixel.
+fn table(age: f64, per_degree: f64, [height, width]: [usize; 2], frequency: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    let slope = slope(age);
     let mut out = Vec::with_capacity(height * width);
     for u in 0..width {
         let across = frequency(u, width);
         out.extend((0..height).map(|v| {
             let down = frequency(v, height);
-            let x = (across * across + down * down).sqrt() * per_degree;
-            if x < 0.1 {
-                1.0
-            } else {
-                pxfm::f_pow(10.0 * x, slope).clamp(0.01, 0.99)
-            }
+            gain((across * across + down * down).sqrt() * per_degree, slope)
         }));
     }
     out
 }
 
+/// Returns the transfer function as the authors have it, in the order of a Fourier transform.
+fn transfer_of_waves(options: AcuityOptions, height: usize, width: usize) -> Vec<f64> {
+    let per_degree = (height as f64).max(width as f64) / options.fovy;
+    table(options.age, per_degree, [height, width], |index, size| {
+        // the order of a Fourier transform, which starts at frequency 0, to that of frequencies
+        let centred = (index + size / 2) % size;
+        (centred as f64 - size as f64 / 2.0) / size as f64
+    })
+}
+
+/// Returns the transfer function in the order of a cosine transform, whose frequencies are half waves.
+fn transfer_of_half_waves(options: AcuityOptions, height: usize, width: usize) -> Vec<f64> {
+    let per_degree = height as f64 / options.fovy;
+    table(options.age, per_degree, [height, width], |index, size| {
+        index as f64 / (2 * size) as f64
+    })
+}
+
 impl Transform for Acuity {
     fn describe(&self) -> String {
         let age = self.options.age;
-        format!("acuity of {age} months ({:.3} cycles/degree)", acuity_cutoff(age))
+        let (cutoff, resolution) = (acuity_cutoff(age), self.resolution());
+        let pixels = self.height;
+        if resolution < cutoff {
+            format!("acuity of {age} months ({cutoff:.3} cycles/degree; {pixels} pixels hold {resolution:.3})")
+        } else {
+            format!("acuity of {age} months ({cutoff:.3} cycles/degree)")
+        }
     }
 
     fn apply(&mut self, signal: Signal<'_>, _: &mut NumpyRng) {

@@ -70,6 +70,155 @@ impl Fourier {
     }
 }
 
+/// Filters of pictures that go on beyond their borders as in a mirror: cosine transforms, each by a Fourier transform of the same
+/// length (J. Makhoul, "A Fast Cosine Transform in One and Two Dimensions", 1980).
+#[derive(Clone, Debug)]
+pub(super) struct Mirrored {
+    height: usize,
+    width: usize,
+    down: Cosines,
+    across: Cosines,
+    /// Room for the picture with rows and columns exchanged.
+    turned: Plane,
+}
+
+impl Mirrored {
+    pub fn new(height: usize, width: usize) -> Self {
+        Self {
+            height,
+            width,
+            down: Cosines::new(height, width),
+            across: Cosines::new(width, height),
+            turned: Plane::new(height * width),
+        }
+    }
+
+    /// Multiplies the spectrum of a picture by `transfer`, which stands column by column, and transforms it back. Number k of a
+    /// column is the frequency of k half waves over the height.
+    pub fn filter(&mut self, picture: &mut Plane, transfer: &[f64]) {
+        let (height, width) = (self.height, self.width);
+        let turned = &mut self.turned;
+        vectorize(
+            #[inline(always)]
+            || {
+                self.down.forward(picture);
+                turn(picture, turned, height, width);
+                self.across.forward(turned);
+                for ((re, im), t) in turned.re.iter_mut().zip(&mut turned.im).zip(transfer) {
+                    (*re, *im) = (*re * t, *im * t);
+                }
+                self.across.backward(turned);
+                turn(turned, picture, width, height);
+                self.down.backward(picture);
+                let share = 1.0 / (height * width) as f64;
+                for v in picture.re.iter_mut().chain(&mut picture.im) {
+                    *v *= share;
+                }
+            },
+        );
+    }
+}
+
+/// Cosine transforms of all columns of a picture at once.
+#[derive(Clone, Debug)]
+struct Cosines {
+    length: usize,
+    width: usize,
+    columns: Columns,
+    /// Cosine and sine of pi k / 2 n.
+    quarter: Vec<[f64; 2]>,
+    /// Room for the picture in another order of its rows.
+    room: Plane,
+}
+
+impl Cosines {
+    fn new(length: usize, width: usize) -> Self {
+        let quarter = |k: usize| {
+            let (sin, cos) = pxfm::f_sincospi(k as f64 / (2 * length) as f64);
+            [cos, sin]
+        };
+        Self {
+            length,
+            width,
+            columns: Columns::new(length, width),
+            quarter: (0..length).map(quarter).collect(),
+            room: Plane::new(length * width),
+        }
+    }
+
+    /// Returns which row of the picture stands at a place in the Fourier transform: those of even number, then the odd ones backwards.
+    #[inline(always)]
+    fn row_at(&self, place: usize) -> usize {
+        let n = self.length;
+        if 2 * place < n {
+            2 * place
+        } else {
+            2 * (n - 1 - place) + 1
+        }
+    }
+
+    #[inline(always)]
+    fn forward(&mut self, plane: &mut Plane) {
+        let (n, w) = (self.length, self.width);
+        for place in 0..n {
+            let (from, to) = (self.row_at(place) * w, place * w);
+            self.room.re[to..to + w].copy_from_slice(&plane.re[from..from + w]);
+            self.room.im[to..to + w].copy_from_slice(&plane.im[from..from + w]);
+        }
+        std::mem::swap(plane, &mut self.room);
+        self.columns.forward(plane);
+        self.pairs(
+            plane,
+            #[inline(always)]
+            |[c, s], [a_re, a_im], [b_re, b_im]| {
+                let (sum_re, sum_im, less_re, less_im) = (a_re + b_re, a_im + b_im, a_re - b_re, a_im - b_im);
+                let first = [0.5 * (c * sum_re + s * less_im), 0.5 * (c * sum_im - s * less_re)];
+                let second = [0.5 * (s * sum_re - c * less_im), 0.5 * (s * sum_im + c * less_re)];
+                [first, second]
+            },
+        );
+    }
+
+    /// The inverse, n times as large.
+    #[inline(always)]
+    fn backward(&mut self, plane: &mut Plane) {
+        let (n, w) = (self.length, self.width);
+        self.pairs(
+            plane,
+            #[inline(always)]
+            |[c, s], [a_re, a_im], [b_re, b_im]| {
+                let (p_re, p_im, q_re, q_im) = (a_re + b_im, a_im - b_re, b_re + a_im, b_im - a_re);
+                [
+                    [c * p_re - s * p_im, c * p_im + s * p_re],
+                    [s * q_re - c * q_im, s * q_im + c * q_re],
+                ]
+            },
+        );
+        self.columns.backward(plane);
+        for place in 0..n {
+            let (from, to) = (place * w, self.row_at(place) * w);
+            self.room.re[to..to + w].copy_from_slice(&plane.re[from..from + w]);
+            self.room.im[to..to + w].copy_from_slice(&plane.im[from..from + w]);
+        }
+        std::mem::swap(plane, &mut self.room);
+    }
+
+    /// Replaces the numbers in rows k and n - k by what `exchange` makes of them and of cosine and sine; row 0 stays.
+    #[inline(always)]
+    fn pairs(&self, plane: &mut Plane, exchange: impl Fn([f64; 2], [f64; 2], [f64; 2]) -> [[f64; 2]; 2]) {
+        let (n, w) = (self.length, self.width);
+        for k in 1..=n / 2 {
+            let (low, high, turn) = (k * w, (n - k) * w, self.quarter[k]);
+            for i in 0..w {
+                let (a, b) = (low + i, high + i);
+                let [first, second] = exchange(turn, [plane.re[a], plane.im[a]], [plane.re[b], plane.im[b]]);
+                // in the middle both are the same row
+                ([plane.re[b], plane.im[b]], [plane.re[a], plane.im[a]]) = (second, first);
+            }
+        }
+    }
+}
+
 /// Transposes an image of `rows` rows and `columns` columns.
 #[inline(always)]
 fn turn(from: &Plane, to: &mut Plane, rows: usize, columns: usize) {
@@ -307,6 +456,48 @@ mod tests {
             for k in 0..height * width {
                 let off = (picture.re[k] - expect.re[k]).hypot(picture.im[k] + expect.im[k]);
                 assert!(off < 1e-13, "{height} x {width}: {off:e} off at {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn mirrored_filters_are_those_of_pictures_with_their_mirror_images() {
+        let mut rng = NumpyRng::seed(1);
+        for (height, width) in [
+            (1, 1),
+            (1, 7),
+            (2, 3),
+            (4, 4),
+            (5, 8),
+            (6, 6),
+            (9, 5),
+            (16, 12),
+            (17, 1),
+        ] {
+            let mut picture = Plane::new(height * width);
+            for v in picture.re.iter_mut().chain(&mut picture.im) {
+                *v = rng.uniform() - 0.5;
+            }
+            let transfer: Vec<f64> = (0..height * width).map(|_| rng.uniform()).collect();
+            let mirror = |i: usize, n: usize| if i < n { i } else { 2 * n - 1 - i };
+            let mut whole = Plane::new(4 * height * width);
+            let mut twice = vec![0.0; 4 * height * width];
+            for (y, x) in (0..2 * height).flat_map(|y| (0..2 * width).map(move |x| (y, x))) {
+                let from = mirror(y, height) * width + mirror(x, width);
+                let at = y * 2 * width + x;
+                (whole.re[at], whole.im[at]) = (picture.re[from], picture.im[from]);
+                // a frequency and its negative; that of the whole length has no share in what is mirrored
+                let [v, u] = [(y, height), (x, width)].map(|(k, n)| if k <= n { k } else { 2 * n - k });
+                if v < height && u < width {
+                    twice[x * 2 * height + y] = transfer[u * height + v];
+                }
+            }
+            Fourier::new(2 * height, 2 * width).filter(&mut whole, &twice);
+            Mirrored::new(height, width).filter(&mut picture, &transfer);
+            for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+                let (k, at) = (y * width + x, y * 2 * width + x);
+                let off = (picture.re[k] - whole.re[at]).hypot(picture.im[k] - whole.im[at]);
+                assert!(off < 1e-13, "{height} x {width}: {off:e} off at {y}, {x}");
             }
         }
     }

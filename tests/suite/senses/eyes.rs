@@ -64,6 +64,27 @@ fn acuity_keeps_the_mean_and_grows_with_age() {
 }
 
 #[test]
+fn acuity_does_not_reach_across_the_border() {
+    let (height, width) = (64, 64);
+    let bright_at_the_right = |reference: bool| {
+        let mut images = EyeImages::new(VisionOutputs::default(), height * width);
+        for (k, pixel) in images.rgb.chunks_exact_mut(3).enumerate() {
+            pixel.fill(if k % width >= width - 4 { 255 } else { 0 });
+        }
+        let options = AcuityOptions {
+            age: 0.0,
+            fovy: 60.0,
+            reference,
+        };
+        apply(&mut Acuity::new(options, height, width), &mut images, height, width);
+        images.rgb[3 * (32 * width)]
+    };
+    // the authors' blur shows a ghost at the left border of what is at the right one
+    assert!(bright_at_the_right(true) > 20, "{}", bright_at_the_right(true));
+    assert!(bright_at_the_right(false) < 5, "{}", bright_at_the_right(false));
+}
+
+#[test]
 fn foveation_enlarges_the_middle_and_keeps_the_corner() {
     let mut rng = NumpyRng::seed(3);
     for (height, width) in [(64, 64), (20, 33)] {
