@@ -1,5 +1,6 @@
 //! The part that all environments of one configuration share.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use crate::actuation;
@@ -7,7 +8,7 @@ use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
 use crate::env::engines::{EngineSource, Engines};
 use crate::env::pipeline::effective;
-use crate::env::snapshot::fingerprint;
+use crate::env::snapshot::Identity;
 use crate::env::task::{TaskScene, TaskSizes, of_config};
 use crate::env::{Env, EnvError, Task};
 use crate::mimo::{build_scene, embedded, lock, scene_assets};
@@ -41,8 +42,18 @@ pub struct Blueprint {
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
     /// What a snapshot must fit.
-    fingerprint: u64,
+    identity: Arc<Identity>,
+    /// The same, the model and its parameters before a program changed the model.
+    origin: Arc<Origin>,
     surface: Surface,
+}
+
+/// What a blueprint was before its model was changed.
+#[derive(Debug)]
+struct Origin {
+    model: Arc<Model>,
+    params: Arc<Params>,
+    identity: Arc<Identity>,
 }
 
 /// What belongs to the bodies of a scene, whatever moves them.
@@ -207,8 +218,16 @@ impl Blueprint {
         let engines = Arc::new(Engines::new(&config, &model)?);
         let sizes = task.bind(&config, &model)?;
         let settled = Settled::new(&config, &*task, &engines, &model)?;
+        let identity = Arc::new(Identity::new(&model, &config));
+        let params = Arc::new(settled.params);
+        let origin = Origin {
+            model: model.clone(),
+            params: params.clone(),
+            identity: identity.clone(),
+        };
         Ok(Self {
-            fingerprint: fingerprint(&model, &config),
+            identity,
+            origin: Arc::new(origin),
             config: Arc::new(config),
             task,
             sizes,
@@ -216,9 +235,31 @@ impl Blueprint {
             engines,
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
-            params: Arc::new(settled.params),
+            params,
             surface,
         })
+    }
+
+    /// Returns the same blueprint with a model that a program has changed: not settled anew. `changes` are the arrays that differ from those
+    /// of the scene.
+    pub(super) fn with_model(
+        &self,
+        model: Arc<Model>,
+        params: Params,
+        changes: &BTreeMap<&'static str, &[f64]>,
+    ) -> Result<Self, EnvError> {
+        Ok(Self {
+            engines: Arc::new(Engines::new(&self.config, &model)?),
+            model,
+            params: Arc::new(params),
+            identity: Arc::new(self.origin.identity.with_changes(changes)),
+            ..self.clone()
+        })
+    }
+
+    /// Returns the model and the parameters before a program changed the model.
+    pub(super) fn origin(&self) -> (&Model, &Params) {
+        (&self.origin.model, &self.origin.params)
     }
 
     /// Returns the same blueprint with another actuation model: settled anew, on the same compiled scene where the actuators are the same.
@@ -320,8 +361,8 @@ impl Blueprint {
     }
 
     /// Returns what a snapshot must fit to be restored.
-    pub(super) fn fingerprint(&self) -> u64 {
-        self.fingerprint
+    pub(super) fn identity(&self) -> &Identity {
+        &self.identity
     }
 
     /// Returns the settled positions (nq), from which episodes start.

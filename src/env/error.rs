@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::actuation::ActuationError;
 use crate::config::ConfigError;
-use crate::env::SnapshotError;
+use crate::env::{ModelChangeError, SnapshotError};
 use crate::mimo::{GrowthError, LockError, RoomError, SceneError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
@@ -54,6 +54,9 @@ pub enum EnvError {
     /// A snapshot cannot be restored.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
+    /// The model cannot be changed in this way.
+    #[error(transparent)]
+    ModelChange(#[from] ModelChangeError),
     /// The configuration asks for the engine `rapier`, which this build leaves out.
     #[error("engine: rapier needs the cargo feature rapier: build with `--features rapier`, or use engine: soft")]
     NoRapier,

@@ -12,6 +12,7 @@ pub(crate) mod error;
 mod eyes;
 mod fields;
 pub(crate) mod info;
+mod model_change;
 mod notices;
 pub(crate) mod observation;
 mod outcome;
@@ -40,6 +41,8 @@ pub(crate) use fields::{InfoSource, PARTS, STEPS};
 pub(crate) use info::SCORED_PARTS;
 internals!(use info::Info);
 pub use info::{BehaviorInfo, EYE_HAND_PAIRS, PerEyeAndHand, PerHand, TaskInfo};
+pub use model_change::ModelChangeError;
+internals!(use model_change::CHANGEABLE);
 internals!(use observation::{Observation, Step});
 #[cfg(feature = "eval")]
 pub(crate) use outcome::reports_outcome;

@@ -73,6 +73,14 @@ impl Physics {
         &mut **self.own.get_or_insert_with(|| self.engines.make())
     }
 
+    /// Goes on with the engines of another model of the same sizes.
+    pub fn use_engines(&mut self, engines: &Arc<Engines>) {
+        self.engines = engines.clone();
+        if let Some(own) = &mut self.own {
+            *own = self.engines.make();
+        }
+    }
+
     /// Computes everything that follows from the state.
     pub fn forward(&mut self) -> Result<(), EngineError> {
         let (mut engine, state, _) = self.parts();

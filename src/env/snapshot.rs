@@ -1,10 +1,11 @@
 //! Snapshots: everything a continuation depends on, as bytes.
 
 mod format;
+mod identity;
 mod memory;
 
-pub(super) use format::fingerprint;
 pub use format::{Snapshot, SnapshotError, SnapshotInfo};
+pub(super) use identity::Identity;
 
 use std::sync::Arc;
 
@@ -136,7 +137,8 @@ impl Env {
         bytes.extend_from_slice(&MAGIC);
         bytes.extend_from_slice(&VERSION.to_le_bytes());
         bytes.extend_from_slice(&[0; 4]);
-        bytes.extend_from_slice(&self.blueprint.fingerprint().to_le_bytes());
+        let identity = self.blueprint.identity();
+        bytes.extend_from_slice(&identity.fingerprint.to_le_bytes());
         bytes.extend_from_slice(&[0; 8]);
         let whole = [
             self.physics.state.step,
@@ -157,6 +159,8 @@ impl Env {
             bytes.extend_from_slice(&(geom as u32).to_le_bytes());
         }
         self.save_memory(&mut bytes);
+        bytes.extend_from_slice(identity.keys.as_bytes());
+        bytes.extend_from_slice(&(identity.keys.len() as u32).to_le_bytes());
         let sum = checksum(&bytes[HEADER..]);
         bytes[HEADER - 8..HEADER].copy_from_slice(&sum.to_le_bytes());
         Snapshot { bytes }
@@ -171,10 +175,18 @@ impl Env {
     /// A snapshot of another environment, or a damaged one; nothing is changed then.
     #[doc(alias = "mj_setState")]
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
-        if snapshot.fingerprint() != Some(self.blueprint.fingerprint()) {
-            return Err(SnapshotError::OtherEnvironment);
+        let (content, keys) = snapshot.content()?;
+        if snapshot.fingerprint() != Some(self.blueprint.identity().fingerprint) {
+            return Err(self.blueprint.identity().refuse(keys, SnapshotError::OtherEnvironment));
         }
-        let mut r = Reader(snapshot.bytes.get(HEADER..).ok_or(CUT)?);
+        // numbers of other senses do not fit
+        self.restore_content(content)
+            .map_err(|e| self.blueprint.identity().refuse(keys, e))
+    }
+
+    /// Takes over what follows the header of a snapshot, but for its keys.
+    fn restore_content(&mut self, content: &[u8]) -> Result<(), SnapshotError> {
+        let mut r = Reader(content);
         let mut whole = [0; WHOLE];
         for v in &mut whole {
             *v = r.u64().ok_or(CUT)?;

@@ -157,7 +157,7 @@ impl Model {
     /// Returns a model with other numbers: what a program has that writes into MuJoCo's `mjModel` between two steps. Constants that
     /// follow from numbers (`dof_invweight0`, statistics and the like) stay as they are, as there. `edit` has to keep lengths, ids
     /// and names.
-    #[cfg(feature = "internals")]
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     #[must_use]
     pub fn edited(&self, edit: impl FnOnce(&mut Arrays)) -> Self {
         let mut arrays = self.arrays.clone();

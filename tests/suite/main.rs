@@ -16,6 +16,7 @@ mod invariants;
 mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
+mod model_change;
 mod parts;
 mod plain_models;
 #[cfg(feature = "eval")]

@@ -343,15 +343,64 @@ fn snapshots_of_other_environments_are_refused() {
     for config in others {
         let mut other = started(config);
         let before = other.snapshot();
-        assert_eq!(other.restore(&snapshot), Err(SnapshotError::OtherEnvironment));
+        let refused = other.restore(&snapshot);
+        assert!(
+            matches!(refused, Err(SnapshotError::OtherConfiguration { .. })),
+            "{refused:?}"
+        );
         assert_eq!(other.snapshot(), before);
     }
     // other senses: the same scene, another length
+    let refused = |change: &dyn Fn(&mut Config)| {
+        let mut config = base.clone();
+        change(&mut config);
+        let mut other = started(config);
+        let (before, refused) = (
+            other.snapshot(),
+            other.restore(&snapshot).expect_err("another configuration"),
+        );
+        assert_eq!(other.snapshot(), before);
+        refused.to_string()
+    };
+    for (said, change) in [
+        (
+            "proprio_torque was true, but here it is false",
+            &(|config: &mut Config| config.proprio_torque = false) as &dyn Fn(&mut Config),
+        ),
+        ("vestibular_active was true, but here it is false", &|config| {
+            config.vestibular_active = !config.vestibular_active;
+        }),
+        (
+            "delay_sensory was 0.0, but here it is 2.0; proprio_limits was true, but here it is false",
+            &|config| {
+                config.proprio_limits = false;
+                config.delays.sensory = 2.0;
+            },
+        ),
+    ] {
+        let text = refused(change);
+        assert_eq!(
+            text,
+            format!("the snapshot was taken with another configuration: {said}")
+        );
+    }
+    // the layout before this one does not tell
+    let mut old = snapshot.as_bytes().to_vec();
+    let length = old.len() - 4;
+    let keys = u32::from_le_bytes(old[length..].try_into().expect("four bytes")) as usize;
+    old.truncate(length - keys);
+    old[8] = 4;
+    let sum = checksum(&old[32..]).to_le_bytes();
+    old[24..32].copy_from_slice(&sum);
+    let old = Snapshot::from_bytes(old).expect("a layout that is read");
+    let mut env = started(base.clone());
+    env.restore(&old).expect("of this configuration");
+    assert_eq!(env.snapshot(), snapshot);
     let mut other = started(Config {
         proprio_torque: false,
         ..base
     });
-    assert!(matches!(other.restore(&snapshot), Err(SnapshotError::Damaged { .. })));
+    assert!(matches!(other.restore(&old), Err(SnapshotError::Damaged { .. })));
 }
 
 #[test]

@@ -2,14 +2,12 @@
 
 use thiserror::Error;
 
-use crate::config::{Config, Delays, Key, Scene};
-use crate::model::Model;
-use crate::sensors::transform::Sense;
-
 /// First bytes of a snapshot.
 pub(super) const MAGIC: [u8; 8] = *b"BBSNAP\r\n";
 /// Layout of the bytes that follow.
-pub(super) const VERSION: u32 = 4;
+pub(super) const VERSION: u32 = 5;
+/// The oldest layout that is read: the same without the keys at its end.
+const OLDEST: u32 = 4;
 /// Magic, version, a zero, fingerprint, checksum.
 pub(super) const HEADER: usize = 32;
 
@@ -23,7 +21,8 @@ pub(super) const HEADER: usize = 32;
 ///
 /// The bytes are little-endian and the same on all machines: the magic `BBSNAP\r\n`, the version of the layout (`u32`), a
 /// zero (`u32`), a fingerprint of configuration and scene (`u64`), a checksum of what follows (`u64`), whole numbers
-/// (`u64`), numbers (`f64`), flags (a byte each), touched geoms (`u32`), and what is remembered, each part behind its length (`u64`).
+/// (`u64`), numbers (`f64`), flags (a byte each), touched geoms (`u32`), what is remembered, each part behind its length (`u64`), and
+/// the keys of the configuration that are not as they are by default, a line each, before their length (`u32`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snapshot {
     pub(super) bytes: Vec<u8>,
@@ -59,7 +58,7 @@ pub enum SnapshotError {
     #[error("these bytes are not a snapshot: they do not begin with the magic bytes of one")]
     NotASnapshot,
     /// Written by another version of this library.
-    #[error("the snapshot has layout {found}, but this library reads layout {VERSION}")]
+    #[error("the snapshot has layout {found}, but this library reads layouts {OLDEST} to {VERSION}")]
     Version {
         /// Version found.
         found: u32,
@@ -70,7 +69,13 @@ pub enum SnapshotError {
         /// What is wrong.
         what: &'static str,
     },
-    /// Taken from an environment of another configuration or scene.
+    /// Taken with other values of keys of the configuration, or with another model ([`Env::change_model`](crate::Env::change_model)).
+    #[error("the snapshot was taken with another configuration: {differences}")]
+    OtherConfiguration {
+        /// What differs: each key with its value of then and of now.
+        differences: String,
+    },
+    /// Taken from an environment of another scene, or, in a layout that does not tell, of another configuration.
     #[error(
         "the snapshot was taken with another behavior, scene, actuation model, compat, set of actuators or of senses"
     )]
@@ -125,7 +130,7 @@ impl Snapshot {
         }
         let mut header = Reader(bytes.get(MAGIC.len()..HEADER).ok_or(CUT)?);
         let version = header.u32().ok_or(CUT)?;
-        if version != VERSION {
+        if !(OLDEST..=VERSION).contains(&version) {
             return Err(SnapshotError::Version { found: version });
         }
         let (zero, _, sum) = (header.u32(), header.u64(), header.u64());
@@ -136,6 +141,19 @@ impl Snapshot {
             return Err(CUT);
         }
         Ok(Self { bytes })
+    }
+
+    /// Returns what follows the header: the numbers, and the keys of the configuration, which the oldest layout does not have.
+    pub(super) fn content(&self) -> Result<(&[u8], Option<&str>), SnapshotError> {
+        let bytes = self.bytes.get(HEADER..).ok_or(CUT)?;
+        if self.info().version == OLDEST {
+            return Ok((bytes, None));
+        }
+        let (rest, length) = bytes.split_last_chunk().ok_or(CUT)?;
+        let length = u32::from_le_bytes(*length) as usize;
+        let (numbers, keys) = rest.split_at(rest.len().checked_sub(length).ok_or(CUT)?);
+        let keys = std::str::from_utf8(keys).map_err(|_| damaged("its keys are no text"))?;
+        Ok((numbers, Some(keys)))
     }
 
     pub(super) fn fingerprint(&self) -> Option<u64> {
@@ -159,80 +177,6 @@ pub(super) fn checksum(bytes: &[u8]) -> u64 {
         .iter()
         .fold(bytes.len() as u64, |h, w| mix(h, u64::from_le_bytes(*w)));
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
-}
-
-/// The keys of senses whose state the fingerprint of the first layouts tells or leaves out.
-const EARLY: [&str; 5] = [
-    "touch_active",
-    "touch_pooled",
-    "pain_active",
-    "vestibular_active",
-    "vision_active",
-];
-
-/// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, all of a scene of one's own, and
-/// the keys that shape an environment's memory.
-pub(in crate::env) fn fingerprint(model: &Model, config: &Config) -> u64 {
-    let mut bytes = Vec::new();
-    for names in [
-        &model.body_name,
-        &model.jnt_name,
-        &model.actuator_name,
-        &model.geom_name,
-    ] {
-        for name in names {
-            bytes.extend_from_slice(name.as_bytes());
-            bytes.push(0);
-        }
-        bytes.push(1);
-    }
-    // the number of activations, only where there are any, so that older snapshots stay readable
-    if model.na > 0 {
-        bytes.extend_from_slice(&(model.na as u64).to_le_bytes());
-    }
-    for v in model.qpos0.iter().chain(&model.body_mass) {
-        bytes.extend_from_slice(&v.to_le_bytes());
-    }
-    let own = match &config.scene {
-        // wherever it lies: the room itself counts
-        Scene::File(_) => Some(format!("{:016x}", content(model))),
-        _ => None,
-    };
-    for name in [
-        config.behavior.name(),
-        own.as_deref().unwrap_or(config.scene.name()),
-        config.actuation_model.name(),
-        config.compat.name(),
-        config.engine.name(),
-    ] {
-        bytes.extend_from_slice(name.as_bytes());
-        bytes.push(0);
-    }
-    let defaults = Config::default();
-    // senses that came after the first snapshots tell themselves apart where they are on, so that older snapshots stay readable
-    let is_added = |key| !EARLY.contains(&key) && Sense::ALL.iter().any(|sense| sense.switch() == key);
-    let rated = config.rates().next().is_some();
-    let remembers = config.delays != Delays::default() || config.pain_active || rated;
-    let shapes = |key: &&Key| {
-        // rates, too, came later
-        if !rated && ["vision_rate", "touch_rate"].contains(&key.name) {
-            return false;
-        }
-        ["Delays", "Pain"].contains(&key.section)
-            || key.name == "touch_pooled"
-            || is_added(key.name) && key.value(config) != key.value(&defaults)
-            || remembers && ["Vision", "Touch"].contains(&key.section)
-    };
-    for key in Config::keys().iter().filter(shapes) {
-        bytes.extend_from_slice(key.value(config).to_yaml().as_bytes());
-        bytes.push(0);
-    }
-    checksum(&bytes)
-}
-
-/// Computes a hash of everything in a model.
-fn content(model: &Model) -> u64 {
-    checksum(format!("{model:?}").as_bytes())
 }
 
 /// A reader that takes numbers from the front of bytes.

@@ -1,0 +1,307 @@
+//! Numbers of the model that a program changes while an environment lives.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use crate::config::ActuationModel;
+use crate::env::{Blueprint, Env, EnvError};
+use crate::model::{Arrays, Model};
+use crate::physics::{Params, Row};
+
+/// An error of [`Env::change_model`].
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ModelChangeError {
+    /// Something else was changed.
+    #[error(
+        "the model was changed in what cannot change while an environment lives; what can are the numbers of {}: change the document or the \
+         configuration for the rest, and make another environment",
+        CHANGEABLE.join(", ")
+    )]
+    Fixed,
+    /// A number is not finite.
+    #[error("{name}, number {index}, is {value}: the model has finite numbers only")]
+    NotFinite {
+        /// Name of the array.
+        name: &'static str,
+        /// Place of the number in the array, rows one after the other.
+        index: usize,
+        /// Its value, as text.
+        value: String,
+    },
+    /// A number is too small.
+    #[error("{name}, number {index}, is {value}: it must be {least}")]
+    TooSmall {
+        /// Name of the array.
+        name: &'static str,
+        /// Place of the number in the array, rows one after the other.
+        index: usize,
+        /// Its value, as text.
+        value: String,
+        /// What it must be.
+        least: &'static str,
+    },
+    /// Muscles write the gears in each step.
+    #[error(
+        "actuator_gear belongs to the muscles, which set it in each step: it can be changed with other actuation models only"
+    )]
+    Muscles,
+}
+
+/// Lists numbers that a program may change: first those that parameters hold, with their name there, then those that the model holds.
+macro_rules! changeable {
+    (parameters { $($own:literal = $($path:ident).+, $field:ident;)* } model { $($name:literal = $($at:ident).+;)* }) => {
+        /// The names of what [`Env::change_model`] may change, as in [`Arrays`].
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        pub const CHANGEABLE: &[&str] = &[$($own,)* $($name),*];
+
+        fn rows(arrays: &Arrays) -> Vec<&[f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(arrays.$($path).+.numbers(&mut out);)*
+            $(arrays.$($at).+.numbers(&mut out);)*
+            out
+        }
+
+        fn rows_mut(arrays: &mut Arrays) -> Vec<&mut [f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(arrays.$($path).+.numbers_mut(&mut out);)*
+            $(arrays.$($at).+.numbers_mut(&mut out);)*
+            out
+        }
+
+        fn parameters(params: &Params) -> Vec<&[f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(params.$field.numbers(&mut out);)*
+            out
+        }
+
+        fn parameters_mut(params: &mut Params) -> Vec<&mut [f64]> {
+            let mut out = Vec::with_capacity(CHANGEABLE.len());
+            $(params.$field.numbers_mut(&mut out);)*
+            out
+        }
+    };
+}
+
+changeable! {
+    parameters {
+        "opt.gravity" = opt.gravity, gravity;
+        "body_mass" = body_mass, body_mass;
+        "body_inertia" = body_inertia, body_inertia;
+        "body_invweight0" = body_invweight0, body_invweight0;
+        "dof_invweight0" = dof_invweight0, dof_invweight0;
+        "dof_damping" = dof_damping, dof_damping;
+        "jnt_stiffness" = jnt_stiffness, jnt_stiffness;
+        "actuator_gear" = actuator_gear, actuator_gear;
+        "geom_size" = geom_size, geom_size;
+        "geom_rbound" = geom_rbound, geom_rbound;
+    }
+    model {
+        "opt.timestep" = opt.timestep;
+        "opt.impratio" = opt.impratio;
+        "opt.density" = opt.density;
+        "opt.viscosity" = opt.viscosity;
+        "opt.wind" = opt.wind;
+        "jnt_solref" = jnt_solref;
+        "jnt_solimp" = jnt_solimp;
+        "dof_armature" = dof_armature;
+        "dof_frictionloss" = dof_frictionloss;
+        "dof_solref" = dof_solref;
+        "dof_solimp" = dof_solimp;
+        "geom_friction" = geom_friction;
+        "geom_solmix" = geom_solmix;
+        "geom_solref" = geom_solref;
+        "geom_solimp" = geom_solimp;
+        "geom_margin" = geom_margin;
+        "geom_gap" = geom_gap;
+        "pair_friction" = pair_friction;
+        "pair_solref" = pair_solref;
+        "pair_solreffriction" = pair_solreffriction;
+        "pair_solimp" = pair_solimp;
+        "pair_margin" = pair_margin;
+        "pair_gap" = pair_gap;
+        "eq_solref" = eq_solref;
+        "eq_solimp" = eq_solimp;
+    }
+}
+
+/// Of arrays in which no number may be negative.
+const AT_LEAST_ZERO: [&str; 6] = [
+    "dof_armature",
+    "dof_damping",
+    "dof_frictionloss",
+    "geom_friction",
+    "pair_friction",
+    "geom_rbound",
+];
+/// Of arrays in which what is above 0 has to stay so.
+const ABOVE_ZERO: [&str; 4] = ["opt.timestep", "body_mass", "body_inertia", "geom_size"];
+
+/// A model before and after a change.
+struct Change {
+    before: Arrays,
+    after: Arrays,
+}
+
+impl Change {
+    /// Checks what was changed.
+    fn check(&self) -> Result<(), ModelChangeError> {
+        let (before, after) = (rows(&self.before), rows(&self.after));
+        if before.iter().zip(&after).any(|(a, b)| a.len() != b.len()) {
+            return Err(ModelChangeError::Fixed);
+        }
+        for ((name, before), after) in CHANGEABLE.iter().zip(before).zip(after) {
+            for (index, (&was, &is)) in before.iter().zip(after).enumerate() {
+                let value = || is.to_string();
+                if !is.is_finite() {
+                    let value = value();
+                    return Err(ModelChangeError::NotFinite { name, index, value });
+                }
+                let least = match () {
+                    () if ABOVE_ZERO.contains(name) && was > 0.0 && is <= 0.0 => "above 0",
+                    () if AT_LEAST_ZERO.contains(name) && is < 0.0 => "0 or more",
+                    () => continue,
+                };
+                let value = value();
+                return Err(ModelChangeError::TooSmall {
+                    name,
+                    index,
+                    value,
+                    least,
+                });
+            }
+        }
+        let mut rest = self.after.clone();
+        for (to, from) in rows_mut(&mut rest).into_iter().zip(rows(&self.before)) {
+            to.copy_from_slice(from);
+        }
+        if rest == self.before {
+            Ok(())
+        } else {
+            Err(ModelChangeError::Fixed)
+        }
+    }
+
+    /// Returns whether an array was changed.
+    fn concerns(&self, name: &str) -> bool {
+        let (before, after) = (rows(&self.before), rows(&self.after));
+        let place = CHANGEABLE.iter().position(|known| *known == name);
+        place.is_some_and(|k| before[k] != after[k])
+    }
+
+    /// Writes the numbers that were changed into rows of the same order; there may be fewer rows.
+    fn apply(&self, to: Vec<&mut [f64]>) {
+        let changed = rows(&self.before).into_iter().zip(rows(&self.after));
+        for (to, (before, after)) in to.into_iter().zip(changed) {
+            for ((to, was), is) in to.iter_mut().zip(before).zip(after) {
+                if was != is {
+                    *to = *is;
+                }
+            }
+        }
+    }
+
+    /// Writes the numbers that were changed into parameters.
+    fn apply_to(&self, params: &mut Params, model: &Arrays) {
+        self.apply(parameters_mut(params));
+        if self.concerns("body_mass") {
+            // what is below a body weighs as much as its bodies do, as MuJoCo sums it up in each step
+            params.body_subtreemass.clone_from(&params.body_mass);
+            for body in (1..model.nbody()).rev() {
+                params.body_subtreemass[model.body_parentid[body]] += params.body_subtreemass[body];
+            }
+        }
+    }
+}
+
+/// Returns the arrays of a model as its parameters have them.
+fn shown(model: &Model, params: &Params) -> Arrays {
+    let mut arrays = Arrays::clone(model);
+    for (to, from) in rows_mut(&mut arrays).into_iter().zip(parameters(params)) {
+        to.copy_from_slice(from);
+    }
+    arrays
+}
+
+impl Env {
+    /// Returns the arrays of the model as they are now: with what [`Env::change_model`] has changed, and with the parameters of the actuation
+    /// model after a reset.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn model_arrays(&self) -> Arrays {
+        shown(self.model(), &self.physics.base)
+    }
+
+    /// Returns the names of what differs from the model of the scene.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn model_changes(&self) -> Vec<&'static str> {
+        let (model, params) = self.blueprint.origin();
+        let (first, now) = (shown(model, params), shown(self.model(), self.blueprint.params()));
+        let both = CHANGEABLE.iter().zip(rows(&first).into_iter().zip(rows(&now)));
+        both.filter(|(_, (first, now))| first != now)
+            .map(|(name, _)| *name)
+            .collect()
+    }
+
+    /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
+    /// friction, damping, stiffness, armature, gears, softness. It is what a program does that writes into MuJoCo's `mjModel`:
+    /// constants that follow from numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) stay as they are, as there, unless the
+    /// program writes them, too.
+    ///
+    /// Bodies of which a task has changed mass or size in an episode keep that until its end. Snapshots of an environment fit others with the same
+    /// changes only; [`Env::set_age`] makes the model anew, without them. Delays stay the same number of steps, and so do the
+    /// rates of senses.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.change_model(|model| {
+    ///     model.opt.gravity = [0.0, 0.0, -1.62]; // on the moon
+    ///     model.geom_friction.iter_mut().for_each(|friction| friction[0] *= 0.5);
+    /// })?;
+    /// env.reset(Some(0))?;
+    /// assert_eq!(env.state().params.gravity[2], -1.62);
+    /// assert!(env.change_model(|model| model.nq += 1).is_err());
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelChangeError`]: anything else is changed, numbers that are not finite or too small; an engine that cannot
+    /// simulate the model. Nothing is changed then.
+    pub fn change_model(&mut self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
+        self.physics.check_shape()?;
+        let before = self.model_arrays();
+        let mut after = before.clone();
+        edit(&mut after);
+        let change = Change { before, after };
+        change.check()?;
+        if self.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
+            return Err(ModelChangeError::Muscles.into());
+        }
+        self.blueprint = self.blueprint.changed(&change)?;
+        let model = self.blueprint.model();
+        change.apply_to(&mut self.physics.base, model);
+        change.apply_to(&mut self.physics.state.params, model);
+        self.physics.use_engines(self.blueprint.engines());
+        Ok(())
+    }
+}
+
+impl Blueprint {
+    /// Returns the blueprint of environments whose model was changed.
+    fn changed(&self, change: &Change) -> Result<Self, EnvError> {
+        let model = Arc::new(self.model().edited(|arrays| change.apply(rows_mut(arrays))));
+        let mut params = self.params().clone();
+        change.apply_to(&mut params, &model);
+        let (first, now) = (shown(self.origin().0, self.origin().1), shown(&model, &params));
+        let mut changes = BTreeMap::new();
+        for ((name, first), now) in CHANGEABLE.iter().zip(rows(&first)).zip(rows(&now)) {
+            if first != now {
+                changes.insert(*name, now);
+            }
+        }
+        self.with_model(model, params, &changes)
+    }
+}
