@@ -22,6 +22,7 @@ __all__ = [
     "PhysicsData",
     "PhysicsModel",
     "PhysicsRenderer",
+    "Recorder",
     "VectorEnv",
     "__version__",
     "config_examples",
@@ -29,7 +30,9 @@ __all__ = [
     "config_from_yaml",
     "config_keys",
     "embedded_files",
+    "measure_record",
     "model_extras",
+    "replay_record",
     "scene_file",
     "write_video",
 ]
@@ -55,6 +58,33 @@ def config_from_yaml(text: str, file: str = "configuration", folder: str | os.Pa
 
     ``file`` names the text in errors; ``folder`` is where the path of a scene starts, by default the working directory.
     """
+
+def measure_record(folder: str | os.PathLike[str], episode: int | None = None) -> str:
+    """Returns the measures of an episode of a record, or the means of all, as JSON."""
+
+def replay_record(folder: str | os.PathLike[str], episode: int) -> int | None:
+    """Repeats an episode of a record; returns the first step whose bits differ."""
+
+@final
+class Recorder:
+    """Records an environment into a folder: steps go through it."""
+
+    def __new__(
+        cls,
+        env: Env,
+        folder: str | os.PathLike[str],
+        senses: bool = False,
+        eyes_every: int | None = None,
+        policy: str = "",
+    ) -> Recorder:
+        """Makes the folder."""
+
+    def begin(self, env: Env, episode: int) -> None:
+        """Begins an episode at the present moment."""
+    def step(self, env: Env, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:
+        """Applies an action, as ``Env.step`` does, and records what comes of it."""
+    def end(self, env: Env) -> None:
+        """Writes the episode."""
 
 @final
 class Blueprint:

@@ -25,7 +25,7 @@ pub struct Inner {
     /// What it was made from, which others may share as long as it lives.
     blueprint: Py<Blueprint>,
     pub painters: Painters,
-    action: Vec<f32>,
+    pub action: Vec<f32>,
     views: Option<Views>,
 }
 
@@ -76,7 +76,7 @@ impl Env {
     }
 
     /// Returns the present observation.
-    fn observed<'py>(py: Python<'py>, inner: &mut Inner) -> PyResult<Bound<'py, PyDict>> {
+    pub fn observed<'py>(py: Python<'py>, inner: &mut Inner) -> PyResult<Bound<'py, PyDict>> {
         let Some(views) = &mut inner.views else {
             return fresh(py, &inner.env);
         };

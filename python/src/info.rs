@@ -65,6 +65,13 @@ pub fn info_dict<'py>(py: Python<'py>, info: &Info, details: bool) -> PyResult<B
                 }
                 dict.set_item(key, gaze)?;
             }
+            InfoValue::Counts(counts) => {
+                let regards = PyDict::new(py);
+                for (name, count) in EYE_HAND_PAIRS.iter().zip(counts.to_array()) {
+                    regards.set_item(*name, count)?;
+                }
+                dict.set_item(key, regards)?;
+            }
             _ => {}
         }
     }

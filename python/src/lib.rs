@@ -18,6 +18,7 @@ mod physics_data;
 mod physics_fields;
 mod physics_model;
 mod pictures;
+mod record;
 mod recycled;
 mod rows;
 mod scene;
@@ -48,6 +49,8 @@ mod _native {
     use super::physics_data::{PhysicsData, PhysicsRenderer};
     #[pymodule_export]
     use super::physics_model::PhysicsModel;
+    #[pymodule_export]
+    use super::record::{Recorder, measure_record, replay_record};
     #[pymodule_export]
     use super::scene::{embedded_files, model_extras, scene_file};
     #[pymodule_export]

@@ -9,6 +9,8 @@ use crate::env::{Blueprint, Env, EnvError, Goal, GoalError, Info, Senses, Senses
 use crate::model::Model;
 use crate::physics::{Engine, State};
 use crate::sensors::ObservationEntry;
+#[cfg(all(feature = "eval", feature = "npz"))]
+use crate::spaces::NumpyRng;
 use crate::spaces::{BoxSpace, ObservationSpace, Values};
 
 impl Env {
@@ -128,6 +130,18 @@ impl Env {
             senses: &mut self.senses,
             physics: &self.physics,
         }
+    }
+
+    /// Returns how many numbers the generator of random choices has drawn since it was seeded.
+    #[cfg(all(feature = "eval", feature = "npz"))]
+    pub(crate) fn drawn(&self) -> u64 {
+        self.rng.drawn()
+    }
+
+    /// Puts the generator of random choices to where it has drawn so many numbers.
+    #[cfg(all(feature = "eval", feature = "npz"))]
+    pub(crate) fn draw_from(&mut self, drawn: u64) {
+        self.rng = NumpyRng::at(self.rng.seed_value(), drawn);
     }
 
     /// Returns the memory that delays and other transforms take, bytes.

@@ -203,6 +203,7 @@ impl<'a> Parts<'a> {
     /// Clears what the behavior has counted.
     pub fn clear_info(&mut self) {
         let env = &mut *self.env;
+        env.task.forget();
         clear(&*env.task, &mut env.info);
     }
 }

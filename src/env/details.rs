@@ -17,6 +17,18 @@ pub struct InfoDetails {
     /// How old the pictures are that the eyes show, s, without their delay, if there is a
     /// [`vision_rate`](crate::Config::vision_rate). None right after a reset or a restored snapshot.
     pub vision_age: Option<f64>,
+    /// Both ways to count hands in view, if the behavior is `hand_regard`. One of them is also what [`BehaviorInfo`] holds, by
+    /// [`Compat`](crate::config::Compat).
+    pub regards: Option<Regards>,
+}
+
+/// Steps in which a hand was in the central field of view of an eye, counted in two ways.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Regards {
+    /// As BabyBench's page describes it: within 15 degrees of the axis of the eye's camera.
+    pub page: PerEyeAndHand<u64>,
+    /// As the kit computes it: within 15 degrees of the -z axis of the eye's body, which points down the face.
+    pub kit: PerEyeAndHand<u64>,
 }
 
 impl InfoDetails {
@@ -32,7 +44,7 @@ impl InfoDetails {
         if let Some(parts) = &mut self.touched_parts {
             parts.each_mut().into_iter().for_each(Vec::clear);
         }
-        (self.gaze_angles, self.vision_age) = (None, None);
+        (self.gaze_angles, self.vision_age, self.regards) = (None, None, None);
     }
 
     /// Brings the names up to date with the lists of geoms, which have grown or been cleared.

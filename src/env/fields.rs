@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Outcome, PerEyeAndHand, PerHand, TaskInfo};
+use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Outcome, PerEyeAndHand, PerHand, Regards, TaskInfo};
 
 /// Keys of the geoms that the palms have touched, right and left.
 const TOUCHES: [&str; 2] = ["right_hand_touches", "left_hand_touches"];
@@ -32,6 +32,8 @@ pub enum InfoValue<'a> {
     Parts(&'a [Arc<str>]),
     /// Angles of gaze, rad.
     Angles(PerEyeAndHand<f64>),
+    /// Numbers of steps.
+    Counts(PerEyeAndHand<u64>),
 }
 
 /// A key of the information with its value.
@@ -122,7 +124,18 @@ impl InfoDetails {
             .gaze_angles
             .map(|angles| ("gaze_angles", InfoValue::Angles(angles)));
         let age = self.vision_age.map(|age| ("vision_age", InfoValue::Number(age)));
-        parts.into_iter().flatten().chain(angles).chain(age)
+        let regards = self.regards.map(|Regards { page, kit }| {
+            [
+                ("page_regards", InfoValue::Counts(page)),
+                ("kit_regards", InfoValue::Counts(kit)),
+            ]
+        });
+        parts
+            .into_iter()
+            .flatten()
+            .chain(angles)
+            .chain(age)
+            .chain(regards.into_iter().flatten())
     }
 }
 

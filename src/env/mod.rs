@@ -31,7 +31,7 @@ mod viewer;
 
 pub use blueprint::{Blueprint, BlueprintOptions};
 pub use by_hand::Parts;
-pub use details::{InfoDetails, PartNames};
+pub use details::{InfoDetails, PartNames, Regards};
 internals!(use error::EnvError);
 pub use eyes::draw_eyes;
 pub use fields::{InfoField, InfoValue};
@@ -376,6 +376,7 @@ impl Env {
         self.episode.steps = 0;
         self.info.steps = 0;
         if !self.episode.accumulate || self.info.behavior.task().is_some() {
+            self.task.forget();
             clear(&*self.task, &mut self.info);
         }
         let Play {
@@ -469,6 +470,7 @@ impl Env {
 
     /// Counts what the behavior counts.
     fn track(&mut self) {
+        self.task.count(&self.physics.state);
         self.task.inform(TaskEvent::Step(&self.physics.state), &mut self.info);
     }
 

@@ -50,8 +50,8 @@ impl Serialize for BehaviorInfo {
 }
 
 impl Serialize for InfoDetails {
-    /// Serializes `right_hand_parts` and `left_hand_parts` (names) or `gaze_angles` (rad, by pair of eye and hand),
-    /// whichever there are. A hand at the very place of an eye has no angle, which is `null` in JSON.
+    /// Serializes `right_hand_parts` and `left_hand_parts` (names) or `gaze_angles` (rad, by pair of eye and hand)
+    /// with `page_regards` and `kit_regards` (steps, by the same), whichever there are. A hand at the very place of an eye has no angle, which is `null` in JSON.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.fields())
     }
@@ -67,6 +67,7 @@ impl Serialize for InfoValue<'_> {
             Self::Number(number) => number.serialize(serializer),
             Self::Parts(names) => serializer.collect_seq(names.iter().map(|name| &**name)),
             Self::Angles(angles) => angles.serialize(serializer),
+            Self::Counts(counts) => counts.serialize(serializer),
         }
     }
 }

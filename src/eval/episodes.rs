@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::evaluation::{Evaluation, EvaluationError};
 use crate::config::Compat;
-use crate::env::{Blueprint, EnvError, Info};
+use crate::env::{Blueprint, Env, EnvError, Info};
 use crate::policy::{Policy, PolicyError};
 use crate::runs::for_evaluation;
 
@@ -65,9 +65,72 @@ pub enum EpisodeError {
     /// The policy fails.
     #[error(transparent)]
     Policy(#[from] PolicyError),
+    /// What watches the episodes fails.
+    #[error(transparent)]
+    Observer(Box<dyn std::error::Error + Send + Sync>),
     /// A log or a video cannot be written.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
+}
+
+/// Watches episodes, and steps the environment in them: a recorder, or nothing but steps.
+pub trait Observer {
+    /// An episode begins; the environment has been reset, and the policy has begun.
+    ///
+    /// # Errors
+    /// Whatever keeps the evaluation from going on.
+    fn begin(&mut self, env: &Env, episode: u64) -> Result<(), EpisodeError> {
+        let _ = (env, episode);
+        Ok(())
+    }
+
+    /// Applies an action of episode `episode` to the environment.
+    ///
+    /// # Errors
+    /// Those of the step, and whatever else keeps the evaluation from going on.
+    fn step(&mut self, env: &mut Env, action: &[f32], episode: u64) -> Result<(), EpisodeError> {
+        let failed = |source| EpisodeError::Env {
+            episode,
+            source: Box::new(source),
+        };
+        env.step(action).map(|_| ()).map_err(failed)
+    }
+
+    /// The episode ends.
+    ///
+    /// # Errors
+    /// Whatever keeps the evaluation from going on.
+    fn end(&mut self, env: &Env) -> Result<(), EpisodeError> {
+        let _ = env;
+        Ok(())
+    }
+}
+
+/// Watches nothing.
+struct Unwatched;
+
+impl Observer for Unwatched {}
+
+#[cfg(feature = "npz")]
+impl Observer for crate::runs::Recorder {
+    fn begin(&mut self, env: &Env, episode: u64) -> Result<(), EpisodeError> {
+        Self::begin(self, env, episode);
+        Ok(())
+    }
+
+    fn step(&mut self, env: &mut Env, action: &[f32], episode: u64) -> Result<(), EpisodeError> {
+        Self::step(self, env, action).map_err(|e| match e {
+            crate::runs::RecordError::Env(source) => EpisodeError::Env {
+                episode,
+                source: Box::new(source),
+            },
+            other => EpisodeError::Observer(other.into()),
+        })
+    }
+
+    fn end(&mut self, env: &Env) -> Result<(), EpisodeError> {
+        Self::end(self, env).map_err(|e| EpisodeError::Observer(e.into()))
+    }
 }
 
 /// Runs evaluation episodes into the configuration's `save_dir` and returns the last information of each. `progress` is
@@ -79,6 +142,20 @@ pub fn run_episodes(
     blueprint: &Blueprint,
     plan: &Plan,
     policy: &(dyn Fn() -> Result<Box<dyn Policy>, PolicyError> + Sync),
+    progress: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<Vec<Info>, EpisodeError> {
+    run_episodes_watched(blueprint, plan, policy, &|| Box::new(Unwatched), progress)
+}
+
+/// Runs evaluation episodes as [`run_episodes`] does, each job watched by an observer of its own.
+///
+/// # Errors
+/// The first that occurs; the others are given up.
+pub fn run_episodes_watched<'o>(
+    blueprint: &Blueprint,
+    plan: &Plan,
+    policy: &(dyn Fn() -> Result<Box<dyn Policy>, PolicyError> + Sync),
+    observer: &(dyn Fn() -> Box<dyn Observer + 'o> + Sync),
     progress: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Info>, EpisodeError> {
     let jobs = plan.parallel();
@@ -99,7 +176,7 @@ pub fn run_episodes(
         },
     };
     let job = || {
-        let result = episodes(blueprint, plan, policy, &schedule);
+        let result = episodes(blueprint, plan, policy, &mut *observer(), &schedule);
         failed.fetch_or(result.is_err(), Ordering::Relaxed);
         result
     };
@@ -138,6 +215,7 @@ fn episodes(
     blueprint: &Blueprint,
     plan: &Plan,
     policy: &dyn Fn() -> Result<Box<dyn Policy>, PolicyError>,
+    observer: &mut dyn Observer,
     schedule: &Schedule<'_>,
 ) -> Result<(), EpisodeError> {
     let env_error = |episode: u64| {
@@ -158,9 +236,10 @@ fn episodes(
         env.reset(Some(seed)).map_err(env_error(episode))?;
         policy.begin(&mut env, episode)?;
         evaluation.reset();
+        observer.begin(&env, episode)?;
         for _ in 0..plan.duration {
             policy.act(&mut env, &mut action)?;
-            env.step(&action).map_err(env_error(episode))?;
+            observer.step(&mut env, &action, episode)?;
             let over = env.over();
             evaluation.eval_step(&env)?;
             if (schedule.step)().is_break() {
@@ -172,6 +251,7 @@ fn episodes(
             }
         }
         evaluation.end(episode)?;
+        observer.end(&env)?;
         (schedule.done)(episode, env.info().clone());
     }
     Ok(())

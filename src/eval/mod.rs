@@ -38,17 +38,29 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "npz")]
+mod benchmark;
 mod episodes;
 mod evaluation;
 #[cfg(feature = "internals")]
 pub mod film;
 #[cfg(not(feature = "internals"))]
 pub(crate) mod film;
+#[cfg(feature = "npz")]
+mod measures;
+#[cfg(feature = "npz")]
+mod pack;
 mod scores;
 
-pub use episodes::{EpisodeError, Plan, run_episodes};
+#[cfg(feature = "npz")]
+pub use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult};
+pub use episodes::{EpisodeError, Observer, Plan, run_episodes, run_episodes_watched};
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
 pub use film::{Film, FilmError, RoomFilm};
+#[cfg(feature = "npz")]
+pub use measures::{HandMeasures, Measures, RegionMeasures};
+#[cfg(feature = "npz")]
+pub use pack::{PackError, PackOptions, Packed, pack};
 pub use scores::{Score, ScoreError, ScoreParts, Touchables};
 internals!(use scores::{MAX_EPISODES, steps});
 

@@ -115,6 +115,19 @@ impl Score {
         })
     }
 
+    /// Computes the score of the episodes of a training that had ended after so many steps; logs of different length compare by it.
+    ///
+    /// # Errors
+    /// As [`Score::new`].
+    pub fn after(records: &[Info], steps: u64, compat: Compat) -> Result<Self, ScoreError> {
+        let ends = records.iter().scan(0_u64, |sum, record| {
+            *sum = sum.saturating_add(record.steps);
+            Some(*sum)
+        });
+        let ended = ends.take_while(|end| *end <= steps).count();
+        Self::new(records.get(..ended).unwrap_or_default(), compat)
+    }
+
     /// Leaves out the geoms that no hand can reach in the scene of `skin`, which the log must be of.
     #[must_use]
     pub fn within_reach(mut self, skin: &Touchables) -> Self {

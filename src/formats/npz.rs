@@ -18,6 +18,7 @@
 //!
 //! Formats: `numpy.lib.format` (versions 1 to 3) inside a zip archive, stored or deflated.
 
+mod half;
 mod header;
 mod reader;
 mod writer;
@@ -25,8 +26,9 @@ mod writer;
 #[cfg(test)]
 mod tests;
 
+pub use half::Half;
 pub use reader::Npz;
-pub use writer::{Element, NpzWriter};
+pub use writer::{Element, NpzWriter, Packing};
 
 use std::io;
 

@@ -5,6 +5,8 @@
 pub mod ages;
 #[cfg(not(feature = "internals"))]
 mod ages;
+#[cfg(feature = "npz")]
+mod benchmark;
 mod curve;
 mod doll;
 mod gaze;
@@ -20,6 +22,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
+
+#[cfg(feature = "npz")]
+pub use benchmark::benchmark_page;
 
 use crate::files::replace_file;
 use run::Run;

@@ -177,7 +177,7 @@ fn to_value(info: &Info) -> Value {
             InfoValue::Flag(flag) => Value::Bool(flag),
             InfoValue::Number(sum) => Value::Float(sum),
             // details, which pickles leave out
-            InfoValue::Parts(_) | InfoValue::Angles(_) => return None,
+            InfoValue::Parts(_) | InfoValue::Angles(_) | InfoValue::Counts(_) => return None,
         };
         Some((key, value))
     }))

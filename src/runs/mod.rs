@@ -49,12 +49,19 @@ pub mod logs;
 pub(crate) mod logs;
 mod many;
 #[cfg(feature = "npz")]
+mod record;
+#[cfg(feature = "npz")]
 mod replay;
 mod scene_file;
 mod training;
 
 pub use logs::{EvaluationLog, LogError, TrainingLog, TrainingTotals, read_training};
 pub use many::RunVector;
+#[cfg(feature = "npz")]
+pub use record::{
+    ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest, Record, RecordError,
+    RecordOptions, Recorder, Replayed,
+};
 #[cfg(feature = "npz")]
 internals!(use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images});
 pub(crate) use scene_file::scene_config;

@@ -89,6 +89,7 @@ impl Source {
                 touched_parts: (self.below(3) > 0).then_some(touched_parts),
                 gaze_angles: (self.below(3) > 0).then_some(gaze_angles),
                 vision_age: (self.below(3) > 0).then(|| self.number()),
+                regards: None,
             },
         }
     }

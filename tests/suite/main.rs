@@ -23,6 +23,8 @@ mod plain_models;
 mod policies;
 #[cfg(feature = "rapier")]
 mod rapier_engine;
+#[cfg(all(feature = "eval", feature = "npz"))]
+mod record;
 mod render;
 #[cfg(feature = "report")]
 mod report;

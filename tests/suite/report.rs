@@ -254,8 +254,7 @@ fn another_training_can_stand_beside_the_learning_curve() {
     let name = random.path().file_name().expect("a name").to_string_lossy();
     assert!(page.contains(&format!("{name}: moving mean")), "the baseline is named");
     let path = page.split("line base\" d=\"").nth(1).and_then(|d| d.split('"').next());
-    // the first record does not count
-    assert_eq!(path.map(|d| d.matches(['M', 'L']).count()), Some(3));
+    assert_eq!(path.map(|d| d.matches(['M', 'L']).count()), Some(4));
     let refused = |folder: &Folder| match Report::with_baseline(own.path(), folder.path()) {
         Err(e @ ReportError::Baseline { .. }) => e.to_string(),
         other => panic!("{other:?}"),

@@ -7,13 +7,14 @@ use std::time::Duration;
 
 use babybench::Blueprint;
 use babybench::config::Compat;
-use babybench::eval::{EpisodeError, Evaluation, EvaluationError, Plan, run_episodes};
+use babybench::eval::{EpisodeError, Evaluation, EvaluationError, Observer, Plan, run_episodes, run_episodes_watched};
 use babybench::formats::avi::DEFAULT_FPS;
 use babybench::policy::{DEFAULT_LIMIT, PolicySource};
 use babybench::runs::logs::training_path;
 use babybench::runs::{KeptScene, keep_scene};
 use clap::Args;
 
+use super::record::Recording;
 use super::{Source, progress_bar};
 use crate::arguments::{count, word};
 use crate::interrupt::{Interrupt, Interrupted};
@@ -47,6 +48,8 @@ pub struct Evaluate {
     /// Number of episodes to run in parallel, each in an environment of its own
     #[arg(long, visible_alias = "envs", value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count::<usize>)]
     jobs: usize,
+    #[command(flatten)]
+    recording: Recording,
     /// Do not show a progress bar
     #[arg(long)]
     quiet: bool,
@@ -107,7 +110,13 @@ impl Evaluate {
                 ControlFlow::Continue(())
             }
         };
-        let result = run_episodes(&blueprint, &plan, &policy, &progress);
+        let result = match self.recording.recorder(&blueprint.env()?, &self.policy)? {
+            Some(recorder) => {
+                let observer = || -> Box<dyn Observer> { Box::new(recorder.another()) };
+                run_episodes_watched(&blueprint, &plan, &policy, &observer, &progress)
+            }
+            None => run_episodes(&blueprint, &plan, &policy, &progress),
+        };
         bar.finish_and_clear();
         let infos = match result {
             Err(e @ EpisodeError::Stopped { .. }) => return Err(Interrupted(e.to_string()).into()),
@@ -124,6 +133,10 @@ impl Evaluate {
             dir = save_dir.display(),
             word = word(save_dir.display())
         )?;
+        if let Some(folder) = self.recording.folder() {
+            let word = word(folder.display());
+            say!("recorded; babybench replay --recording {word} repeats it, babybench measure {word} measures it")?;
+        }
         Ok(())
     }
 

@@ -61,6 +61,11 @@ impl Babbling {
         }
     }
 
+    /// Returns the name of the random actions.
+    pub fn name(&self) -> String {
+        self.noise.to_string()
+    }
+
     /// Returns the random actions of many environments.
     pub fn many(&self, envs: &VectorEnv) -> Result<ManyBabbling, VectorError> {
         let (space, dt) = (envs.single_action_space(), envs.env(0)?.blueprint().dt());

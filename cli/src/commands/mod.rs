@@ -1,10 +1,14 @@
 //! The subcommands; each reads its arguments and calls the library.
 
+mod benchmark;
 mod body;
 mod evaluate;
 mod inspect;
 mod keys;
 mod many;
+mod measure;
+mod pack;
+mod record;
 mod render;
 mod replay;
 mod report;
@@ -53,6 +57,10 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Replay a recording (.npz) from its start with its actions
     Replay(replay::ReplayArgs),
+    /// Run a benchmark: configurations, policies and seeds of a plan, on all cores, with means and intervals
+    Benchmark(benchmark::BenchmarkArgs),
+    /// Measure what the hands touched, and how MIMo moved, in a record
+    Measure(measure::MeasureArgs),
     /// Check that everything works here, and write a scene, a log and a short video
     TestInstallation(test_installation::TestInstallation),
     /// Train with the random policy: log episodes with random actions in the configuration's save_dir
@@ -61,6 +69,8 @@ enum Command {
     Score(score::ScoreArgs),
     /// Write a page about a run: score, learning curve, touched parts or hands in view, key frames of the video
     Report(report::ReportArgs),
+    /// Check a run and pack a submission to the BabyBench competition of it
+    Pack(pack::PackArgs),
     /// Run evaluation episodes of a policy, with logs and videos in the configuration's save_dir
     Evaluate(evaluate::Evaluate),
 }
@@ -177,10 +187,13 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         Command::Scene(c) => c.run(),
         Command::Simulate(c) => c.run(),
         Command::Replay(c) => c.run(),
+        Command::Benchmark(c) => c.run(),
+        Command::Measure(c) => c.run(),
         Command::TestInstallation(c) => c.run(),
         Command::Train(c) => c.run(),
         Command::Score(c) => c.run(),
         Command::Report(c) => c.run(),
+        Command::Pack(c) => c.run(),
         Command::Evaluate(c) => c.run(),
     }
 }

@@ -8,13 +8,15 @@ use std::time::{Duration, Instant};
 use babybench::config::Compat;
 use babybench::env::EnvStage;
 use babybench::policy::Policy;
+use babybench::runs::Recorder;
 use babybench::{AutoresetMode, Blueprint, Env, VectorEnv};
 use clap::Args;
 use indicatif::ProgressBar;
 
 use super::many::{Babbling, Many, say_threads};
+use super::record::Recording;
 use super::{Source, progress_bar};
-use crate::arguments::{count, number};
+use crate::arguments::{count, number, word};
 use crate::print::say;
 
 /// Arguments of `run`.
@@ -35,6 +37,8 @@ pub struct Run {
     babbling: Babbling,
     #[command(flatten)]
     many: Many,
+    #[command(flatten)]
+    recording: Recording,
     /// Do not show a progress bar
     #[arg(long)]
     quiet: bool,
@@ -80,6 +84,9 @@ impl Run {
         let started = Instant::now();
         let blueprint = self.source.blueprint(Compat::Api)?;
         if let Some(envs) = self.many.envs() {
+            if self.recording.folder().is_some() {
+                return Err("--record records one environment at a time: leave --envs out".into());
+            }
             return self.many_envs(&blueprint, envs, started);
         }
         let mut env = blueprint.env()?;
@@ -95,15 +102,32 @@ impl Run {
         let mut seed = self.seed;
         let mut tally = Tally::default();
         let mut policy = self.babbling.policy();
+        let mut recorder = self.recording.recorder(&env, &self.babbling.name())?;
         for episode in 0..self.episodes {
             env.reset(seed.take())?;
             policy.begin(&mut env, episode)?;
-            tally.episode(&mut env, &mut *policy, length, &clock, &bar)?;
+            if let Some(recorder) = &mut recorder {
+                recorder.begin(&env, episode);
+            }
+            let before = tally.stepping;
+            tally.episode(&mut env, &mut *policy, recorder.as_mut(), length, &clock, &bar)?;
+            if let Some(recorder) = &mut recorder {
+                let writing = Instant::now();
+                recorder.end(&env)?;
+                let (stepping, writing) = (tally.stepping - before, writing.elapsed());
+                bar.suspend(|| {
+                    say!("episode {episode}: recorded in {stepping:.1?} of steps and {writing:.1?} of writing")
+                })?;
+            }
             bar.suspend(|| say!("episode {episode}: {}", env.info().to_json()))?;
         }
         bar.finish_and_clear();
         say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
         tally.print(blueprint.dt(), &lock(&clock).spent)?;
+        if let Some(folder) = self.recording.folder() {
+            let word = word(folder.display());
+            say!("recorded; babybench replay --recording {word} repeats it, babybench measure {word} measures it")?;
+        }
         say_peak_memory()
     }
 
@@ -194,6 +218,7 @@ impl Tally {
         &mut self,
         env: &mut Env,
         policy: &mut dyn Policy,
+        mut recorder: Option<&mut Recorder>,
         length: u64,
         clock: &Mutex<Clock>,
         bar: &ProgressBar,
@@ -203,7 +228,12 @@ impl Tally {
         for k in 0..length {
             policy.act(env, &mut action)?;
             let before = Instant::now();
-            env.step(&action)?;
+            match &mut recorder {
+                Some(recorder) => recorder.step(env, &action)?,
+                None => {
+                    env.step(&action)?;
+                }
+            }
             lock(clock).enter(None);
             self.stepping += before.elapsed();
             self.steps += 1;

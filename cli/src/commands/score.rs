@@ -7,9 +7,10 @@ use babybench::Config;
 use babybench::config::Behavior;
 use babybench::eval::{Score, ScoreParts, Touchables, eval_logs};
 use babybench::mimo::{build_model, embedded};
-use babybench::runs::read_scene;
+use babybench::runs::{read_scene, read_training, scene_compat};
 use clap::Args;
 
+use crate::arguments::count;
 use crate::print::{note, say};
 
 /// Arguments of `score`.
@@ -18,6 +19,9 @@ pub struct ScoreArgs {
     /// Folder of a training run: its save_dir, with logs/training.pkl
     #[arg(value_name = "SAVE_DIR")]
     save_dir: PathBuf,
+    /// Print the score after so many steps, too, as in 10000,100000: of the episodes that had ended by then
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', value_parser = count::<u64>, conflicts_with = "json")]
+    at: Vec<u64>,
     /// Print the score as one line of JSON
     #[arg(long)]
     json: bool,
@@ -63,6 +67,22 @@ impl ScoreArgs {
             say!("{}", score.to_json(skin.as_ref()))?;
         } else {
             say!("{}", score.to_text(skin.as_ref()).trim_end())?;
+        }
+        self.print_marks()
+    }
+
+    /// Prints the scores after numbers of steps.
+    fn print_marks(&self) -> Result<(), Box<dyn Error>> {
+        if self.at.is_empty() {
+            return Ok(());
+        }
+        let compat = scene_compat(&self.save_dir);
+        let records = read_training(&self.save_dir)?;
+        for &steps in &self.at {
+            match Score::after(&records, steps, compat) {
+                Ok(score) => say!("  after {steps} steps: {:.4}, {} episodes", score.value, score.episodes)?,
+                Err(e) => say!("  after {steps} steps: {e}")?,
+            }
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::scene::TaskScene;
 use super::{START_ACTIONS, Task, TaskEvent, TaskSizes, body};
 use crate::config::{Compat, Config};
-use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, missing_camera};
+use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, Regards, missing_camera};
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::State;
@@ -19,19 +19,31 @@ pub(super) struct HandRegard {
     hands: [usize; 2],
     compat: Compat,
     cos_half_angle: f64,
+    /// Steps in which a hand was in view by the rule that the information does not follow.
+    other: [u64; 4],
 }
 
 impl HandRegard {
     /// Tells whether the origin of a hand lies less than 15 degrees off the axis of an eye (0 right, 1 left, both).
     fn sees(&self, s: &State, eye: usize, hand: usize) -> bool {
-        let (axis, direction) = self.axis_and_direction(s, eye, hand);
+        let (axis, direction) = self.axis_and_direction(s, self.compat, eye, hand);
+        within_cone(axis, direction, self.cos_half_angle)
+    }
+
+    /// Tells whether the other rule counts a hand.
+    fn sees_otherwise(&self, s: &State, eye: usize, hand: usize) -> bool {
+        let other = match self.compat {
+            Compat::Api => Compat::Reference,
+            Compat::Reference => Compat::Api,
+        };
+        let (axis, direction) = self.axis_and_direction(s, other, eye, hand);
         within_cone(axis, direction, self.cos_half_angle)
     }
 
     /// Returns the axis of an eye's camera and the way from it to the origin of a hand; under `compat: reference` the -z
     /// axis of the eye's body, which points down the face.
-    fn axis_and_direction(&self, s: &State, eye: usize, hand: usize) -> (Vec3, Vec3) {
-        let (origin, axis) = match self.compat {
+    fn axis_and_direction(&self, s: &State, compat: Compat, eye: usize, hand: usize) -> (Vec3, Vec3) {
+        let (origin, axis) = match compat {
             Compat::Api => (
                 s.cam_xpos[self.cameras[eye]],
                 scale(column(&s.cam_xmat[self.cameras[eye]], 2), -1.0),
@@ -44,7 +56,7 @@ impl HandRegard {
     /// Computes the angles between the axes and the hands, rad; infinite where a hand is at the eye.
     fn angles(&self, s: &State) -> PerEyeAndHand<f64> {
         PerEyeAndHand::from_fn(|eye, hand| {
-            let (axis, direction) = self.axis_and_direction(s, eye, hand);
+            let (axis, direction) = self.axis_and_direction(s, self.compat, eye, hand);
             let length = norm(direction);
             if length == 0.0 {
                 return f64::INFINITY;
@@ -68,6 +80,7 @@ impl Task for HandRegard {
             hands: [body(model, "right_hand", purpose)?, body(model, "left_hand", purpose)?],
             compat: config.compat,
             cos_half_angle: pxfm::f_cos(FIELD_OF_VIEW.to_radians()),
+            other: [0; 4],
         };
         Ok(TaskSizes::default())
     }
@@ -75,6 +88,28 @@ impl Task for HandRegard {
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         scene.restart()?;
         (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+    }
+
+    fn forget(&mut self) {
+        self.other = [0; 4];
+    }
+
+    fn count(&mut self, state: &State) {
+        let seen = PerEyeAndHand::from_fn(|eye, hand| u64::from(self.sees_otherwise(state, eye, hand))).to_array();
+        for (count, seen) in self.other.iter_mut().zip(seen) {
+            *count += seen;
+        }
+    }
+
+    fn save(&self, out: &mut Vec<f64>) {
+        out.extend(self.other.map(|count| count as f64));
+    }
+
+    fn load(&mut self, numbers: &[f64]) {
+        for (count, number) in self.other.iter_mut().zip(numbers) {
+            // numbers that someone made up leave room to count on
+            *count = (*number as u64).min(1 << 52);
+        }
     }
 
     fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {
@@ -91,6 +126,14 @@ impl Task for HandRegard {
                 *behavior = BehaviorInfo::HandRegard { counts };
             }
             _ => {}
+        }
+        if let BehaviorInfo::HandRegard { counts } = info.behavior {
+            let other = PerEyeAndHand::from(self.other);
+            let (page, kit) = match self.compat {
+                Compat::Api => (counts, other),
+                Compat::Reference => (other, counts),
+            };
+            info.details.regards = Some(Regards { page, kit });
         }
     }
 }

@@ -173,6 +173,15 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         Verdict::default()
     }
 
+    /// Forgets what it has counted, where the information is cleared: at the start of an episode, unless counters go on.
+    fn forget(&mut self) {}
+
+    /// Counts, after a step that led to this state, what it will tell in [`Task::inform`] besides what the information holds itself;
+    /// [`Task::save`] keeps it.
+    fn count(&mut self, state: &State) {
+        let _ = state;
+    }
+
     /// Brings the information up to date. Success, failure and return ([`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task)) are
     /// there at the start, and follow from [`Task::judge`]; a task that counts something else puts that in their place.
     fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {

@@ -2,6 +2,8 @@
 
 use std::io::Read;
 
+use super::Half;
+
 /// Dimensions that NumPy's arrays can have.
 pub(super) const DIMENSIONS: usize = 64;
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
@@ -41,6 +43,12 @@ pub(super) fn decoder(dtype: &str) -> Option<(usize, ReadNumber)> {
         "<i2" => read!(Int, i16, le),
         "<i4" => read!(Int, i32, le),
         "<i8" => read!(Int, i64, le),
+        "<f2" => Some((2, |chunk| {
+            Number::Float(Half::from_bits(u16::from_le_bytes(le(chunk))).to_f64())
+        })),
+        ">f2" => Some((2, |chunk| {
+            Number::Float(Half::from_bits(u16::from_le_bytes(be(chunk))).to_f64())
+        })),
         "<f4" => read!(Float, f32, le),
         "<f8" => read!(Float, f64, le),
         ">u2" => read!(Int, u16, be),

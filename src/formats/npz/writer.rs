@@ -1,7 +1,7 @@
 //! Archives, written.
 
-use super::NpzError;
 use super::header::{self, DIMENSIONS};
+use super::{Half, NpzError};
 use crate::files::replace_file;
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
@@ -21,8 +21,13 @@ mod sealed {
     }
 }
 
-/// Marks a type of number that [`NpzWriter::add`] takes: `f64`, `f32`, `i32`, `i64`, `u8`.
-pub trait Element: Copy + sealed::Sealed {}
+/// Marks a type of number that [`NpzWriter::add`] takes: `f64`, `f32`, `i32`, `i64`, `u16`, `u8`, [`Half`].
+pub trait Element: Copy + sealed::Sealed {
+    /// Returns how NumPy names the type.
+    fn dtype() -> &'static str {
+        Self::DTYPE
+    }
+}
 
 macro_rules! element {
     ($($type:ty = $dtype:literal),*) => {$(
@@ -36,7 +41,33 @@ macro_rules! element {
     )*};
 }
 
-element!(f64 = "<f8", f32 = "<f4", i32 = "<i4", i64 = "<i8", u8 = "|u1");
+element!(
+    f64 = "<f8",
+    f32 = "<f4",
+    i32 = "<i4",
+    i64 = "<i8",
+    u16 = "<u2",
+    u8 = "|u1"
+);
+
+impl sealed::Sealed for Half {
+    const DTYPE: &'static str = "<f2";
+    fn extend(self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_bits().to_le_bytes());
+    }
+}
+impl Element for Half {}
+
+/// How an array is kept in an archive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Packing {
+    /// Deflated as far as it goes.
+    Small,
+    /// Deflated quickly.
+    Fast,
+    /// As it is: measured numbers hardly shrink.
+    Stored,
+}
 
 /// Collects arrays into an archive, deflated and without time stamps.
 #[derive(Debug)]
@@ -65,6 +96,20 @@ impl NpzWriter {
     /// # Errors
     /// When the shape does not match the data, or the name was used before or is not a plain name.
     pub fn add<T: Element>(&mut self, name: &str, shape: &[usize], data: &[T]) -> Result<(), NpzError> {
+        self.add_packed(name, shape, data, Packing::Small)
+    }
+
+    /// Adds an array as [`NpzWriter::add`] does, kept in a way of one's own choice.
+    ///
+    /// # Errors
+    /// As [`NpzWriter::add`].
+    pub fn add_packed<T: Element>(
+        &mut self,
+        name: &str,
+        shape: &[usize],
+        data: &[T],
+        packing: Packing,
+    ) -> Result<(), NpzError> {
         let refused = |reason: String| NpzError::Write {
             array: name.to_string(),
             reason,
@@ -86,28 +131,40 @@ impl NpzWriter {
         if !self.names.insert(name.to_string()) {
             return Err(refused("this name is already used".to_string()));
         }
-        self.deflate(name, &header::write(T::DTYPE, shape), data)
+        self.pack(name, &header::write(T::DTYPE, shape), data, packing)
             .map_err(|error| refused(error.to_string()))
     }
 
-    fn deflate<T: Element>(&mut self, name: &str, header: &[u8], data: &[T]) -> Result<(), rawzip::Error> {
+    fn pack<T: Element>(
+        &mut self,
+        name: &str,
+        header: &[u8],
+        data: &[T],
+        packing: Packing,
+    ) -> Result<(), rawzip::Error> {
         let path = format!("{name}.npy");
+        let (method, level) = match packing {
+            Packing::Small => (CompressionMethod::DEFLATE, Compression::default()),
+            Packing::Fast => (CompressionMethod::DEFLATE, Compression::fast()),
+            Packing::Stored => (CompressionMethod::STORE, Compression::none()),
+        };
         let builder = self
             .archive
             .new_file(path.as_str())
-            .compression_method(CompressionMethod::DEFLATE)
+            .compression_method(method)
             .last_modified(UtcDateTime::from_unix(EPOCH));
         let (mut entry, config) = builder.start()?;
-        let mut writer = config.wrap(DeflateEncoder::new(&mut entry, Compression::default()));
-        writer.write_all(header)?;
-        let mut bytes = Vec::new();
-        for chunk in data.chunks(4096) {
-            bytes.clear();
-            chunk.iter().for_each(|number| number.extend(&mut bytes));
-            writer.write_all(&bytes)?;
-        }
-        let (encoder, descriptor) = writer.finish()?;
-        encoder.finish()?;
+        let descriptor = if packing == Packing::Stored {
+            let mut writer = config.wrap(&mut entry);
+            write_numbers(&mut writer, header, data)?;
+            writer.finish()?.1
+        } else {
+            let mut writer = config.wrap(DeflateEncoder::new(&mut entry, level));
+            write_numbers(&mut writer, header, data)?;
+            let (encoder, descriptor) = writer.finish()?;
+            encoder.finish()?;
+            descriptor
+        };
         entry.finish(descriptor)?;
         Ok(())
     }
@@ -135,4 +192,16 @@ impl NpzWriter {
             source,
         })
     }
+}
+
+/// Writes the header of an array and its numbers.
+fn write_numbers<T: Element>(writer: &mut impl Write, header: &[u8], data: &[T]) -> std::io::Result<()> {
+    writer.write_all(header)?;
+    let mut bytes = Vec::new();
+    for chunk in data.chunks(4096) {
+        bytes.clear();
+        chunk.iter().for_each(|number| number.extend(&mut bytes));
+        writer.write_all(&bytes)?;
+    }
+    Ok(())
 }

@@ -304,7 +304,7 @@ fn fill(dict: &mut DictWriter, info: &Info) {
             InfoValue::Flag(flag) => dict.bool(key, flag),
             InfoValue::Number(number) => dict.float(key, number),
             // details, which pickles leave out
-            InfoValue::Parts(_) | InfoValue::Angles(_) => {}
+            InfoValue::Parts(_) | InfoValue::Angles(_) | InfoValue::Counts(_) => {}
         }
     }
 }

@@ -1,0 +1,42 @@
+//! Arguments of commands that record what they run.
+
+use std::path::PathBuf;
+
+use babybench::Env;
+use babybench::runs::{RecordError, RecordOptions, Recorder};
+use clap::Args;
+
+use crate::arguments::count;
+
+/// What is recorded, and where.
+#[derive(Args)]
+pub struct Recording {
+    /// Record everything into this new folder: manifest.json and an archive of NumPy's for each episode, which babybench replay repeats
+    /// with the same bits
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// Record all senses as observed, too, but for the images
+    #[arg(long, requires = "record")]
+    record_senses: bool,
+    /// Record what both eyes observe in every K-th step
+    #[arg(long, value_name = "K", requires = "record", allow_negative_numbers = true, value_parser = count::<u64>)]
+    record_eyes: Option<u64>,
+}
+
+impl Recording {
+    /// Returns the folder, if anything is recorded.
+    pub fn folder(&self) -> Option<&PathBuf> {
+        self.record.as_ref()
+    }
+
+    /// Makes the recorder, if anything is recorded; `policy` says what acts.
+    pub fn recorder(&self, env: &Env, policy: &str) -> Result<Option<Recorder>, RecordError> {
+        let options = RecordOptions {
+            senses: self.record_senses,
+            eyes_every: self.record_eyes,
+            policy: policy.to_string(),
+        };
+        let folder = self.record.as_ref();
+        folder.map(|folder| Recorder::create(folder, env, options)).transpose()
+    }
+}

@@ -1,0 +1,276 @@
+"""Records of runs: folders with a description and an archive of NumPy's for each episode.
+
+``babybench run --record DIR`` and ``babybench evaluate --record DIR`` make them, and :class:`Recorder`. Two lines read
+one without this module::
+
+    import numpy
+    episode = numpy.load("DIR/episode_0.npz")
+
+With it::
+
+    import babybench.data
+    record = babybench.data.open("DIR")
+    record[0]["qpos"]           # (T, nq)
+    record[0].touch(17)         # what the skin felt in step 17, all of it
+    record[0].to_pandas()       # a row for each step, if pandas is installed
+"""
+
+from __future__ import annotations
+
+import builtins
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Optional, Union
+
+import numpy as np
+
+__all__ = ["Episode", "Record", "Recorder", "open"]
+
+FORMAT = "babybench record"
+VERSION = 1
+
+
+class Episode(Mapping[str, np.ndarray]):
+    """An episode of a record: arrays by name, read when they are asked for.
+
+    Arrays of steps have a row for each; ``record.manifest["arrays"]`` says what each one is. Touch and contacts are
+    sparse: :meth:`touch` and :meth:`contacts` have those of a step.
+    """
+
+    def __init__(self, path: Path, description: Mapping[str, Any], manifest: Mapping[str, Any]) -> None:
+        """Opens the archive; :func:`open` and ``record[number]`` do that."""
+        self.path = path
+        self.description = description
+        self.manifest = manifest
+        self._archive = np.load(path, allow_pickle=False)
+        self._read: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._read:
+            if name not in self._archive.files:
+                there = ", ".join(self._archive.files)
+                raise KeyError(f"{self.path}: no array {name!r}; there are {there}")
+            self._read[name] = self._archive[name]
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._archive.files)
+
+    def __len__(self) -> int:
+        return len(self._archive.files)
+
+    @property
+    def number(self) -> int:
+        """The number of the episode."""
+        return int(self.description["episode"])
+
+    @property
+    def steps(self) -> int:
+        """The number of steps."""
+        return int(self.description["steps"])
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """The information of the last step."""
+        return dict(self.description["info"])
+
+    def _span(self, name: str, step: int) -> slice:
+        if not -self.steps <= step < self.steps:
+            raise IndexError(f"step {step} of an episode of {self.steps} steps")
+        ends = self[name]
+        at = step % self.steps
+        return slice(int(ends[at]), int(ends[at + 1]))
+
+    def touch(self, step: int) -> np.ndarray:
+        """Returns what the skin felt in a step, N, as the observation had it, shape (touch_len,)."""
+        out = np.zeros(int(self["touch_len"]), np.float32)
+        span = self._span("touch_ptr", step)
+        out[self["touch_idx"][span]] = self["touch_val"][span]
+        return out
+
+    def contacts(self, step: int) -> dict[str, Any]:
+        """Returns the contacts of a step: names of both parts, positions, distances and forces."""
+        span = self._span("contact_ptr", step)
+        geoms = self["contact_geom"][span]
+        parts = [tuple(self.manifest["geoms"][int(geom)]["part"] for geom in pair) for pair in geoms]
+        return {
+            "geom": geoms,
+            "part": parts,
+            "pos": self["contact_pos"][span],
+            "dist": self["contact_dist"][span],
+            "force": self["contact_force"][span],
+        }
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        """Returns the numbers of each step by name: time, joint angles and velocities, actions, reward."""
+        joints, columns = self.manifest["joints"], {"time": self["time"]}
+        columns.update({f"angle {j['name']}": self["qpos"][:, j["qpos"]] for j in joints})
+        columns.update({f"velocity {j['name']}": self["qvel"][:, j["dof"]] for j in joints})
+        columns.update({f"action {name}": self["actions"][:, k] for k, name in enumerate(self.manifest["actions"])})
+        columns["reward"] = self["reward"]
+        if "touch_ptr" in self:
+            columns["touched sensors"] = np.diff(self["touch_ptr"])
+        columns["contacts"] = np.diff(self["contact_ptr"])
+        return columns
+
+    def to_pandas(self) -> Any:
+        """Returns a pandas ``DataFrame``: a row for each step, the time as its index.
+
+        Raises:
+            ModuleNotFoundError: pandas is not installed.
+        """
+        import pandas as pd
+
+        return pd.DataFrame(self._columns()).set_index("time")
+
+    def to_xarray(self) -> Any:
+        """Returns an xarray ``Dataset``: angles and velocities by time and joint, actions by time and actuator.
+
+        Raises:
+            ModuleNotFoundError: xarray is not installed.
+        """
+        import xarray as xr
+
+        joints = self.manifest["joints"]
+        qpos, dofs = [j["qpos"] for j in joints], [j["dof"] for j in joints]
+        return xr.Dataset(
+            {
+                "angle": (("time", "joint"), self["qpos"][:, qpos], {"units": "rad"}),
+                "velocity": (("time", "joint"), self["qvel"][:, dofs], {"units": "rad/s"}),
+                "action": (("time", "actuator"), self["actions"]),
+                "reward": (("time",), self["reward"]),
+            },
+            coords={
+                "time": ("time", self["time"], {"units": "s"}),
+                "joint": [j["name"] for j in joints],
+                "actuator": list(self.manifest["actions"]),
+            },
+            attrs={"policy": self.manifest["policy"], "babybench": self.manifest["babybench"]},
+        )
+
+
+class Record(Mapping[int, Episode]):
+    """A record: episodes by number, and the description of everything in :attr:`manifest`."""
+
+    def __init__(self, folder: Union[str, Path]) -> None:
+        """Reads the description; see :func:`open`."""
+        self.folder = Path(folder)
+        path = self.folder / "manifest.json"
+        with builtins.open(path, encoding="utf-8") as file:
+            try:
+                manifest = json.load(file)
+            except ValueError as error:
+                raise ValueError(f"{path}: no record of babybench: {error}") from None
+        if not isinstance(manifest, dict) or manifest.get("format") != FORMAT:
+            raise ValueError(f"{path}: no record of babybench")
+        if manifest["version"] > VERSION:
+            raise ValueError(f"{path}: a record of version {manifest['version']}; this babybench reads up to {VERSION}")
+        self.manifest: dict[str, Any] = manifest
+        self._descriptions = {int(e["episode"]): e for e in manifest["episodes"]}
+
+    def __getitem__(self, episode: int) -> Episode:
+        if episode not in self._descriptions:
+            there = ", ".join(map(str, self._descriptions)) or "none"
+            raise KeyError(f"{self.folder}: no episode {episode}; there are {there}")
+        description = self._descriptions[episode]
+        name = description["file"]
+        if Path(name).name != name:
+            raise ValueError(f"{self.folder}: {name!r} is no name of a file in this folder")
+        return Episode(self.folder / name, description, self.manifest)
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._descriptions)
+
+    def __len__(self) -> int:
+        return len(self._descriptions)
+
+    def skin(self) -> dict[str, np.ndarray]:
+        """Returns where the touch sensors are: ``body`` (N), ids, and ``position`` (N, 3) in the frames of the bodies, m."""
+        with np.load(self.folder / "skin.npz", allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files}
+
+    def measure(self, episode: int | None = None) -> dict[str, Any]:
+        """Returns the measures of an episode, or the means of all: touches, smoothness, symmetry, as the guide defines them."""
+        from babybench_core import _native
+
+        return json.loads(_native.measure_record(self.folder, episode))
+
+    def replay(self, episode: int) -> int | None:
+        """Repeats an episode; returns the first step whose bits differ, ``None`` if all are the same."""
+        from babybench_core import _native
+
+        return _native.replay_record(self.folder, episode)
+
+
+class Recorder:
+    """Records an environment, episode by episode, into a new folder: resets and steps go through it.
+
+    Example:
+        >>> env = babybench.make("self_touch")
+        >>> with babybench.data.Recorder(env, "record") as recorder:
+        ...     observation, info = recorder.reset(seed=0)
+        ...     observation, reward, terminated, truncated, info = recorder.step(env.action_space.sample())
+    """
+
+    def __init__(
+        self,
+        env: Any,
+        folder: Union[str, Path],
+        *,
+        senses: bool = False,
+        eyes_every: Optional[int] = None,
+        policy: str = "",
+    ) -> None:
+        """Makes the folder.
+
+        Args:
+            env: A ``babybench.Env``, or a wrapper around one.
+            folder: A folder without a record.
+            senses: Whether every other sense is recorded as observed, too.
+            eyes_every: Every how many steps what both eyes observe is recorded.
+            policy: What acts, in words.
+
+        Raises:
+            FileExistsError: The folder has a record.
+        """
+        from babybench_core import _native
+
+        self.env = env.unwrapped
+        self._native = _native.Recorder(self.env._core, folder, senses, eyes_every, policy)
+        self._episode = -1
+
+    def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
+        """Ends the episode, resets the environment, and begins to record the next one."""
+        self.end()
+        observation, info = self.env.reset(**options)
+        self._episode += 1
+        self._native.begin(self.env._core, self._episode)
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Steps the environment, and records what comes of it."""
+        core = self.env._core
+        observation, reward, terminated, truncated = self._native.step(core, action)
+        return observation, reward, terminated, truncated, core.info()
+
+    def end(self) -> None:
+        """Writes the episode, if it has steps."""
+        if self._episode >= 0:
+            self._native.end(self.env._core)
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.end()
+
+
+def open(folder: Union[str, Path]) -> Record:
+    """Opens the record in a folder.
+
+    Raises:
+        FileNotFoundError: There is no record.
+        ValueError: The description is damaged, or of a later version.
+    """
+    return Record(folder)

@@ -1,0 +1,119 @@
+//! Records: what is measured from them, and whether they are repeated with the same bits.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use babybench::eval::Measures;
+use babybench::runs::{Record, RecordError, RecordOptions, Recorder as Inside};
+use pyo3::exceptions::{PyFileExistsError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::read;
+use crate::env::Env;
+use crate::errors::{IntoException, detached};
+
+impl IntoException for RecordError {
+    fn into_exception(self) -> PyErr {
+        exception(self)
+    }
+}
+
+/// Records an environment into a folder.
+#[pyclass(frozen, module = "babybench_core._native")]
+pub struct Recorder {
+    inner: Mutex<Inside>,
+}
+
+impl Recorder {
+    fn with<R>(&self, work: impl FnOnce(&mut Inside) -> R) -> R {
+        work(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[pymethods]
+impl Recorder {
+    #[new]
+    #[pyo3(signature = (env, folder, senses=false, eyes_every=None, policy=""))]
+    fn new(env: &Env, folder: PathBuf, senses: bool, eyes_every: Option<u64>, policy: &str) -> PyResult<Self> {
+        let options = RecordOptions {
+            senses,
+            eyes_every,
+            policy: policy.to_string(),
+        };
+        let inner = Inside::create(folder, &env.guard()?.open()?.env, options).map_err(exception)?;
+        Ok(Self {
+            inner: Mutex::new(inner),
+        })
+    }
+
+    fn begin(&self, env: &Env, episode: u64) -> PyResult<()> {
+        let mut guard = env.guard()?;
+        let env = &guard.open()?.env;
+        self.with(|recorder| recorder.begin(env, episode));
+        Ok(())
+    }
+
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        env: &Env,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyDict>, f64, bool, bool)> {
+        let mut guard = env.guard()?;
+        let inner = guard.open()?;
+        let width = inner.env.action_space().len();
+        read("action", action, &[width], &mut inner.action)?;
+        let (env, action) = (&mut inner.env, &inner.action);
+        detached(py, || self.with(|recorder| recorder.step(env, action)))?;
+        let outcome = (inner.env.reward(), inner.env.terminated(), inner.env.truncated());
+        Ok((Env::observed(py, inner)?, outcome.0, outcome.1, outcome.2))
+    }
+
+    fn end(&self, py: Python<'_>, env: &Env) -> PyResult<()> {
+        let mut guard = env.guard()?;
+        let env = &guard.open()?.env;
+        detached(py, || self.with(|recorder| recorder.end(env)))
+    }
+}
+
+/// Turns an error of a record into Python's exception.
+fn exception(error: RecordError) -> PyErr {
+    match error {
+        RecordError::Io { ref source, .. } => {
+            let text = error.to_string();
+            std::io::Error::new(source.kind(), text).into()
+        }
+        RecordError::Exists { .. } => PyFileExistsError::new_err(error.to_string()),
+        RecordError::Env(source) => source.into_exception(),
+        other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+/// Returns the measures of an episode of a record, or the means of all, as JSON.
+#[pyfunction]
+#[pyo3(signature = (folder, episode=None))]
+pub fn measure_record(py: Python<'_>, folder: PathBuf, episode: Option<u64>) -> PyResult<String> {
+    py.detach(|| {
+        let record = Record::open(&folder).map_err(exception)?;
+        let all = match episode {
+            Some(episode) => vec![Measures::of_episode(&record, episode).map_err(exception)?],
+            None => Measures::of_record(&record).map_err(exception)?,
+        };
+        let mean = Measures::mean(&all);
+        let mean =
+            mean.ok_or_else(|| PyValueError::new_err(format!("{}: the record has no steps", folder.display())))?;
+        Ok(mean.to_json())
+    })
+}
+
+/// Repeats an episode of a record in its own configuration; returns the first step whose bits differ.
+#[pyfunction]
+pub fn replay_record(py: Python<'_>, folder: PathBuf, episode: u64) -> PyResult<Option<u64>> {
+    py.detach(|| {
+        let record = Record::open(&folder).map_err(exception)?;
+        let mut env =
+            babybench::Env::new(record.manifest().configuration.clone()).map_err(IntoException::into_exception)?;
+        Ok(record.replay(episode, &mut env).map_err(exception)?.first_difference)
+    })
+}

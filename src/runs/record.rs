@@ -1,0 +1,283 @@
+//! Records of runs: folders that describe themselves, with everything that happened, for analysis and for replay.
+//!
+//! A folder has `manifest.json` ([`Manifest`]) and an archive of NumPy's for each episode. In Python two lines read one:
+//!
+//! ```python
+//! import numpy
+//! episode = numpy.load("record/episode_0.npz")    # episode["qpos"], episode["touch_val"], ...
+//! ```
+//!
+//! An archive starts with a snapshot, so that [`Record::replay`] repeats the episode with the same bits, and checks them step by step.
+
+mod describe;
+mod manifest;
+mod read;
+mod rows;
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+pub use manifest::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
+pub use read::{Record, Replayed};
+use rows::Rows;
+use thiserror::Error;
+
+use crate::env::{Detailed, Env, EnvError, SnapshotError};
+use crate::files::replace_file;
+use crate::formats::npz::NpzError;
+use crate::json;
+
+/// The name of the description in the folder of a record.
+const MANIFEST: &str = "manifest.json";
+
+/// An error in recording a run or in reading a record.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// The folder has a record already.
+    #[error("{}: there is a record in this folder already; name another folder, or remove this one", path.display())]
+    Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Images are to be recorded, but the eyes do not see.
+    #[error("nothing is seen that could be recorded: set vision_active: true, or record without the eyes")]
+    Blind,
+    /// Steps are to be recorded before an episode began.
+    #[error("no episode is being recorded: call Recorder::begin after the reset of the environment")]
+    NotBegun,
+    /// The environment fails.
+    #[error(transparent)]
+    Env(#[from] EnvError),
+    /// An archive cannot be written or read.
+    #[error(transparent)]
+    Npz(#[from] NpzError),
+    /// The file system refuses.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// The description is damaged, or of something else.
+    #[error("{}: no record of babybench: {reason}", path.display())]
+    Manifest {
+        /// The file.
+        path: PathBuf,
+        /// Description of the fault.
+        reason: String,
+    },
+    /// There is no such episode.
+    #[error("{}: no episode {episode}; there are {}", path.display(), numbers(.there))]
+    Episode {
+        /// The folder.
+        path: PathBuf,
+        /// The episode asked for.
+        episode: u64,
+        /// The episodes that there are.
+        there: Vec<u64>,
+    },
+    /// An archive does not fit the environment or its description.
+    #[error("{}: {reason}", path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// Description of the fault.
+        reason: String,
+    },
+    /// The episode cannot be repeated from its start.
+    #[error("{}: {source}", path.display())]
+    Snapshot {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: SnapshotError,
+    },
+}
+
+/// Lists numbers of episodes, the first few of them.
+fn numbers(there: &[u64]) -> String {
+    let first: Vec<String> = there.iter().take(10).map(u64::to_string).collect();
+    match (there.len(), first.is_empty()) {
+        (_, true) => "none".to_string(),
+        (n, _) if n > first.len() => format!("{}, ... ({n})", first.join(", ")),
+        _ => first.join(", "),
+    }
+}
+
+/// What is recorded beside states, actions, touch, contacts, rewards and information.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordOptions {
+    /// Whether every other sense is recorded as it was observed, step by step. Without it they are left to a replay, which has the same
+    /// bits: they would take more room than all the rest.
+    pub senses: bool,
+    /// Every how many steps what both eyes observed is recorded, the first of an episode among them; `None` for never.
+    pub eyes_every: Option<u64>,
+    /// What acted, in words, for the description.
+    pub policy: String,
+}
+
+/// What the recorders of one folder share.
+#[derive(Debug)]
+struct Shared {
+    dir: PathBuf,
+    options: RecordOptions,
+    manifest: Mutex<Manifest>,
+}
+
+/// Records an environment, episode by episode, into a folder.
+///
+/// ```
+/// use babybench::runs::{Record, RecordOptions, Recorder};
+/// use babybench::{Config, Env};
+/// # let dir = std::env::temp_dir().join(format!("babybench_record_example_{}", std::process::id()));
+///
+/// let mut env = Env::new(Config { vision_active: false, ..Config::default() })?;
+/// let mut recorder = Recorder::create(&dir, &env, RecordOptions::default())?;
+/// let mut action = Vec::new();
+/// env.reset(Some(7))?;
+/// recorder.begin(&env, 0);
+/// for _ in 0..5 {
+///     env.sample_action(&mut action);
+///     recorder.step(&mut env, &action)?; // instead of env.step(&action)
+/// }
+/// recorder.end(&env)?;
+///
+/// let record = Record::open(&dir)?;
+/// assert_eq!(record.manifest().episodes[0].steps, 5);
+/// assert_eq!(record.replay(0, &mut env)?.first_difference, None);
+/// # std::fs::remove_dir_all(&dir)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Recorder {
+    shared: Arc<Shared>,
+    rows: Option<(u64, Box<Rows>)>,
+    /// Those of an episode that has ended, for their room.
+    spare: Option<Box<Rows>>,
+}
+
+impl Recorder {
+    /// Makes the folder of a record, for an environment.
+    ///
+    /// # Errors
+    /// A folder that has a record, one that cannot be made; eyes that do not see.
+    pub fn create(dir: impl Into<PathBuf>, env: &Env, options: RecordOptions) -> Result<Self, RecordError> {
+        let dir = dir.into();
+        if dir.join(MANIFEST).exists() {
+            return Err(RecordError::Exists { path: dir });
+        }
+        let sees = env.observation().entries().any(|(entry, _)| entry.image.is_some());
+        if options.eyes_every.is_some() && !sees && !env.config().vision_active {
+            return Err(RecordError::Blind);
+        }
+        std::fs::create_dir_all(&dir).map_err(|source| RecordError::Io {
+            path: dir.clone(),
+            source,
+        })?;
+        let shared = Shared {
+            manifest: Mutex::new(Manifest::of(env, &options)),
+            dir,
+            options,
+        };
+        describe::write_skin(env, &shared.dir)?;
+        save(&shared.dir, &lock(&shared.manifest))?;
+        Ok(Self {
+            shared: Arc::new(shared),
+            rows: None,
+            spare: None,
+        })
+    }
+
+    /// Returns another recorder into the same folder, for an environment of the same blueprint that runs beside.
+    #[must_use]
+    pub fn another(&self) -> Self {
+        Self {
+            shared: self.shared.clone(),
+            rows: None,
+            spare: None,
+        }
+    }
+
+    /// Returns the folder.
+    pub fn dir(&self) -> &Path {
+        &self.shared.dir
+    }
+
+    /// Begins to record an episode from the present moment on, under a number that no other episode of the folder has. An episode that
+    /// was not ended is lost.
+    pub fn begin(&mut self, env: &Env, episode: u64) {
+        let options = &self.shared.options;
+        let last = self.rows.take().map(|(_, rows)| rows).or(self.spare.take());
+        let rows = match last {
+            Some(mut rows) => {
+                rows.begin(env, options);
+                rows
+            }
+            None => Box::new(Rows::new(env, options)),
+        };
+        self.rows = Some((episode, rows));
+    }
+
+    /// Applies an action, as [`Env::step`] does, and records what comes of it.
+    ///
+    /// A record repeats resets, actions and random choices. What a program changes between steps (the state, locks, forces) is not
+    /// among them: a replay then finds the step at which the bits differ.
+    ///
+    /// # Errors
+    /// As [`Env::step`]; no episode was begun.
+    pub fn step(&mut self, env: &mut Env, action: &[f32]) -> Result<(), RecordError> {
+        let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
+        let drawn = env.drawn();
+        env.step(action)?;
+        rows.push(env, action, drawn, &self.shared.options);
+        Ok(())
+    }
+
+    /// Ends the episode, before the next reset: writes its archive and brings the description up to date. Without steps nothing is
+    /// written.
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub fn end(&mut self, env: &Env) -> Result<(), RecordError> {
+        let Some((number, mut rows)) = self.rows.take() else {
+            return Ok(());
+        };
+        if rows.len() == 0 {
+            self.spare = Some(rows);
+            return Ok(());
+        }
+        let dir = &self.shared.dir;
+        let name = format!("episode_{number}.npz");
+        let (npz, arrays) = rows.archive()?;
+        let bytes = npz.finish()?;
+        let path = dir.join(&name);
+        replace_file(&path, &bytes).map_err(|source| RecordError::Io { path, source })?;
+        let description = EpisodeDescription {
+            episode: number,
+            file: name,
+            steps: rows.len() as u64,
+            crc32: crc32fast::hash(&bytes),
+            last_checksum: rows.last_checksum(),
+            info: serde_json::to_value(Detailed::from(env.info())).unwrap_or_default(),
+        };
+        rows.clear();
+        self.spare = Some(rows);
+        let mut manifest = lock(&self.shared.manifest);
+        manifest.add(description, arrays);
+        save(dir, &manifest)
+    }
+}
+
+fn lock(manifest: &Mutex<Manifest>) -> MutexGuard<'_, Manifest> {
+    manifest.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Writes the description into its folder.
+fn save(dir: &Path, manifest: &Manifest) -> Result<(), RecordError> {
+    let path = dir.join(MANIFEST);
+    let text = json::text(manifest) + "\n";
+    replace_file(&path, text.as_bytes()).map_err(|source| RecordError::Io { path, source })
+}

@@ -1,0 +1,142 @@
+//! The description of a record.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::RecordOptions;
+use super::describe::{geoms, limb_joints, meaning};
+use crate::config::Config;
+use crate::env::Env;
+
+/// What a description begins with.
+pub(super) const FORMAT: &str = "babybench record";
+/// The version of what this library writes.
+pub(super) const VERSION: u32 = 1;
+
+/// What is in a record, and where it comes from: `manifest.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Manifest {
+    /// `babybench record`.
+    pub format: String,
+    /// The version of the format.
+    pub version: u32,
+    /// The version of babybench that recorded.
+    pub babybench: String,
+    /// The commit that it was built from, if whoever built it said so (the variable `BABYBENCH_COMMIT`).
+    pub commit: Option<String>,
+    /// The processor and the system on which it ran.
+    pub platform: String,
+    /// What acted, in words.
+    pub policy: String,
+    /// The configuration, the seed among its keys.
+    pub configuration: Config,
+    /// Simulated time of a step, s.
+    pub dt: f64,
+    /// Height of the field of view of his eyes, degrees; none if he has no eyes.
+    pub fovy: Option<f64>,
+    /// MIMo's joints, in the order of the observation.
+    pub joints: Vec<JointDescription>,
+    /// The names of the actions.
+    pub actions: Vec<String>,
+    /// The geoms of the scene, by id.
+    pub geoms: Vec<GeomDescription>,
+    /// The arrays of the archives of episodes, by name.
+    pub arrays: BTreeMap<String, ArrayDescription>,
+    /// The episodes, by number.
+    pub episodes: Vec<EpisodeDescription>,
+}
+
+/// A joint of MIMo's.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JointDescription {
+    /// Its name.
+    pub name: String,
+    /// Its index into `qpos`.
+    pub qpos: usize,
+    /// Its index into `qvel`.
+    pub dof: usize,
+}
+
+/// A geom of the scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GeomDescription {
+    /// Its name as a part of the body; see [`PartNames`](crate::env::PartNames).
+    pub part: String,
+    /// The body that carries it.
+    pub body: String,
+    /// The region of MIMo's body: head, trunk, arm, hand, leg or foot; none if it is not his.
+    pub region: Option<String>,
+    /// The side of MIMo's body: right or left; none in the middle.
+    pub side: Option<String>,
+    /// The hand that it touches with: right or left, for palms; none for all others.
+    pub palm_of: Option<String>,
+}
+
+/// An array of the archives.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ArrayDescription {
+    /// Its type, as NumPy writes it.
+    pub dtype: String,
+    /// Its dimensions, in words: T steps, C contacts, N touched sensors.
+    pub shape: String,
+    /// What it is, with units.
+    pub meaning: String,
+}
+
+/// An episode of a record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EpisodeDescription {
+    /// Its number.
+    pub episode: u64,
+    /// The archive.
+    pub file: String,
+    /// Number of steps.
+    pub steps: u64,
+    /// CRC-32 of the archive.
+    pub crc32: u32,
+    /// The checksum of the last step, which a replay must reach.
+    pub last_checksum: i64,
+    /// The information of the last step, with details.
+    pub info: serde_json::Value,
+}
+
+impl Manifest {
+    /// Describes an environment.
+    pub(super) fn of(env: &Env, options: &RecordOptions) -> Self {
+        let (model, blueprint) = (env.model(), env.blueprint());
+        Self {
+            format: FORMAT.to_string(),
+            version: VERSION,
+            babybench: env!("CARGO_PKG_VERSION").to_string(),
+            commit: option_env!("BABYBENCH_COMMIT").map(str::to_string),
+            platform: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            policy: options.policy.clone(),
+            configuration: env.config().clone(),
+            dt: blueprint.dt(),
+            fovy: model.camera("eye_left").map(|camera| model.cam_fovy[camera]),
+            joints: limb_joints(env),
+            actions: env.actuation().action_names(model),
+            geoms: geoms(model),
+            arrays: BTreeMap::new(),
+            episodes: Vec::new(),
+        }
+    }
+
+    /// Adds an episode, or replaces the one of its number; `arrays` are those of its archive, with their types.
+    pub(super) fn add(&mut self, episode: EpisodeDescription, arrays: Vec<(String, &'static str)>) {
+        for (name, dtype) in arrays {
+            let (shape, meaning) = meaning(&name);
+            self.arrays.entry(name).or_insert_with(|| ArrayDescription {
+                dtype: dtype.to_string(),
+                shape: shape.to_string(),
+                meaning: meaning.to_string(),
+            });
+        }
+        match self.episodes.binary_search_by_key(&episode.episode, |e| e.episode) {
+            Ok(at) => self.episodes[at] = episode,
+            Err(at) => self.episodes.insert(at, episode),
+        }
+    }
+}
