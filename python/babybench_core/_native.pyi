@@ -205,6 +205,8 @@ class Env:
         """Returns the present moment, from which a run continues with the same bits."""
     def restore(self, snapshot: bytes) -> None:
         """Goes back to a snapshot of this environment, or of another of the same configuration and scene."""
+    def resume(self, snapshot: bytes) -> dict[str, _Array]:
+        """Goes back to a snapshot, with touch and images computed; returns the observation."""
     def lock(self, target: str | int, angle: float = 0.0) -> LockReport:
         """Locks a joint (name or number), or all joints of a part such as ``"head"``, at an angle in rad."""
     def unlock(self, target: str | int) -> LockReport:

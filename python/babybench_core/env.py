@@ -289,6 +289,28 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """
         self._core.restore(snapshot)
 
+    def swap_facial_expression(self, expression: str) -> None:
+        """Lets MIMo make another face: ``default``, ``happy``, ``sad``, ``surprised``, ``angry``, ``disgusted``, ``scared``.
+
+        Nothing but pictures changes; the next step has the same bits as without.
+
+        Raises:
+            ValueError: There is no such face; nothing has happened then.
+        """
+        old, core, snapshot = self.config, self._core, self._core.snapshot()
+        self.config = _native.config_from_mapping({**old, "facial_expression": expression})
+        try:
+            self._build()
+            # before the first reset there is nothing to be seen
+            if core.ready:
+                self._core.resume(snapshot)
+            else:
+                self._core.restore(snapshot)
+        except Exception:
+            self.config, self._core = old, core
+            raise
+        core.close()
+
     def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> Observation:
         """Puts the scene at positions (nq; m, rad, quaternions) and velocities (nv; m/s, rad/s) and observes it."""
         return self._core.set_state(qpos, qvel)

@@ -320,6 +320,14 @@ impl Env {
         restored.map_err(IntoException::into_exception)
     }
 
+    fn resume<'py>(&self, py: Python<'py>, snapshot: &[u8]) -> PyResult<Bound<'py, PyDict>> {
+        let snapshot = Snapshot::from_bytes(snapshot.to_vec()).map_err(IntoException::into_exception)?;
+        let mut guard = self.guard()?;
+        let inner = guard.open()?;
+        detached(py, || inner.env.by_hand().resume(&snapshot).map(drop))?;
+        Self::observed(py, inner)
+    }
+
     #[pyo3(signature = (target, angle=0.0))]
     fn lock<'py>(&self, py: Python<'py>, target: &Bound<'py, PyAny>, angle: f64) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;

@@ -184,3 +184,24 @@ choices! {
         Rapier = "rapier",
     }
 }
+
+choices! {
+    /// MIMo's face (`facial_expression`).
+    FacialExpression {
+        /// Neither happy nor sad.
+        #[default]
+        Default = "default",
+        /// Happy.
+        Happy = "happy",
+        /// Sad.
+        Sad = "sad",
+        /// Surprised.
+        Surprised = "surprised",
+        /// Angry.
+        Angry = "angry",
+        /// Disgusted.
+        Disgusted = "disgusted",
+        /// Scared.
+        Scared = "scared",
+    }
+}

@@ -1,8 +1,8 @@
 //! Keys, and how the table of them is read.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, StartingPosition, TouchFunction,
-    TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, RendererKind, StartingPosition,
+    TouchFunction, TouchResponse, VisionOutput,
 };
 use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
@@ -39,6 +39,7 @@ field! {
     f64, Number, v => Some(*v), |f| *f;
     String, Text, v => Some(v.clone()), |f| f.clone();
     Behavior, Choice, v => Self::from_name(v), |f| f.name();
+    FacialExpression, Choice, v => Self::from_name(v), |f| f.name();
     StartingPosition, Choice, v => Self::from_name(v), |f| f.name();
     ActuationModel, Choice, v => Self::from_name(v), |f| f.name();
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();

@@ -40,8 +40,8 @@ mod yaml;
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, StartingPosition, TouchFunction,
-    TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, RendererKind, StartingPosition,
+    TouchFunction, TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
 internals!(use examples::Example);

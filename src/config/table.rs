@@ -2,8 +2,8 @@
 //! reading, writing, ranges and documentation all follow from it.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, RendererKind, StartingPosition, TouchFunction,
-    TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, RendererKind, StartingPosition,
+    TouchFunction, TouchResponse, VisionOutput,
 };
 use super::keys::{Field, Key, config};
 use super::kinds::KeyKind;
@@ -74,6 +74,7 @@ config! {
         engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
         renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
         seed: u64 = 0, SEED, "The seed of all random choices until a reset is given another.";
+        facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face, which changes nothing but pictures.";
     }
     "Tasks" {
         done_active: bool = true, Bool, "Success and failure of a task terminate the episode.";

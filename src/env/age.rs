@@ -1,5 +1,6 @@
-//! Growing between two episodes.
+//! Growing between two episodes, and making faces in the middle of one.
 
+use crate::config::FacialExpression;
 use crate::env::{Env, EnvError};
 
 impl Env {
@@ -12,6 +13,38 @@ impl Env {
     pub fn set_age(&mut self, age: Option<f64>) -> Result<(), EnvError> {
         let grown = self.grown(age)?;
         self.become_grown(grown);
+        Ok(())
+    }
+
+    /// Lets MIMo make another face, at any moment; the next step has the same bits as without. Images that the eyes observe are drawn
+    /// anew.
+    ///
+    /// ```
+    /// use babybench::config::FacialExpression;
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// env.swap_facial_expression(FacialExpression::Happy)?;
+    /// assert_eq!(env.config().facial_expression, FacialExpression::Happy);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Blueprint::with_facial_expression`](crate::Blueprint::with_facial_expression); nothing is changed then.
+    pub fn swap_facial_expression(&mut self, face: FacialExpression) -> Result<(), EnvError> {
+        if self.config().facial_expression == face {
+            return Ok(());
+        }
+        let other = self.blueprint.with_facial_expression(face)?.env()?;
+        let (snapshot, ready, details) = (self.snapshot(), self.ready(), self.info.details.clone());
+        self.become_grown(other);
+        // nothing but the pictures is another's, so that its own snapshot fits
+        self.restore(&snapshot)?;
+        if ready {
+            self.by_hand().resume(&snapshot)?;
+            self.info.details = details;
+        }
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::actuation;
 use crate::assets::AssetSource;
-use crate::config::{ActuationModel, Compat, Config, EngineKind, Part, RendererKind};
+use crate::config::{ActuationModel, Compat, Config, EngineKind, FacialExpression, Part, RendererKind};
 use crate::env::engines::{EngineSource, Engines};
 use crate::env::pipeline::effective;
 use crate::env::snapshot::Identity;
@@ -305,6 +305,35 @@ impl Blueprint {
             assets: self.surface.given.clone(),
         };
         Self::with(config, options)
+    }
+
+    /// Returns a blueprint of the same configuration in which MIMo makes another face. Snapshots of both are exchangeable.
+    ///
+    /// # Errors
+    /// As [`Blueprint::with`]; assets without the texture of the face, `tex_head_NAME`.
+    pub fn with_facial_expression(&self, facial_expression: FacialExpression) -> Result<Self, EnvError> {
+        let config = Config {
+            facial_expression,
+            ..Config::clone(&self.config)
+        };
+        let made = task_model(&config, &*self.task, &*self.surface.given)?;
+        // nothing but pictures is different: whatever a program has changed stays
+        let model = self.model.edited(|arrays| arrays.materials.clone_from(&made.materials));
+        let blueprint = Self {
+            config: Arc::new(config),
+            model: Arc::new(model),
+            surface: Surface {
+                scenery: Arc::default(),
+                painting: SharedMemory::default(),
+                gpu: Arc::default(),
+                ..self.surface.clone()
+            },
+            ..self.clone()
+        };
+        if blueprint.config.vision_active {
+            blueprint.scenery()?;
+        }
+        Ok(blueprint)
     }
 
     /// Returns the assets that the scene is built from; see [`scene_assets`].

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::assets::AssetSource;
-use crate::config::{ActuationModel, Behavior, Config, Measurements, Part, Scene};
+use crate::config::{ActuationModel, Behavior, Config, FacialExpression, Measurements, Part, Scene};
 use crate::math::{Vec3, scale};
 use crate::mimo::growth::blame;
 use crate::mimo::placement::{LowestPoint, Overlap, overlaps};
@@ -21,6 +21,9 @@ const AROUND: &str = "babybench/*";
 
 /// Name of the body that places MIMo in the world, and of its free joint.
 pub(super) const MIMO: &str = "mimo_location";
+
+/// The material of MIMo's head.
+const HEAD: &str = "head";
 
 /// Returns the path of the top document of a configuration.
 pub(crate) fn document_path(config: &Config) -> &'static str {
@@ -181,11 +184,19 @@ pub fn build_scene(
 ) -> Result<Model, SceneError> {
     let path = document_path(config);
     let Some(room) = Room::open(config, assets)? else {
-        return Source { document, path, assets }.build(version, config);
+        let face = config.facial_expression;
+        let source = Source {
+            document,
+            path,
+            face,
+            assets,
+        };
+        return source.build(version, config);
     };
     let source = Source {
         document,
         path,
+        face: config.facial_expression,
         assets: &room,
     };
     if document != scene_xml(config) {
@@ -204,12 +215,20 @@ pub(super) struct Source<'a> {
     pub document: &'a str,
     /// As which file of the assets it is read.
     pub path: &'a str,
+    /// His face: the texture of the material of his head.
+    pub face: FacialExpression,
     pub assets: &'a dyn AssetSource,
 }
 
 impl Source<'_> {
     fn read(&self) -> Result<Draft, LoadError> {
-        Draft::read_str(self.document, self.path, self.assets)
+        let mut draft = Draft::read_str(self.document, self.path, self.assets)?;
+        if self.face != FacialExpression::Default
+            && let Some(texture) = draft.material_texture(HEAD)
+        {
+            *texture = Some(format!("tex_head_{}", self.face));
+        }
+        Ok(draft)
     }
 
     /// Compiles the document with MIMo of the original proportions.

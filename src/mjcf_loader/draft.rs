@@ -178,6 +178,14 @@ impl Draft {
         })
     }
 
+    /// Returns the name of the texture of a material, `None` for none; `None` instead if there is no such material.
+    pub fn material_texture(&mut self, name: &str) -> Option<&mut Option<String>> {
+        let mut materials = self.document.materials.iter_mut();
+        materials
+            .find(|material| material.name == name)
+            .map(|material| &mut material.texture)
+    }
+
     /// Lists the names of the joints of a body and of all below it.
     pub(crate) fn joints_below(&self, body: &str) -> Vec<String> {
         let bodies = &self.document.bodies;

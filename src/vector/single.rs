@@ -1,5 +1,6 @@
 //! One environment of a vector.
 
+use crate::config::FacialExpression;
 use crate::env::{Env, Info, Observation, Snapshot};
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::{BoxSpace, ObservationSpace};
@@ -93,6 +94,15 @@ impl VectorEnv {
                 Ok(())
             }
         }
+    }
+
+    /// Lets the MIMo of one environment make another face: see [`Env::swap_facial_expression`].
+    ///
+    /// # Errors
+    /// As [`Env::swap_facial_expression`]; [`VectorError::Unknown`], [`VectorError::InFlight`].
+    pub fn swap_facial_expression(&mut self, env: usize, face: FacialExpression) -> Result<(), VectorError> {
+        let swapped = self.env_mut(env)?.swap_facial_expression(face);
+        swapped.map_err(of(env))
     }
 
     /// Puts the scene of one environment at positions and velocities in the middle of an episode: see

@@ -221,7 +221,8 @@ fn trace(config: Config) -> u64 {
 
 /// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, MIMo v2's fingers, and senses with
 /// tests of their own.
-const ELSEWHERE: [&str; 7] = [
+const ELSEWHERE: [&str; 8] = [
+    "facial_expression",
     "save_dir",
     "save_logs_every",
     "render_size",

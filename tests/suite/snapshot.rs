@@ -1,10 +1,10 @@
 //! Snapshots: bit-identical continuation, bytes that keep, and bytes that are refused.
 
 use crate::common::*;
-use babybench::config::{ActuationModel, Behavior, Compat, Part, Scene};
-use babybench::env::{Snapshot, SnapshotError};
+use babybench::config::{ActuationModel, Behavior, Compat, FacialExpression, Part, Scene};
+use babybench::env::{Snapshot, SnapshotError, Viewer};
 use babybench::sensors::Component;
-use babybench::{Config, Env, EnvError};
+use babybench::{Config, Env, EnvError, VectorEnv, VectorOptions};
 
 /// `n` random steps: everything that comes out of them, as text.
 fn course(env: &mut Env, n: usize) -> Vec<String> {
@@ -501,4 +501,65 @@ fn checksum(bytes: &[u8]) -> u64 {
         mix(h, u64::from_le_bytes(w.try_into().expect("eight")))
     });
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
+}
+
+/// Faces are looks: MIMo's picture changes, and nothing else.
+#[test]
+fn faces_change_pictures_alone() {
+    let config = Config {
+        touch_active: false,
+        ..body_only("self_touch")
+    };
+    let blueprint = blueprint(config);
+    let (mut plain, mut env) = (
+        blueprint.env().expect("an environment"),
+        blueprint.env().expect("an environment"),
+    );
+    // before the first reset, too
+    env.swap_facial_expression(FacialExpression::Sad).expect("a face");
+    let picture = |env: &Env| {
+        let mut viewer = Viewer::new(env.blueprint()).expect("a viewer");
+        viewer.draw(env, "closeup", 96, 96).expect("a picture").to_vec()
+    };
+    plain.reset(Some(3)).expect("no divergence");
+    env.reset(Some(3)).expect("no divergence");
+    let mut seen = Vec::new();
+    for (k, face) in FacialExpression::ALL.iter().enumerate().skip(1) {
+        env.swap_facial_expression(*face).expect("a face");
+        assert_eq!(env.observation(), plain.observation(), "{face}");
+        let (face_of_his, usual) = (picture(&env), picture(&plain));
+        assert!(face_of_his != usual, "{face}");
+        seen.push(*face);
+        let action = vec![0.1 * k as f32; env.action_space().len()];
+        let felt = env
+            .step(&action)
+            .expect("no divergence")
+            .observation
+            .proprioception
+            .to_vec();
+        assert_eq!(
+            felt,
+            plain.step(&action).expect("no divergence").observation.proprioception,
+            "{face}"
+        );
+    }
+    assert_eq!(seen.len(), 6, "six faces beside the usual one");
+    // a snapshot of one is one of the other
+    plain.restore(&env.snapshot()).expect("the same scene but for looks");
+    let config = Config {
+        facial_expression: FacialExpression::Scared,
+        ..blueprint.config().clone()
+    };
+    let mut vector = VectorEnv::new(
+        &babybench::Blueprint::new(config).expect("a face"),
+        2,
+        VectorOptions::default(),
+    )
+    .expect("a vector");
+    vector.reset(0).expect("no divergence");
+    vector
+        .swap_facial_expression(1, FacialExpression::Happy)
+        .expect("a face");
+    let faces = [0, 1].map(|env| vector.env(env).expect("an environment").config().facial_expression);
+    assert_eq!(faces, [FacialExpression::Scared, FacialExpression::Happy]);
 }

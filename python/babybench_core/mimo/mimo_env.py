@@ -219,8 +219,8 @@ class MIMoEnv(SensingEnv):
     def swap_facial_expression(self, emotion: str) -> None:
         """Refuses: the engine draws the default face."""
         raise NotImplementedError(
-            f"facial expression {emotion!r}: the engine draws MIMo's default face; "
-            "change the texture tex_head_default in the assets"
+            f"facial expression {emotion!r}: the engine draws MIMo's default face here; "
+            "babybench.make(...).swap_facial_expression and the key facial_expression change it"
         )
 
     # --- construction ---

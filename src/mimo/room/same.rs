@@ -34,6 +34,7 @@ impl<A: AssetSource> Room<A> {
         let usual = Source {
             document: &scene_xml(&plain),
             path: DOCUMENT,
+            face: config.facial_expression,
             assets: &library,
         }
         .original()?;
