@@ -60,6 +60,9 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
             Some("joints that move a body alike")
         }
         ErrorKind::Invalid(message) if message.starts_with("the inertia at qpos0 is singular") => Some(SINGULAR),
+        ErrorKind::Invalid(message) if message.starts_with("MuJoCo 3.3.0 multiplies it") => {
+            Some("sensors of no object and keyframes beside copies")
+        }
         ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
         ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),
         _ => None,

@@ -143,7 +143,7 @@ table! {
     /// Attributes of `<muscle>`.
     group Muscle {
         "timeconst" timeconst: [f64; 2] = [-1.0; 2], reals(2, Any), "Time constants of activation and deactivation, s; 0.01 and 0.04 if no default gives others.";
-        "tausmooth" tausmooth: Option<f64> = None, real(NonNegative), "Width of the transition between them, in differences of control and activation.";
+        "tausmooth" tausmooth: Option<f64> = None, real(NonNegative), own, "Width of the transition between them, in differences of control and activation.";
         "range" range: [f64; 2] = [-1.0; 2], reals(2, Any), "What the ends of `lengthrange` are in optimal lengths; 0.75 and 1.05 if no default gives others.";
         "force" force: f64 = -1.0, real(Any), "Isometric force, N; negative for that which `scale` gives.";
         "scale" scale: f64 = -1.0, real(Any), "Isometric force times the acceleration per unit force at `qpos0`; 200 if no default gives another.";

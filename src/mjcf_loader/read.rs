@@ -13,7 +13,7 @@ use super::document::{
 use super::error::{ErrorKind, LoadError};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{DEFAULT, Element};
-use super::sensor::Sensor;
+use super::sensor::{Object, Sensor};
 use super::settings::{Root, Visual};
 use super::surface::{Material, Texture};
 use super::table::Table;
@@ -189,7 +189,28 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         }
     }
     document.visual = visual.compiled();
+    check_copies(tree, &document)?;
     Ok(document)
+}
+
+const MULTIPLIED: &str =
+    "MuJoCo 3.3.0 multiplies it with every copy that a <replicate> makes: write the copies out, or leave it out";
+
+/// Refuses what MuJoCo multiplies beside what a `<replicate>` holds: sensors of no object, and keyframes.
+fn check_copies(tree: &Tree, document: &Document) -> Result<(), LoadError> {
+    if document.frames.iter().all(|frame| frame.copy.is_none()) {
+        return Ok(());
+    }
+    let of_nothing = |sensor: &&Sensor| match &sensor.object {
+        Object::Nothing => true,
+        Object::User(user) => user.objtype.is_none(),
+        _ => false,
+    };
+    let sensor = document.sensors.iter().find(of_nothing).map(|sensor| sensor.at);
+    match sensor.or(document.keys.first().map(|key| key.at)) {
+        Some(at) => Err(tree.error(at, ErrorKind::Invalid(MULTIPLIED))),
+        None => Ok(()),
+    }
 }
 
 /// Adds an element of a section that lists its elements one after another.

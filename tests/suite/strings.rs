@@ -269,3 +269,12 @@ fn engine_of_copies(count: i32) -> SoftEngine {
         "<mujoco><worldbody><replicate count='{count}'><geom size='.1'/></replicate></worldbody></mujoco>"
     ))
 }
+
+#[test]
+fn what_mujoco_multiplies_with_copies_is_refused() {
+    let copies = "<worldbody><replicate count='2'><geom size='.1'/></replicate></worldbody>";
+    for beside in ["<sensor><clock/></sensor>", "<keyframe><key time='1'/></keyframe>"] {
+        let error = outcome(&format!("<mujoco>{copies}{beside}</mujoco>")).expect_err(beside);
+        assert!(error.contains("MuJoCo 3.3.0 multiplies it with every copy"), "{error}");
+    }
+}

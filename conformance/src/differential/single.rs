@@ -111,6 +111,21 @@ fn unbalance(document: &mut Node) {
     }
 }
 
+/// Makes copies of what a `<replicate>` holds, without the sensors that MuJoCo would multiply with them.
+fn make_copies(document: &mut Node, at: usize) {
+    if let Some(node) = document.nth_mut(at)
+        && node.get("count") == Some("0")
+    {
+        node.set("count", "2");
+    }
+    const OF_NOTHING: [&str; 4] = ["clock", "user", "e_potential", "e_kinetic"];
+    for section in document.children.iter_mut().filter(|node| node.name == "sensor") {
+        section
+            .children
+            .retain(|sensor| !OF_NOTHING.contains(&sensor.name.as_str()));
+    }
+}
+
 /// Lists the documents of all attributes.
 ///
 /// # Errors
@@ -144,6 +159,9 @@ pub fn singles(language: &Language) -> Result<Vec<Single>, String> {
                 }
                 if name == "balanceinertia" {
                     unbalance(&mut document);
+                }
+                if path.ends_with("/replicate") {
+                    make_copies(&mut document, *at);
                 }
                 all.push(Single {
                     what: format!("{path}@{name}=\"{value}\""),
