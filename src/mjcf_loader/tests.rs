@@ -393,10 +393,6 @@ fn constraints_are_checked() {
     let input = "<tendon><fixed><joint joint='f' coef='1'/></fixed></tendon>";
     check_with_bodies(input, &format!("mujoco/tendon/fixed/joint: {free}"));
     check_with_bodies(
-        "<actuator><motor joint='f'/></actuator>",
-        &format!("mujoco/actuator/motor: {free}"),
-    );
-    check_with_bodies(
         "<tendon><fixed/></tendon>",
         "mujoco/tendon/fixed: the tendon has no joints",
     );

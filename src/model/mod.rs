@@ -487,6 +487,12 @@ impl Arrays {
         self.tendon_wrap.iter().map(Vec::len).sum()
     }
 
+    /// Returns the joint of several coordinates that an actuator acts on, if it acts on one.
+    pub(crate) fn actuator_turns(&self, actuator: usize) -> Option<usize> {
+        let joint = self.actuator_joint(actuator);
+        joint.filter(|&j| matches!(self.jnt_type[j], JointType::Free | JointType::Ball))
+    }
+
     /// Returns the joint that an actuator acts on, if it acts on one.
     pub fn actuator_joint(&self, actuator: usize) -> Option<usize> {
         match self.actuator_trntype[actuator] {

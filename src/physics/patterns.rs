@@ -64,13 +64,18 @@ pub(super) fn tendons(model: &Arrays, topology: &Topology) -> DofRows {
     DofRows::new((0..model.ntendon()).map(of))
 }
 
-/// Returns the degrees of freedom on which each actuator acts that has a moment of its own: on a site, a slider-crank, contacts.
+/// Returns the degrees of freedom on which each actuator acts that has a moment of its own: on a ball joint, a free
+/// joint, a site, a slider-crank, contacts.
 pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {
     let chain = |site: usize| topology.body_chain(model.site_bodyid[site]);
     let of = |i: usize| {
         let (id, reference) = (model.actuator_trnid[i], model.actuator_refid[i]);
         match model.actuator_trntype[i] {
-            TrnType::Joint | TrnType::JointInParent | TrnType::Tendon => Vec::new(),
+            TrnType::Joint | TrnType::JointInParent | TrnType::Tendon => {
+                let joint = model.actuator_turns(i);
+                let dofs = joint.map(|j| model.jnt_dofadr[j]..model.jnt_dofadr[j] + model.jnt_type[j].nv());
+                dofs.into_iter().flatten().map(|d| d as u32).collect()
+            }
             TrnType::Body => (0..model.nv as u32).collect(),
             TrnType::SliderCrank | TrnType::Site => [chain(id), reference.map_or(&[][..], chain)].concat(),
         }

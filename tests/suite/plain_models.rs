@@ -311,6 +311,40 @@ fn column(m: &[f64; 9], k: usize) -> [f64; 3] {
 }
 
 #[test]
+fn motors_turn_ball_joints_and_push_free_bodies() {
+    let mut engine = engine(
+        r#"<mujoco><worldbody><body><joint name="b" type="ball"/><geom type="box" size=".1 .2 .3"/></body>
+             <body pos="1 0 0"><freejoint name="f"/><geom size=".1"/></body></worldbody>
+             <actuator><motor joint="b" gear="1 2 3"/><motor jointinparent="b" gear="1 2 3"/>
+               <motor joint="f" gear="1 2 3 4 5 6"/><motor jointinparent="f" gear="1 2 3 4 5 6"/></actuator></mujoco>"#,
+    );
+    let mut state = engine.new_state();
+    // a quarter turn about z: what is x in the parent is -y in the body
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    state.qpos[..4].copy_from_slice(&[half, 0.0, 0.0, half]);
+    state.qpos[7..11].copy_from_slice(&[half, 0.0, 0.0, half]);
+    let mut forces = |k: usize| {
+        state.ctrl.fill(0.0);
+        state.ctrl[k] = 1.0;
+        engine.forward(&mut state).expect("computes");
+        (state.actuator_length[k], state.qfrc_actuator.clone())
+    };
+    let near = |found: &[f64], expected: &[f64]| {
+        let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;
+        assert!(found.iter().zip(expected).all(close), "{found:?}");
+    };
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let (length, force) = forces(0);
+    near(&[length], &[3.0 * quarter]);
+    near(&force, &[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    near(&forces(1).1, &[2.0, -1.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let (length, force) = forces(2);
+    near(&[length], &[0.0]);
+    near(&force, &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    near(&forces(3).1, &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 5.0, -4.0, 6.0]);
+}
+
+#[test]
 fn what_no_ball_joint_can_be_is_refused() {
     let cases = [
         (

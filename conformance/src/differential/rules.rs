@@ -340,8 +340,8 @@ const ACTUATOR: &[Rule] = &[
 ];
 
 const TARGET: &[Rule] = &[
-    ("joint", Placed(&["slider", "lower"])),
-    ("jointinparent", Placed(&["slider", "lower"])),
+    ("joint", Placed(&["slider", "lower", "swing", "ball"])),
+    ("jointinparent", Placed(&["slider", "lower", "swing", "ball"])),
     ("tendon", Placed(&["pull", "loose", "string"])),
     ("cranksite", Placed(&[])),
     ("slidersite", Placed(&[])),

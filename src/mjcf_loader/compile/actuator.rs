@@ -29,9 +29,10 @@ pub(super) fn compile_actuators(
     let users = User::new("nuser_actuator", document.size.nuser_actuator, users);
     for actuator in &document.actuators {
         let user = users.of(context, actuator.at, &actuator.user)?;
-        let (trntype, trnid, refid) = transmission(context, actuator, ids, arrays)?;
+        let (trntype, trnid, refid) = transmission(context, actuator, ids)?;
         let range = match trntype {
             TrnType::Tendon => Some(arrays.tendon_range[trnid]),
+            TrnType::Joint | TrnType::JointInParent if arrays.jnt_type[trnid].nv() > 1 => None,
             TrnType::Joint | TrnType::JointInParent => Some(arrays.jnt_range[trnid]),
             TrnType::SliderCrank | TrnType::Site | TrnType::Body => None,
         };
@@ -69,7 +70,6 @@ fn transmission(
     context: &Context,
     actuator: &Actuator,
     ids: &Ids,
-    arrays: &Arrays,
 ) -> Result<(TrnType, usize, Option<usize>), LoadError> {
     let at = actuator.at;
     let Target {
@@ -81,7 +81,7 @@ fn transmission(
         cranklength,
         ..
     } = &actuator.target;
-    let find_joint = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
+    let find_joint = |attribute, name: &String| ids.joint.find(context.tree, at, attribute, name);
     let find_site = |attribute, name: &String| ids.site.find(context.tree, at, attribute, name);
     if let Some(name) = joint {
         Ok((TrnType::Joint, find_joint("joint", name)?, None))

@@ -1,7 +1,7 @@
 //! What actuators act on: their lengths, and how these change with the coordinates.
 
 use crate::math::*;
-use crate::model::{Arrays, Model, TrnType};
+use crate::model::{Arrays, JointType, Model, TrnType};
 use crate::physics::spatial::{Spatial, angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -20,10 +20,10 @@ pub(super) fn gear(s: &State, actuator: usize) -> f64 {
 pub(super) fn length(model: &Arrays, s: &State, actuator: usize, gear: f64) -> f64 {
     let id = model.actuator_trnid[actuator];
     match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent => gear * s.qpos[model.jnt_qposadr[id]],
+        TrnType::Joint | TrnType::JointInParent if model.jnt_type[id].nv() == 1 => gear * s.qpos[model.jnt_qposadr[id]],
         TrnType::Tendon => gear * s.ten_length[id],
         // from the position stage, with the gear
-        TrnType::SliderCrank | TrnType::Site | TrnType::Body => s.actuator_length[actuator],
+        _ => s.actuator_length[actuator],
     }
 }
 
@@ -45,11 +45,11 @@ pub(super) fn moment<'a>(
 ) -> impl Iterator<Item = (usize, f64)> + use<'a> {
     let id = model.actuator_trnid[actuator];
     let (joint, rows, arms, gear): (_, _, &[f64], _) = match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent => (Some(model.jnt_dofadr[id]), None, &[], gear),
-        TrnType::Tendon => (None, Some((&topology.tendons, id)), &s.ten_j, gear),
-        TrnType::SliderCrank | TrnType::Site | TrnType::Body => {
-            (None, Some((&topology.actuators, actuator)), &s.actuator_moment, 1.0)
+        TrnType::Joint | TrnType::JointInParent if model.jnt_type[id].nv() == 1 => {
+            (Some(model.jnt_dofadr[id]), None, &[], gear)
         }
+        TrnType::Tendon => (None, Some((&topology.tendons, id)), &s.ten_j, gear),
+        _ => (None, Some((&topology.actuators, actuator)), &s.actuator_moment, 1.0),
     };
     let (dofs, arms): (&[u32], &[f64]) =
         rows.map_or((&[][..], &[][..]), |(rows, k)| (rows.row(k), &arms[rows.range(k)]));
@@ -71,12 +71,15 @@ pub(in crate::physics) fn dense_moment(
     }
 }
 
-/// Computes lengths and moments of actuators on sites, slider-cranks and contacts: `actuator_length`, `actuator_moment`. Poses, `cdof`
+/// Computes lengths and moments of actuators on ball joints, free joints, sites, slider-cranks and contacts: `actuator_length`, `actuator_moment`. Poses, `cdof`
 /// and contacts with their rows must be up to date.
 #[inline(always)]
 pub fn transmissions(model: &Arrays, topology: &Topology, s: &mut State) {
     for i in 0..model.nu() {
         match model.actuator_trntype[i] {
+            TrnType::Joint | TrnType::JointInParent if model.actuator_turns(i).is_some() => {
+                own(model, topology, s, i);
+            }
             TrnType::Joint | TrnType::JointInParent | TrnType::Tendon => {}
             TrnType::SliderCrank | TrnType::Site | TrnType::Body => own(model, topology, s, i),
         }
@@ -99,6 +102,7 @@ fn own(model: &Arrays, topology: &Topology, s: &mut State, i: usize) {
         (TrnType::SliderCrank, Some(slider)) => moment.crank(s, i, slider),
         (TrnType::Site, Some(reference)) => moment.between(s, i, reference),
         (TrnType::Site, None) => moment.at_site(s, i),
+        (TrnType::Joint | TrnType::JointInParent, _) => moment.turning(s, i),
         _ => moment.contacts(s, model.actuator_trnid[i]),
     };
     s.actuator_moment = arms;
@@ -133,6 +137,30 @@ impl Moment<'_> {
     fn gears(&self, s: &State, i: usize) -> [Vec3; 2] {
         let [_, y, z, rotation @ ..] = self.model.actuator_gear6[i];
         [[s.params.actuator_gear[i], y, z], rotation]
+    }
+
+    /// Turns a ball joint, whose length is that of its rotation vector along the gears, or pushes and turns a free joint, which has
+    /// none. The gears are in the axes of the body, or in those from which it turns.
+    fn turning(&mut self, s: &State, i: usize) -> f64 {
+        let (model, joint) = (self.model, self.model.actuator_trnid[i]);
+        let Some(at) = model.jnt_type[joint].quat(model.jnt_qposadr[joint]) else {
+            return 0.0;
+        };
+        let [first, second] = self.gears(s, i);
+        let quat = quat_normalize(quat_at(&s.qpos, at));
+        let turned = |gear: Vec3| match model.actuator_trntype[i] {
+            TrnType::JointInParent => quat_rotate(quat_conj(quat), gear),
+            _ => gear,
+        };
+        if model.jnt_type[joint] == JointType::Ball {
+            let gear = turned(first);
+            self.arms.copy_from_slice(&gear);
+            return dot(rotation_between(QUAT_ID, quat), gear);
+        }
+        let (pushing, turning) = self.arms.split_at_mut(3);
+        pushing.copy_from_slice(&first);
+        turning.copy_from_slice(&turned(second));
+        0.0
     }
 
     /// Applies a wrench in the frame of a site, which has no length.

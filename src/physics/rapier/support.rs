@@ -22,6 +22,10 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         };
         return Err(RapierError::unsupported("joint", &model.jnt_name[j], what));
     }
+    if let Some(i) = (0..model.nu()).find(|&i| model.actuator_turns(i).is_some()) {
+        let what = "free joints have no actuators";
+        return Err(RapierError::unsupported("actuator", &model.actuator_name[i], what));
+    }
     for t in 0..model.ntendon() {
         if model.tendon_frictionloss[t] > 0.0 {
             let what = "a tendon cannot have dry friction";

@@ -163,7 +163,7 @@ impl Writer<'_> {
 
     pub(super) fn actuator(&mut self) -> Node {
         let mut section = Node::new("actuator");
-        let joints = self.scalar_joints();
+        let joints: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
         for _ in 0..if joints.is_empty() || self.dice.chance(0.4) {
             0
         } else {
