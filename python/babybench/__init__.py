@@ -11,7 +11,8 @@ Example:
 Stable-Baselines3, :class:`ActionNoise` moves them at random.
 Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
 ``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
-``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0`` and ``babybench/RollOver-v0``.
+``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0``, ``babybench/RollOver-v0``,
+``babybench/Mobile-v0`` and ``babybench/Play-v0``.
 ``babybench.utils``, ``babybench.eval``, ``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter
 kit, for scripts written for it.
 """

@@ -26,7 +26,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     The action is a vector of motor commands (``action_space``, float32); values out of bounds are clipped. BabyBench's
     behaviors have no extrinsic reward (always 0), and no end but truncation after ``max_episode_steps``; tasks (``reach``,
-    ``standup``, ``selfbody``, ``catch``, ``roll_over``) have both. The observation has an entry for each sense that the
+    ``standup``, ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``) have both. The observation has an entry for each sense that the
     configuration turns on:
 
     | entry           | type    | meaning                                                                              |
@@ -368,7 +368,7 @@ def make(config: scenes.ConfigLike = "self_touch", **arguments: Any) -> Env:
 
     Args:
         config: An example (``self_touch``, ``hand_regard``, ``test_installation``; tasks are ``reach``, ``standup``,
-            ``selfbody``, ``catch``, ``roll_over``), a mapping, or the path of a YAML file.
+            ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``), a mapping, or the path of a YAML file.
         **arguments: Arguments of :class:`Env`, and keys that replace those of the configuration.
 
     Example:

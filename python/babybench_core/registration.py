@@ -17,6 +17,8 @@ IDS = {
     "babybench/SelfBody-v0": "selfbody",
     "babybench/Catch-v0": "catch",
     "babybench/RollOver-v0": "roll_over",
+    "babybench/Mobile-v0": "mobile",
+    "babybench/Play-v0": "play",
 }
 """Gymnasium's names of the example configurations."""
 

@@ -105,7 +105,7 @@ def test_configurations_are_files_mappings_examples_and_keywords(tmp_path):
         assert env.reset()[0]["eye_left"].shape == (8, 8, 3)
     assert babybench.make({"save_dir": Path("somewhere")}, touch_scale=np.float64(2)).config["save_dir"] == "somewhere"
     behaviors = {"self_touch", "hand_regard", "test_installation"}
-    tasks = {"reach", "standup", "selfbody", "catch", "roll_over"}
+    tasks = {"reach", "standup", "selfbody", "catch", "roll_over", "mobile", "play"}
     assert set(babybench.config_examples()) == behaviors | tasks
     assert babybench.config_keys()["compat"]["choices"] == ["api", "reference"]
 

@@ -15,6 +15,8 @@ TASKS = {
     "babybench/SelfBody-v0": "selfbody",
     "babybench/Catch-v0": "catch",
     "babybench/RollOver-v0": "roll_over",
+    "babybench/Mobile-v0": "mobile",
+    "babybench/Play-v0": "play",
 }
 
 
@@ -43,7 +45,18 @@ def test_a_task_has_goals_and_rewards_that_can_be_computed_again(name):
     assert hasattr(env, "compute_reward") == bool(achieved)
     if achieved:
         np.testing.assert_array_equal(env.compute_reward(np.array(achieved), np.array(desired), infos), rewards)
-    assert np.ptp(rewards) > 0 or TASKS[name] in ("selfbody", "catch")
+    assert np.ptp(rewards) > 0 or TASKS[name] in ("selfbody", "catch", "mobile", "play")
+
+
+def test_what_the_librarys_own_tasks_measure_is_in_the_information():
+    env = babybench.make("mobile", vision_active=False, touch_active=False, mobile_limb="left_foot", mobile_reward=True)
+    env.reset(seed=0)
+    _, reward, *_, info = env.step(env.action_space.sample())
+    assert info["phase"] == 0 and info["mobile_movement_baseline"] == reward > 0
+    assert info["left_foot_movements_baseline"] >= 0 == info["mobile_movement_reinforcement"]
+    env = babybench.make("play", vision_active=False, touch_active=False)
+    _, info = env.reset(seed=0)
+    assert info["toys"] == 7 and info["toys_touched"] == info["holding_time"] == 0
 
 
 def test_reach_follows_the_goal_that_is_set():

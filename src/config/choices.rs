@@ -73,6 +73,25 @@ choices! {
         Catch = "catch",
         /// Rolling over on the floor; MIMo v1.
         RollOver = "roll_over",
+        /// Moving a mobile by a ribbon at a limb; MIMo v1.
+        Mobile = "mobile",
+        /// Touching, grasping and moving toys; MIMo v2.
+        Play = "play",
+    }
+}
+
+choices! {
+    /// The limb that the ribbon of the mobile is at (`mobile_limb`).
+    Limb {
+        /// The right ankle.
+        #[default]
+        RightFoot = "right_foot",
+        /// The left ankle.
+        LeftFoot = "left_foot",
+        /// The right wrist.
+        RightHand = "right_hand",
+        /// The left wrist.
+        LeftHand = "left_hand",
     }
 }
 

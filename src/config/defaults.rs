@@ -2,7 +2,7 @@
 
 use super::conflicts::Conflict;
 use super::table::KEYS;
-use super::{ActuationModel, Behavior, BodyParts, Config, Scene, TouchFunction, TouchResponse};
+use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Scene, TouchFunction, TouchResponse};
 
 impl Config {
     /// Gives keys that were left to their default (`given` tells of the others, by their place in the table) the default of
@@ -47,6 +47,16 @@ fn of_task(behavior: Behavior) -> Option<Config> {
             touch_active: true,
             ..task
         },
+        // the library's own tasks: everything is observed, as by default
+        Behavior::Mobile => Config {
+            scene: Scene::Mobile,
+            max_episode_steps: 3000,
+            ..own_task(behavior)
+        },
+        Behavior::Play => Config {
+            scene: Scene::Playroom,
+            ..own_task(behavior)
+        },
         Behavior::Catch => Config {
             max_episode_steps: 800,
             touch_active: true,
@@ -56,8 +66,40 @@ fn of_task(behavior: Behavior) -> Option<Config> {
     })
 }
 
+/// Returns what the library's own tasks have in common: everything is observed, and success does not end an episode.
+fn own_task(behavior: Behavior) -> Config {
+    Config {
+        save_dir: format!("results/{behavior}"),
+        behavior,
+        frame_skip: 2,
+        done_active: false,
+        ..Config::default()
+    }
+}
+
+/// Returns the first value that one of the library's own tasks excludes.
+fn own_conflict(config: &Config) -> Option<Conflict> {
+    if config.compat == Compat::Reference {
+        let reason = "the Python code that `compat: reference` follows does not have this task; leave `compat` out";
+        return Some(("behavior", config.behavior.to_string(), reason.to_string()));
+    }
+    if config.behavior == Behavior::Mobile && config.mobile.baseline + config.mobile.extinction > 1.0 {
+        let reason =
+            "with `mobile_baseline` it is more than the whole episode; both are shares that add up to 1 at most";
+        return Some((
+            "mobile_extinction",
+            config.mobile.extinction.to_string(),
+            reason.to_string(),
+        ));
+    }
+    None
+}
+
 /// Returns the first value that the task of a configuration excludes: key, value, and why.
 pub(super) fn conflict(config: &Config) -> Option<Conflict> {
+    if matches!(config.behavior, Behavior::Mobile | Behavior::Play) {
+        return own_conflict(config);
+    }
     of_task(config.behavior)?;
     if config.scene != Scene::Base {
         let reason = "a task has a scene of its own; leave `scene` out";

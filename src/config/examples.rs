@@ -30,7 +30,7 @@ impl Example {
     /// BabyBench's three examples.
     pub const ALL: [Self; 3] = [Self::SELF_TOUCH, Self::HAND_REGARD, Self::TEST_INSTALLATION];
     /// An example for each task, by the name of its behavior.
-    pub const TASKS: [Self; 5] = [
+    pub const TASKS: [Self; 7] = [
         Self {
             name: "reach",
             yaml: include_str!("../../configs/config_reach.yml"),
@@ -50,6 +50,14 @@ impl Example {
         Self {
             name: "roll_over",
             yaml: include_str!("../../configs/config_roll_over.yml"),
+        },
+        Self {
+            name: "mobile",
+            yaml: include_str!("../../configs/config_mobile.yml"),
+        },
+        Self {
+            name: "play",
+            yaml: include_str!("../../configs/config_play.yml"),
         },
     ];
 

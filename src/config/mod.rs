@@ -40,7 +40,7 @@ mod yaml;
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, RendererKind, StartingPosition,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Limb, RendererKind, StartingPosition,
     TouchFunction, TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
@@ -51,7 +51,10 @@ pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
 pub use scene::Scene;
 internals!(use table::Config);
-pub use table::{CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, NoiseLevels, PainOptions, RollOverOptions};
+pub use table::{
+    CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels, PainOptions, PlayOptions,
+    RollOverOptions,
+};
 
 use std::path::Path;
 

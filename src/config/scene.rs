@@ -21,16 +21,22 @@ pub enum Scene {
     Crib,
     /// Loose cubes and balls, with MIMo sitting among them.
     Cubes,
+    /// The crib with a mobile over it, and a ribbon from one of MIMo's limbs to a hook beside the mobile.
+    Mobile,
+    /// Furniture and toys, with MIMo sitting among them.
+    Playroom,
     /// An MJCF document of one's own, in which MIMo is included: a path that ends in `.xml`, which starts at the working directory
     /// unless it is absolute. Where a [`Blueprint`](crate::Blueprint) is given assets, the document may be one of them.
     File(String),
 }
 
 impl Scene {
-    /// The scenes of the library, in the order of the documentation.
+    /// The scenes of BabyBench, in the order of the documentation.
     pub const ALL: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
-    /// The names of [`Self::ALL`] in a configuration file.
-    pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes"];
+    /// The library's own scenes, each of which has a task: `mobile` and `play`.
+    pub const OWN: &'static [Self] = &[Self::Mobile, Self::Playroom];
+    /// The names of [`Self::ALL`] and [`Self::OWN`] in a configuration file.
+    pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom"];
     /// How the path of a document ends.
     pub const ENDING: &'static str = ".xml";
 
@@ -40,6 +46,8 @@ impl Scene {
             Self::Base => "base",
             Self::Crib => "crib",
             Self::Cubes => "cubes",
+            Self::Mobile => "mobile",
+            Self::Playroom => "playroom",
             Self::File(path) => path,
         }
     }
@@ -47,7 +55,7 @@ impl Scene {
     /// Returns the scene of the library with this name, or else the document at this path; `None` if it is neither the one nor ends in
     /// `.xml`.
     pub fn from_name(name: &str) -> Option<Self> {
-        let known = Self::ALL.iter().find(|scene| scene.name() == name);
+        let known = Self::ALL.iter().chain(Self::OWN).find(|scene| scene.name() == name);
         let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));
         known.cloned().or_else(file)
     }

@@ -2,7 +2,7 @@
 //! reading, writing, ranges and documentation all follow from it.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, RendererKind, StartingPosition,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Limb, RendererKind, StartingPosition,
     TouchFunction, TouchResponse, VisionOutput,
 };
 use super::keys::{Field, Key, config};
@@ -85,6 +85,15 @@ config! {
         }
         @group roll_over: RollOverOptions, "Options of the task roll_over.", "Options of the task `roll_over`." {
             starting_position as starting_position: StartingPosition = StartingPosition::Supine, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
+        }
+        @group mobile: MobileOptions, "Options of the task mobile.", "Options of the task `mobile`." {
+            limb as mobile_limb: Limb = Limb::RightFoot, Choice(Limb::NAMES), "The limb that the ribbon of the task mobile is at.";
+            baseline as mobile_baseline: f64 = 0.2, SHARE, "The share of an episode of the task mobile before the mobile is tied to the limb.";
+            extinction as mobile_extinction: f64 = 0.2, SHARE, "The share of an episode of the task mobile after the mobile is untied.";
+            reward as mobile_reward: bool = false, Bool, "The task mobile rewards movement of the mobile, by the metre.";
+        }
+        @group play: PlayOptions, "Options of the task play.", "Options of the task `play`." {
+            reward as play_reward: bool = false, Bool, "The task play rewards each toy that is touched for the first time in an episode, by 1.";
         }
     }
     GROWTH {

@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use crate::env::{BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Outcome, PerEyeAndHand, PerHand, Regards, TaskInfo};
+use crate::env::task::measures_of;
+use crate::env::{
+    BehaviorInfo, EYE_HAND_PAIRS, Info, InfoDetails, Measures, Outcome, PerEyeAndHand, PerHand, Regards, TaskInfo,
+};
 
 /// Keys of the geoms that the palms have touched, right and left.
 const TOUCHES: [&str; 2] = ["right_hand_touches", "left_hand_touches"];
@@ -40,7 +43,7 @@ pub enum InfoValue<'a> {
 pub type InfoField<'a> = (&'static str, InfoValue<'a>);
 
 impl BehaviorInfo {
-    /// Iterates over keys and values, in the order of the reference.
+    /// Iterates over keys and values, in the order of the reference; what a task measures comes last.
     ///
     /// ```
     /// use babybench::config::Behavior;
@@ -77,7 +80,9 @@ impl BehaviorInfo {
                 Some((TASK[3], InfoValue::Number(info.episode_return))),
             ],
         };
-        values.into_iter().flatten()
+        let measures = self.task().into_iter().flat_map(|info| info.measures.iter());
+        let measures = measures.map(|(name, value)| (name, InfoValue::Number(value)));
+        values.into_iter().flatten().chain(measures)
     }
 
     /// Reads the information of whatever behavior a source has keys of, in the order in which [`BehaviorInfo::fields`] hands them out.
@@ -96,13 +101,24 @@ impl BehaviorInfo {
             return Ok(Self::HandRegard { counts: counts.into() });
         }
         if source.has(TASK[0]) {
+            let task = source.name(TASK[0])?;
+            let outcome = Outcome {
+                is_success: source.flag(TASK[1])?,
+                is_failure: source.flag(TASK[2])?,
+            };
+            let episode_return = source.number(TASK[3])?;
+            let (names, mut values) = (measures_of(&task), Vec::new());
+            for name in names {
+                // logs of earlier versions may lack one
+                values.push(if source.has(name) { source.measure(name)? } else { 0.0 });
+            }
+            let mut measures = Measures::default();
+            measures.set(names, values);
             return Ok(Self::Task(TaskInfo {
-                task: source.name(TASK[0])?,
-                outcome: Outcome {
-                    is_success: source.flag(TASK[1])?,
-                    is_failure: source.flag(TASK[2])?,
-                },
-                episode_return: source.number(TASK[3])?,
+                task,
+                outcome,
+                episode_return,
+                measures,
             }));
         }
         Ok(Self::None)
@@ -181,4 +197,9 @@ pub(crate) trait InfoSource {
 
     /// Reads a finite number.
     fn number(&mut self, key: &'static str) -> Result<f64, Self::Error>;
+
+    /// Reads a number that a task measures.
+    fn measure(&mut self, key: &'static str) -> Result<f64, Self::Error> {
+        self.number(key)
+    }
 }

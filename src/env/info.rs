@@ -134,6 +134,48 @@ pub struct TaskInfo {
     pub outcome: Outcome,
     /// Sum of the rewards in this episode.
     pub episode_return: f64,
+    /// What the task measures besides.
+    pub measures: Measures,
+}
+
+/// What a task measures in an episode beside its outcome: numbers with names. Information, logs and Python's dictionaries have them under
+/// these names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Measures {
+    names: &'static [&'static str],
+    values: Vec<f64>,
+}
+
+impl Measures {
+    /// Returns the names.
+    pub fn names(&self) -> &'static [&'static str] {
+        self.names
+    }
+
+    /// Returns the values, one for each name.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Returns the value with this name; `None` if there is none.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        let at = self.names.iter().position(|n| *n == name)?;
+        self.values.get(at).copied()
+    }
+
+    /// Sets names and values; names without a value have 0. With the same names as before it allocates nothing.
+    pub fn set(&mut self, names: &'static [&'static str], values: impl IntoIterator<Item = f64>) {
+        self.names = names;
+        self.values.clear();
+        self.values.reserve(names.len());
+        self.values.extend(values.into_iter().take(names.len()));
+        self.values.resize(names.len(), 0.0);
+    }
+
+    /// Iterates over names and values.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        self.names.iter().copied().zip(self.values.iter().copied())
+    }
 }
 
 impl BehaviorInfo {

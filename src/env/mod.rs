@@ -40,7 +40,7 @@ pub(crate) use fields::{InfoSource, PARTS, STEPS};
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
 internals!(use info::Info);
-pub use info::{BehaviorInfo, EYE_HAND_PAIRS, PerEyeAndHand, PerHand, TaskInfo};
+pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Measures, PerEyeAndHand, PerHand, TaskInfo};
 pub use model_change::ModelChangeError;
 internals!(use model_change::CHANGEABLE);
 internals!(use observation::{Observation, Step});

@@ -62,12 +62,15 @@ pub(crate) fn reports_outcome(task: &dyn Task) -> bool {
 /// Sets what is counted as it is at the start of an episode.
 pub(super) fn clear(task: &dyn Task, info: &mut Info) {
     if matches!(info.behavior, BehaviorInfo::None | BehaviorInfo::Task(_)) {
-        let name = match &info.behavior {
-            BehaviorInfo::Task(last) if *last.task == *task.name() => last.task.clone(),
+        let (name, measures) = match &mut info.behavior {
+            BehaviorInfo::Task(last) if *last.task == *task.name() => {
+                (last.task.clone(), std::mem::take(&mut last.measures))
+            }
             _ => Default::default(),
         };
         info.behavior = BehaviorInfo::Task(TaskInfo {
             task: name,
+            measures,
             ..TaskInfo::default()
         });
     }

@@ -120,13 +120,18 @@ impl Env {
     #[doc(alias = "mj_getState")]
     pub fn snapshot(&self) -> Snapshot {
         let (mut counts, mut lists) = ([0; COUNTS], [&[][..]; COUNTS]);
-        let counted = self.info.behavior.fields().filter_map(|(_, value)| match value {
-            InfoValue::Geoms(geoms) => Some((geoms.len() as u64, geoms)),
-            InfoValue::Count(count) => Some((count, &[][..])),
-            InfoValue::Number(number) => Some((number.to_bits(), &[][..])),
-            // the task and its goals tell the rest
-            _ => None,
-        });
+        let counted = self
+            .info
+            .behavior
+            .fields()
+            .take(COUNTS)
+            .filter_map(|(_, value)| match value {
+                InfoValue::Geoms(geoms) => Some((geoms.len() as u64, geoms)),
+                InfoValue::Count(count) => Some((count, &[][..])),
+                InfoValue::Number(number) => Some((number.to_bits(), &[][..])),
+                // the task and its goals tell the rest
+                _ => None,
+            });
         for (k, (count, geoms)) in counted.take(COUNTS).enumerate() {
             (counts[k], lists[k]) = (count, geoms);
         }
@@ -320,6 +325,14 @@ impl InfoSource for Counted<'_, '_> {
             Ok(number)
         } else {
             Err(damaged("a number is not finite"))
+        }
+    }
+
+    /// Returns what is measured now: the memory of the task has the snapshot's, and tells it when it is restored.
+    fn measure(&mut self, key: &'static str) -> Result<f64, SnapshotError> {
+        match self.now(key) {
+            Some(InfoValue::Number(number)) => Ok(number),
+            _ => Ok(0.0),
         }
     }
 }

@@ -28,7 +28,7 @@ pub(crate) use room::open_room;
 internals!(use room::{PARTS as ROOM_PARTS, Unused, unused_attributes});
 pub use room::{RoomError, scene_assets};
 #[cfg(feature = "eval")]
-pub(crate) use scene::document_path;
+pub(crate) use scene::{document_path, has_own_scene};
 internals!(use scene::{DOCUMENT, build_scene});
 pub use scene::{SceneError, Version, build_model, scene_xml};
 pub use standards::{GrowthStandard, Lms};

@@ -46,13 +46,14 @@ impl Version {
     /// Returns the version for a behavior: hand regard has fingers to look at, catching needs them, everything else is faster without.
     pub fn of(behavior: Behavior) -> Self {
         match behavior {
-            Behavior::HandRegard | Behavior::Catch => Self::V2,
+            Behavior::HandRegard | Behavior::Catch | Behavior::Play => Self::V2,
             Behavior::None
             | Behavior::SelfTouch
             | Behavior::Reach
             | Behavior::Standup
             | Behavior::SelfBody
-            | Behavior::RollOver => Self::V1,
+            | Behavior::RollOver
+            | Behavior::Mobile => Self::V1,
         }
     }
 
@@ -84,14 +85,20 @@ pub fn scene_xml(config: &Config) -> String {
         None => "MIMo".to_string(),
         Some(age) => format!("MIMo at {age} months"),
     };
-    let content = match (config.behavior, &config.scene) {
-        (Behavior::None | Behavior::SelfTouch | Behavior::HandRegard, Scene::File(path)) => {
-            format!("  <include file=\"{}\"/>\n", quick_xml::escape::escape(file_name(path)))
-        }
-        (Behavior::None | Behavior::SelfTouch | Behavior::HandRegard, _) => babybench_scene(config),
-        (task, _) => include(task.name()),
+    let content = match &config.scene {
+        _ if has_own_scene(config.behavior) => include(config.behavior.name()),
+        Scene::File(path) => format!("  <include file=\"{}\"/>\n", quick_xml::escape::escape(file_name(path))),
+        _ => babybench_scene(config),
     };
     format!("<mujoco model=\"{name}\">\n{content}</mujoco>\n")
+}
+
+/// Returns whether a behavior is a task whose scene cannot be chosen.
+pub(crate) fn has_own_scene(behavior: Behavior) -> bool {
+    match behavior {
+        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard | Behavior::Mobile | Behavior::Play => false,
+        Behavior::Reach | Behavior::Standup | Behavior::SelfBody | Behavior::Catch | Behavior::RollOver => true,
+    }
 }
 
 /// Writes the document of a BabyBench scene: MIMo at its initial pose, the base, MIMo's settings, the actuators of the
@@ -100,8 +107,8 @@ fn babybench_scene(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
     let pose = match config.scene {
         Scene::Base | Scene::File(_) => r#"pos="0 0 0.1" euler="0 -90 0""#,
-        Scene::Crib => r#"pos="0 0 0.3" euler="0 -90 0""#,
-        Scene::Cubes => r#"pos="0 0 0.0467196" quat="0.885453 -0.000184209 -0.464728 -0.000527509""#,
+        Scene::Crib | Scene::Mobile => r#"pos="0 0 0.3" euler="0 -90 0""#,
+        Scene::Cubes | Scene::Playroom => r#"pos="0 0 0.0467196" quat="0.885453 -0.000184209 -0.464728 -0.000527509""#,
     };
     let mut xml = format!(
         "  <worldbody>\n    <body name=\"{MIMO}\" {pose}>\n      <freejoint name=\"{MIMO}\"/>\n      \
@@ -114,6 +121,11 @@ fn babybench_scene(config: &Config) -> String {
         Scene::Base | Scene::File(_) => {}
         Scene::Crib => xml += &include("crib"),
         Scene::Cubes => xml += &include("cubes"),
+        Scene::Mobile => {
+            xml += &include("crib");
+            xml += &include("mobile");
+        }
+        Scene::Playroom => xml += &include("playroom"),
     }
     xml
 }

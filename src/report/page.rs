@@ -70,6 +70,8 @@ fn title(run: &Run) -> String {
         Behavior::SelfBody => return "Touching a part of the body".to_string(),
         Behavior::Catch => return "Catching a ball".to_string(),
         Behavior::RollOver => return "Rolling over".to_string(),
+        Behavior::Mobile => "Moving a mobile",
+        Behavior::Play => "Play",
     };
     let Some(config) = &run.config else {
         return behavior.to_string();
@@ -78,6 +80,8 @@ fn title(run: &Run) -> String {
         Scene::Crib => "in the crib".to_string(),
         Scene::Cubes => "among the cubes".to_string(),
         Scene::Base => "on the floor".to_string(),
+        Scene::Mobile => "in the crib with the mobile".to_string(),
+        Scene::Playroom => "in the play room".to_string(),
         Scene::File(path) => format!("in {}", quoted(path)),
     };
     match config.age {
@@ -223,6 +227,26 @@ fn task_section(run: &Run) -> Markup {
                 (card(&grouped(tasks.len() as u64), "episodes"))
                 (card(&grouped(steps), "steps"))
                 (card(&duration(steps as f64 * step_time(run)), "simulated"))
+            }
+            (measures_table(&tasks))
+        }
+    }
+}
+
+/// Lists what the task measured, as means over the episodes.
+fn measures_table(tasks: &[&TaskInfo]) -> Markup {
+    let names = tasks.first().map_or(&[][..], |task| task.measures.names());
+    let mean = |name: &str| {
+        let values = tasks.iter().filter_map(|task| task.measures.get(name));
+        values.sum::<f64>() / tasks.len() as f64
+    };
+    html! {
+        @if !names.is_empty() {
+            p { "At the end of an episode, on average:" }
+            table.bars {
+                @for name in names {
+                    tr { th { (name.replace('_', " ")) } td.number { (format!("{:.3}", mean(name))) } }
+                }
             }
         }
     }

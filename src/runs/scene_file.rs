@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::assets::{AssetSource, DirAssets, directory, resolve};
-use crate::config::{Behavior, Compat, Config, ConfigError};
+use crate::config::{Compat, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
-use crate::mimo::{DOCUMENT, RoomError, Version, document_path, embedded, open_room, scene_xml};
+use crate::mimo::{DOCUMENT, RoomError, Version, document_path, embedded, has_own_scene, open_room, scene_xml};
 use crate::mjcf_loader::{LoadError, Tree, load};
 use crate::model::Model;
 use crate::physics::compile;
@@ -220,11 +220,10 @@ fn same_ids(a: &Model, b: &Model) -> bool {
 /// Describes what decides the ids of a scene: the scene and the version of MIMo.
 fn about(config: &Config) -> String {
     let version = Version::of(config.behavior).name();
-    match config.behavior {
-        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard => {
-            format!("the scene {} with MIMo {version}", config.scene)
-        }
-        task => format!("the task {task} with MIMo {version}"),
+    if has_own_scene(config.behavior) {
+        format!("the task {} with MIMo {version}", config.behavior)
+    } else {
+        format!("the scene {} with MIMo {version}", config.scene)
     }
 }
 

@@ -17,6 +17,7 @@ mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
 mod model_change;
+mod own_tasks;
 mod parts;
 mod plain_models;
 #[cfg(feature = "eval")]

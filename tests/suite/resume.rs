@@ -162,6 +162,7 @@ fn logs_are_pickles_of_the_records_keys() {
             is_failure: false,
         },
         episode_return: -1.5,
+        ..TaskInfo::default()
     };
     let int = |n: i64| Value::Int(n);
     let list = |numbers: [i64; 2]| Value::list(numbers.map(Value::Int));

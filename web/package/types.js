@@ -58,7 +58,7 @@
  * What a step reports.
  * @typedef {object} Info
  * @property {number} steps of the episode
- * @property {"none" | "self_touch" | "hand_regard" | "reach" | "standup" | "selfbody" | "catch" | "roll_over"} behavior
+ * @property {"none" | "self_touch" | "hand_regard" | "reach" | "standup" | "selfbody" | "catch" | "roll_over" | "mobile" | "play"} behavior
  * @property {PerHand<number[]> | null} touches geoms that each palm has touched
  * @property {PerHand<string[]> | null} touched_parts their names
  * @property {number[] | null} regards steps in which each eye saw each hand: right eye with right and left hand, left eye
@@ -68,6 +68,7 @@
  * @property {boolean | null} is_failure whether it is out of reach
  * @property {number | null} return sum of a task's rewards in this episode
  * @property {number[] | null} reward_terms what its reward depends on beside goals
+ * @property {Record<string, number> | null} measures what a task measures besides, by name; empty for most
  */
 
 /**

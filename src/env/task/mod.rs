@@ -7,6 +7,8 @@ mod catch;
 mod free_play;
 mod goal;
 mod hand_regard;
+mod mobile;
+mod play;
 mod pose;
 mod reach;
 mod roll_over;
@@ -228,6 +230,17 @@ pub(super) fn of_config(config: &Config) -> Box<dyn Task> {
         Behavior::SelfBody => Box::new(self_body::SelfBody::default()),
         Behavior::Catch => Box::new(catch::Catch::default()),
         Behavior::RollOver => Box::new(roll_over::RollOver::default()),
+        Behavior::Mobile => Box::new(mobile::Mobile::default()),
+        Behavior::Play => Box::new(play::Play::default()),
+    }
+}
+
+/// Returns the names of what a task of the library measures; none for those that measure nothing, and for tasks of one's own.
+pub(super) fn measures_of(task: &str) -> &'static [&'static str] {
+    match Behavior::from_name(task) {
+        Some(Behavior::Mobile) => mobile::NAMES,
+        Some(Behavior::Play) => play::NAMES,
+        _ => &[],
     }
 }
 

@@ -123,6 +123,7 @@ mod tests {
             },
             episode_return: -0.1,
             task: "a \"task\"\u{7} of one's own".into(),
+            ..TaskInfo::default()
         };
         let behaviors = [
             BehaviorInfo::None,

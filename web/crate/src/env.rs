@@ -235,6 +235,17 @@ impl Core {
             ("return", optional(task, |t| t.episode_return.into())),
             ("reward_terms", optional(task, |_| js::numbers(self.env.goal().terms))),
             (
+                "measures",
+                optional(task, |t| {
+                    let values = js_sys::Object::new();
+                    for (name, value) in t.measures.iter() {
+                        // setting a property of a fresh object cannot fail
+                        let _ = js_sys::Reflect::set(&values, &name.into(), &value.into());
+                    }
+                    values.into()
+                }),
+            ),
+            (
                 "gaze_angles",
                 optional(info.details.gaze_angles, |angles| js::numbers(&angles.to_array())),
             ),

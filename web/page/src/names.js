@@ -55,6 +55,8 @@ export const TASKS = {
   selfbody: { title: "Touch a part", goal: "Touch one part of the own body, another in each episode, with the right hand." },
   catch: { title: "Catch", goal: "Hold the ball that falls into the right hand for a hundred steps; every effort costs." },
   roll_over: { title: "Roll over", goal: "Roll from the back to the belly, with as little effort as it takes." },
+  mobile: { title: "Mobile", goal: "Move a limb more often while the mobile is tied to it by a ribbon than before." },
+  play: { title: "Play", goal: "Touch every toy of the play room." },
 };
 /** The behaviors of BabyBench. @type {Record<string, string>} */
 export const BEHAVIORS = { self_touch: "Self-touch", hand_regard: "Hand regard", none: "None" };

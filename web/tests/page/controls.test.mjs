@@ -225,7 +225,7 @@ test("senses and movements come late", async () => {
 });
 
 test("tasks have scenes of their own", async () => {
-  for (const task of ["reach", "standup", "selfbody", "catch", "roll_over"]) {
+  for (const task of ["reach", "standup", "selfbody", "catch", "roll_over", "mobile", "play"]) {
     await page.getByLabel("Task", { exact: true }).selectOption(task);
     await until(page, (v) => mimo.scene.settings.behavior === v, task);
     assert.ok(await page.getByRole("group", { name: "Scene" }).isHidden());
