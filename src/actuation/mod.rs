@@ -6,7 +6,7 @@
 //! | [`Muscle`] | 2: excitations in [0, 1] | 2 activities, 2 forces | the same motors, joints without springs |
 //! | [`Positional`] | 1: angle, rad | angle | position servos |
 //!
-//! Actions drive the actuators on MIMo's joints; those of other bodies in a scene are left at the control 0.
+//! Actions drive the actuators on MIMo's joints; those of other bodies in a scene are left at the control 0, unless `act_others`.
 //!
 //! Models work without an environment: [`Actuation::prepare`] a state once, then [`Actuation::set_action`] before the
 //! first physics step of an action and [`Actuation::substep`] before each further one. A model remembers nothing:
@@ -18,6 +18,7 @@ pub mod curves;
 pub(crate) mod curves;
 mod error;
 mod muscle;
+mod others;
 mod positional;
 mod spring_damper;
 
@@ -37,8 +38,13 @@ pub trait Actuation: Send + Sync {
     fn action_space(&self) -> &BoxSpace;
 
     /// Returns the actuators that an action drives, by id: those on MIMo's joints. An action has a number for each, or a block of
-    /// such numbers after another. The control of other actuators stays 0.
+    /// such numbers after another. The control of other actuators stays 0, but for [`Actuation::others`].
     fn actuators(&self) -> &[usize];
+
+    /// Returns the actuators of other bodies that an action drives, by id: each by one of the last numbers. None unless `act_others`.
+    fn others(&self) -> &[usize] {
+        &[]
+    }
 
     /// Returns the names of the components of an action: actuator and quantity.
     fn action_names(&self, model: &Model) -> Vec<String>;
@@ -74,10 +80,17 @@ pub trait Actuation: Send + Sync {
 /// # Errors
 /// Actuators of `model` that the actuation model cannot drive, illegal parameters of muscles.
 pub fn build(model: &Model, config: &Config) -> Result<Box<dyn Actuation>, ActuationError> {
-    Ok(match config.actuation_model {
+    let mimo: Box<dyn Actuation> = match config.actuation_model {
         ActuationModel::SpringDamper => Box::new(SpringDamper::new(model, config.compat)),
         ActuationModel::Muscle => Box::new(Muscle::new(model, config.compat)?),
         ActuationModel::Positional => Box::new(Positional::new(model, config.compat)?),
+    };
+    // without others it is the model itself, whatever is asked for: MIMo's own way stays as it is
+    let others = config.act_others && mimo.actuators().len() < model.nu();
+    Ok(if others {
+        Box::new(others::WithOthers::new(mimo, model))
+    } else {
+        mimo
     })
 }
 

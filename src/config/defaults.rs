@@ -3,6 +3,7 @@
 use super::conflicts::Conflict;
 use super::table::KEYS;
 use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Scene, TouchFunction, TouchResponse};
+use crate::text::quoted;
 
 impl Config {
     /// Gives keys that were left to their default (`given` tells of the others, by their place in the table) the default of
@@ -97,6 +98,23 @@ fn own_conflict(config: &Config) -> Option<Conflict> {
 
 /// Returns the first value that the task of a configuration excludes: key, value, and why.
 pub(super) fn conflict(config: &Config) -> Option<Conflict> {
+    if config.act_others && config.actuation_model == ActuationModel::Muscle {
+        let reason = "with muscles all actuators pull as muscles do, which other bodies do not have; use spring_damper or positional";
+        return Some(("act_others", config.act_others.to_string(), reason.to_string()));
+    }
+    let task = !matches!(
+        config.behavior,
+        Behavior::None | Behavior::SelfTouch | Behavior::HandRegard | Behavior::Mobile | Behavior::Play
+    );
+    if !config.scene_extra.is_empty() && (task || matches!(config.scene, Scene::File(_))) {
+        let reason = "it is added to a scene of the library that is chosen by its name; a task with a scene of its own \
+                      and a document of one's own are whole: write it into the document, or leave it out";
+        return Some((
+            "scene_extra",
+            quoted(&config.scene_extra).to_string(),
+            reason.to_string(),
+        ));
+    }
     if matches!(config.behavior, Behavior::Mobile | Behavior::Play) {
         return own_conflict(config);
     }

@@ -38,6 +38,8 @@ impl KeyValue {
 
 /// The word for a key that is not used.
 const NONE: &str = "none";
+/// Greatest length of a document in a configuration, bytes.
+const MAX_DOCUMENT: usize = 1 << 20;
 /// YAML's words for no value.
 const NULL: [&str; 5] = ["", "~", "null", "Null", "NULL"];
 
@@ -82,6 +84,8 @@ pub enum KeyKind {
     List(&'static [&'static str]),
     /// Text of at least one character, without control characters.
     Text,
+    /// Text of any number of lines, or of none, up to 1 MiB.
+    Document,
 }
 
 /// A reason why a value does not fit its key.
@@ -111,6 +115,7 @@ impl KeyKind {
                 )
             }
             Self::List(names) => format!("a list in brackets of one or more of {}, each once", names.join(", ")),
+            Self::Document => "text of up to 1 MiB, of any number of lines".to_string(),
             Self::Text => {
                 "text, at least one character and no control characters (in quotes if it looks like a number, a \
                            boolean or null)"
@@ -138,10 +143,12 @@ impl KeyKind {
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
             Self::ChoiceOrFile { ending, .. } if text.ends_with(ending) => KeyValue::Text(text.to_string()),
             Self::ChoiceOrFile { names, .. } => KeyValue::Choice(named(text, names)?),
-            Self::Text if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) => {
+            Self::Text | Self::Document
+                if plain && (boolean(text).is_some() || number(text) != Err(Misfit::WrongType)) =>
+            {
                 return Err(Misfit::WrongType);
             }
-            Self::Text => KeyValue::Text(text.to_string()),
+            Self::Text | Self::Document => KeyValue::Text(text.to_string()),
         };
         self.check(&value).map(|()| value)
     }
@@ -181,6 +188,10 @@ impl KeyKind {
                 path.ends_with(ending) && !path.chars().any(char::is_control)
             }
             (Self::Text, KeyValue::Text(text)) => !text.is_empty() && !text.chars().any(char::is_control),
+            (Self::Document, KeyValue::Text(text)) => {
+                let strange = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+                text.len() <= MAX_DOCUMENT && !text.chars().any(strange)
+            }
             _ => return Err(Misfit::WrongType),
         };
         if fits { Ok(()) } else { Err(OUT_OF_RANGE) }

@@ -156,7 +156,9 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
             KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } => deserializer.deserialize_f64(self),
             KeyKind::NoneOr { .. } => deserializer.deserialize_option(self),
-            KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text => deserializer.deserialize_str(self),
+            KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
+                deserializer.deserialize_str(self)
+            }
             KeyKind::List(_) => deserializer.deserialize_seq(self),
         }
     }
@@ -199,11 +201,12 @@ impl<'de> Visitor<'de> for ValueSeed {
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<KeyValue, E> {
         match self.key.kind {
             KeyKind::NoneOr { .. } if text == KeyValue::None.to_yaml() => Ok(KeyValue::None),
-            KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text => match self.key.kind.parse(text, false)
-            {
-                Ok(value) => Ok(value),
-                Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
-            },
+            KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
+                match self.key.kind.parse(text, false) {
+                    Ok(value) => Ok(value),
+                    Err(misfit) => Err(self.refusal(misfit, error::shown(text))),
+                }
+            }
             _ => Err(self.refusal(Misfit::WrongType, format!("'{}' in quotes", error::shown(text)))),
         }
     }

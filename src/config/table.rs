@@ -53,7 +53,7 @@ const PAIN: KeyKind = KeyKind::Number { min: 0.0, max: 1e6 };
 const MOST_PAIN: KeyKind = KeyKind::NoneOr { min: 0.0, max: 1e6 };
 const MILLIMETRES: KeyKind = KeyKind::NoneOr { min: 0.1, max: 100.0 };
 
-use KeyKind::{Bool, Choice, List, Text};
+use KeyKind::{Bool, Choice, Document, List, Text};
 
 /// The section of the keys that change MIMo's body.
 pub(super) const GROWTH: &str = "Growth";
@@ -73,6 +73,7 @@ config! {
         compat: Compat = Compat::Api, Choice(Compat::NAMES), "Which of them to follow where the API page and the Python code disagree.";
         engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
         renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
+        scene_extra: String = String::new(), Document, "MJCF that is added to a scene of the library: bodies and what else stands in the world, and whole sections.";
         seed: u64 = 0, SEED, "The seed of all random choices until a reset is given another.";
         facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face, which changes nothing but pictures.";
     }
@@ -206,6 +207,9 @@ config! {
             head as act_head, "The head is actuated.";
             eyes as act_eyes, "The eyes are actuated.";
         }
+    }
+    "Actuation" {
+        act_others: bool = false, Bool, "Actuators of other bodies than MIMo's are driven by the last numbers of an action, and observed with their joints.";
     }
     "Locked joints" {
         @parts lock = BodyParts::all(false), "Parts whose joints are locked (`lock_hands` ...)." {

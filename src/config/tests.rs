@@ -45,14 +45,14 @@ fn check_error(input: &str, expect: &str) {
 #[test]
 fn defaults_are_those_of_the_api_page() {
     let page = "save_dir=\"results/test_installation\" behavior=none scene=base max_episode_steps=1000 frame_skip=1 \
-                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu seed=0 facial_expression=default done_active=true action_penalty=true jitter=false position_inaccurate=false \
+                render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu scene_extra=\"\" seed=0 facial_expression=default done_active=true action_penalty=true jitter=false position_inaccurate=false \
                 starting_position=supine mobile_limb=right_foot mobile_baseline=0.2 mobile_extinction=0.2 mobile_reward=false play_reward=false GROWTH DELAYS proprio_velocity=true \
                 proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
                 vision_active=true vision_resolution=64 vision_outputs=[rgb] vision_threads=1 EYES touch_active=true touch_scale=1.0 touch_function=normal \
                 touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
                 touch_legs=true touch_body=true touch_head=true touch_eyes=false PAIN actuation_model=spring_damper \
                 act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \
-                act_eyes=true lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
+                act_eyes=true act_others=false lock_hands=false lock_fingers=false lock_arms=false lock_feet=false lock_legs=false \
                 lock_body=false lock_head=false lock_eyes=false";
     let growth = "age=none strength_age=none touch_grows=false ankle_circumference=none calf_circumference=none \
                   elbow_hand_length=none fist_breadth=none foot_breadth=none foot_length=none \

@@ -460,8 +460,13 @@ impl Env {
             });
         }
         if let Some((index, &value)) = action.iter().enumerate().find(|(_, a)| !a.is_finite()) {
-            let driven = self.actuation.actuators();
-            let id = driven.get(index % driven.len().max(1));
+            let (driven, others) = (self.actuation.actuators(), self.actuation.others());
+            let own = expected - others.len();
+            let id = if index < own {
+                driven.get(index % driven.len().max(1))
+            } else {
+                others.get(index - own)
+            };
             let actuator = id.map(|&id| self.model().actuator_name[id].clone()).unwrap_or_default();
             return Err(EnvError::ActionNotFinite { index, actuator, value });
         }

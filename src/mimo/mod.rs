@@ -2,6 +2,7 @@
 
 mod anatomy;
 mod assets;
+mod builder;
 mod figures;
 mod growth;
 mod locks;
@@ -13,6 +14,7 @@ mod standards;
 
 internals!(use anatomy::{BodyKind, body_kind});
 pub use assets::embedded;
+pub use builder::SceneBuilder;
 pub use figures::BodyFigures;
 #[cfg(feature = "report")]
 pub(crate) use figures::upright_extent;

@@ -7,7 +7,7 @@ use crate::config::{ActuationModel, Behavior, Config, FacialExpression, Measurem
 use crate::math::{Vec3, scale};
 use crate::mimo::growth::blame;
 use crate::mimo::placement::{LowestPoint, Overlap, overlaps};
-use crate::mimo::room::{Room, RoomError, file_name};
+use crate::mimo::room::{EXTRA_FILE, Room, RoomError, file_name};
 use crate::mimo::{Growth, GrowthError};
 use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
@@ -126,6 +126,9 @@ fn babybench_scene(config: &Config) -> String {
             xml += &include("mobile");
         }
         Scene::Playroom => xml += &include("playroom"),
+    }
+    if !config.scene_extra.is_empty() {
+        xml += &include(EXTRA_FILE.trim_end_matches(".xml"));
     }
     xml
 }

@@ -221,8 +221,9 @@ fn trace(config: Config) -> u64 {
 
 /// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, MIMo v2's fingers, and senses with
 /// tests of their own.
-const ELSEWHERE: [&str; 8] = [
+const ELSEWHERE: [&str; 9] = [
     "facial_expression",
+    "act_others",
     "save_dir",
     "save_logs_every",
     "render_size",
@@ -263,6 +264,7 @@ fn no_key_is_without_effect() {
         let values: &[&str] = match name {
             "behavior" => &["self_touch", "hand_regard"],
             "scene" => &["crib", "cubes"],
+            "scene_extra" => &["<body pos='0 0 1'><freejoint/><geom size='0.1'/></body>"],
             "actuation_model" => &["muscle", "positional"],
             "compat" => &["reference"],
             "max_episode_steps" => &["7"],

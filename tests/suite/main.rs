@@ -8,6 +8,7 @@ mod allocations;
 mod common;
 
 mod actuation;
+mod additions;
 mod configurations;
 mod eyes_at_once;
 #[cfg(feature = "eval")]

@@ -596,7 +596,7 @@ fn the_chapter_of_the_guide_builds_a_room_that_runs_after_every_step() {
     let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide");
     let page = std::fs::read_to_string(guide.join("rooms.md")).expect("the chapter");
     let (steps, yaml) = (blocks(&page, "xml"), blocks(&page, "yaml"));
-    assert_eq!(steps.len(), 10, "ten steps");
+    let (steps, second) = steps.split_at(10);
     let keys: String = yaml[0]
         .lines()
         .filter(|l| !l.starts_with("scene:"))
@@ -614,6 +614,15 @@ fn the_chapter_of_the_guide_builds_a_room_that_runs_after_every_step() {
         }
         in_room(&config, &document).unwrap_or_else(|e| panic!("after step {}: {e}", number + 1));
     }
+    // what the chapter tells after that: a ball in the crib
+    assert_eq!((second.len(), yaml.len()), (0, 2));
+    let ball = Config {
+        touch_active: false,
+        vision_active: false,
+        ..Config::from_yaml(&yaml[1], "rooms.md").expect("the configuration")
+    };
+    let ball = Blueprint::new(ball).expect("a ball");
+    assert!(ball.model().body("ball").is_some());
     let whole = std::fs::read_to_string(guide.join("rooms/play_room.xml")).expect("the document");
     assert!(
         whole == document,

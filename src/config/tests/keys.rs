@@ -114,6 +114,11 @@ fn values(kind: KeyKind) -> Values {
             let bad = ["''", "\"a\\0b\"", "\"a\\nb\""].map(String::from).to_vec();
             (good.map(String::from).into(), &["2025", "true", "1.5", "off"], bad)
         }
+        KeyKind::Document => {
+            let good = ["''", "<geom/>", "\"<a/>\\n\\t<b/>\"", "|\n <a>\n </a>"];
+            let bad = vec!["\"a\\0b\"".to_string()];
+            (good.map(String::from).into(), &["2025", "true", "1.5", "off"], bad)
+        }
     };
     Values {
         good,

@@ -138,6 +138,7 @@ fn fingerprint(model: &Model, config: &Config) -> u64 {
     let own = match &config.scene {
         // wherever it lies: the room itself counts
         Scene::File(_) => Some(format!("{:016x}", content(model))),
+        _ if !config.scene_extra.is_empty() => Some(format!("{:016x}", content(model))),
         _ => None,
     };
     for name in [
@@ -162,6 +163,7 @@ fn fingerprint(model: &Model, config: &Config) -> u64 {
         }
         ["Delays", "Pain"].contains(&key.section)
             || key.name == "touch_pooled"
+            || key.name == "act_others" && config.act_others
             || is_added(key.name) && key.value(config) != key.value(&defaults)
             || remembers && ["Vision", "Touch"].contains(&key.section)
     };

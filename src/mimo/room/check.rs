@@ -1,6 +1,6 @@
 //! What the document of a scene of one's own may say, before it is compiled.
 
-use super::{FOLDER, PARTS, Room, RoomError};
+use super::{FOLDER, Own, PARTS, Room, RoomError};
 use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::mimo::ROOT;
@@ -26,8 +26,10 @@ impl<A: AssetSource> Room<A> {
     pub fn check(&self, source: &Source<'_>) -> Result<(), SceneError> {
         let read = Tree::read(source.document, source.path, source.assets, &Limits::default());
         let (tree, _) = read.map_err(|e| self.localized_load(e))?;
+        let whole = matches!(self.own, Own::Added(_));
         for (file, place, what) in PARTS {
-            if !tree.files().contains(&format!("{FOLDER}{file}")) {
+            // a scene of the library has him
+            if !whole && !tree.files().contains(&format!("{FOLDER}{file}")) {
                 let path = self.path.clone();
                 return Err(RoomError::Lacks {
                     path,
@@ -72,9 +74,7 @@ impl<A: AssetSource> Room<A> {
 
     fn at(&self, tree: &Tree, at: usize, reason: String) -> RoomError {
         let mut place = tree.place(at);
-        if let Some(name) = place.file.strip_prefix(FOLDER) {
-            place.file = self.shown(name);
-        }
+        self.locate(&mut place);
         RoomError::At {
             place: Box::new(place),
             reason,

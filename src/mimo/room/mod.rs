@@ -5,10 +5,12 @@
 
 mod check;
 mod error;
+mod extra;
 mod same;
 mod unused;
 
 pub use error::RoomError;
+pub(in crate::mimo) use extra::FILE as EXTRA_FILE;
 pub use unused::{Unused, unused_attributes};
 
 use std::borrow::Cow;
@@ -19,7 +21,8 @@ use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
 use crate::config::{Config, Scene};
 use crate::mimo::embedded;
 use crate::mimo::scene::{SceneError, Version, actuators, include};
-use crate::mjcf_loader::{ErrorKind, LoadError};
+use crate::mjcf_loader::{ErrorKind, LoadError, Place};
+use extra::Extra;
 
 /// Folder of the library's documents, in which a scene of one's own is read.
 const FOLDER: &str = "babybench/";
@@ -47,6 +50,8 @@ enum Own {
     Given(String),
     /// In this folder of the file system.
     Disk { files: DirAssets, folder: PathBuf },
+    /// It is what is added to a scene of the library.
+    Added(Extra),
 }
 
 /// The assets of a scene of one's own: its files over the library's, which keep their names.
@@ -59,7 +64,8 @@ pub(super) struct Room<A> {
     written: Vec<(&'static str, String)>,
 }
 
-/// Returns what the scene of a configuration is built from: `assets`, or for a scene of one's own ([`Scene::File`]) its files over them.
+/// Returns what the scene of a configuration is built from: `assets`, or for a scene of one's own ([`Scene::File`]) its files over them,
+/// likewise what is added to a scene of the library ([`Config::scene_extra`]).
 ///
 /// The document is one of `assets`, if they have its path; otherwise it is a file of the system, whose folder then has its textures and
 /// includes, and nothing outside of that folder is read. Documents of the library are found beside them, even if `assets` lack those.
@@ -91,6 +97,14 @@ pub(super) fn file_name(path: &str) -> &str {
 impl<A: AssetSource> Room<A> {
     /// Finds the document of a configuration; `None` if its scene is one of the library.
     pub fn open(config: &Config, given: A) -> Result<Option<Self>, RoomError> {
+        if !config.scene_extra.is_empty() {
+            return Ok(Some(Self {
+                given,
+                own: Own::Added(Extra::new(&config.scene_extra)),
+                path: extra::SHOWN.to_string(),
+                written: written(config),
+            }));
+        }
         let Scene::File(path) = &config.scene else {
             return Ok(None);
         };
@@ -154,6 +168,8 @@ impl<A: AssetSource> Room<A> {
         let answer = match &self.own {
             Own::Given(folder) => resolve(folder, name).and_then(|path| self.given.read(&path)),
             Own::Disk { files, .. } => files.read(name),
+            Own::Added(extra) if name == EXTRA_FILE => Ok(Cow::Borrowed(extra.document.as_bytes())),
+            Own::Added(_) => Err(AssetError::NotFound(shown())),
         };
         answer.map_err(|e| match e {
             AssetError::NotFound(_) => AssetError::NotFound(shown()),
@@ -172,6 +188,7 @@ impl<A: AssetSource> Room<A> {
             }
             Own::Given(_) => self.read_own(name).is_ok(),
             Own::Disk { files, .. } => files.contains(name),
+            Own::Added(_) => false,
         }
     }
 
@@ -182,6 +199,19 @@ impl<A: AssetSource> Room<A> {
             Own::Given(folder) => format!("{folder}/{name}"),
             Own::Disk { folder, .. } if folder == Path::new(".") && !self.path.starts_with('.') => name.to_string(),
             Own::Disk { folder, .. } => folder.join(name).display().to_string(),
+            Own::Added(_) if name == EXTRA_FILE => extra::SHOWN.to_string(),
+            Own::Added(_) => name.to_string(),
+        }
+    }
+
+    /// Tells a place in a file as the user knows it.
+    fn locate(&self, place: &mut Place) {
+        let Some(name) = place.file.strip_prefix(FOLDER).filter(|name| !self.library(name)) else {
+            return;
+        };
+        match &self.own {
+            Own::Added(extra) if name == EXTRA_FILE => extra.locate(place),
+            _ => place.file = self.shown(name),
         }
     }
 
@@ -191,9 +221,7 @@ impl<A: AssetSource> Room<A> {
             let own = path.strip_prefix(FOLDER).filter(|name| !self.library(name));
             own.map(|name| self.shown(name))
         };
-        if let Some(file) = shown(&error.place.file) {
-            error.place.file = file;
-        }
+        self.locate(&mut error.place);
         if let ErrorKind::RepeatedInclude(path) | ErrorKind::Asset(AssetError::NotFound(path)) = &mut error.kind
             && let Some(name) = path.strip_prefix(FOLDER)
         {

@@ -27,6 +27,7 @@ impl<A: AssetSource> Room<A> {
     pub fn compare(&self, source: &Source<'_>, model: &Model, config: &Config) -> Result<(), SceneError> {
         let plain = Config {
             scene: Scene::Base,
+            scene_extra: String::new(),
             age: None,
             ..config.clone()
         };

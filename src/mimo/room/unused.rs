@@ -46,15 +46,13 @@ pub fn unused_attributes(config: &Config, assets: &dyn AssetSource) -> Result<Ve
     let mut unused = Vec::new();
     for (at, node) in tree.nodes.iter().enumerate() {
         let own = tree.file(at).strip_prefix(FOLDER).filter(|name| !room.library(name));
-        let Some(name) = own.filter(|_| tree.file(at) != top) else {
+        if own.is_none() || tree.file(at) == top {
             continue;
-        };
+        }
         for (attribute, _) in &node.attributes {
             if let Some(meaning) = meaning(&node.name, attribute) {
-                let place = Place {
-                    file: room.shown(name),
-                    ..tree.place(at)
-                };
+                let mut place = tree.place(at);
+                room.locate(&mut place);
                 unused.push(Unused {
                     place,
                     attribute: attribute.clone(),

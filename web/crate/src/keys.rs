@@ -32,7 +32,7 @@ fn describe(key: &Key) -> JsValue {
         // a path is offered by who hands over its file
         KeyKind::ChoiceOrFile { names, .. } => ("choice", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
         KeyKind::List(names) => ("list", list(names.iter().copied()), JsValue::NULL, JsValue::NULL),
-        KeyKind::Text => ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL),
+        KeyKind::Text | KeyKind::Document => ("text", JsValue::NULL, JsValue::NULL, JsValue::NULL),
     };
     object([
         ("name", key.name.into()),

@@ -1,0 +1,146 @@
+//! What is added to a scene of the library, as text.
+
+use quick_xml::events::Event;
+use quick_xml::reader::Reader;
+
+use crate::mjcf_loader::Place;
+
+/// What the text is called in errors.
+pub(super) const SHOWN: &str = "scene_extra";
+/// The file as which it is read.
+pub(in crate::mimo) const FILE: &str = "scene_extra.xml";
+/// Elements that stand in the world.
+const WORLD: [&str; 6] = ["body", "geom", "site", "camera", "light", "frame"];
+/// Elements that a whole document consists of.
+const ROOTS: [&str; 2] = ["mujoco", "mujocoinclude"];
+
+/// A text of elements as a document that can be included.
+pub(super) struct Extra {
+    pub document: String,
+    inserted: Vec<Inserted>,
+}
+
+/// Characters that the text does not have.
+struct Inserted {
+    /// Line and column of the text in front of which they stand.
+    line: usize,
+    column: usize,
+    length: usize,
+}
+
+impl Extra {
+    /// Makes a document of a text: elements of the world are put into the world, sections stay what they are.
+    ///
+    /// What is wrong with the text is for the loader to say, so that nothing is an error here.
+    pub fn new(text: &str) -> Self {
+        let mut extra = Self {
+            document: String::with_capacity(text.len() + 64),
+            inserted: Vec::new(),
+        };
+        let tops = top_elements(text);
+        if tops.first().is_some_and(|(_, name)| ROOTS.contains(&name.as_str())) {
+            extra.document.push_str(text);
+            return extra;
+        }
+        let (mut done, mut open) = (0, false);
+        extra.insert(text, 0, "<mujocoinclude>");
+        for (at, name) in tops {
+            let world = WORLD.contains(&name.as_str());
+            if world != open {
+                extra.document.push_str(&text[done..at]);
+                done = at;
+                extra.insert(text, at, if world { "<worldbody>" } else { "</worldbody>" });
+                open = world;
+            }
+        }
+        extra.document.push_str(&text[done..]);
+        extra.document.push_str(if open {
+            "</worldbody></mujocoinclude>"
+        } else {
+            "</mujocoinclude>"
+        });
+        extra
+    }
+
+    fn insert(&mut self, text: &str, at: usize, what: &str) {
+        let before = &text[..at];
+        let last = before.rsplit('\n').next().unwrap_or_default();
+        self.inserted.push(Inserted {
+            line: before.matches('\n').count() + 1,
+            column: last.chars().count() + 1,
+            length: what.len(),
+        });
+        self.document.push_str(what);
+    }
+
+    /// Tells where a place of the document is in the text.
+    pub fn locate(&self, place: &mut Place) {
+        place.file = SHOWN.to_string();
+        for inserted in self.inserted.iter().filter(|i| i.line == place.line) {
+            if place.column >= inserted.column + inserted.length {
+                place.column -= inserted.length;
+            }
+        }
+    }
+}
+
+/// Lists the elements that are in no other, each by where it begins and its name; as far as the text is XML.
+fn top_elements(text: &str) -> Vec<(usize, String)> {
+    let mut reader = Reader::from_str(text);
+    let (mut depth, mut found) = (0_usize, Vec::new());
+    loop {
+        let at = reader.buffer_position() as usize;
+        match reader.read_event() {
+            Ok(Event::Start(start)) => {
+                if depth == 0 {
+                    found.push((at, start.name().as_ref().to_string()));
+                }
+                depth += 1;
+            }
+            Ok(Event::Empty(start)) if depth == 0 => found.push((at, start.name().as_ref().to_string())),
+            Ok(Event::End(_)) => depth = depth.saturating_sub(1),
+            Ok(Event::Eof) | Err(_) => break,
+            Ok(_) => {}
+        }
+    }
+    found.retain(|(at, _)| text.is_char_boundary(*at));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_of_the_world_are_put_into_it_and_places_stay() {
+        let text = "<body name='a'/> <geom/>\n<!-- more -->\n<asset/> <light/>";
+        let extra = Extra::new(text);
+        assert_eq!(
+            extra.document,
+            "<mujocoinclude><worldbody><body name='a'/> <geom/>\n<!-- more -->\n</worldbody><asset/> \
+             <worldbody><light/></worldbody></mujocoinclude>"
+        );
+        let lines: Vec<&str> = extra.document.lines().collect();
+        for (what, line, column) in [
+            ("<body", 1, 1),
+            ("<geom/>", 1, 18),
+            ("<asset/>", 3, 1),
+            ("<light/>", 3, 10),
+        ] {
+            let found = lines[line - 1].find(what).expect("it is there") + 1;
+            let mut place = Place {
+                line,
+                column: found,
+                ..Place::default()
+            };
+            extra.locate(&mut place);
+            assert_eq!((place.column, place.file.as_str()), (column, "scene_extra"), "{what}");
+        }
+        assert_eq!(Extra::new("<mujocoinclude><asset/></mujocoinclude>").inserted.len(), 0);
+        assert_eq!(Extra::new("").document, "<mujocoinclude></mujocoinclude>");
+        // whatever is wrong is left to the loader
+        for broken in ["<body", "</body>", "&<geom/>", "\u{e4}<geom/>\u{0}", "<geom></body>"] {
+            Extra::new(broken);
+        }
+    }
+}
