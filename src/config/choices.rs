@@ -107,6 +107,17 @@ choices! {
 }
 
 choices! {
+    /// Which of two infants in a scene of one's own learns (`learner`).
+    Learner {
+        /// The one in `mimo_location`.
+        #[default]
+        Mimo = "mimo",
+        /// The one in `other_location`.
+        Other = "other",
+    }
+}
+
+choices! {
     /// The unit of delays (`delay_unit`).
     DelayUnit {
         /// Steps of the environment.

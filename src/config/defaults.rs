@@ -2,7 +2,7 @@
 
 use super::conflicts::Conflict;
 use super::table::KEYS;
-use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Scene, TouchFunction, TouchResponse};
+use super::{ActuationModel, Behavior, BodyParts, Compat, Config, Learner, Scene, TouchFunction, TouchResponse};
 use crate::text::quoted;
 
 impl Config {
@@ -98,6 +98,21 @@ fn own_conflict(config: &Config) -> Option<Conflict> {
 
 /// Returns the first value that the task of a configuration excludes: key, value, and why.
 pub(super) fn conflict(config: &Config) -> Option<Conflict> {
+    let second = [
+        ("learner", config.learner.to_string(), config.learner != Learner::Mimo),
+        (
+            "other_age",
+            config.other_age.unwrap_or_default().to_string(),
+            config.other_age.is_some(),
+        ),
+    ];
+    if let Some((key, value, _)) = second
+        .into_iter()
+        .find(|(.., set)| *set && !matches!(config.scene, Scene::File(_)))
+    {
+        let reason = "only a document of one's own has a second infant; set `scene` to its path, or leave it out";
+        return Some((key, value, reason.to_string()));
+    }
     if config.act_others && config.actuation_model == ActuationModel::Muscle {
         let reason = "with muscles all actuators pull as muscles do, which other bodies do not have; use spring_damper or positional";
         return Some(("act_others", config.act_others.to_string(), reason.to_string()));

@@ -1,8 +1,8 @@
 //! Keys, and how the table of them is read.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Limb, RendererKind, StartingPosition,
-    TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
+    StartingPosition, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::kinds::{KeyKind, KeyValue};
 use super::outputs::VisionOutputs;
@@ -41,6 +41,7 @@ field! {
     Behavior, Choice, v => Self::from_name(v), |f| f.name();
     FacialExpression, Choice, v => Self::from_name(v), |f| f.name();
     StartingPosition, Choice, v => Self::from_name(v), |f| f.name();
+    Learner, Choice, v => Self::from_name(v), |f| f.name();
     Limb, Choice, v => Self::from_name(v), |f| f.name();
     ActuationModel, Choice, v => Self::from_name(v), |f| f.name();
     TouchFunction, Choice, v => Self::from_name(v), |f| f.name();

@@ -40,8 +40,8 @@ mod yaml;
 mod tests;
 
 pub use choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Limb, RendererKind, StartingPosition,
-    TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
+    StartingPosition, TouchFunction, TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
 internals!(use examples::Example);

@@ -2,8 +2,8 @@
 //! reading, writing, ranges and documentation all follow from it.
 
 use super::choices::{
-    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Limb, RendererKind, StartingPosition,
-    TouchFunction, TouchResponse, VisionOutput,
+    ActuationModel, Behavior, Compat, DelayUnit, EngineKind, FacialExpression, Learner, Limb, RendererKind,
+    StartingPosition, TouchFunction, TouchResponse, VisionOutput,
 };
 use super::keys::{Field, Key, config};
 use super::kinds::KeyKind;
@@ -73,6 +73,8 @@ config! {
         compat: Compat = Compat::Api, Choice(Compat::NAMES), "Which of them to follow where the API page and the Python code disagree.";
         engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
         renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
+        learner: Learner = Learner::Mimo, Choice(Learner::NAMES), "Which of two infants in a document of one's own learns: the one in `mimo_location` or in `other_location`.";
+        other_age: Option<f64> = None, AGE, "The age of the other infant in a document of one's own, months; none for the proportions of the original.";
         scene_extra: String = String::new(), Document, "MJCF that is added to a scene of the library: bodies and what else stands in the world, and whole sections.";
         seed: u64 = 0, SEED, "The seed of all random choices until a reset is given another.";
         facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face, which changes nothing but pictures.";

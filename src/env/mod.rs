@@ -15,6 +15,7 @@ pub(crate) mod info;
 mod model_change;
 mod notices;
 pub(crate) mod observation;
+mod other;
 mod outcome;
 mod physics;
 mod pipeline;
@@ -50,6 +51,7 @@ pub use senses::Senses;
 pub use sensing::SensesMut;
 #[cfg(feature = "serde")]
 internals!(use serial::Detailed);
+pub use other::OtherInfant;
 pub use snapshot::{Snapshot, SnapshotError};
 internals!(use snapshot::SnapshotInfo);
 internals!(use stage::{EnvProbe, EnvStage});

@@ -25,6 +25,7 @@ internals!(use locks::{held_by, lock, lock_of, unlock});
 pub(crate) use parts::{JOINT_PREFIX, ROOT};
 internals!(use parts::{MimoBodies, MimoJoints, joint_part});
 internals!(use placement::held_posture);
+pub(crate) use room::OTHER_PREFIX;
 #[cfg(feature = "eval")]
 pub(crate) use room::open_room;
 internals!(use room::{PARTS as ROOM_PARTS, Unused, unused_attributes});

@@ -7,7 +7,7 @@ use crate::config::{ActuationModel, Behavior, Config, FacialExpression, Measurem
 use crate::math::{Vec3, scale};
 use crate::mimo::growth::blame;
 use crate::mimo::placement::{LowestPoint, Overlap, overlaps};
-use crate::mimo::room::{EXTRA_FILE, Room, RoomError, file_name};
+use crate::mimo::room::{EXTRA_FILE, OTHER_PREFIX, Room, RoomError, file_name, location};
 use crate::mimo::{Growth, GrowthError};
 use crate::mjcf_loader::{Draft, LoadError};
 use crate::model::Model;
@@ -253,10 +253,14 @@ impl Source<'_> {
 
     /// Compiles the document with MIMo at the age of a configuration.
     fn build(&self, version: Version, config: &Config) -> Result<Model, SceneError> {
+        let place = location(config.learner);
+        let other = other_growth(config, version)?;
         let Some(growth) = Growth::of(config, version)? else {
-            return self.original();
+            let mut draft = self.read()?;
+            grow_other(&mut draft, other.as_ref())?;
+            return Ok(compile(draft.compile(self.assets)?)?);
         };
-        let made = self.grow(&growth);
+        let made = self.grow(&growth, other.as_ref(), place);
         if config.measurements == Measurements::default() {
             return made;
         }
@@ -279,17 +283,18 @@ impl Source<'_> {
         let Some(reason) = fault(&made) else { return made };
         let works = |other: &Config| {
             let growth = Growth::of(other, version).ok().flatten();
-            growth.is_some_and(|growth| fault(&self.grow(&growth)).is_none())
+            growth.is_some_and(|growth| fault(&self.grow(&growth, None, place)).is_none())
         };
         Err(blame(config, age, reason, works).into())
     }
 
     /// Compiles the scene with a MIMo that has grown, his lowest point where the original's is.
-    fn grow(&self, growth: &Growth) -> Result<Model, SceneError> {
+    fn grow(&self, growth: &Growth, other: Option<&Growth>, place: &str) -> Result<Model, SceneError> {
         let grown = |shift: Vec3| -> Result<Model, SceneError> {
             let mut draft = self.read()?;
             growth.apply(&mut draft)?;
-            if let Some(pos) = draft.body_pos(MIMO) {
+            grow_other(&mut draft, other)?;
+            if let Some(pos) = draft.body_pos(place) {
                 pos.iter_mut().zip(shift).for_each(|(x, by)| *x += by);
             }
             Ok(compile(draft.compile(self.assets)?)?)
@@ -298,6 +303,26 @@ impl Source<'_> {
         let after = LowestPoint::of(&grown([0.0; 3])?.into())?;
         grown(scale(before.up, before.height - after.height))
     }
+}
+
+/// Returns how the second infant grows to his age; `None` if he has none.
+fn other_growth(config: &Config, version: Version) -> Result<Option<Growth>, SceneError> {
+    let own = Config {
+        age: config.other_age,
+        strength_age: None,
+        measurements: Measurements::default(),
+        ..config.clone()
+    };
+    Ok(Growth::of(&own, version)?)
+}
+
+/// Gives the second infant of a document his age.
+fn grow_other(draft: &mut Draft, growth: Option<&Growth>) -> Result<(), SceneError> {
+    let Some(growth) = growth else { return Ok(()) };
+    draft.set_prefix(OTHER_PREFIX);
+    let grown = growth.apply(draft);
+    draft.set_prefix("");
+    Ok(grown?)
 }
 
 /// How much deeper than at the same age without measurements two parts may be in each other, m.

@@ -33,6 +33,8 @@ pub struct Draft {
     tree: Tree,
     document: Document,
     path: String,
+    /// What names begin with.
+    prefix: String,
 }
 
 /// A geom of a [`Draft`].
@@ -103,7 +105,12 @@ impl Draft {
         }
         let checked = schema::check(&tree, root, &elements::MUJOCO)?;
         let document = read::read(&tree, &checked)?;
-        Ok(Self { tree, document, path })
+        Ok(Self {
+            tree,
+            document,
+            path,
+            prefix: String::new(),
+        })
     }
 
     /// Compiles the document, with what was changed, into ids and arrays. Textures are looked up in `source`.
@@ -111,7 +118,9 @@ impl Draft {
     /// # Errors
     /// As [`super::load`]; an element at fault is named with its place in the text.
     pub fn compile(self, source: &dyn AssetSource) -> Result<Spec, LoadError> {
-        let Self { tree, document, path } = self;
+        let Self {
+            tree, document, path, ..
+        } = self;
         let arrays = compile::compile(&tree, &document, source, directory(&path))?;
         let places = Places {
             bodies: document.bodies.iter().map(|body| body.at).collect(),
@@ -127,6 +136,11 @@ impl Draft {
         })
     }
 
+    /// Sets what the names of bodies, joints, sites, cameras and actuators begin with that are asked for from now on; others are left out.
+    pub(crate) fn set_prefix(&mut self, prefix: &str) {
+        self.prefix = prefix.to_string();
+    }
+
     /// Returns the position of a body in its parent, m; `None` if there is no such body.
     pub fn body_pos(&mut self, name: &str) -> Option<&mut Vec3> {
         self.body(name).map(|body| &mut body.frame.pos)
@@ -135,20 +149,27 @@ impl Draft {
     /// Returns the anchor of a joint in its body, m; `None` if there is no such joint.
     pub fn joint_pos(&mut self, name: &str) -> Option<&mut Vec3> {
         let mut joints = self.document.bodies.iter_mut().flat_map(|body| &mut body.joints);
-        joints.find(|joint| joint.name == name).map(|joint| &mut joint.pos)
+        let prefix = &self.prefix;
+        joints
+            .find(|joint| is_called(&joint.name, prefix, name))
+            .map(|joint| &mut joint.pos)
     }
 
     /// Returns the position of a site in its body, m; `None` if there is no such site.
     pub fn site_pos(&mut self, name: &str) -> Option<&mut Vec3> {
         let mut sites = self.document.bodies.iter_mut().flat_map(|body| &mut body.sites);
-        sites.find(|site| site.name == name).map(|site| &mut site.frame.pos)
+        let prefix = &self.prefix;
+        sites
+            .find(|site| is_called(&site.name, prefix, name))
+            .map(|site| &mut site.frame.pos)
     }
 
     /// Returns the position of a camera in its body, m; `None` if there is no such camera.
     pub fn camera_pos(&mut self, name: &str) -> Option<&mut Vec3> {
         let mut cameras = self.document.bodies.iter_mut().flat_map(|body| &mut body.cameras);
+        let prefix = &self.prefix;
         cameras
-            .find(|camera| camera.name == name)
+            .find(|camera| is_called(&camera.name, prefix, name))
             .map(|camera| &mut camera.frame.pos)
     }
 
@@ -165,16 +186,19 @@ impl Draft {
 
     /// Returns the actuators, by id.
     pub fn actuators(&mut self) -> impl Iterator<Item = DraftActuator<'_>> {
-        self.document.actuators.iter_mut().map(|actuator| DraftActuator {
-            name: &actuator.name,
-            joint: actuator
+        let prefix = self.prefix.as_str();
+        self.document.actuators.iter_mut().filter_map(move |actuator| {
+            let joint = actuator
                 .target
                 .joint
                 .as_ref()
-                .or(actuator.target.jointinparent.as_ref())
-                .map_or("", String::as_str),
-            gear: &mut actuator.target.gear[0],
-            user: &mut actuator.user,
+                .or(actuator.target.jointinparent.as_ref());
+            Some(DraftActuator {
+                name: actuator.name.strip_prefix(prefix)?,
+                joint: joint.map_or(Some(""), |joint| joint.strip_prefix(prefix))?,
+                gear: &mut actuator.target.gear[0],
+                user: &mut actuator.user,
+            })
         })
     }
 
@@ -192,15 +216,23 @@ impl Draft {
         // a parent comes before its children
         let mut inside = Vec::with_capacity(bodies.len());
         for one in bodies {
-            inside.push(one.name == body || inside.get(one.parent).copied().unwrap_or(false));
+            inside.push(is_called(&one.name, &self.prefix, body) || inside.get(one.parent).copied().unwrap_or(false));
         }
         let own = bodies.iter().zip(&inside).filter(|(_, inside)| **inside);
         own.flat_map(|(one, _)| &one.joints)
-            .map(|joint| joint.name.clone())
+            .filter_map(|joint| joint.name.strip_prefix(&self.prefix))
+            .map(str::to_string)
             .collect()
     }
 
     fn body(&mut self, name: &str) -> Option<&mut Body> {
-        self.document.bodies.iter_mut().find(|body| body.name == name)
+        let prefix = &self.prefix;
+        let mut bodies = self.document.bodies.iter_mut();
+        bodies.find(|body| is_called(&body.name, prefix, name))
     }
+}
+
+/// Returns whether a whole name is a prefix and a name.
+fn is_called(whole: &str, prefix: &str, name: &str) -> bool {
+    whole.strip_prefix(prefix) == Some(name)
 }

@@ -221,8 +221,9 @@ fn trace(config: Config) -> u64 {
 
 /// Keys whose effect is elsewhere: logs and videos, the other engine, the other renderer, MIMo v2's fingers, and senses with
 /// tests of their own.
-const ELSEWHERE: [&str; 9] = [
-    "facial_expression",
+const ELSEWHERE: [&str; 11] = [
+    "learner",
+    "other_age",
     "act_others",
     "save_dir",
     "save_logs_every",

@@ -37,6 +37,7 @@ mod rooms;
 mod scene;
 #[cfg(feature = "eval")]
 mod scene_file;
+mod second_infant;
 mod senses;
 mod snapshot;
 mod strings;

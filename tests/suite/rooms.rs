@@ -614,8 +614,11 @@ fn the_chapter_of_the_guide_builds_a_room_that_runs_after_every_step() {
         }
         in_room(&config, &document).unwrap_or_else(|e| panic!("after step {}: {e}", number + 1));
     }
-    // what the chapter tells after that: a ball in the crib
-    assert_eq!((second.len(), yaml.len()), (0, 2));
+    // what the chapter tells after that: a second infant, and a ball in the crib
+    assert_eq!((second.len(), yaml.len()), (1, 2));
+    let two = steps[0].replace("</mujoco>", &format!("\n{}</mujoco>", second[0]));
+    let pair = in_room(&config, &two).unwrap_or_else(|e| panic!("a second infant: {e}"));
+    assert_eq!(pair.env().expect("valid").others().len(), 1);
     let ball = Config {
         touch_active: false,
         vision_active: false,

@@ -4,7 +4,7 @@ use super::{FOLDER, Own, PARTS, Room, RoomError};
 use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::mimo::ROOT;
-use crate::mimo::scene::{MIMO, SceneError, Source};
+use crate::mimo::scene::{SceneError, Source};
 use crate::mjcf_loader::{Node, Tree};
 
 /// Settings of `<compiler>` that would read MIMo's own documents in another way, each with its only value.
@@ -17,6 +17,9 @@ const COMPILER: [(&str, &str, &str); 3] = [
         "write the folder in front of the name of each texture",
     ),
 ];
+
+/// What a document with a second infant includes.
+const SECOND: &str = "other_mimo.xml";
 
 /// The time step of all scenes, s.
 const TIMESTEP: f64 = 0.005;
@@ -40,6 +43,15 @@ impl<A: AssetSource> Room<A> {
                 .into());
             }
         }
+        if self.second && !tree.files().contains(&format!("{FOLDER}{SECOND}")) {
+            return Err(RoomError::Lacks {
+                path: self.path.clone(),
+                file: SECOND,
+                place: "in <body name=\"other_location\">",
+                what: "the second infant, whom `learner` and `other_age` are about",
+            }
+            .into());
+        }
         self.check_place(&tree)?;
         let own = |at: &usize| {
             let file = tree.file(*at);
@@ -61,12 +73,13 @@ impl<A: AssetSource> Room<A> {
             return Ok(()); // the assets have a MIMo of their own
         };
         let node = &tree.nodes[at];
-        if node.name == "body" && node.attribute("name") == Some(MIMO) {
+        let place = self.place;
+        if node.name == "body" && node.attribute("name") == Some(place) {
             return Ok(());
         }
         let reason = format!(
-            "MIMo is included in <{}>; include mimo.xml in a body of its own, <body name=\"{MIMO}\" pos=\"0 0 0.1\" \
-             euler=\"0 -90 0\">, with <freejoint name=\"{MIMO}\"/> if he is free to move",
+            "MIMo is included in <{}>; include the learner in a body of its own, <body name=\"{place}\" pos=\"0 0 0.1\" \
+             euler=\"0 -90 0\">, with <freejoint name=\"{place}\"/> if he is free to move",
             node.name
         );
         Err(self.at(tree, at, reason))

@@ -6,11 +6,14 @@
 mod check;
 mod error;
 mod extra;
+mod other;
 mod same;
 mod unused;
 
 pub use error::RoomError;
 pub(in crate::mimo) use extra::FILE as EXTRA_FILE;
+pub(crate) use other::PREFIX as OTHER_PREFIX;
+pub(in crate::mimo) use other::location;
 pub use unused::{Unused, unused_attributes};
 
 use std::borrow::Cow;
@@ -18,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::assets::{AssetError, AssetSource, DirAssets, directory, resolve};
-use crate::config::{Config, Scene};
+use crate::config::{Config, Learner, Scene};
 use crate::mimo::embedded;
 use crate::mimo::scene::{SceneError, Version, actuators, include};
 use crate::mjcf_loader::{ErrorKind, LoadError, Place};
@@ -62,6 +65,10 @@ pub(super) struct Room<A> {
     path: String,
     /// The files that depend on the configuration.
     written: Vec<(&'static str, String)>,
+    /// The body that places the learner.
+    place: &'static str,
+    /// Whether there must be a second infant.
+    second: bool,
 }
 
 /// Returns what the scene of a configuration is built from: `assets`, or for a scene of one's own ([`Scene::File`]) its files over them,
@@ -103,6 +110,8 @@ impl<A: AssetSource> Room<A> {
                 own: Own::Added(Extra::new(&config.scene_extra)),
                 path: extra::SHOWN.to_string(),
                 written: written(config),
+                place: location(config.learner),
+                second: config.learner != Learner::default() || config.other_age.is_some(),
             }));
         }
         let Scene::File(path) = &config.scene else {
@@ -133,6 +142,8 @@ impl<A: AssetSource> Room<A> {
             own,
             path: path.clone(),
             written: written(config),
+            place: location(config.learner),
+            second: config.learner != Learner::default() || config.other_age.is_some(),
         };
         if room.library(file_name(path)) {
             Err(RoomError::Shadowed {
@@ -148,7 +159,9 @@ impl<A: AssetSource> Room<A> {
     fn library(&self, name: &str) -> bool {
         let path = format!("{FOLDER}{name}");
         let beside = matches!(&self.own, Own::Given(folder) if format!("{folder}/") == FOLDER);
+        let other = other::original(name).is_some_and(|name| embedded().contains(&format!("{FOLDER}{name}")));
         name == SETTINGS_AGAIN
+            || other
             || self.written.iter().any(|(written, _)| *written == name)
             || embedded().contains(&path)
             || !beside && self.given.contains(&path)
@@ -261,7 +274,14 @@ impl<A: AssetSource> AssetSource for Room<A> {
         match self.written.iter().find(|(written, _)| *written == name) {
             Some((_, text)) => Ok(Cow::Borrowed(text.as_bytes())),
             None if name == SETTINGS_AGAIN => self.read_library(SETTINGS),
-            None => self.read_library(&path),
+            None => match other::original(name) {
+                Some(first) => {
+                    let document = self.read_library(&format!("{FOLDER}{first}"))?;
+                    let renamed = other::renamed(&document);
+                    renamed.map(Cow::Owned).ok_or(AssetError::NotFound(path))
+                }
+                None => self.read_library(&path),
+            },
         }
     }
 }
@@ -270,13 +290,14 @@ impl<A: AssetSource> AssetSource for Room<A> {
 fn written(config: &Config) -> Vec<(&'static str, String)> {
     let version = Version::of(config.behavior).name();
     let settings = SETTINGS_AGAIN.trim_end_matches(".xml");
+    let [body, rest @ ..] = other::written(config);
     let texts = [
-        include(&format!("mimo_{version}")),
+        body.1,
         include(settings) + &include(&format!("meta_{version}")),
         actuators(config),
     ];
-    let named = PARTS.iter().zip(texts);
+    let named = PARTS.iter().map(|(name, ..)| *name).zip(texts).chain(rest);
     named
-        .map(|((name, ..), text)| (*name, format!("<mujocoinclude>\n{text}</mujocoinclude>\n")))
+        .map(|(name, text)| (name, format!("<mujocoinclude>\n{text}</mujocoinclude>\n")))
         .collect()
 }

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use super::{Room, RoomError};
 use crate::assets::{AssetError, AssetSource};
-use crate::config::{Config, Scene};
+use crate::config::{Config, Learner, Scene};
 use crate::mimo::MimoBodies;
 use crate::mimo::scene::{DOCUMENT, SceneError, Source, scene_xml};
 use crate::model::{Material, Model};
@@ -28,6 +28,8 @@ impl<A: AssetSource> Room<A> {
         let plain = Config {
             scene: Scene::Base,
             scene_extra: String::new(),
+            learner: Learner::Mimo,
+            other_age: None,
             age: None,
             ..config.clone()
         };
