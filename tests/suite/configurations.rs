@@ -225,6 +225,7 @@ const ELSEWHERE: [&str; 11] = [
     "learner",
     "other_age",
     "act_others",
+    "facial_expression",
     "save_dir",
     "save_logs_every",
     "render_size",

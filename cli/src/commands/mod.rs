@@ -20,6 +20,7 @@ mod test_installation;
 mod train;
 
 use std::error::Error;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -30,7 +31,7 @@ use babybench::formats::npz::Npz;
 use babybench::mimo::embedded;
 use babybench::runs::{Recording, ReplayError};
 use babybench::{Blueprint, Env};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::print::note;
@@ -43,8 +44,9 @@ struct Cli {
     command: Command,
 }
 
+/// A command with its arguments.
 #[derive(Subcommand)]
-enum Command {
+pub enum Command {
     /// Run episodes with random actions and print information and timings
     Run(run::Run),
     /// Print what a configuration contains: sizes, joints, actuators, action and observation space
@@ -178,22 +180,38 @@ fn progress_bar(steps: u64, quiet: bool) -> Result<ProgressBar, Box<dyn Error>> 
     Ok(bar)
 }
 
-/// Runs the command line of the process.
-pub fn main() -> Result<(), Box<dyn Error>> {
-    match Cli::parse().command {
-        Command::Run(c) => c.run(),
-        Command::Inspect(c) => c.run(),
-        Command::Render(c) => c.run(),
-        Command::Scene(c) => c.run(),
-        Command::Simulate(c) => c.run(),
-        Command::Replay(c) => c.run(),
-        Command::Benchmark(c) => c.run(),
-        Command::Measure(c) => c.run(),
-        Command::TestInstallation(c) => c.run(),
-        Command::Train(c) => c.run(),
-        Command::Score(c) => c.run(),
-        Command::Report(c) => c.run(),
-        Command::Pack(c) => c.run(),
-        Command::Evaluate(c) => c.run(),
+/// Reads the arguments of a command line; `program` replaces the first in what is told of its use.
+pub fn parse(
+    arguments: impl IntoIterator<Item = OsString>,
+    program: Option<&'static str>,
+) -> Result<Command, clap::Error> {
+    let mut cli = Cli::command();
+    if let Some(program) = program {
+        cli = cli.bin_name(program);
+    }
+    let matches = cli.try_get_matches_from_mut(arguments)?;
+    let read = Cli::from_arg_matches(&matches).map_err(|e| e.format(&mut cli))?;
+    Ok(read.command)
+}
+
+impl Command {
+    /// Does what it says.
+    pub fn run(self) -> Result<(), Box<dyn Error>> {
+        match self {
+            Self::Run(c) => c.run(),
+            Self::Inspect(c) => c.run(),
+            Self::Render(c) => c.run(),
+            Self::Scene(c) => c.run(),
+            Self::Simulate(c) => c.run(),
+            Self::Replay(c) => c.run(),
+            Self::Benchmark(c) => c.run(),
+            Self::Measure(c) => c.run(),
+            Self::TestInstallation(c) => c.run(),
+            Self::Train(c) => c.run(),
+            Self::Score(c) => c.run(),
+            Self::Report(c) => c.run(),
+            Self::Pack(c) => c.run(),
+            Self::Evaluate(c) => c.run(),
+        }
     }
 }
