@@ -157,13 +157,16 @@ def test_a_mocap_body_is_moved_by_the_program() -> None:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     assert (model.nmocap, list(model.body_mocapid)) == (1, [-1, 0, -1])
-    assert model.key_mpos.tolist() == [[0, 0, 3]] and model.key_mquat.tolist() == [[0, 1, 0, 0]]
+    assert model.key_mpos.tolist() == [[0, 0, 3]]
+    assert model.key_mquat.tolist() == [[0, 1, 0, 0]]
     data.mocap_pos[0] = [1, 2, 3]
     data.mocap_quat[0] = [0, 0, 0, 2]
     mujoco.mj_forward(model, data)
-    assert data.xpos[1].tolist() == [1, 2, 3] and data.xquat[1].tolist() == [0, 0, 0, 1]
+    assert data.xpos[1].tolist() == [1, 2, 3]
+    assert data.xquat[1].tolist() == [0, 0, 0, 1]
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    assert data.mocap_pos.tolist() == [[0, 0, 3]] and data.mocap_quat.tolist() == [[0, 1, 0, 0]]
+    assert data.mocap_pos.tolist() == [[0, 0, 3]]
+    assert data.mocap_quat.tolist() == [[0, 1, 0, 0]]
 
 
 def test_numbers_of_a_model_that_change_change_the_next_step() -> None:

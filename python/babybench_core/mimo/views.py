@@ -88,7 +88,13 @@ class ModelView(_Named):
         own["_numbers"] = _numbers(names)
         own["_blueprint"] = blueprint
         own.update({name: int(options[key]) for name, key in _SIZES.items()})
-        own.update(na=0, nmocap=options["nmocap"], nlight=extras["nlight"], ntex=len(names["texture"]), nmat=len(names["material"]))
+        own.update(
+            na=0,
+            nmocap=options["nmocap"],
+            nlight=extras["nlight"],
+            ntex=len(names["texture"]),
+            nmat=len(names["material"]),
+        )
         own.update({name: array for name, array in extras.items() if name.startswith("eq_")})
         gravity = np.array(options["gravity"])
         gravity.flags.writeable = False

@@ -37,9 +37,9 @@ class MjData(Named):
     """A state of a model, under the names and in the shapes of MuJoCo's ``MjData``.
 
     The arrays are the same memory for as long as the state lives: what is written into ``qpos``, ``qvel``, ``act``,
-    ``ctrl``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos``, ``mocap_quat``, ``qacc_warmstart``, ``eq_active`` and ``time`` counts from the next
-    computation on, and the others show what the last one found. Contacts, rows of constraints and ``qM`` are fresh
-    copies each time.
+    ``ctrl``, ``qfrc_applied``, ``xfrc_applied``, ``mocap_pos``, ``mocap_quat``, ``qacc_warmstart``, ``eq_active`` and
+    ``time`` counts from the next computation on, and the others show what the last one found. Contacts, rows of
+    constraints and ``qM`` are fresh copies each time.
     """
 
     model: MjModel
