@@ -68,6 +68,10 @@ limits! {
         key_numbers: usize = 4_194_304,
         /// MJCF: steps of the simulations that look for the lengths of muscles.
         lengthrange_steps: usize = 1_000_000,
+        /// MJCF: vertices, normals, texture coordinates and faces of all meshes together.
+        mesh_elements: usize = 4_194_304,
+        /// MJCF: numbers of a mesh that stand in the document itself.
+        mesh_numbers: usize = 1_048_576,
         /// MJCF: the largest magnitude of a number. Products of a few such numbers stay finite.
         real: f64 = 1e30,
         /// Physics: pairs of geoms in large scenes whose boxes overlap.

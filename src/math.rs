@@ -5,6 +5,7 @@
 //! bits on every target. Trigonometry comes from `pxfm`, which rounds
 //! correctly, for the same reason.
 
+pub(crate) mod hull;
 mod operations;
 
 internals!(use operations::*);

@@ -29,6 +29,7 @@ fn shapes(values: &[GeomType]) -> Vec<f64> {
         GeomType::Ellipsoid => 4,
         GeomType::Cylinder => 5,
         GeomType::Box => 6,
+        GeomType::Mesh => 7,
     };
     values.iter().map(|shape| f64::from(code(shape))).collect()
 }
@@ -221,6 +222,8 @@ pub fn unrecorded(m: &Model) -> Named {
             m.actuator_trntype.iter().map(transmission).collect(),
         ),
         ("geom_user", users(&m.geom_user)),
+        ("geom_dataid", optional(&m.geom_dataid)),
+        ("geom_aabb", flat(&m.geom_aabb)),
         ("site_user", users(&m.site_user)),
         ("cam_pos0", flat(&m.cam_pos0)),
         ("cam_poscom0", flat(&m.cam_poscom0)),
@@ -252,6 +255,24 @@ pub fn unrecorded(m: &Model) -> Named {
         ("key_mquat", keys(|key| key.mquat.as_flattened())),
         ("nmocap", vec![m.nmocap as f64]),
         ("body_mocapid", optional(&m.body_mocapid)),
+    ]
+}
+
+/// Returns the arrays of meshes. Those without faces have the triangles of their hulls, whose order is not MuJoCo's.
+pub fn of_meshes(m: &Model) -> Named {
+    let number = |of: fn(&babybench::model::Mesh) -> usize| -> Vec<f64> {
+        m.meshes.iter().map(|mesh| of(mesh) as f64).collect()
+    };
+    let vert = m.meshes.iter().flat_map(|mesh| mesh.vert.as_flattened());
+    vec![
+        ("mesh_vertnum", number(|mesh| mesh.vert.len())),
+        ("mesh_normalnum", number(|mesh| mesh.normal.len())),
+        ("mesh_texcoordnum", number(|mesh| mesh.texcoord.len())),
+        ("mesh_facenum", number(|mesh| mesh.face.len())),
+        ("mesh_vert", vert.map(|&x| f64::from(x)).collect()),
+        ("mesh_scale", m.meshes.iter().flat_map(|mesh| mesh.scale).collect()),
+        ("mesh_pos", m.meshes.iter().flat_map(|mesh| mesh.pos).collect()),
+        ("mesh_quat", m.meshes.iter().flat_map(|mesh| mesh.quat).collect()),
     ]
 }
 

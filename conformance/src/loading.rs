@@ -5,12 +5,16 @@ use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
 use babybench::physics::compile;
 
 use crate::arrays::{
-    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, options, physical, unrecorded,
+    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, of_meshes, options, physical,
+    unrecorded,
 };
 use crate::mujoco::{Mujoco, Simulation};
 
 /// Relative tolerance of compiled numbers; absolute below 1.
 const TOLERANCE: f64 = 1e-10;
+
+/// The same where masses are sums in single precision over triangles in another order.
+const OF_HULLS: f64 = 1e-5;
 
 /// The same for inverse weights, which magnify rounding by the condition of the inertia.
 const DERIVED: f64 = 1e-8;
@@ -103,13 +107,15 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
     let compiled = physical(model)
         .into_iter()
         .chain(unrecorded(model))
+        .chain(of_meshes(model))
         .chain(actuators(model))
         .chain(activations(model))
         .chain(looks(model))
         .chain(options(model));
-    let compiled = compiled.map(|(name, values)| (name, values, TOLERANCE));
+    let of_hulls = model.meshes.iter().any(|mesh| mesh.of_hull);
+    let compiled = compiled.map(|(name, values)| (name, values, if of_hulls { OF_HULLS } else { TOLERANCE }));
     let derived = derived(model).into_iter().chain(derived_unrecorded(model));
-    let derived = derived.map(|(name, values)| (name, values, DERIVED));
+    let derived = derived.map(|(name, values)| (name, values, if of_hulls { OF_HULLS } else { DERIVED }));
     let mut all = Vec::new();
     for (name, ours, limit) in compiled.chain(derived) {
         let theirs = simulation.model_array(name).or_else(|| simulation.model_value(name));

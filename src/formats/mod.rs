@@ -1,7 +1,8 @@
-//! File formats that other programs share: NumPy archives, pickles, Motion-JPEG videos, PNG pictures.
+//! File formats that other programs share: NumPy archives, pickles, Motion-JPEG videos, PNG pictures, triangle meshes.
 
 #[cfg(feature = "eval")]
 pub mod avi;
+pub mod mesh;
 #[cfg(feature = "npz")]
 pub mod npz;
 #[cfg(feature = "eval")]

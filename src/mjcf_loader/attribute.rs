@@ -39,6 +39,8 @@ pub(super) enum Kind {
     State,
     /// Numbers of which the compiler knows how many there must be, as many as all bodies have at most.
     Poses,
+    /// Numbers of a mesh, as many as the limits allow.
+    Data,
     /// Two whole numbers.
     Ints,
 }
@@ -95,14 +97,6 @@ pub(super) use words;
 impl<T: Copy + PartialEq> Words<T> {
     pub const fn kind(self) -> Kind {
         Kind::Word(self.names)
-    }
-
-    /// Returns the words without the first one.
-    pub const fn rest(self) -> Self {
-        match (self.names, self.values) {
-            ([_, names @ ..], [_, values @ ..]) => Words { names, values },
-            _ => self,
-        }
     }
 
     pub fn store(self, value: &Value, into: &mut impl Worded<T>) {
@@ -266,6 +260,7 @@ impl Attr {
             Kind::User => numbers(attribute, text, 0, limits.user, Sign::Any, limits.real).map(Value::Reals),
             Kind::State => numbers(attribute, text, 0, limits.state(), Sign::Any, limits.real).map(Value::Reals),
             Kind::Poses => numbers(attribute, text, 0, 4 * limits.bodies, Sign::Any, limits.real).map(Value::Reals),
+            Kind::Data => numbers(attribute, text, 0, limits.mesh_numbers, Sign::Any, limits.real).map(Value::Reals),
             Kind::Ints => {
                 let values = numbers(attribute, text, 2, 2, Sign::Any, f64::from(i32::MAX))?;
                 match values.iter().find(|value| value.fract() != 0.0) {

@@ -8,6 +8,7 @@ use super::actuator::Actuator;
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
 use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text};
+use super::mesh::Mesh;
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
 use super::surface::{Material, Texture};
@@ -79,6 +80,8 @@ table! {
         "fluidcoef" fluidcoef: [f64; 5] = [0.5, 0.25, 1.5, 1.0, 1.0], some(1, 5, Any), "Coefficients of blunt, slender and angular drag, of Kutta's lift and of Magnus's.";
         "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
+        "mesh" mesh: Option<String> = None, TEXT, "Mesh; a primitive shape is fitted to it.";
+        "fitscale" fitscale: f64 = 1.0, real(Positive), "Factor on the size of a shape that is fitted to a mesh.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         with frame: Frame;
     }
@@ -208,6 +211,9 @@ pub(super) struct Document {
     pub size: Size,
     pub textures: Vec<Texture>,
     pub materials: Vec<Material>,
+    pub meshes: Vec<Mesh>,
+    /// Density by which the inertia of meshes is scaled while their axes are sought, kg/m^3.
+    pub mesh_density: f64,
     pub bodies: Vec<Body>,
     /// Frames in the bodies, which elements name by their place here.
     pub frames: Vec<BodyFrame>,

@@ -113,7 +113,7 @@ impl Draft {
         })
     }
 
-    /// Compiles the document, with what was changed, into ids and arrays. Textures are looked up in `source`.
+    /// Compiles the document, with what was changed, into ids and arrays. Textures and meshes are looked up in `source`.
     ///
     /// # Errors
     /// As [`super::load`]; an element at fault is named with its place in the text.

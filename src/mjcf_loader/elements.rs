@@ -11,6 +11,7 @@ use super::custom::{Key, Numeric, Text};
 use super::document::{
     Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Replicate, Site, Size,
 };
+use super::mesh::Mesh;
 use super::relation::{
     ConnectEquality, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint,
     TendonLooks, TendonSite, WeldEquality,
@@ -77,12 +78,14 @@ static DEFAULT: Rule = rule(
         &MUSCLE,
         &ADHESION,
         &MATERIAL,
+        &MESH,
     ],
 );
 
 static TEXTURE: Rule = rule("texture", &[Texture::ATTRIBUTES], &[]);
 static MATERIAL: Rule = rule("material", &[CLASS, Material::ATTRIBUTES], &[]);
-static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL]);
+static MESH: Rule = rule("mesh", &[CLASS, Mesh::ATTRIBUTES], &[]);
+static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH]);
 
 static INERTIAL: Rule = rule("inertial", &[Inertial::ATTRIBUTES], &[]);
 static JOINT: Rule = rule("joint", &[CLASS, Joint::ATTRIBUTES], &[]);

@@ -182,6 +182,14 @@ pub enum ErrorKind {
         /// Most.
         max: usize,
     },
+    /// A mesh that cannot be read.
+    #[error("{}{message}", .file.as_ref().map(|file| format!("file \"{}\": ", quoted(file))).unwrap_or_default())]
+    Mesh {
+        /// The file; none for a mesh in the document itself.
+        file: Option<String>,
+        /// Description of the fault.
+        message: String,
+    },
     /// A default class that was not declared.
     #[error("unknown default class \"{}\"", quoted(.0))]
     UnknownClass(String),

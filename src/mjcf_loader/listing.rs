@@ -93,7 +93,7 @@ fn values(kind: Kind) -> String {
         Kind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
         Kind::Int { min, max } => format!("whole number, {min} to {max}"),
         Kind::Quat => "4 numbers, not all 0".to_owned(),
-        Kind::User | Kind::State | Kind::Poses => "numbers".to_owned(),
+        Kind::User | Kind::State | Kind::Poses | Kind::Data => "numbers".to_owned(),
         Kind::Ints => "2 whole numbers".to_owned(),
         Kind::UserCount => "whole number from -1".to_owned(),
         Kind::EulerSeq => "three letters of xyzXYZ".to_owned(),

@@ -11,6 +11,7 @@ use super::document::{
     Orientation, Replicate, Site, Size,
 };
 use super::error::{ErrorKind, LoadError};
+use super::mesh::Mesh;
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{DEFAULT, Element};
 use super::sensor::{Object, Sensor};
@@ -32,6 +33,7 @@ struct Class {
     tendon: Tendon,
     actuator: Actuator,
     material: Material,
+    mesh: Mesh,
 }
 
 impl Class {
@@ -47,6 +49,7 @@ impl Class {
             "equality" => self.equality.apply(e),
             "tendon" => self.tendon.string(e),
             "material" => self.material.apply(e),
+            "mesh" => self.mesh.apply(e),
             "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
             | "adhesion" => {
                 return self.actuator.drive(e);
@@ -137,6 +140,8 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         size: Size::initial(),
         textures: Vec::new(),
         materials: Vec::new(),
+        meshes: Vec::new(),
+        mesh_density: Geom::initial().density,
         bodies: vec![world],
         frames: Vec::new(),
         pairs: Vec::new(),
@@ -160,6 +165,12 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     }
     for section in sections(DEFAULT) {
         classes.read(section, None)?;
+    }
+    // MuJoCo 3.3.0 knows the main class there only once others were derived from it
+    if classes.by_name.len() > 1
+        && let Some(main) = classes.by_name.get(MAIN)
+    {
+        document.mesh_density = main.geom.density;
     }
     let mut visual = Visual::default();
     for section in &root.children {
@@ -218,6 +229,7 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
     let class = || classes.of(e, MAIN);
     match (section, e.name) {
         ("asset", "texture") => document.textures.push(Texture::read(e)),
+        ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
         ("asset", _) => document.materials.push(with(&class()?.material, e, Material::apply)),
         ("contact", "pair") => document.pairs.push(with(&class()?.pair, e, Pair::apply)),
         ("contact", _) => document.excludes.push(Exclude::read(e)),

@@ -29,11 +29,12 @@ table! {
         "boundinertia" boundinertia: f64 = 0.0, real(NonNegative), "Least principal moment of a body, kg m^2.";
         "settotalmass" settotalmass: f64 = -1.0, real(Any), "Mass to which all bodies together are scaled, kg; not above 0 for none.";
         "texturedir" texturedir: String = String::new(), TEXT, "Directory of the textures.";
+        "meshdir" meshdir: String = String::new(), TEXT, "Directory of the meshes.";
+        "fitaabb" fitaabb: bool = false, FLAG, "Whether shapes are fitted to the box around a mesh; else to that of the same inertia.";
         "strippath" strippath: bool = false, FLAG, "Whether directories in the names of files are dropped.";
-        check "assetdir", TEXT, "Directory of textures and meshes, where `texturedir` says no other.";
-        check "meshdir", TEXT, "Directory of meshes.";
+        check "assetdir", TEXT, "Directory of textures and meshes, where `texturedir` and `meshdir` say no other.";
         check "coordinate", Kind::Word(&["local"]), "Frame of positions; only the parent's.";
-        check "fitaabb" | "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
+        check "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
         check "fusestatic" | "discardvisual" | "alignfree", Kind::Word(&["false"]), "Whether MuJoCo rewrites the bodies; they stay as they are written.";
     }
 }
@@ -240,6 +241,7 @@ impl Compiler {
     pub fn section(&mut self, e: &Element) {
         if let Some(dir) = e.text("assetdir") {
             dir.clone_into(&mut self.texturedir);
+            dir.clone_into(&mut self.meshdir);
         }
         self.apply(e);
     }

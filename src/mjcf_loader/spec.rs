@@ -74,6 +74,7 @@ counts! {
     nlight lights "lights",
     nmat materials "materials",
     ntex textures "textures",
+    nmesh meshes "meshes",
     npair pair_geom "explicit contact pairs",
     nexclude exclude "excluded body pairs",
     neq eq_name "equality constraints",

@@ -149,8 +149,8 @@ fn values_are_checked() {
         "",
     );
     check_world(
-        "<geom type='mesh'/>",
-        "geom: type=\"mesh\": not one of plane, sphere, capsule, ellipsoid, cylinder, box",
+        "<geom type='torus'/>",
+        "geom: type=\"torus\": not one of plane, sphere, capsule, ellipsoid, cylinder, box, mesh",
     );
     check("<option timestep='0'/>", "mujoco/option: timestep: 0 must be positive");
     check(

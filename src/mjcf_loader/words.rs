@@ -41,9 +41,16 @@ pub(super) const SHAPES: Words<GeomType> = words! {
     "ellipsoid" => GeomType::Ellipsoid,
     "cylinder" => GeomType::Cylinder,
     "box" => GeomType::Box,
+    "mesh" => GeomType::Mesh,
 };
-/// The shapes of sites, which have no planes.
-pub(super) const SITE_SHAPES: Words<GeomType> = SHAPES.rest();
+/// The shapes of sites, which are neither planes nor meshes.
+pub(super) const SITE_SHAPES: Words<GeomType> = words! {
+    "sphere" => GeomType::Sphere,
+    "capsule" => GeomType::Capsule,
+    "ellipsoid" => GeomType::Ellipsoid,
+    "cylinder" => GeomType::Cylinder,
+    "box" => GeomType::Box,
+};
 pub(super) const TEXTURES: Words<TextureType> = words! {
     "2d" => TextureType::Flat2d,
     "cube" => TextureType::Cube,

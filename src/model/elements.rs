@@ -61,6 +61,8 @@ pub enum GeomType {
     Cylinder,
     /// `size` is the half lengths.
     Box,
+    /// A triangle mesh, of which the convex hull touches; `size` is the largest distance from its centre along each axis.
+    Mesh,
 }
 
 /// The known frame, if any, that the frame of something in a body coincides with.

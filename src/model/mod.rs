@@ -7,6 +7,7 @@
 
 mod complete;
 mod elements;
+mod mesh;
 mod sensor;
 
 pub use complete::Model;
@@ -16,6 +17,7 @@ pub use elements::{
     JointType, Keyframe, Light, Material, Options, SolverType, Statistic, TrnType, Wrap,
 };
 internals!(use elements::{Builtin, Mark, SameFrame, Texture, TextureType, Visual});
+pub use mesh::{Mesh, MeshHull};
 pub use sensor::{DataType, ObjType, SensorType};
 
 use crate::math::{Mat3, Quat, Vec3};
@@ -174,6 +176,8 @@ arrays! {
     geom_type: Vec<GeomType>,
     /// Size, m; see [`GeomType`].
     geom_size: Vec<Vec3>,
+    /// Mesh that the geom is, or that a primitive is fitted to.
+    geom_dataid: Vec<Option<usize>>,
     /// Body that carries the geom.
     geom_bodyid: Vec<usize>,
     /// Position in the body, m.
@@ -206,6 +210,8 @@ arrays! {
     /// How a medium acts on the geom as on an ellipsoid: 1 if it does, coefficients of blunt, slender and angular drag, of Kutta's lift
     /// and of Magnus's, volumes (3), m^3, and moments (3), m^5, of the medium that moves with it; zeros if it does not.
     geom_fluid: Vec<[f64; 12]>,
+    /// Box around it in its frame: centre and half lengths, m. Planes fill half of it.
+    geom_aabb: Vec<[f64; 6]>,
     /// Radius of the bounding sphere, m; 0 for planes.
     geom_rbound: Vec<f64>,
     /// Visual group.
@@ -266,6 +272,9 @@ arrays! {
     cam_fovy: Vec<f64>,
     /// Numbers for programs, `nuser_cam` for each camera. They mean nothing to physics and pictures.
     cam_user: Vec<Vec<f64>>,
+
+    /// Meshes.
+    meshes: Vec<Mesh>,
 
     /// Lights.
     lights: Vec<Light>,
@@ -474,6 +483,7 @@ sizes! {
     nsensor sensor_name "sensors",
     npair pair_geom "explicit contact pairs",
     nkey keys "keyframes",
+    nmesh meshes "meshes",
 }
 
 impl Arrays {

@@ -11,9 +11,9 @@ const NO_ACCELERATION: &str =
     "the inertia at qpos0 is singular or ill-conditioned: redundant joints, or masses of extreme size or ratio";
 const NO_DAMPING: &str = "a damping ratio needs a gain that is not negative: give kv instead";
 const REDUNDANT: &str = "two joints of one kind along one axis of a body that stands alone, of which MuJoCo lets each move the whole inertia: make them one";
-const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, or a cylinder with a capsule, a cylinder or \
+const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder or \
     a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
-const SEVERAL_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, or a cylinder with a capsule, a cylinder \
+const SEVERAL_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder \
     or a box), which gives one contact only: remove multiccd=\"enable\"";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
 

@@ -2,7 +2,7 @@
 
 use crate::math::{Vec3, column, cross, dot, quat_to_mat};
 use crate::mjcf_loader::bounding_radius;
-use crate::model::{JointType, Model};
+use crate::model::{GeomType, JointType, Model};
 use crate::physics::engine::EngineError;
 use crate::physics::state::State;
 
@@ -90,7 +90,8 @@ impl State {
     /// Changes the size of the first geom of a body.
     fn resize(&mut self, model: &Model, body: usize, size: Vec3) -> Result<(), EngineError> {
         let geom = model.body_geomadr[body];
-        if model.body_geomnum[body] == 0 {
+        // the size of a mesh is that of its vertices, which stay as they are
+        if model.body_geomnum[body] == 0 || model.geom_type[geom] == GeomType::Mesh {
             let body = model.body_name[body].clone();
             return Err(EngineError::NoGeom { body });
         }

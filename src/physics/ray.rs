@@ -1,7 +1,7 @@
 //! Rays against shapes.
 
 use crate::math::*;
-use crate::model::{GeomType, Model};
+use crate::model::{GeomType, Mesh, Model};
 use crate::physics::state::State;
 
 /// Returns the nearest geom that a ray meets, and its distance in lengths of `direction`, leaving out the geoms of one body and
@@ -23,7 +23,18 @@ pub(super) fn nearest_geom(
             continue;
         }
         let (pos, mat, size) = (s.geom_xpos[g], &s.geom_xmat[g], s.params.geom_size[g]);
-        let found = ray_shape(model.geom_type[g], size, pos, mat, origin, direction);
+        let found = match model.geom_dataid[g].and_then(|mesh| model.meshes.get(mesh)) {
+            Some(mesh) if model.geom_type[g] == GeomType::Mesh => {
+                let radius = s.params.geom_rbound[g];
+                ray_mesh(
+                    mesh,
+                    radius,
+                    mat_t_vec(mat, sub(origin, pos)),
+                    mat_t_vec(mat, direction),
+                )
+            }
+            _ => ray_shape(model.geom_type[g], size, pos, mat, origin, direction),
+        };
         if let Some(distance) = found
             && nearest.is_none_or(|(_, least)| distance < least)
         {
@@ -54,7 +65,62 @@ pub(super) fn ray_shape(
         }
         GeomType::Cylinder => cylinder(size, p, v),
         GeomType::Box => cuboid(size, p, v),
+        // its triangles are with the model, and no site is one
+        GeomType::Mesh => None,
     }
+}
+
+/// Returns the distance at which a ray meets a triangle of a mesh, from either side.
+fn ray_mesh(mesh: &Mesh, radius: f64, p: Vec3, v: Vec3) -> Option<f64> {
+    first(quadratic(dot(v, v), dot(v, p), dot(p, p) - radius * radius))?;
+    // two directions across the ray
+    let along = unit(v).0;
+    let axis = (0..3).fold(
+        0,
+        |least, k| if along[k].abs() < along[least].abs() { k } else { least },
+    );
+    let mut e = [0.0; 3];
+    e[axis] = 1.0;
+    let across = unit(cross(along, e)).0;
+    let basis = [across, cross(along, across)];
+    let mut nearest = None;
+    for corners in &mesh.face {
+        let corner = |k: usize| mesh.vert.get(corners[k] as usize).map(|v| sub(v.map(f64::from), p));
+        if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2))
+            && let Some(x) = ray_triangle([a, b, c], v, &basis)
+        {
+            keep(&mut nearest, x);
+        }
+    }
+    nearest
+}
+
+/// Returns the distance at which a ray from the origin meets a triangle; `basis` is across the ray.
+fn ray_triangle([a, b, c]: [Vec3; 3], v: Vec3, basis: &[Vec3; 2]) -> Option<f64> {
+    let plane = |p: Vec3| basis.map(|axis| dot(p, axis));
+    let (pa, pb, pc) = (plane(a), plane(b), plane(c));
+    for k in 0..2 {
+        let all = [pa[k], pb[k], pc[k]];
+        if all.iter().all(|x| *x > 0.0) || all.iter().all(|x| *x < 0.0) {
+            return None;
+        }
+    }
+    // the origin as a mean of the corners
+    let (x, y) = ([pa[0] - pc[0], pa[1] - pc[1]], [pb[0] - pc[0], pb[1] - pc[1]]);
+    let det = x[0] * y[1] - x[1] * y[0];
+    if det.abs() < MINVAL {
+        return None;
+    }
+    let (s, t) = ((y[0] * pc[1] - y[1] * pc[0]) / det, (x[1] * pc[0] - x[0] * pc[1]) / det);
+    if s < 0.0 || t < 0.0 || s + t > 1.0 {
+        return None;
+    }
+    let normal = cross(sub(a, c), sub(b, c));
+    let slope = dot(v, normal);
+    if slope.abs() < MINVAL {
+        return None;
+    }
+    Some(dot(c, normal) / slope).filter(|x| *x >= 0.0)
 }
 
 /// Solves `a x^2 + 2 b x + c = 0`: both solutions, ascending.

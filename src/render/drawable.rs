@@ -35,10 +35,12 @@ pub enum Shape {
     Cylinder,
     /// A box: [`Mesh::cube`](crate::render::Mesh::cube).
     Box,
+    /// A mesh of the model, or a part of a large one.
+    Mesh,
 }
 
 impl Shape {
-    /// All shapes, in the order of [`Scenery::meshes`](crate::render::Scenery::meshes).
+    /// The shapes that all scenes have, in the order of [`Scenery::meshes`](crate::render::Scenery::meshes).
     pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
 }
 
@@ -47,9 +49,11 @@ impl Shape {
 pub struct Drawable {
     /// Element of the model.
     pub element: Element,
-    /// Mesh.
+    /// Shape.
     pub shape: Shape,
-    /// Scale of the unit shape as the model has it, m; a capsule's is radius, radius, half length. Images follow
+    /// Index into [`Scenery::meshes`](crate::render::Scenery::meshes).
+    pub mesh: usize,
+    /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length. Images follow
     /// [`Poses::geom_size`].
     pub size: [f32; 3],
     /// Radius of the bounding sphere around its origin, m.
@@ -101,6 +105,7 @@ fn dimensions(kind: GeomType, size: Vec3, far: f32) -> (Shape, [f32; 3], f32) {
         GeomType::Ellipsoid => (Shape::Sphere, [a, b, c], a.max(b).max(c)),
         GeomType::Cylinder => (Shape::Cylinder, [a, a, b], length([a, b, 0.0])),
         GeomType::Box => (Shape::Box, [a, b, c], length([a, b, c])),
+        GeomType::Mesh => (Shape::Mesh, [1.0; 3], length([a, b, c])),
     }
 }
 
@@ -114,6 +119,8 @@ impl Drawable {
         let mut drawable = Self {
             element,
             shape,
+            // of a mesh of the model, its maker knows it
+            mesh: shape as usize,
             size: scale,
             radius,
             rgba: single(own),
@@ -138,6 +145,11 @@ impl Drawable {
             drawable.texuniform = m.texuniform;
         }
         drawable
+    }
+
+    /// Returns the drawable with another mesh.
+    pub(super) fn showing(self, mesh: usize) -> Self {
+        Self { mesh, ..self }
     }
 
     /// Returns the drawable with the size that its geom has in these poses.
@@ -176,13 +188,19 @@ impl Drawable {
             return;
         };
         let m = &model.materials[m];
-        let scale = if m.texuniform { self.size } else { [1.0; 3] };
+        let scale = match (self.shape, m.texuniform) {
+            // its vertices are in metres already
+            (Shape::Mesh, false) => single(self.measured).map(|x| 1.0 / x),
+            (Shape::Mesh, true) | (_, false) => [1.0; 3],
+            (_, true) => self.size,
+        };
         match textures[texture] {
             TexturePixels::Flat(_) => {
                 let [u, v] = single(m.texrepeat);
                 self.texture_scale = [0.5 * u * scale[0], -0.5 * v * scale[1], 0.0];
                 self.texture_offset = -0.5;
             }
+            TexturePixels::Cube(_) if self.shape == Shape::Mesh => {}
             TexturePixels::Cube(_) => self.texture_scale = scale,
         }
     }

@@ -61,6 +61,8 @@ pub struct Mesh {
     pub z: Vec<f32>,
     /// Unit normals of the vertices.
     pub normal: Vec<[f32; 3]>,
+    /// Texture coordinates of the vertices; empty where they follow from places.
+    pub texcoord: Vec<[f32; 2]>,
     /// Part that each vertex belongs to.
     part: Vec<MeshPart>,
     /// Bands, in the order of their vertices and triangles.
@@ -76,7 +78,7 @@ const ALONG: [(usize, u16); 4] = [(0, 0), (0, 1), (1, 1), (1, 0)];
 /// The same, from the lower row to the upper one and back.
 const ACROSS: [(usize, u16); 4] = [(0, 0), (1, 0), (1, 1), (0, 1)];
 
-type Point = ([f32; 3], [f32; 3]);
+pub(super) type Point = ([f32; 3], [f32; 3]);
 
 impl Mesh {
     /// Returns the part that a vertex belongs to.
@@ -101,7 +103,7 @@ impl Mesh {
         }) as u16
     }
 
-    fn push(&mut self, ([x, y, z], normal): Point) {
+    pub(super) fn push(&mut self, ([x, y, z], normal): Point) {
         self.x.push(x);
         self.y.push(y);
         self.z.push(z);
@@ -117,7 +119,7 @@ impl Mesh {
     }
 
     /// Begins a band.
-    fn band(&mut self, part: MeshPart) {
+    pub(super) fn band(&mut self, part: MeshPart) {
         self.fill();
         let (vertices, triangles) = (self.x.len(), self.triangles.len());
         self.bands.push(Band {
@@ -214,11 +216,14 @@ impl Mesh {
     }
 
     /// Fills up the current band with copies of its last vertex, so that vertices are projected in whole groups.
-    fn fill(&mut self) {
+    pub(super) fn fill(&mut self) {
         while let Some(last) = self.x.len().checked_sub(1)
             && !self.x.len().is_multiple_of(LANES)
         {
             self.push(([self.x[last], self.y[last], self.z[last]], self.normal[last]));
+            if let Some(&coordinates) = self.texcoord.last() {
+                self.texcoord.push(coordinates);
+            }
         }
     }
 

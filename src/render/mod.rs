@@ -36,6 +36,7 @@ pub(crate) mod gpu;
 #[cfg_attr(not(all(feature = "wgpu", not(target_arch = "wasm32"))), path = "no_gpu.rs")]
 mod gpu_of_build;
 mod mesh;
+mod model_mesh;
 mod pair;
 mod patch;
 mod plain;

@@ -4,8 +4,9 @@ use crate::assets::AssetSource;
 use crate::math::{Vec3, unit};
 use crate::model::{CamLight, Model, TextureType};
 use crate::render::RenderError;
-use crate::render::drawable::{Drawable, Element, material};
+use crate::render::drawable::{Drawable, Element, Shape, material};
 use crate::render::mesh::Mesh;
+use crate::render::model_mesh::ModelMeshes;
 use crate::render::texture::{Loader, TexturePixels};
 use crate::render::view::{Poses, View};
 
@@ -88,9 +89,9 @@ pub struct Scenery {
     /// Visible geoms and sites, in the order of the model.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub drawables: Vec<Drawable>,
-    /// Meshes, in the order of [`Shape::ALL`](crate::render::Shape::ALL).
+    /// Meshes: those of [`Shape::ALL`](crate::render::Shape::ALL) in its order, then those of the model that are visible.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    pub meshes: [Mesh; 5],
+    pub meshes: Vec<Mesh>,
     /// Textures in use.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub textures: Vec<TexturePixels>,
@@ -153,6 +154,14 @@ impl Scenery {
         };
         let far = model.vis.zfar * model.stat.extent;
         let mut drawables = Vec::new();
+        let mut meshes = vec![
+            Mesh::plane(),
+            Mesh::sphere(),
+            Mesh::capsule(),
+            Mesh::cylinder(),
+            Mesh::cube(),
+        ];
+        let mut model_meshes = ModelMeshes::new(model);
         for element in visible(model) {
             let mut drawable = Drawable::new(model, element, far as f32);
             if drawable.rgba[3] <= 0.0 {
@@ -160,6 +169,11 @@ impl Scenery {
             }
             if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
                 drawable.texture = use_texture(texture, &mut textures)?;
+            }
+            if drawable.shape == Shape::Mesh {
+                let parts = model_meshes.parts(model, element, &mut meshes);
+                drawables.extend(parts.map(|mesh| drawable.showing(mesh)));
+                continue;
             }
             drawables.push(drawable);
         }
@@ -169,6 +183,11 @@ impl Scenery {
             None => None,
         };
         for drawable in &mut drawables {
+            let explicit = !meshes[drawable.mesh].texcoord.is_empty();
+            if explicit && matches!(drawable.texture.map(|t| &textures[t]), Some(TexturePixels::Cube(_))) {
+                // to which coordinates in an image say nothing
+                drawable.texture = None;
+            }
             drawable.place_texture(model, &textures);
         }
         let vis = &model.vis;
@@ -179,13 +198,7 @@ impl Scenery {
         let room = MAX_LIGHTS - usize::from(headlight.is_some());
         Ok(Self {
             drawables,
-            meshes: [
-                Mesh::plane(),
-                Mesh::sphere(),
-                Mesh::capsule(),
-                Mesh::cylinder(),
-                Mesh::cube(),
-            ],
+            meshes,
             textures,
             sky,
             lights: model.lights.iter().take(room).map(LightSource::new).collect(),

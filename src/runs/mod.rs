@@ -64,6 +64,7 @@ pub use record::{
 };
 #[cfg(feature = "npz")]
 internals!(use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images});
+#[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
 pub use scene_file::{SceneFileError, read_config, read_scene, write_scene};
 internals!(use scene_file::{

@@ -130,7 +130,8 @@
  * @property {string} name
  * @property {number | null} geom
  * @property {number} body
- * @property {"plane" | "sphere" | "capsule" | "cylinder" | "box"} shape
+ * @property {"plane" | "sphere" | "capsule" | "cylinder" | "box" | "mesh"} shape
+ * @property {{ id: number, position: Float32Array, normal: Float32Array, texcoord: Float32Array | null, index: Uint16Array } | null} mesh triangles of a mesh, in true size
  * @property {[number, number, number]} size half sizes, m; a capsule's are radius, radius, half length of its cylinder
  * @property {[number, number, number, number]} rgba
  * @property {number} emission

@@ -45,6 +45,10 @@ struct Writer<'a> {
     /// Geoms that a tendon may wrap around.
     rounds: Vec<String>,
     cameras: Vec<String>,
+    /// Whether there is a plane, which does not touch meshes: which corners touch depends on the order of the edges that Qhull finds.
+    plane: bool,
+    /// Meshes, with the elements that define them.
+    meshes: Vec<Node>,
     tendons: Vec<String>,
     limited_tendons: Vec<String>,
     actuators: Vec<String>,
@@ -68,12 +72,35 @@ pub fn document(language: &Language, seed: u64) -> Node {
         sites: Vec::new(),
         rounds: Vec::new(),
         cameras: Vec::new(),
+        plane: false,
+        meshes: Vec::new(),
         tendons: Vec::new(),
         limited_tendons: Vec::new(),
         actuators: Vec::new(),
         named: 0,
     };
     writer.root(degree)
+}
+
+/// Writes the triangles of rings of vertices between two tips.
+fn faces(rings: i32, around: i32) -> String {
+    let last = 1 + rings * around;
+    let at = |ring: i32, k: i32| 1 + ring * around + k % around;
+    let mut all = Vec::new();
+    for k in 0..around {
+        all.push([0, at(0, k), at(0, k + 1)]);
+        for ring in 1..rings {
+            let (a, b) = (at(ring - 1, k), at(ring - 1, k + 1));
+            let (c, d) = (at(ring, k), at(ring, k + 1));
+            all.extend([[a, c, b], [c, d, b]]);
+        }
+        all.push([last, at(rings - 1, k + 1), at(rings - 1, k)]);
+    }
+    all.as_flattened()
+        .iter()
+        .map(i32::to_string)
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 impl Writer<'_> {
@@ -105,6 +132,9 @@ impl Writer<'_> {
             root.push_section(defaults);
         }
         let world = self.world();
+        let mut asset = Node::new("asset");
+        asset.children.append(&mut self.meshes);
+        root.push_section(asset);
         root.children.push(world);
         for section in [
             Self::contact,
@@ -260,7 +290,9 @@ impl Writer<'_> {
                 .with("name", name.as_str())
                 .with("type", "plane")
                 .with("size", "1 1 1");
+            let plane = plane.with("contype", "4").with("conaffinity", "1");
             let mut plane = plane.with("pos", numbers(&[0.0, 0.0, height]));
+            self.plane = true;
             if self.dice.chance(0.8) {
                 plane.set("quat", "1 0 0 0");
             }
@@ -450,15 +482,36 @@ impl Writer<'_> {
 
     fn geom(&mut self) -> Node {
         let name = self.name("g");
-        let shape = self
-            .dice
-            .pick(&["sphere", "capsule", "box", "cylinder", "ellipsoid", "box", "capsule"]);
+        let shape = self.dice.pick(&[
+            "sphere",
+            "capsule",
+            "box",
+            "cylinder",
+            "ellipsoid",
+            "box",
+            "capsule",
+            "mesh",
+        ]);
         let mut geom = Node::new("geom").with("name", name.as_str()).with("type", shape);
         if ["sphere", "cylinder"].contains(&shape) {
             self.rounds.push(name.clone());
         }
-        self.geoms.push(name);
+        if shape != "mesh" || !self.plane {
+            self.geoms.push(name);
+        }
         self.class(&mut geom, "class");
+        // a mesh has its size, and so has what is fitted to one
+        if shape == "mesh" || self.dice.chance(0.03) {
+            let mesh = self.mesh();
+            geom.set("mesh", mesh);
+            if shape == "mesh" && self.plane {
+                geom.set("contype", "2");
+                geom.set("conaffinity", "3");
+            }
+            self.language
+                .dress(&mut geom, "worldbody/body/geom", false, &mut self.dice);
+            return geom;
+        }
         let mut size = [0; 3].map(|_| self.dice.magnitude(0.03, 0.15));
         if self.dice.chance(0.1) {
             size = [size[0]; 3];
@@ -477,6 +530,41 @@ impl Writer<'_> {
         self.language
             .dress(&mut geom, "worldbody/body/geom", false, &mut self.dice);
         geom
+    }
+
+    /// Returns the name of a mesh: of one that is there, or of a new one, rings of vertices between two tips.
+    fn mesh(&mut self) -> String {
+        if !self.meshes.is_empty() && self.dice.chance(0.3) {
+            let k = self.dice.rng.usize(..self.meshes.len());
+            return self.meshes[k].get("name").unwrap_or_default().to_owned();
+        }
+        let name = self.name("m");
+        let mut mesh = Node::new("mesh").with("name", name.as_str());
+        self.class(&mut mesh, "class");
+        let (rings, around) = self
+            .dice
+            .pick(&[(1, 3), (1, 4), (1, 6), (2, 3), (2, 4), (2, 5), (3, 6), (4, 9)]);
+        let (wide, high) = (self.dice.magnitude(0.03, 0.15), self.dice.magnitude(0.03, 0.15));
+        let mut vertices = Vec::new();
+        let mut point = |dice: &mut Dice, [x, y, z]: [f64; 3]| {
+            let off = dice.vector(3, 0.1 * wide.min(high));
+            vertices.extend([x + off[0], y + off[1], z + off[2]].map(|v| f64::from(v as f32)));
+        };
+        point(&mut self.dice, [0.0, 0.0, high]);
+        for ring in 0..rings {
+            let z = high * (1.0 - 2.0 * f64::from(ring + 1) / f64::from(rings + 1));
+            let radius = wide * (1.0 - (z / high).powi(2)).sqrt();
+            for k in 0..around {
+                let angle = std::f64::consts::TAU * (f64::from(k) + 0.5 * f64::from(ring % 2)) / f64::from(around);
+                point(&mut self.dice, [radius * angle.cos(), radius * angle.sin(), z]);
+            }
+        }
+        point(&mut self.dice, [0.0, 0.0, -high]);
+        mesh.set("vertex", numbers(&vertices));
+        mesh.set("face", faces(rings, around));
+        self.language.dress(&mut mesh, "asset/mesh", false, &mut self.dice);
+        self.meshes.push(mesh);
+        name
     }
 
     fn site(&mut self) -> Node {

@@ -78,7 +78,7 @@ const COMPILER: &[Rule] = &[
     ("strippath", Nothing),
     ("assetdir", Nothing),
     ("meshdir", Nothing),
-    ("fitaabb", Nothing),
+    ("fitaabb", Word(0.2)),
     ("usethread", Nothing),
     ("fusestatic", Nothing),
     ("discardvisual", Nothing),
@@ -211,6 +211,32 @@ const GEOM: &[Rule] = &[
             let n = d.rng.usize(1..=5);
             d.reals(n, 1.5)
         }),
+    ),
+    ("mesh", Placed(&["boulder"])),
+    ("fitscale", Drawn(0.2, |d| d.log(0.5, 2.0))),
+];
+
+const MESH: &[Rule] = &[
+    ("name", Nothing),
+    ("file", Nothing),
+    ("content_type", Nothing),
+    ("vertex", Placed(&[])),
+    ("normal", Nothing),
+    ("texcoord", Nothing),
+    // the triangles of the hull stand for those that are not given; their order, and with it the last digits of sums in single
+    // precision, is not MuJoCo's
+    ("face", Placed(&[])),
+    ("refpos", Drawn(0.3, |d| d.reals(3, 0.1))),
+    ("refquat", Drawn(0.3, Dice::quat)),
+    (
+        "scale",
+        Drawn(0.3, |d| [d.log(0.5, 2.0), d.log(0.5, 2.0), d.log(0.5, 2.0)].join(" ")),
+    ),
+    ("smoothnormal", Nothing),
+    ("maxhullvert", Nothing),
+    (
+        "inertia",
+        Drawn(0.4, |d| d.pick(&["legacy", "exact", "shell"]).to_owned()),
     ),
 ];
 
@@ -517,7 +543,8 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
     "mujoco",
     "size",
     "visual",
-    "asset",
+    "asset/texture",
+    "asset/material",
     "custom",
     "keyframe",
     "worldbody/body/camera",
@@ -532,6 +559,8 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("option/flag", &[FLAG]),
     ("statistic", &[STATISTIC]),
     ("default", &[&[("class", Nothing)]]),
+    ("asset", &[]),
+    ("asset/mesh", &[CLASS, MESH]),
     ("worldbody", &[]),
     (
         "worldbody/body",

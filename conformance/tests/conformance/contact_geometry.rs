@@ -105,6 +105,7 @@ fn contacts_of_single_pairs_equal_mujocos() {
             size: fixed(&recording.size, 2 * pose + k) as Vec3,
             pos: fixed(&recording.pos, 2 * pose + k),
             mat: &mats[k],
+            mesh: None,
         });
         let (radius_a, radius_b) = (recording.rbound[2 * pose], recording.rbound[2 * pose + 1]);
         let margin = recording.margin[pose];
@@ -164,6 +165,7 @@ fn a_moved_geom_is_noticed() {
             size: fixed(&recording.size, 2 * pose + k) as Vec3,
             pos: fixed(&recording.pos, 2 * pose + k),
             mat: &mats[k],
+            mesh: None,
         });
         b.pos = b.pos.map(|x| x + 1e-10);
         if ncon > 0 {

@@ -3,17 +3,15 @@
 use std::f64::consts::PI;
 
 use super::context::{Context, Ids, User};
-use super::fluid::fluid;
-use super::geometry::{
-    EPS, Solid, bounding_radius, inertia, merge, normalize, orientation, principal, segment, size_count, volume,
-};
+use super::geom::{check_size, compile_geom, place};
+use super::geometry::{EPS, Solid, merge, normalize, orientation, principal};
 use crate::math::{MINVAL, QUAT_ID, Quat, Vec3, add, quat_rotate};
 use crate::mjcf_loader::document::{
-    Body, BodyFrame, Camera, Copied, Document, Frame, Geom, Joint, Light, Orientation, Site, Tri,
+    Body, BodyFrame, Camera, Copied, Document, Frame, Joint, Light, Orientation, Site, Tri,
 };
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::settings::single;
-use crate::model::{self, Arrays, CamLight, GeomType, JointType};
+use crate::model::{self, Arrays, CamLight, JointType};
 
 /// Compiles all bodies in order, so that ids are grouped by body.
 pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
@@ -256,108 +254,6 @@ fn push_dofs(joint: &Joint, body: usize, id: usize, last: &mut Option<usize>, ar
         *last = Some(arrays.nv);
         arrays.nv += 1;
     }
-}
-
-/// Returns the position, orientation and size of a shape, from its frame or from `fromto`.
-fn place(
-    context: &Context,
-    at: usize,
-    kind: GeomType,
-    mut size: Vec3,
-    frame: &Frame,
-    fromto: Option<[f64; 6]>,
-) -> Result<(Vec3, Quat, Vec3), LoadError> {
-    let Some(fromto) = fromto else {
-        return Ok((frame.pos, quat_of(context, at, frame)?, size));
-    };
-    if frame.pos != [0.0; 3] {
-        return Err(context.invalid(at, "fromto and a pos that is not 0 are mutually exclusive"));
-    }
-    let (pos, quat, half) = segment(&fromto);
-    match kind {
-        GeomType::Capsule | GeomType::Cylinder => size[1] = half,
-        GeomType::Box | GeomType::Ellipsoid => size = [size[0], size[0], half],
-        GeomType::Plane | GeomType::Sphere => {
-            return Err(context.invalid(at, "fromto needs a capsule, cylinder, box or ellipsoid"));
-        }
-    }
-    if half < EPS {
-        return Err(context.invalid(at, "the points of fromto are too close"));
-    }
-    Ok((pos, quat, size))
-}
-
-/// Checks that the entries of a size that the shape uses are positive; the extent of a plane may be zero, that is,
-/// infinite.
-fn check_size(context: &Context, at: usize, kind: GeomType, size: &Vec3) -> Result<(), LoadError> {
-    let first = if kind == GeomType::Plane { 2 } else { 0 };
-    match size[first..size_count(kind)].iter().find(|value| **value <= 0.0) {
-        Some(&value) => Err(context.error(
-            at,
-            ErrorKind::OutOfRange {
-                attribute: "size",
-                value,
-                want: "positive",
-            },
-        )),
-        None => Ok(()),
-    }
-}
-
-fn compile_geom(
-    context: &Context,
-    geom: &Geom,
-    body: usize,
-    ids: &Ids,
-    arrays: &mut Arrays,
-) -> Result<Solid, LoadError> {
-    let (pos, quat, size) = place(context, geom.at, geom.kind, geom.size, &geom.frame, geom.fromto)?;
-    let (pos, quat) = context.placed(geom.within, pos, quat);
-    check_size(context, geom.at, geom.kind, &size)?;
-    if !matches!(geom.condim, 1 | 3 | 4 | 6) {
-        return Err(context.invalid(geom.at, "condim must be 1, 3, 4 or 6"));
-    }
-    if geom.kind == GeomType::Plane && arrays.body_weldid[body] != 0 {
-        return Err(context.invalid(geom.at, "a plane can only be in a body that does not move"));
-    }
-    let find = |name: &String| ids.material.find(context.tree, geom.at, "material", name);
-    arrays.geom_name.push(geom.name.clone());
-    arrays.geom_type.push(geom.kind);
-    arrays.geom_size.push(size);
-    arrays.geom_bodyid.push(body);
-    arrays.geom_pos.push(pos);
-    arrays.geom_quat.push(quat);
-    arrays.geom_contype.push(geom.contype);
-    arrays.geom_conaffinity.push(geom.conaffinity);
-    arrays.geom_condim.push(geom.condim);
-    arrays.geom_priority.push(geom.priority);
-    arrays.geom_friction.push(geom.friction);
-    arrays.geom_solmix.push(geom.solmix);
-    arrays.geom_solref.push(geom.solref);
-    arrays.geom_solimp.push(geom.solimp);
-    arrays.geom_margin.push(geom.margin);
-    arrays.geom_gap.push(geom.gap);
-    arrays.geom_fluid.push(if geom.ellipsoid {
-        fluid(geom.kind, &size, geom.fluidcoef)
-    } else {
-        [0.0; 12]
-    });
-    arrays.geom_rbound.push(bounding_radius(geom.kind, &size));
-    arrays.geom_group.push(geom.group);
-    arrays.geom_rgba.push(geom.rgba.map(single));
-    arrays.geom_matid.push(geom.material.as_ref().map(find).transpose()?);
-    let volume = volume(geom.kind, &size);
-    let mass = match geom.mass {
-        Some(mass) if volume > EPS => mass,
-        Some(_) => 0.0,
-        None => geom.density * volume,
-    };
-    Ok(Solid {
-        pos,
-        quat,
-        mass,
-        inertia: inertia(geom.kind, &size, mass),
-    })
 }
 
 /// Fills in mass and inertia of a body: explicit, else from its geoms, else none.

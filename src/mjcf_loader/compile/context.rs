@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate};
+use crate::mjcf_loader::compile::mesh::mesh_name;
 use crate::mjcf_loader::document::{Compiler, Document, Tri};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::surface::Texture;
@@ -177,6 +178,7 @@ pub(super) struct Ids {
     pub site: Names,
     pub texture: Names,
     pub material: Names,
+    pub mesh: Names,
     pub camera: Names,
     pub tendon: Names,
     pub actuator: Names,
@@ -191,6 +193,12 @@ impl Ids {
         let geoms = bodies.iter().flat_map(|b| &b.geoms).map(|g| (g.at, &g.name));
         let sites = bodies.iter().flat_map(|b| &b.sites).map(|s| (s.at, &s.name));
         let cameras = bodies.iter().flat_map(|b| &b.cameras).map(|c| (c.at, &c.name));
+        let mesh_names = document
+            .meshes
+            .iter()
+            .map(|mesh| mesh_name(tree, mesh))
+            .collect::<Result<Vec<_>, _>>()?;
+        let meshes = document.meshes.iter().zip(&mesh_names).map(|(m, name)| (m.at, name));
         let textures = textures.iter().zip(&arrays.textures).map(|(t, m)| (t.at, &m.name));
         Ok(Ids {
             body: Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name)))?,
@@ -201,6 +209,7 @@ impl Ids {
             camera: Names::new(tree, "camera", cameras)?,
             tendon: Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?,
             actuator: Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?,
+            mesh: Names::new(tree, "mesh", meshes)?,
             material: Names::new(tree, "material", document.materials.iter().map(|m| (m.at, &m.name)))?,
         })
     }

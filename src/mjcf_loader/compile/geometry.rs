@@ -8,6 +8,9 @@ use crate::model::GeomType;
 use crate::mjcf_loader::attribute::ZERO_QUAT;
 use crate::mjcf_loader::document::{Compiler, Orientation};
 
+/// Greatest coordinate (MuJoCo's `mjMAXVAL`).
+const MAXVAL: f64 = 1e10;
+
 /// Below this the compiler takes lengths, volumes and eigenvalues for zero.
 pub(super) const EPS: f64 = 1e-14;
 
@@ -156,14 +159,15 @@ pub(super) fn size_count(kind: GeomType) -> usize {
         GeomType::Sphere => 1,
         GeomType::Capsule | GeomType::Cylinder => 2,
         GeomType::Plane | GeomType::Ellipsoid | GeomType::Box => 3,
+        GeomType::Mesh => 0,
     }
 }
 
-/// Computes the volume of a shape, m^3; 0 for planes.
+/// Computes the volume of a shape, m^3; 0 for planes, and for meshes, which know theirs.
 pub(in crate::mjcf_loader) fn volume(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {
-        GeomType::Plane => 0.0,
+        GeomType::Plane | GeomType::Mesh => 0.0,
         GeomType::Sphere => 4.0 * PI * a * a * a / 3.0,
         GeomType::Capsule => {
             let height = 2.0 * b;
@@ -178,7 +182,7 @@ pub(in crate::mjcf_loader) fn volume(kind: GeomType, size: &Vec3) -> f64 {
     }
 }
 
-/// Computes the principal moments of a homogeneous solid, kg m^2.
+/// Computes the principal moments of a homogeneous solid, kg m^2. The size of a mesh is the box of the same inertia.
 pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
     let [a, b, c] = *size;
     match kind {
@@ -205,7 +209,7 @@ pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
             mass * (a * a + c * c) / 5.0,
             mass * (a * a + b * b) / 5.0,
         ],
-        GeomType::Box => [
+        GeomType::Box | GeomType::Mesh => [
             mass * (b * b + c * c) / 3.0,
             mass * (a * a + c * c) / 3.0,
             mass * (a * a + b * b) / 3.0,
@@ -222,7 +226,22 @@ pub(crate) fn bounding_radius(kind: GeomType, size: &Vec3) -> f64 {
         GeomType::Capsule => a + b,
         GeomType::Cylinder => (a * a + b * b).sqrt(),
         GeomType::Ellipsoid => a.max(b).max(c),
-        GeomType::Box => (a * a + b * b + c * c).sqrt(),
+        GeomType::Box | GeomType::Mesh => (a * a + b * b + c * c).sqrt(),
+    }
+}
+
+/// Returns the box around a shape in its frame: centre and half lengths, m.
+pub(super) fn bounding_box(kind: GeomType, size: &Vec3) -> [f64; 6] {
+    let [a, b, c] = *size;
+    match kind {
+        GeomType::Plane => {
+            let half = MAXVAL / 2.0;
+            [0.0, 0.0, -half, MAXVAL, MAXVAL, half]
+        }
+        GeomType::Sphere => [0.0, 0.0, 0.0, a, a, a],
+        GeomType::Capsule => [0.0, 0.0, 0.0, a, a, a + b],
+        GeomType::Cylinder => [0.0, 0.0, 0.0, a, a, b],
+        GeomType::Ellipsoid | GeomType::Box | GeomType::Mesh => [0.0, 0.0, 0.0, a, b, c],
     }
 }
 
@@ -296,6 +315,16 @@ pub(super) fn merge(solids: &[Solid]) -> Result<Solid, &'static str> {
 /// The Jacobi rotations, kept as a quaternion, stop at an absolute 1e-12, so small inertias stay slightly off diagonal,
 /// as in MuJoCo.
 pub(super) fn principal(full: &[f64; 6]) -> Result<(Quat, Vec3), &'static str> {
+    let (quat, values) = diagonalize(full);
+    if values[2] >= EPS {
+        Ok((quat, values))
+    } else {
+        Err("the inertia must have positive principal moments")
+    }
+}
+
+/// Computes principal axes and moments as [`principal`] does, whatever the moments are.
+pub(super) fn diagonalize(full: &[f64; 6]) -> (Quat, Vec3) {
     const STOP: f64 = 1e-12;
     let [xx, yy, zz, xy, xz, yz] = *full;
     let matrix = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
@@ -346,9 +375,5 @@ pub(super) fn principal(full: &[f64; 6]) -> Result<(Quat, Vec3), &'static str> {
             normalize(&mut quat);
         }
     }
-    if values[2] >= EPS {
-        Ok((quat, values))
-    } else {
-        Err("the inertia must have positive principal moments")
-    }
+    (quat, values)
 }

@@ -6,7 +6,9 @@ mod constraint;
 mod context;
 mod custom;
 mod fluid;
+mod geom;
 mod geometry;
+mod mesh;
 mod sensor;
 mod surface;
 mod tendon;
@@ -22,8 +24,8 @@ use crate::assets::AssetSource;
 use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
-/// Compiles the document into everything but what needs dynamics. Images are looked up in `source`, relative to `dir`, and
-/// not decoded.
+/// Compiles the document into everything but what needs dynamics. Images and meshes are looked up in `source`, relative to `dir`;
+/// images are not decoded.
 pub(super) fn compile(
     tree: &Tree,
     document: &Document,
@@ -58,6 +60,7 @@ pub(super) fn compile(
         let material = surface::compile_material(&context, material, &ids)?;
         arrays.materials.push(material);
     }
+    mesh::compile_meshes(&context, document, &ids, (source, dir), &mut arrays)?;
     body::compile(&context, document, &ids, &mut arrays)?;
     same_frames(&mut arrays);
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;

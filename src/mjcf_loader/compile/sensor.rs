@@ -4,7 +4,7 @@ use super::context::{Context, Ids, User};
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::sensor::{Between, FrameOf, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
-use crate::model::{Arrays, DataType, JointType, ObjType, SensorType};
+use crate::model::{Arrays, DataType, GeomType, JointType, ObjType, SensorType};
 
 /// Compiles the sensors, whose values follow one another.
 pub(super) fn compile_sensors(
@@ -80,7 +80,7 @@ fn sensed(context: &Context, sensor: &Sensor, ids: &Ids, arrays: &Arrays) -> Res
         }
         Object::Actuator(name) => (ObjType::Actuator, Some(ids.actuator.find(tree, at, "actuator", name)?)),
         Object::Frame(of, within) => return frames(context, at, of, within, ids),
-        Object::Between(between) => return two(context, at, between, ids),
+        Object::Between(between) => return two(context, at, between, ids, arrays),
         Object::Picture(InPicture { site, camera }) => {
             let site = ids.site.find(tree, at, "site", site)?;
             let camera = ids.camera.find(tree, at, "camera", camera)?;
@@ -155,7 +155,13 @@ fn any(context: &Context, at: usize, kind: ObjType, name: &str, ids: &Ids) -> Re
 }
 
 /// Finds the two geoms, or bodies with geoms, that a sensor is between.
-fn two(context: &Context, at: usize, between: &Between, ids: &Ids) -> Result<(Sensed, Sensed), LoadError> {
+fn two(
+    context: &Context,
+    at: usize,
+    between: &Between,
+    ids: &Ids,
+    arrays: &Arrays,
+) -> Result<(Sensed, Sensed), LoadError> {
     let find = |geom: &Option<String>, body: &Option<String>, [of_geom, of_body]: [&'static str; 2]| match (geom, body)
     {
         (Some(name), _) => Ok((ObjType::Geom, Some(ids.geom.find(context.tree, at, of_geom, name)?))),
@@ -166,6 +172,16 @@ fn two(context: &Context, at: usize, between: &Between, ids: &Ids) -> Result<(Se
     let second = find(&between.geom2, &between.body2, ["geom2", "body2"])?;
     if first == second {
         return Err(context.invalid(at, "a sensor cannot be between something and itself"));
+    }
+    let measured = |(kind, id): Sensed, g: usize| match kind {
+        ObjType::Body => Some(arrays.geom_bodyid[g]) == id,
+        _ => Some(g) == id,
+    };
+    let unlike = |g: usize| matches!(arrays.geom_type[g], GeomType::Mesh);
+    if (0..arrays.ngeom()).any(|g| unlike(g) && (measured(first, g) || measured(second, g))) {
+        let message =
+            "distances from meshes and height fields are not measured: fit a shape to the mesh, and measure from that";
+        return Err(context.invalid(at, message));
     }
     Ok((first, second))
 }

@@ -14,7 +14,7 @@ pub(super) fn compile_texture(
     source: &dyn AssetSource,
     dir: &str,
 ) -> Result<model::Texture, LoadError> {
-    let path = |file: &String| image_path(context, texture.at, file, source, dir);
+    let path = |file: &String| asset_path(context, texture.at, file, &context.compiler.texturedir, source, dir);
     let mut cube_files = [const { None }; 6];
     for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
         *to = from.as_ref().map(path).transpose()?;
@@ -86,11 +86,12 @@ fn grid(context: &Context, texture: &surface::Texture) -> Result<([usize; 2], Ve
     Ok((size, layout.chars().map(face).collect::<Result<_, _>>()?))
 }
 
-/// Returns the path of an image in the source, which must have it.
-fn image_path(
+/// Returns the path in the source of a file in a folder that the document names. The source must have it.
+pub(super) fn asset_path(
     context: &Context,
     at: usize,
     file: &str,
+    folder: &str,
     source: &dyn AssetSource,
     dir: &str,
 ) -> Result<String, LoadError> {
@@ -99,9 +100,9 @@ fn image_path(
     } else {
         file
     };
-    let file = match context.compiler.texturedir.trim_end_matches('/') {
+    let file = match folder.trim_end_matches('/') {
         "" => file.to_owned(),
-        texturedir => format!("{texturedir}/{file}"),
+        folder => format!("{folder}/{file}"),
     };
     let path = resolve(dir, &file).map_err(|e| context.error(at, e))?;
     if source.contains(&path) {

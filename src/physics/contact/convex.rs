@@ -1,8 +1,9 @@
-//! Pairs without a formula of their own: ellipsoids with everything but planes, capsules with cylinders, cylinders with
+//! Pairs without a formula of their own: ellipsoids and meshes with everything but planes, capsules with cylinders, cylinders with
 //! cylinders and cylinders with boxes.
 
 use super::epa::epa;
 use super::gjk::{Limits, Simplex, gjk};
+use super::mesh::MeshShape;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
 use super::{BIG, BareContact, ContactOptions, PlacedGeom, add_scaled, column, dot, sub};
@@ -35,6 +36,7 @@ pub(super) fn convex(
         (Egg, Box) => find.deep(egg(a), Cuboid::new(b, margin)),
         (Rod, Rod) => find.deep(rod(a), rod(b)),
         (Rod, Box) => find.deep(rod(a), Cuboid::new(b, margin)),
+        (_, GeomType::Mesh) => find.mesh(),
         _ => None,
     }
 }
@@ -57,6 +59,29 @@ impl Search<'_, '_> {
         match shallow(&core, self.a, self.b, self.margin, self.options) {
             Shallow::Known(touch) => touch,
             Shallow::Unknown => self.deep(whole, core.b),
+        }
+    }
+
+    /// Finds the contact of a mesh, which comes second, with anything but a plane.
+    fn mesh(&mut self) -> Option<BareContact> {
+        use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Sphere};
+        let (a, margin) = (self.a, self.margin);
+        let mesh = MeshShape::new(self.b, self.b.mesh?, margin);
+        let mesh: &dyn Support = &mesh;
+        match a.kind {
+            Sphere => {
+                let (core, whole) = (Point::new(a), Ball::new(a, margin));
+                self.rounded(&core as &dyn Support, &whole as &dyn Support, mesh)
+            }
+            Pill => {
+                let (core, whole) = (Segment::new(a), Capsule::new(a, margin));
+                self.rounded(&core as &dyn Support, &whole as &dyn Support, mesh)
+            }
+            Egg => self.deep(&Ellipsoid::new(a, margin) as &dyn Support, mesh),
+            Rod => self.deep(&Cylinder::new(a, margin) as &dyn Support, mesh),
+            Box => self.deep(&Cuboid::new(a, margin) as &dyn Support, mesh),
+            GeomType::Mesh => self.deep(&MeshShape::new(a, a.mesh?, margin) as &dyn Support, mesh),
+            GeomType::Plane => None,
         }
     }
 

@@ -13,13 +13,15 @@
 //!
 //! | pair | method | contacts |
 //! |---|---|---|
-//! | plane with sphere, capsule, ellipsoid, cylinder, box | deepest points | up to 1, 2, 1, 4, 4 |
+//! | plane with sphere, capsule, ellipsoid, cylinder, box, mesh | deepest points | up to 1, 2, 1, 4, 4, 3 |
 //! | sphere with sphere, capsule, cylinder, box | nearest points | up to 1 |
 //! | capsule with capsule, box | nearest points, a second one along the capsule | up to 2 |
 //! | box with box | separating axes, then clipping | up to 24 |
-//! | ellipsoid with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1 |
+//! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1 |
 //!
-//! Planes touch no planes.
+//! Planes touch no planes. Of meshes the convex hulls touch. The order of
+//! a hull's edges is that of its vertices, not that of Qhull, which MuJoCo has: where several corners are equally far in a direction another one may be
+//! found first, and where more than two neighbours of the deepest corner are below a plane, others of them may touch it.
 //!
 #![cfg_attr(feature = "internals", doc = "```")]
 #![cfg_attr(not(feature = "internals"), doc = "```ignore")]
@@ -27,8 +29,8 @@
 //! use babybench::model::GeomType;
 //! use babybench::physics::contact::{ContactOptions, PlacedGeom, Scratch, collide};
 //!
-//! let floor = PlacedGeom { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID };
-//! let ball = PlacedGeom { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID };
+//! let floor = PlacedGeom { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID, mesh: None };
+//! let ball = PlacedGeom { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID, mesh: None };
 //! let mut contacts = Vec::new();
 //! collide(&floor, &ball, 0.0, &ContactOptions::default(), &mut Scratch::new(), &mut contacts);
 //! assert_eq!(contacts[0].dist, -0.25);
@@ -45,6 +47,7 @@ mod distance;
 mod epa;
 pub(crate) mod frame;
 mod gjk;
+mod mesh;
 mod nearest;
 mod plane;
 mod polytope;
@@ -56,7 +59,7 @@ mod tests;
 pub use distance::{Span, distance};
 
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
-use crate::model::GeomType;
+use crate::model::{GeomType, Mesh};
 use crate::physics::MAXVAL as BIG;
 
 /// A geom with its pose.
@@ -70,6 +73,8 @@ pub struct PlacedGeom<'a> {
     pub pos: Vec3,
     /// Orientation; the columns are the local axes.
     pub mat: &'a Mat3,
+    /// The mesh, of a geom that is one, which without it touches nothing, or of an ellipsoid that was fitted to one.
+    pub mesh: Option<&'a Mesh>,
 }
 
 impl PlacedGeom<'_> {
@@ -223,12 +228,13 @@ pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f6
 
 /// Tells whether contacts of two kinds of geoms, in any order, come from the routine for all convex shapes (MuJoCo's `mjc_Convex`).
 pub(crate) fn needs_convex(a: GeomType, b: GeomType) -> bool {
-    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Sphere};
+    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Mesh, Sphere};
     matches!(
         (a.min(b), a.max(b)),
         (Sphere | Capsule | Ellipsoid, Ellipsoid)
             | (Capsule | Ellipsoid | Cylinder, Cylinder)
             | (Ellipsoid | Cylinder, Box)
+            | (Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh, Mesh)
     )
 }
 
@@ -244,13 +250,24 @@ pub fn collide(
     scratch: &mut Scratch,
     out: &mut Vec<ContactPoint>,
 ) {
-    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere};
+    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Mesh, Plane, Sphere};
     match (a.kind, b.kind) {
         (Plane, Sphere) => plane::plane_sphere(a, b, margin, out),
         (Plane, Capsule) => plane::plane_capsule(a, b, margin, out),
-        (Plane, Ellipsoid) => plane::plane_ellipsoid(a, b, margin, out),
+        (Plane, Ellipsoid) => {
+            let before = out.len();
+            plane::plane_ellipsoid(a, b, margin, out);
+            if let Some(mesh) = b.mesh.filter(|_| out.len() > before) {
+                mesh::plane_fitted(a, b, mesh, margin, out);
+            }
+        }
         (Plane, Cylinder) => plane::plane_cylinder(a, b, margin, out),
         (Plane, Box) => plane::plane_box(a, b, margin, out),
+        (Plane, Mesh) => {
+            if let Some(mesh) = b.mesh {
+                mesh::plane_mesh(a, b, mesh, margin, out);
+            }
+        }
         (Sphere, Sphere) => push(round::sphere_sphere(a, b, margin), out),
         (Sphere, Capsule) => push(round::sphere_capsule(a, b, margin), out),
         (Sphere, Cylinder) => push(round::sphere_cylinder(a, b, margin), out),
@@ -260,7 +277,8 @@ pub fn collide(
         (Box, Box) => box_box::box_box(a, b, margin, &options.quirks, &mut scratch.box_points, out),
         (Sphere | Capsule | Ellipsoid, Ellipsoid)
         | (Capsule | Ellipsoid | Cylinder, Cylinder)
-        | (Ellipsoid | Cylinder, Box) => {
+        | (Ellipsoid | Cylinder, Box)
+        | (Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh, Mesh) => {
             push(convex::convex(a, b, margin, options, &mut scratch.polytope), out);
         }
         _ => {}

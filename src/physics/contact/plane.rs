@@ -1,7 +1,7 @@
 //! Planes with spheres, capsules, ellipsoids, cylinders and boxes.
 
 use super::{ContactPoint, PlacedGeom, add_scaled, column, dot, frame, sub};
-use crate::math::{MINVAL, Vec3, add, cross, mat_t_vec, mat_vec, scale, unit};
+use crate::math::{MINVAL, Mat3, Vec3, add, cross, mat_t_vec, mat_vec, scale, unit};
 
 /// Returns the distance and position of the contact of a plane (point and unit normal) and a ball.
 #[inline(always)]
@@ -12,6 +12,13 @@ pub(super) fn plane_ball(plane: Vec3, normal: Vec3, centre: Vec3, radius: f64, m
     }
     let dist = height - radius;
     Some((dist, add_scaled(centre, normal, -dist / 2.0 - radius)))
+}
+
+/// Appends the contact of a plane and a point at a distance from it.
+#[inline(always)]
+pub(super) fn push_point(out: &mut Vec<ContactPoint>, point: Vec3, normal: Vec3, dist: f64, frame: Mat3) {
+    let pos = add_scaled(point, normal, -0.5 * dist);
+    out.push(ContactPoint { dist, pos, frame });
 }
 
 /// Finds the contact of a plane and a sphere.
@@ -48,8 +55,7 @@ pub(super) fn plane_ellipsoid(a: &PlacedGeom, b: &PlacedGeom, margin: f64, out: 
         return;
     }
     let frame = frame::from_normal(normal);
-    let pos = add_scaled(lowest, normal, -0.5 * dist);
-    out.push(ContactPoint { dist, pos, frame });
+    push_point(out, lowest, normal, dist, frame);
 }
 
 /// Finds the contacts of a plane and a cylinder: the lowest point of the lower rim, the lowest of the upper rim, then

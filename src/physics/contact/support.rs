@@ -9,17 +9,24 @@ pub(super) trait Support {
     fn support(&self, dir: Vec3) -> Vec3;
 }
 
+/// Any shape: pairs with meshes share one copy of the routines, as what they do with a shape is little against what the shape does.
+impl Support for &dyn Support {
+    fn support(&self, dir: Vec3) -> Vec3 {
+        (**self).support(dir)
+    }
+}
+
 /// The pose of a shape, and how far it is grown on all sides.
 #[derive(Clone, Copy)]
-struct Pose<'a> {
+pub(super) struct Pose<'a> {
     pos: Vec3,
-    mat: &'a Mat3,
+    pub(super) mat: &'a Mat3,
     grown: f64,
 }
 
 impl<'a> Pose<'a> {
     /// Prepares a shape of a pair; half the margin goes to either geom.
-    fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
+    pub(super) fn new(geom: &PlacedGeom<'a>, margin: f64) -> Self {
         Pose {
             pos: geom.pos,
             mat: geom.mat,
@@ -28,7 +35,7 @@ impl<'a> Pose<'a> {
     }
 
     #[inline(always)]
-    fn place(&self, local: Vec3, dir: Vec3) -> Vec3 {
+    pub(super) fn place(&self, local: Vec3, dir: Vec3) -> Vec3 {
         let point = add(mat_vec(self.mat, local), self.pos);
         if self.grown > 0.0 {
             add_scaled(point, dir, self.grown)
@@ -285,6 +292,7 @@ mod tests {
             size: [0.5, 2.0, 0.0],
             pos: [1.0, 0.0, 0.0],
             mat: &MAT3_ID,
+            mesh: None,
         };
         let cylinder = Cylinder::new(&geom, 0.0);
         assert_eq!(cylinder.support([0.0, 0.0, 1.0]), [1.0, 0.0, 2.0]);

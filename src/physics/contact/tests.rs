@@ -123,12 +123,14 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
             size,
             pos: [0.0; 3],
             mat: &MAT3_ID,
+            mesh: None,
         };
         let b = PlacedGeom {
             kind: second,
             size,
             pos: [0.003, -0.002, below + above - depth],
             mat: &MAT3_ID,
+            mesh: None,
         };
         let found = contacts(
             &a,
@@ -168,12 +170,14 @@ fn frames_are_rotations_and_a_used_scratch_changes_nothing() {
                 size: size_a,
                 pos,
                 mat: &mat_a,
+                mesh: None,
             };
             let b = PlacedGeom {
                 kind: second,
                 size: size_b,
                 pos: add(pos, random.vec(0.15)),
                 mat: &mat_b,
+                mesh: None,
             };
             let mut out = Vec::new();
             collide(&a, &b, 0.0, &options, &mut scratch, &mut out);
@@ -205,6 +209,7 @@ fn pairs_that_do_not_collide_or_come_in_the_wrong_order_give_nothing() {
                 size,
                 pos: [x, 0.0, 0.1],
                 mat: &MAT3_ID,
+                mesh: None,
             };
             assert!(contacts(&geom(first, 0.0), &geom(second, 0.1), 0.0, &ContactOptions::default()).is_empty());
             checked += 1;
@@ -231,12 +236,14 @@ fn input_that_is_not_sane_is_survived() {
                     size: part(0),
                     pos: part(3),
                     mat: &mat_a,
+                    mesh: None,
                 };
                 let b = PlacedGeom {
                     kind: second,
                     size: part(15),
                     pos: part(18),
                     mat: &mat_b,
+                    mesh: None,
                 };
                 let margin = if round % 2 == 0 { 0.0 } else { random.pick(&ODD) };
                 let quirks = if round % 4 < 2 {
@@ -266,6 +273,7 @@ fn a_stack_of_boxes_has_half_the_depth_by_default() {
         size,
         pos: [0.0; 3],
         mat: &MAT3_ID,
+        mesh: None,
     };
     let b = PlacedGeom {
         pos: [0.25, 0.125, 0.75],
@@ -296,6 +304,7 @@ fn geoms_with_one_centre_touch_only_without_the_quirks() {
         size: [0.25, 0.5, 0.0],
         pos: [0.0; 3],
         mat: &MAT3_ID,
+        mesh: None,
     };
     for other in [&MAT3_ID, &mat] {
         let b = PlacedGeom { mat: other, ..a };
@@ -361,12 +370,14 @@ fn every_quirk_can_be_switched_off() {
                 size: size_a,
                 pos: [0.0; 3],
                 mat: &mat_a,
+                mesh: None,
             };
             let b = PlacedGeom {
                 kind: GeomType::Box,
                 size: size_b,
                 pos: grid(random.vec(0.2)),
                 mat: &mat_b,
+                mesh: None,
             };
             let other = ContactOptions {
                 quirks,

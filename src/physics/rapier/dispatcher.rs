@@ -91,12 +91,14 @@ impl ContactDispatcher {
             size: size1,
             pos: [0.0; 3],
             mat: &mat1,
+            mesh: None,
         };
         let second = PlacedGeom {
             kind: kind2,
             size: size2,
             pos: [t.x, t.y, t.z],
             mat: &mat2,
+            mesh: None,
         };
         let flipped = kind1 > kind2;
         let ((a, ra), (b, rb)) = if flipped {

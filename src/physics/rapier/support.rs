@@ -61,8 +61,12 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
     for g in 0..model.ngeom() {
         let touches = model.geom_contype[g] | model.geom_conaffinity[g] != 0
             || model.pair_geom.iter().any(|pair| pair.contains(&g));
-        if model.geom_type[g] == GeomType::Ellipsoid && touches {
-            let what = "Parry has no ellipsoid that things could touch";
+        let what = match model.geom_type[g] {
+            GeomType::Ellipsoid => "Parry has no ellipsoid that things could touch",
+            GeomType::Mesh => "meshes that things could touch are the soft engine's only",
+            _ => continue,
+        };
+        if touches {
             return Err(RapierError::unsupported("geom", &model.geom_name[g], what));
         }
     }

@@ -11,6 +11,7 @@ use crate::physics::contact::{ContactOptions, Quirks};
 
 pub use pairs::{ContactRules, Pair, PairTable};
 pub(crate) use sweep::Sweep;
+pub(in crate::physics) use sweep::placed;
 
 /// Returns the options of the contact routines that a model asks for, with the given peculiarities.
 pub(super) fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {

@@ -2,7 +2,7 @@
 
 use super::pairs::Order;
 use crate::limits::Limits;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, add, mat_vec};
 use crate::model::{GeomType, Model};
 use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 use crate::physics::engine::{EngineError, within};
@@ -113,14 +113,8 @@ impl Sweep {
     /// Adds the contacts of a pair.
     #[inline(always)]
     fn narrow_phase(&mut self, model: &Model, pair: &Pair, s: &mut State) {
-        let placed = |g: usize| PlacedGeom {
-            kind: model.geom_type[g],
-            size: s.params.geom_size[g],
-            pos: s.geom_xpos[g],
-            mat: &s.geom_xmat[g],
-        };
         let [a, b] = pair.geom;
-        let (first, second) = (placed(a), placed(b));
+        let (first, second) = (placed(model, s, a), placed(model, s, b));
         if !bounding_test(
             &first,
             s.params.geom_rbound[a],
@@ -152,7 +146,7 @@ impl Sweep {
             let slack = SLACK + b.margin;
             [b.low, b.high] = aabb(
                 model.geom_type[g],
-                s.params.geom_size[g],
+                (s.params.geom_size[g], &model.geom_aabb[g]),
                 s.geom_xpos[g],
                 &s.geom_xmat[g],
                 slack,
@@ -241,9 +235,25 @@ fn overlaps(boxes: &[Bounds], mut found: impl FnMut(usize, usize) -> bool) {
     }
 }
 
-/// Returns the world box of a geom, enlarged by `slack` (m). A plane fills the half space behind it.
+/// Returns a geom with its pose.
 #[inline(always)]
-fn aabb(kind: GeomType, size: Vec3, pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3; 2] {
+pub(in crate::physics) fn placed<'a>(model: &'a Model, s: &'a State, g: usize) -> PlacedGeom<'a> {
+    PlacedGeom {
+        kind: model.geom_type[g],
+        size: s.params.geom_size[g],
+        pos: s.geom_xpos[g],
+        mat: &s.geom_xmat[g],
+        mesh: match model.geom_type[g] {
+            GeomType::Mesh | GeomType::Ellipsoid => model.geom_dataid[g].and_then(|mesh| model.meshes.get(mesh)),
+            _ => None,
+        },
+    }
+}
+
+/// Returns the world box of a geom, enlarged by `slack` (m), from its size and the box around it in its frame, which only a mesh
+/// needs. A plane fills the half space behind it.
+#[inline(always)]
+fn aabb(kind: GeomType, (size, own): (Vec3, &[f64; 6]), mut pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3; 2] {
     let half: Vec3 = match kind {
         GeomType::Plane => {
             let mut high = [f64::INFINITY; 3];
@@ -258,6 +268,12 @@ fn aabb(kind: GeomType, size: Vec3, pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3;
             let a = mat[3 * k + 2];
             a.abs() * size[1] + size[0] * (1.0 - a * a).max(0.0).sqrt()
         }),
+        GeomType::Mesh => {
+            pos = add(pos, mat_vec(mat, [own[0], own[1], own[2]]));
+            std::array::from_fn(|k| {
+                mat[3 * k].abs() * own[3] + mat[3 * k + 1].abs() * own[4] + mat[3 * k + 2].abs() * own[5]
+            })
+        }
         GeomType::Box | GeomType::Ellipsoid => std::array::from_fn(|k| {
             mat[3 * k].abs() * size[0] + mat[3 * k + 1].abs() * size[1] + mat[3 * k + 2].abs() * size[2]
         }),

@@ -38,7 +38,7 @@ pub struct PartFacing {
 }
 
 impl Facing {
-    /// Locates the camera; `None` where the drawable is flat, or comes so near that it may be cut.
+    /// Locates the camera; `None` where the drawable is flat or a mesh of the model, or comes so near that it may be cut.
     pub fn new(drawable: &Drawable, draw: &PlacedDrawable, eye: &Eye, image: [usize; 2]) -> Option<Self> {
         let d = [
             eye.pos[0] - draw.pos[0],
@@ -48,7 +48,8 @@ impl Facing {
         let m = &draw.mat;
         let ahead = -dot(d, eye.forward);
         let (near, far) = (ahead - drawable.radius, ahead + drawable.radius);
-        if drawable.shape == Shape::Plane || near <= eye.near {
+        // meshes of the model have no patches
+        if matches!(drawable.shape, Shape::Plane | Shape::Mesh) || near <= eye.near {
             return None;
         }
         let half = [image[0] as f32 * 0.5, image[1] as f32 * 0.5];

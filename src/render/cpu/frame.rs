@@ -219,7 +219,7 @@ impl Frame {
             mat: mat.map(|v| v as f32),
             rows: eye.model(pos, &mat, drawable.size),
             base: self.vertices.len(),
-            end: self.vertices.len() + scenery.meshes[drawable.shape as usize].x.len(),
+            end: self.vertices.len() + scenery.meshes[drawable.mesh].x.len(),
             points: self.points.len(),
             transparent,
             ..self.draws[index]

@@ -16,7 +16,7 @@ use crate::render::scenery::Scenery;
 impl Frame {
     /// Projects and draws a drawable, of which the index is given, too.
     pub fn add(&mut self, scenery: &Scenery, drawable: &Drawable, eye: &Eye, index: usize) {
-        let mesh = &scenery.meshes[drawable.shape as usize];
+        let mesh = &scenery.meshes[drawable.mesh];
         let draw = self.draws[index];
         self.vertices.resize(draw.end, Vertex::default());
         self.x.resize(draw.end, 0.0);

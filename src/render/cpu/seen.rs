@@ -56,7 +56,12 @@ impl LitVertex {
             normal: three(|k| lanes(&|i| mesh.normal[i][k])),
         };
         let [r, g, b] = light::vertices(lights, drawable, draw, eye.pos, &corners);
-        let [s, t, u] = three(|k| at[k] * drawable.texture_scale[k] + drawable.texture_offset);
+        let [s, t, u] = if mesh.texcoord.is_empty() {
+            three(|k| at[k] * drawable.texture_scale[k] + drawable.texture_offset)
+        } else {
+            let [s, t] = [0, 1].map(|k| lanes(&|i| mesh.texcoord[i][k]));
+            [s, t, f32x4::ZERO]
+        };
         let colours = f32x4::transpose([r, g, b, f32x4::ONE]);
         let places = f32x4::transpose([s, t, u, f32x4::ZERO]);
         four(|k| Self {
@@ -194,7 +199,7 @@ impl Seen {
         for &index in &frame.placed {
             let draw = &frame.draws[index as usize];
             let drawable = &scenery.drawables[index as usize].sized(poses);
-            let mesh = &scenery.meshes[drawable.shape as usize];
+            let mesh = &scenery.meshes[drawable.mesh];
             let (mut batch, mut count) = ([0; 4], 0);
             for first in (draw.base..draw.end).step_by(STRIDE) {
                 // bands are filled up with vertices, so that their number is a multiple

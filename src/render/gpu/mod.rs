@@ -326,7 +326,7 @@ impl Pass<'_, '_> {
         let r = self.renderer;
         self.pass.set_bind_group(0, &r.buffers.group, &[]);
         self.pass
-            .set_index_buffer(r.scene.indices.slice(..), wgpu::IndexFormat::Uint16);
+            .set_index_buffer(r.scene.indices.slice(..), wgpu::IndexFormat::Uint32);
         self.shapes();
         let opaque = match output {
             Output::Colour => Style::Opaque,

@@ -79,9 +79,9 @@ const fn stepped<'a>(
 /// Buffers that shapes are drawn from: vertices and instances.
 const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
     stepped(
-        32,
+        48,
         wgpu::VertexStepMode::Vertex,
-        &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
+        &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 13 => Float32x4],
     ),
     stepped(
         4 * INSTANCE as u64,

@@ -61,16 +61,16 @@ impl GpuScene {
             Some(TexturePixels::Flat(_)) => ColourSource::Image,
             Some(TexturePixels::Cube(_)) => ColourSource::Cube,
         };
-        let behind = |shape: Shape| match shape {
-            Shape::Plane => Shape::ALL.len(),
-            other => other as usize,
+        let behind = |d: &Drawable| match d.shape {
+            Shape::Plane => scenery.meshes.len(),
+            _ => d.mesh,
         };
         // keys in drawing order
-        let keys = |mesh: &dyn Fn(Shape) -> usize| -> Vec<_> {
-            let key = |d: &Drawable| (paint(d), d.texture, mesh(d.shape));
+        let keys = |mesh: &dyn Fn(&Drawable) -> usize| -> Vec<_> {
+            let key = |d: &Drawable| (paint(d), d.texture, mesh(d));
             scenery.drawables.iter().map(key).collect()
         };
-        let (front, back) = (keys(&|s| s as usize), keys(&behind));
+        let (front, back) = (keys(&|d| d.mesh), keys(&behind));
         let mut index: BTreeMap<_, usize> = front.iter().chain(&back).map(|&k| (k, 0)).collect();
         let mut classes = Vec::with_capacity(index.len());
         for (&(paint, texture, mesh), at) in &mut index {
@@ -98,9 +98,9 @@ impl GpuScene {
     }
 }
 
-/// Lists vertices (position and part, normal), indices, and the range of indices of each mesh: those of
+/// Lists vertices (position and part, normal, texture coordinates and whether they count), indices, and the range of indices of each mesh: those of
 /// [`Scenery::meshes`], then the plane seen from behind.
-fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
+fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>) {
     let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
     let mut first = 0;
     let mut add = |mesh: &Mesh, flipped: bool| {
@@ -111,23 +111,23 @@ fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u16>, Vec<Range<u32>>) {
                 MeshPart::Bottom => 2.0,
             };
             vertices.extend([mesh.x[i], mesh.y[i], mesh.z[i], part, n[0], n[1], n[2], 0.0]);
+            vertices.extend(match mesh.texcoord.get(i) {
+                Some([u, v]) => [*u, *v, 1.0, 0.0],
+                None => [0.0; 4],
+            });
         }
         let start = indices.len() as u32;
         for &[a, b, c] in &mesh.triangles {
             let corners = if flipped { [a, c, b] } else { [a, b, c] };
-            indices.extend(corners.map(|i| first + i));
+            indices.extend(corners.map(|i| first + u32::from(i)));
         }
         ranges.push(start..indices.len() as u32);
-        first += mesh.x.len() as u16;
+        first += mesh.x.len() as u32;
     };
     for mesh in &scenery.meshes {
         add(mesh, false);
     }
     add(&scenery.meshes[Shape::Plane as usize], true);
-    // a copy of whole words needs an even number
-    if indices.len() % 2 == 1 {
-        indices.push(0);
-    }
     (vertices, indices, ranges)
 }
 

@@ -46,6 +46,7 @@ struct Vertex {
     @location(10) pose_x: vec4f,  // from the geom to the world
     @location(11) pose_y: vec4f,
     @location(12) pose_z: vec4f,
+    @location(13) mapped: vec4f,  // texture coordinates; z: 1 if they count, 0 if they follow from the place
 }
 
 struct Seen {
@@ -168,7 +169,7 @@ fn shape(v: Vertex) -> Seen {
     let n = normalize(vec3f(dot(v.pose_x.xyz, normal), dot(v.pose_y.xyz, normal), dot(v.pose_z.xyz, normal)));
     let origin = vec3f(v.pose_x.w, v.pose_y.w, v.pose_z.w);
     seen.colour = vec4f(light(u32(v.size.w), p + origin, n, v.rgba.rgb, v.surface), v.rgba.a);
-    seen.coordinates = v.place.xyz * v.texture.xyz + v.surface.w;
+    seen.coordinates = mix(v.place.xyz * v.texture.xyz + v.surface.w, vec3f(v.mapped.xy, 0.0), v.mapped.z);
     seen.id = v.texture.w;
     return seen;
 }

@@ -10,7 +10,7 @@ use super::points::{estimate, surface_points};
 use crate::config::{Compat, Config};
 use crate::math::*;
 use crate::mimo::{MimoBodies, body_kind};
-use crate::model::Model;
+use crate::model::{GeomType, Model};
 
 /// Distance (m) from the hull of another geom below which a sensor counts as inside and is left out.
 const INTERIOR: f64 = 1e-9;
@@ -29,6 +29,14 @@ pub enum SkinError {
         body: String,
         /// Distance between its sensors, m.
         spacing: f64,
+    },
+    /// A geom that touches is a mesh.
+    #[error(
+        "{body:?} has a mesh that touches, on which touch sensors are not placed; give the body shapes that touch, and contype=\"0\" conaffinity=\"0\" to the mesh"
+    )]
+    Mesh {
+        /// Name of the body.
+        body: String,
     },
     /// There would be too many sensors.
     #[error(
@@ -153,6 +161,9 @@ impl SkinLayout {
             let geoms: Vec<usize> = (0..model.ngeom())
                 .filter(|&g| model.geom_bodyid[g] == body && (model.geom_contype[g] | model.geom_conaffinity[g]) != 0)
                 .collect();
+            if geoms.iter().any(|&g| model.geom_type[g] == GeomType::Mesh) {
+                return Err(SkinError::Mesh { body: name });
+            }
             for &g in &geoms {
                 // before any is placed: a spacing of a micrometre would exhaust the memory first
                 expected += estimate(model.geom_type[g], model.geom_size[g], spacing);

@@ -43,7 +43,7 @@ fn stretch(kind: GeomType, a: Vec3, b: Vec3, [x, y, z]: Vec3) -> Vec3 {
     match kind {
         GeomType::Plane => [x, y, z],
         GeomType::Sphere => [x * r, y * r, z * r],
-        GeomType::Box | GeomType::Ellipsoid => [x * r, y * l, z * (b[2] / a[2])],
+        GeomType::Box | GeomType::Ellipsoid | GeomType::Mesh => [x * r, y * l, z * (b[2] / a[2])],
         GeomType::Cylinder => [x * r, y * r, z * l],
         GeomType::Capsule => {
             // the wall stretches with the length, the caps with the radius

@@ -3,7 +3,8 @@
 use babybench::Env;
 use babybench::mimo::joint_part;
 use babybench::model::{JointType, Model};
-use babybench::render::{Drawable, Element, Face, LightSource, Scenery, Shape, TexturePixels};
+use babybench::render::{Drawable, Element, Face, LightSource, Mesh, Scenery, Shape, TexturePixels};
+use js_sys::{Float32Array, Uint16Array};
 use wasm_bindgen::JsValue;
 
 use crate::js::{id, list, numbers, object, optional};
@@ -89,7 +90,7 @@ fn part(m: &Model, joint: usize) -> JsValue {
 /// Describes what is drawn, in the order of the poses, and the light.
 pub fn look(m: &Model, v: &Scenery) -> JsValue {
     object([
-        ("drawables", list(v.drawables.iter().map(|d| drawable(m, d)))),
+        ("drawables", list(v.drawables.iter().map(|d| drawable(m, v, d)))),
         ("textures", list(v.textures.iter().map(texture))),
         ("sky", optional(v.sky, id)),
         ("lights", list(v.lights.iter().map(light))),
@@ -108,7 +109,7 @@ pub fn look(m: &Model, v: &Scenery) -> JsValue {
     ])
 }
 
-fn drawable(m: &Model, d: &Drawable) -> JsValue {
+fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
     let (geom, body, name) = match d.element {
         Element::Geom(g) => (Some(g), m.geom_bodyid[g], &m.geom_name[g]),
         Element::Site(s) => (None, m.site_bodyid[s], &m.site_name[s]),
@@ -119,12 +120,15 @@ fn drawable(m: &Model, d: &Drawable) -> JsValue {
         Shape::Capsule => "capsule",
         Shape::Cylinder => "cylinder",
         Shape::Box => "box",
+        Shape::Mesh => "mesh",
     };
+    let own = (d.shape == Shape::Mesh).then_some(d.mesh);
     object([
         ("name", name.as_str().into()),
         ("geom", optional(geom, id)),
         ("body", id(body)),
         ("shape", shape.into()),
+        ("mesh", optional(own, |k| mesh(k, &v.meshes[k]))),
         ("size", numbers(&d.size)),
         ("rgba", numbers(&d.rgba)),
         ("emission", d.emission.into()),
@@ -133,6 +137,21 @@ fn drawable(m: &Model, d: &Drawable) -> JsValue {
         ("texture", optional(d.texture, id)),
         ("texture_scale", numbers(&d.texture_scale)),
         ("texture_offset", d.texture_offset.into()),
+    ])
+}
+
+/// Returns the triangles of a mesh, with a number that is its alone.
+fn mesh(number: usize, mesh: &Mesh) -> JsValue {
+    let places: Vec<f32> = (0..mesh.x.len())
+        .flat_map(|i| [mesh.x[i], mesh.y[i], mesh.z[i]])
+        .collect();
+    let texcoord = (!mesh.texcoord.is_empty()).then(|| mesh.texcoord.as_flattened());
+    object([
+        ("id", id(number)),
+        ("position", Float32Array::from(&places[..]).into()),
+        ("normal", Float32Array::from(mesh.normal.as_flattened()).into()),
+        ("texcoord", optional(texcoord, |t| Float32Array::from(t).into())),
+        ("index", Uint16Array::from(mesh.triangles.as_flattened()).into()),
     ])
 }
 

@@ -4,7 +4,9 @@
 export interface Drawable {
   name: string;
   body: number;
-  shape: "plane" | "sphere" | "capsule" | "cylinder" | "box";
+  shape: "plane" | "sphere" | "capsule" | "cylinder" | "box" | "mesh";
+  /** Triangles of a mesh. */
+  mesh: Mesh | null;
   size: [number, number, number];
   rgba: [number, number, number, number];
   specular: number;
@@ -13,6 +15,15 @@ export interface Drawable {
   texture: number | null;
   textureScale: [number, number, number];
   textureOffset: number;
+}
+
+/** Triangles in true size; `id` tells meshes apart. */
+export interface Mesh {
+  id: number;
+  position: Float32Array<ArrayBuffer>;
+  normal: Float32Array<ArrayBuffer>;
+  texcoord: Float32Array<ArrayBuffer> | null;
+  index: Uint16Array<ArrayBuffer>;
 }
 
 /** One image of a texture: RGBA, rows from the top. */

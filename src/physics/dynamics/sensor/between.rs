@@ -2,8 +2,9 @@
 
 use crate::math::*;
 use crate::model::{Model, ObjType, SensorType};
-use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Quirks, Scratch, distance};
+use crate::physics::contact::{ContactOptions, ContactPoint, Quirks, Scratch, distance};
 use crate::physics::state::State;
+use crate::physics::world::placed;
 
 /// The working memory of these sensors, which is only there where a model has one.
 #[derive(Clone, Debug, Default)]
@@ -30,17 +31,18 @@ impl Between {
             ccd_iterations: model.opt.ccd_iterations,
             quirks: Quirks::default(),
         };
-        let placed = |g: usize| PlacedGeom {
-            kind: model.geom_type[g],
-            size: s.params.geom_size[g],
-            pos: s.geom_xpos[g],
-            mat: &s.geom_xmat[g],
-        };
         let cutoff = model.sensor_cutoff[sensor];
         let (mut dist, mut from, mut to) = (cutoff, [0.0; 3], [0.0; 3]);
         for g in geoms(model, model.sensor_objtype[sensor], model.sensor_objid[sensor]) {
             for h in geoms(model, model.sensor_reftype[sensor], model.sensor_refid[sensor]) {
-                let span = distance(&placed(g), &placed(h), cutoff, &options, scratch, &mut self.points);
+                let span = distance(
+                    &placed(model, s, g),
+                    &placed(model, s, h),
+                    cutoff,
+                    &options,
+                    scratch,
+                    &mut self.points,
+                );
                 if let Some(span) = span.filter(|span| span.dist < dist) {
                     (dist, from, to) = (span.dist, span.from, span.to);
                 }

@@ -90,6 +90,7 @@ export function material(d, map, shared, glass) {
   if (glass) m.transparent = true;
   if (d.rgba[3] < 1) Object.assign(m, { transparent: true, opacity: d.rgba[3], depthWrite: false });
   const cube = map instanceof CubeTexture;
+  const mapped = Boolean(d.mesh?.texcoord);
   m.onBeforeCompile = (shader) => {
     shader.uniforms.rimLight = shared.rim;
     shader.uniforms.focus = shared.focus;
@@ -104,13 +105,13 @@ export function material(d, map, shared, glass) {
       shader.uniforms.coatOffset = { value: d.textureOffset };
       const varying = "varying vec3 vCoat;";
       v = v.replace("#include <common>", `#include <common>\n${varying} uniform vec3 coatScale; uniform float coatOffset;`);
-      v = v.replace("#include <begin_vertex>", "#include <begin_vertex>\nvCoat = position * coatScale + (COAT_CUBE ? 0.0 : coatOffset);".replace("COAT_CUBE", String(cube)));
+      v = v.replace("#include <begin_vertex>", "#include <begin_vertex>\nvCoat = COAT_MAPPED ? vec3(uv, 0.0) : position * coatScale + (COAT_CUBE ? 0.0 : coatOffset);".replace("COAT_CUBE", String(cube)).replace("COAT_MAPPED", String(mapped)));
       f = f.replace("#include <common>", `#include <common>\n${varying} uniform ${cube ? "samplerCube" : "sampler2D"} coat;`);
       f = f.replace("#include <map_fragment>", `diffuseColor.rgb *= texture(coat, ${cube ? "normalize(vCoat)" : "vCoat.xy"}).rgb;`);
     }
     shader.vertexShader = v;
     shader.fragmentShader = f;
   };
-  m.customProgramCacheKey = () => `${map ? (cube ? "cube" : "flat") : "plain"} ${glass}`;
+  m.customProgramCacheKey = () => `${map ? (cube ? "cube" : mapped ? "mapped" : "flat") : "plain"} ${glass}`;
   return m;
 }

@@ -7,7 +7,7 @@ import { Skin } from "./skin.js";
 /** @typedef {import("../types").Drawable} Drawable */
 
 /** @type {Omit<Drawable, "texture" | "body">} */
-const THING = { name: "", shape: "sphere", size: [1, 1, 1], rgba: [1, 1, 1, 1], specular: 0, exponent: 1, emission: 0, textureScale: [1, 1, 1], textureOffset: 0 };
+const THING = { name: "", shape: "sphere", mesh: null, size: [1, 1, 1], rgba: [1, 1, 1, 1], specular: 0, exponent: 1, emission: 0, textureScale: [1, 1, 1], textureOffset: 0 };
 const PIXEL = { width: 1, height: 1, pixels: new Uint8Array(4) };
 
 /**

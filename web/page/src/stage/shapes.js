@@ -1,5 +1,5 @@
 // Geometry of the model's shapes, in true size where stretching would deform them.
-import { BoxGeometry, CapsuleGeometry, CylinderGeometry, PlaneGeometry, SphereGeometry } from "three";
+import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, PlaneGeometry, SphereGeometry } from "three";
 
 /** @typedef {import("../types").Drawable} Drawable */
 
@@ -22,6 +22,7 @@ export function stretch(d) {
  * @param {Drawable} d
  */
 export function shapeKey(d) {
+  if (d.mesh) return `mesh ${d.mesh.id}`;
   return d.shape === "capsule" ? `capsule ${d.size.map((v) => v.toFixed(5)).join(" ")}` : d.shape;
 }
 
@@ -43,7 +44,23 @@ export function geometry(d, plain) {
       return new BoxGeometry(2, 2, 2);
     case "capsule":
       return new CapsuleGeometry(d.size[0], 2 * d.size[2], small ? 6 : 12, small ? 14 : 32).rotateX(Math.PI / 2);
+    case "mesh":
+      return triangles(d.mesh);
   }
+}
+
+/**
+ * @param {import("../types").Mesh | null} mesh
+ * @returns {BufferGeometry}
+ */
+function triangles(mesh) {
+  const geometry = new BufferGeometry();
+  if (!mesh) return geometry;
+  geometry.setAttribute("position", new BufferAttribute(mesh.position, 3));
+  geometry.setAttribute("normal", new BufferAttribute(mesh.normal, 3));
+  if (mesh.texcoord) geometry.setAttribute("uv", new BufferAttribute(mesh.texcoord, 2));
+  geometry.setIndex(new BufferAttribute(mesh.index, 1));
+  return geometry;
 }
 
 /**

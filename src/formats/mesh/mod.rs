@@ -1,0 +1,216 @@
+//! Triangle meshes in files: OBJ, STL and MSH, as MuJoCo 3.3.0 reads them.
+//!
+//! The readers take bytes from anywhere: whatever these say, a reader ends with [`Triangles`] or a [`MeshError`], and takes memory
+//! in proportion to the file and within [`Limits::mesh_elements`]. Materials (`mtllib`) have no meaning, as in MuJoCo.
+
+mod msh;
+mod obj;
+mod polygon;
+mod stl;
+
+use thiserror::Error;
+
+use crate::limits::Limits;
+use crate::text::quoted;
+
+/// Stands where a corner of a triangle has no normal or no texture coordinates.
+pub const NONE: u32 = u32::MAX;
+
+/// The format of a file with a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// Wavefront's text.
+    Obj,
+    /// Stereolithography, binary.
+    Stl,
+    /// MuJoCo's binary format.
+    Msh,
+}
+
+impl MeshFormat {
+    /// Returns the format that the ending of a file's name stands for.
+    pub fn of_path(path: &str) -> Option<Self> {
+        let (_, ending) = path.rsplit_once('.')?;
+        match ending.to_ascii_lowercase().as_str() {
+            "obj" => Some(Self::Obj),
+            "stl" => Some(Self::Stl),
+            "msh" => Some(Self::Msh),
+            _ => None,
+        }
+    }
+
+    /// Returns the format of a content type.
+    pub fn of_content(content_type: &str) -> Option<Self> {
+        match content_type {
+            "model/obj" => Some(Self::Obj),
+            "model/stl" => Some(Self::Stl),
+            "model/vnd.mujoco.msh" => Some(Self::Msh),
+            _ => None,
+        }
+    }
+}
+
+/// An error in reading a mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// The file ends before its content does, or goes on after it.
+    #[error(
+        "the file has {found} bytes where its header asks for {expected}; a text file in STL's format has to be converted to a binary one"
+    )]
+    Length {
+        /// Bytes that the header asks for.
+        expected: u64,
+        /// Bytes of the file.
+        found: u64,
+    },
+    /// Too short for a header.
+    #[error("the file has {0} bytes, too few for a header")]
+    Header(usize),
+    /// Numbers of elements that do not fit together.
+    #[error(
+        "the header announces {vertices} vertices, {normals} normals, {texcoords} texture coordinates and {faces} faces: there must be 4 vertices at least, and as many of the others, or none"
+    )]
+    Sizes {
+        /// Vertices announced.
+        vertices: i32,
+        /// Normals announced.
+        normals: i32,
+        /// Texture coordinates announced.
+        texcoords: i32,
+        /// Faces announced.
+        faces: i32,
+    },
+    /// A number of triangles that MuJoCo does not take.
+    #[error("the header announces {0} triangles; MuJoCo takes from 1 to 200000, and no text")]
+    Triangles(u32),
+    /// A coordinate that is not finite or too large.
+    #[error("vertex {0} has a coordinate that is not finite or above 2^30")]
+    Coordinate(usize),
+    /// The text is not UTF-8.
+    #[error("line {0} is not UTF-8 text")]
+    Text(usize),
+    /// A word that should be a number.
+    #[error("line {line}: \"{}\" is not a number", quoted(.word))]
+    Number {
+        /// Line, from 1.
+        line: usize,
+        /// The word.
+        word: String,
+    },
+    /// Too few numbers.
+    #[error("line {0} has too few numbers")]
+    Few(usize),
+    /// Polygons of so many corners that cutting them into triangles takes too long.
+    #[error("line {0} and those before it have polygons of too many corners; cut them into triangles")]
+    Polygons(usize),
+    /// An index that names nothing.
+    #[error("line {line}: \"{}\" is no index of what stands above", quoted(.word))]
+    Index {
+        /// Line, from 1.
+        line: usize,
+        /// The word.
+        word: String,
+    },
+    /// A corner that names a normal or texture coordinates that do not exist.
+    #[error("face {face} names {what} {index}, of which there are {count}")]
+    Corner {
+        /// Face, from 0.
+        face: usize,
+        /// What is named.
+        what: &'static str,
+        /// The index, from 0.
+        index: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// More than the limit allows.
+    #[error("more than {0} vertices, normals, texture coordinates and faces in all meshes")]
+    TooMuch(usize),
+}
+
+/// A mesh as a file has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Triangles {
+    /// Vertices, m.
+    pub vert: Vec<[f32; 3]>,
+    /// Normals; empty where the file has none.
+    pub normal: Vec<[f32; 3]>,
+    /// Texture coordinates, from the top of the image; empty where the file has none.
+    pub texcoord: Vec<[f32; 2]>,
+    /// Vertices of each triangle, counterclockwise from outside; empty where the file has none.
+    pub face: Vec<[u32; 3]>,
+    /// Normals at the corners of each triangle, or [`NONE`]; empty where they are those of the vertices.
+    pub facenormal: Vec<[u32; 3]>,
+    /// Texture coordinates at the corners of each triangle, or [`NONE`]; empty where they are those of the vertices.
+    pub facetexcoord: Vec<[u32; 3]>,
+}
+
+impl Triangles {
+    /// Reads a mesh from a file. `lefthanded` says whether it will be mirrored, so that triangles change their sense.
+    ///
+    /// # Errors
+    /// Bytes that are no mesh, numbers that are not finite, indices of nothing, more elements than
+    /// [`Limits::mesh_elements`].
+    pub fn read(bytes: &[u8], format: MeshFormat, lefthanded: bool, limits: &Limits) -> Result<Self, MeshError> {
+        let mesh = match format {
+            MeshFormat::Obj => obj::read(bytes, lefthanded, limits.mesh_elements)?,
+            MeshFormat::Stl => stl::read(bytes, lefthanded, limits.mesh_elements)?,
+            MeshFormat::Msh => msh::read(bytes, lefthanded, limits.mesh_elements)?,
+        };
+        mesh.check()?;
+        Ok(mesh)
+    }
+
+    /// Returns the number of elements that count towards [`Limits::mesh_elements`].
+    pub fn elements(&self) -> usize {
+        self.vert.len() + self.normal.len() + self.texcoord.len() + self.face.len()
+    }
+
+    /// Checks that numbers are finite, and that corners name what exists. MuJoCo looks at vertices only.
+    pub fn check(&self) -> Result<(), MeshError> {
+        let bad = |v: &[f32; 3]| !v.iter().all(|x| x.is_finite());
+        if let Some(vertex) = self.vert.iter().position(bad) {
+            return Err(MeshError::Coordinate(vertex));
+        }
+        for (what, corners, count) in [
+            ("vertex", &self.face, self.vert.len()),
+            ("normal", &self.facenormal, self.normal.len()),
+            ("texture coordinates", &self.facetexcoord, self.texcoord.len()),
+        ] {
+            for (face, corner) in corners.iter().enumerate() {
+                let may_lack = what != "vertex";
+                if let Some(&index) = corner
+                    .iter()
+                    .find(|&&i| i as usize >= count && !(may_lack && i == NONE))
+                {
+                    return Err(MeshError::Corner {
+                        face,
+                        what,
+                        index,
+                        count,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns four bytes at a place as an unsigned number; `None` beyond the end.
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    let four = bytes.get(at..at.checked_add(4)?)?;
+    Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+}
+
+/// Returns numbers in single precision that follow one another; `None` beyond the end.
+fn floats<const N: usize>(bytes: &[u8], at: usize) -> Option<[f32; N]> {
+    let mut out = [0.0; N];
+    for (k, value) in out.iter_mut().enumerate() {
+        *value = f32::from_bits(word(bytes, at + 4 * k)?);
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,84 @@
+//! Binary STL: a header of 80 bytes, the number of triangles, 50 bytes for each.
+
+use super::{MeshError, Triangles, floats, word};
+
+const HEADER: usize = 84;
+const TRIANGLE: usize = 50;
+/// The most triangles that MuJoCo takes.
+const MOST: u32 = 200_000;
+/// The largest coordinate that MuJoCo takes, 2^30.
+const LARGEST: f32 = 1_073_741_824.0;
+
+/// Reads a file; vertices at the same place become one, the first of them.
+pub(super) fn read(bytes: &[u8], lefthanded: bool, most: usize) -> Result<Triangles, MeshError> {
+    let count = match word(bytes, HEADER - 4) {
+        Some(count) => count,
+        None => return Err(MeshError::Header(bytes.len())),
+    };
+    if count == 0 || count > MOST {
+        return Err(MeshError::Triangles(count));
+    }
+    let expected = HEADER as u64 + TRIANGLE as u64 * u64::from(count);
+    let found = bytes.len() as u64;
+    if expected != found {
+        return Err(MeshError::Length { expected, found });
+    }
+    let count = count as usize;
+    if 4 * count > most {
+        return Err(MeshError::TooMuch(most));
+    }
+    let mut vert = Vec::with_capacity(3 * count);
+    let mut face = Vec::with_capacity(count);
+    for triangle in 0..count {
+        // the first three numbers are a normal, which MuJoCo ignores
+        for corner in 1..4 {
+            let at = HEADER + TRIANGLE * triangle + 12 * corner;
+            let v: [f32; 3] = floats(bytes, at).ok_or(MeshError::Length { expected, found })?;
+            if !v.iter().all(|x| x.abs() <= LARGEST) {
+                return Err(MeshError::Coordinate(vert.len()));
+            }
+            vert.push(v);
+        }
+        let first = 3 * triangle as u32;
+        face.push(if lefthanded {
+            [first, first + 2, first + 1]
+        } else {
+            [first, first + 1, first + 2]
+        });
+    }
+    Ok(unite(&vert, face))
+}
+
+/// Keeps the first of vertices at one place, in their order.
+fn unite(vert: &[[f32; 3]], mut face: Vec<[u32; 3]>) -> Triangles {
+    // both zeros are one number to MuJoCo
+    let key = |i: u32| vert[i as usize].map(|x| x + 0.0);
+    let mut order: Vec<u32> = (0..vert.len() as u32).collect();
+    let compare = |a: &u32, b: &u32| {
+        let (p, q) = (key(*a), key(*b));
+        (0..3).fold(std::cmp::Ordering::Equal, |order, k| order.then(p[k].total_cmp(&q[k])))
+    };
+    order.sort_by(compare);
+    let mut first: Vec<u32> = (0..vert.len() as u32).collect();
+    for pair in order.windows(2) {
+        if key(pair[0]) == key(pair[1]) {
+            first[pair[1] as usize] = first[pair[0] as usize];
+        }
+    }
+    let mut place = vec![0; vert.len()];
+    let mut kept = Vec::new();
+    for (i, v) in vert.iter().enumerate() {
+        if first[i] as usize == i {
+            place[i] = kept.len() as u32;
+            kept.push(*v);
+        }
+    }
+    for corner in face.as_flattened_mut() {
+        *corner = place[first[*corner as usize] as usize];
+    }
+    Triangles {
+        vert: kept,
+        face,
+        ..Triangles::default()
+    }
+}

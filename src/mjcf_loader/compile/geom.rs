@@ -1,0 +1,183 @@
+//! Compiles geoms: shapes, and what they fill.
+
+use super::body::quat_of;
+use super::context::{Context, Ids};
+use super::fluid::fluid;
+use super::geometry::{EPS, Solid, bounding_box, bounding_radius, inertia, segment, size_count, volume};
+use super::mesh::fit;
+use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_to_mat};
+use crate::mjcf_loader::document::{Frame, Geom};
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::settings::single;
+use crate::model::{Arrays, GeomType};
+
+/// Returns the position, orientation and size of a shape, from its frame or from `fromto`.
+pub(super) fn place(
+    context: &Context,
+    at: usize,
+    kind: GeomType,
+    mut size: Vec3,
+    frame: &Frame,
+    fromto: Option<[f64; 6]>,
+) -> Result<(Vec3, Quat, Vec3), LoadError> {
+    let Some(fromto) = fromto else {
+        return Ok((frame.pos, quat_of(context, at, frame)?, size));
+    };
+    if frame.pos != [0.0; 3] {
+        return Err(context.invalid(at, "fromto and a pos that is not 0 are mutually exclusive"));
+    }
+    let (pos, quat, half) = segment(&fromto);
+    match kind {
+        GeomType::Capsule | GeomType::Cylinder => size[1] = half,
+        GeomType::Box | GeomType::Ellipsoid => size = [size[0], size[0], half],
+        GeomType::Plane | GeomType::Sphere | GeomType::Mesh => {
+            return Err(context.invalid(at, "fromto needs a capsule, cylinder, box or ellipsoid"));
+        }
+    }
+    if half < EPS {
+        return Err(context.invalid(at, "the points of fromto are too close"));
+    }
+    Ok((pos, quat, size))
+}
+
+/// Checks that the entries of a size that the shape uses are positive; the extent of a plane may be zero, that is,
+/// infinite.
+pub(super) fn check_size(context: &Context, at: usize, kind: GeomType, size: &Vec3) -> Result<(), LoadError> {
+    let first = if kind == GeomType::Plane { 2 } else { 0 };
+    match size[first..size_count(kind)].iter().find(|value| **value <= 0.0) {
+        Some(&value) => Err(context.error(
+            at,
+            ErrorKind::OutOfRange {
+                attribute: "size",
+                value,
+                want: "positive",
+            },
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Compiles a geom; returns it as a solid.
+pub(super) fn compile_geom(
+    context: &Context,
+    geom: &Geom,
+    body: usize,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<Solid, LoadError> {
+    let (mut pos, mut quat, mut size) = place(context, geom.at, geom.kind, geom.size, &geom.frame, geom.fromto)?;
+    let mesh = place_mesh(context, geom, ids, (&mut pos, &mut quat, &mut size), arrays)?;
+    let (pos, quat) = context.placed(geom.within, pos, quat);
+    check_size(context, geom.at, geom.kind, &size)?;
+    if !matches!(geom.condim, 1 | 3 | 4 | 6) {
+        return Err(context.invalid(geom.at, "condim must be 1, 3, 4 or 6"));
+    }
+    if geom.kind == GeomType::Plane && arrays.body_weldid[body] != 0 {
+        return Err(context.invalid(geom.at, "a plane can only be in a body that does not move"));
+    }
+    let find = |name: &String| ids.material.find(context.tree, geom.at, "material", name);
+    arrays.geom_name.push(geom.name.clone());
+    arrays.geom_type.push(geom.kind);
+    arrays.geom_size.push(size);
+    arrays.geom_bodyid.push(body);
+    arrays.geom_pos.push(pos);
+    arrays.geom_quat.push(quat);
+    arrays.geom_contype.push(geom.contype);
+    arrays.geom_conaffinity.push(geom.conaffinity);
+    arrays.geom_condim.push(geom.condim);
+    arrays.geom_priority.push(geom.priority);
+    arrays.geom_friction.push(geom.friction);
+    arrays.geom_solmix.push(geom.solmix);
+    arrays.geom_solref.push(geom.solref);
+    arrays.geom_solimp.push(geom.solimp);
+    arrays.geom_margin.push(geom.margin);
+    arrays.geom_gap.push(geom.gap);
+    arrays.geom_fluid.push(if geom.ellipsoid {
+        fluid(geom.kind, &size, geom.fluidcoef)
+    } else {
+        [0.0; 12]
+    });
+    let extent = Extent::of(geom.kind, &size, mesh, arrays);
+    arrays.geom_aabb.push(extent.aabb);
+    arrays.geom_dataid.push(mesh);
+    arrays.geom_rbound.push(bounding_radius(geom.kind, &size));
+    arrays.geom_group.push(geom.group);
+    arrays.geom_rgba.push(geom.rgba.map(single));
+    arrays.geom_matid.push(geom.material.as_ref().map(find).transpose()?);
+    let mass = match geom.mass {
+        Some(mass) if extent.volume > EPS => mass,
+        Some(_) => 0.0,
+        None => geom.density * extent.volume,
+    };
+    Ok(Solid {
+        pos,
+        quat,
+        mass,
+        inertia: inertia(geom.kind, &extent.inertia_box, mass),
+    })
+}
+
+/// What a geom fills.
+struct Extent {
+    aabb: [f64; 6],
+    volume: f64,
+    /// The size by which inertia is computed.
+    inertia_box: Vec3,
+}
+
+impl Extent {
+    /// Returns that of a mesh, where the geom is one, else that of its shape, to which one may have been fitted.
+    fn of(kind: GeomType, size: &Vec3, mesh: Option<usize>, arrays: &Arrays) -> Self {
+        match mesh.filter(|_| kind == GeomType::Mesh).map(|id| &arrays.meshes[id]) {
+            Some(mesh) => {
+                let [low, high] = mesh.bounds;
+                let half = |k: usize, sign: f64| (high[k] + sign * low[k]) / 2.0;
+                let [centre, reach] = [1.0, -1.0].map(|sign| [half(0, sign), half(1, sign), half(2, sign)]);
+                Self {
+                    aabb: [centre[0], centre[1], centre[2], reach[0], reach[1], reach[2]],
+                    volume: mesh.volume,
+                    inertia_box: mesh.inertia_box,
+                }
+            }
+            None => Self {
+                aabb: bounding_box(kind, size),
+                volume: volume(kind, size),
+                inertia_box: *size,
+            },
+        }
+    }
+}
+
+/// Puts a geom where its mesh is, and gives it the size of the mesh, or that of the shape that is fitted to it. Returns the mesh.
+fn place_mesh(
+    context: &Context,
+    geom: &Geom,
+    ids: &Ids,
+    (pos, quat, size): (&mut Vec3, &mut Quat, &mut Vec3),
+    arrays: &mut Arrays,
+) -> Result<Option<usize>, LoadError> {
+    let Some(name) = &geom.mesh else {
+        return match geom.kind {
+            GeomType::Mesh => Err(context.error(geom.at, ErrorKind::MissingAttribute("mesh"))),
+            _ => Ok(None),
+        };
+    };
+    if geom.fromto.is_some() {
+        return Err(context.error(geom.at, ErrorKind::Conflict("fromto", "mesh")));
+    }
+    let id = ids.mesh.find(context.tree, geom.at, "mesh", name)?;
+    let mesh = &mut arrays.meshes[id];
+    if geom.kind == GeomType::Mesh {
+        let [low, high] = mesh.bounds;
+        *size = std::array::from_fn(|k| low[k].abs().max(high[k].abs()));
+    } else {
+        let fitted = fit(geom.kind, mesh, context.compiler.fitaabb, geom.fitscale)
+            .ok_or_else(|| context.invalid(geom.at, "a plane cannot be fitted to a mesh"))?;
+        *size = fitted.size;
+        // MuJoCo moves the mesh itself, for all geoms that follow
+        mesh.pos = fitted.pos;
+    }
+    *pos = add(*pos, mat_vec(&quat_to_mat(*quat), mesh.pos));
+    *quat = quat_mul(*quat, mesh.quat);
+    Ok(Some(id))
+}

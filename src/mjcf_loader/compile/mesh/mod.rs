@@ -1,0 +1,231 @@
+//! Compiles meshes: from what a file or the document says to a mesh that is centred and along its principal axes.
+//!
+//! MuJoCo 3.3.0 keeps vertices in single precision between all steps, so the same is done here, in its order of operations: then
+//! masses, inertias and poses are the same to the last bits.
+
+mod fit;
+mod inertia;
+mod normals;
+mod source;
+
+pub(super) use fit::fit;
+
+use super::context::{Context, Ids};
+use super::surface::asset_path;
+use crate::assets::AssetSource;
+use crate::math::hull::quickhull;
+use crate::math::{Vec3, mat_t_vec, mat_vec, quat_to_mat};
+use crate::mjcf_loader::compile::geometry::normalize;
+use crate::mjcf_loader::document::Document;
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::mesh::{Mesh, MeshInertia};
+use crate::mjcf_loader::xml::Tree;
+use crate::model::{self, Arrays, GeomType, MeshHull};
+use inertia::Solid;
+use source::Surface;
+
+/// Compiles all meshes. Their files are looked up in `source`, relative to `dir`.
+pub(super) fn compile_meshes(
+    context: &Context,
+    document: &Document,
+    ids: &Ids,
+    (source, dir): (&dyn AssetSource, &str),
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    let touching = touching(context, document, ids)?;
+    let mut left = context.tree.limits.mesh_elements;
+    for (mesh, touches) in document.meshes.iter().zip(touching) {
+        let path = mesh
+            .file
+            .as_ref()
+            .map(|file| asset_path(context, mesh.at, file, &context.compiler.meshdir, source, dir))
+            .transpose()?;
+        let surface = source::read(context, mesh, path.as_deref(), source, &mut left)?;
+        let compiled =
+            compile(mesh, surface, touches, document.mesh_density).map_err(|m| context.invalid(mesh.at, m))?;
+        let name = mesh_name(context.tree, mesh)?;
+        arrays.meshes.push(model::Mesh { name, ..compiled });
+    }
+    Ok(())
+}
+
+/// Returns the name of a mesh; one without a name is called after its file, without directory and extension.
+pub(super) fn mesh_name(tree: &Tree, mesh: &Mesh) -> Result<String, LoadError> {
+    if !mesh.name.is_empty() {
+        return Ok(mesh.name.clone());
+    }
+    let file = mesh.file.as_deref().unwrap_or_default();
+    let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    match stem.rsplit_once('.').map_or(stem, |(name, _)| name) {
+        "" => Err(tree.error(mesh.at, ErrorKind::MissingAttribute("name"))),
+        name => Ok(name.to_owned()),
+    }
+}
+
+/// Tells which meshes need a hull: those of geoms that may touch others.
+fn touching(context: &Context, document: &Document, ids: &Ids) -> Result<Vec<bool>, LoadError> {
+    let mut touching = vec![false; document.meshes.len()];
+    let paired = |name: &String| {
+        let mut named = document.pairs.iter().flat_map(|pair| [&pair.geom1, &pair.geom2]);
+        !name.is_empty() && named.any(|other| other == name)
+    };
+    for geom in document.bodies.iter().flat_map(|body| &body.geoms) {
+        if let Some(name) = &geom.mesh
+            && geom.kind == GeomType::Mesh
+            && (geom.contype | geom.conaffinity != 0 || paired(&geom.name))
+        {
+            touching[ids.mesh.find(context.tree, geom.at, "mesh", name)?] = true;
+        }
+    }
+    Ok(touching)
+}
+
+const NO_HULL: &str = "the mesh has no convex hull: its vertices are on a plane, on a line or at one point";
+const HULL: &str = "the mesh has a convex hull of more corners than maxhullvert; leave maxhullvert out: which corners MuJoCo keeps is not reproduced";
+
+fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result<model::Mesh, &'static str> {
+    let Surface {
+        mut vert,
+        normal,
+        texcoord,
+        mut face,
+        facenormal,
+        facetexcoord,
+    } = surface;
+    if mesh.inertia == MeshInertia::Exact {
+        normals::check_orientation(&vert, &face)?;
+    }
+    if (0..4).contains(&mesh.maxhullvert) {
+        return Err("maxhullvert must be above 3, or -1");
+    }
+    let hull = (touches || face.is_empty() || mesh.inertia == MeshInertia::Convex)
+        .then(|| hull(&vert).ok_or(NO_HULL))
+        .transpose()?;
+    if let Some(hull) = &hull {
+        if mesh.maxhullvert >= 0 && hull.vert.len() > mesh.maxhullvert as usize {
+            return Err(HULL);
+        }
+        if face.is_empty() {
+            face.clone_from(&hull.face);
+        }
+    }
+    let (mut normal, facenormal) = if normal.is_empty() {
+        (normals::of_vertices(&vert, &face, mesh.smoothnormal), face.clone())
+    } else if facenormal.is_empty() {
+        (normal, face.clone())
+    } else {
+        (normal, facenormal)
+    };
+    let facetexcoord = match () {
+        () if texcoord.is_empty() => Vec::new(),
+        () if facetexcoord.is_empty() => face.clone(),
+        () => facetexcoord,
+    };
+    let named = |corners: &[[u32; 3]], count: usize| {
+        let mut all = corners.as_flattened().iter();
+        all.all(|&i| i == model::Mesh::NONE || (i as usize) < count)
+    };
+    if !named(&facenormal, normal.len()) || !named(&facetexcoord, texcoord.len()) {
+        return Err("there must be as many normals and texture coordinates as vertices");
+    }
+    transform(mesh, &mut vert, &mut normal);
+    let of_hull = mesh.inertia == MeshInertia::Convex || hull.as_ref().is_some_and(|hull| hull.face == face);
+    let counted = match (&hull, mesh.inertia) {
+        (Some(hull), MeshInertia::Convex) => &hull.face,
+        _ => &face,
+    };
+    let solid = Solid::of(&mut vert, &face, counted, mesh.inertia, density)?;
+    let bounds = turn(&mut vert, &mut normal, solid.quat);
+    Ok(model::Mesh {
+        name: String::new(),
+        vert,
+        normal,
+        texcoord,
+        face,
+        facenormal,
+        facetexcoord,
+        hull,
+        scale: mesh.scale,
+        pos: solid.pos,
+        quat: solid.quat,
+        bounds,
+        volume: solid.volume,
+        of_hull,
+        inertia_box: solid.inertia_box,
+    })
+}
+
+/// Builds the convex hull; `None` if the vertices span no volume.
+fn hull(vert: &[[f32; 3]]) -> Option<MeshHull> {
+    let wide = vert.iter().map(|v| v.map(f64::from));
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for v in wide.clone() {
+        for k in 0..3 {
+            low[k] = low[k].min(v[k]);
+            high[k] = high[k].max(v[k]);
+        }
+    }
+    let extent = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    // a factor of two leaves every digit as it is, and numbers near one leave room for small faces
+    let unit = (-extent.log2().floor().clamp(-1000.0, 1000.0)) as i32;
+    let factor = f64::from_bits(((1023 + i64::from(unit)) as u64) << 52);
+    let points: Vec<Vec3> = wide
+        .map(|v| std::array::from_fn(|k| (v[k] - 0.5 * (low[k] + high[k])) * factor))
+        .collect();
+    // single precision leaves errors of 1e-7, so that even the last leaves out nothing that one could see
+    let faces = [1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9]
+        .iter()
+        .find_map(|&tolerance| quickhull(&points, tolerance))?;
+    let alive = faces.iter().filter(|face| face.alive);
+    Some(MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect()))
+}
+
+/// Moves, turns and scales what the document says.
+fn transform(mesh: &Mesh, vert: &mut [[f32; 3]], normal: &mut [[f32; 3]]) {
+    if mesh.refpos != [0.0; 3] {
+        let origin = mesh.refpos.map(|x| x as f32);
+        for v in vert.iter_mut() {
+            *v = std::array::from_fn(|k| v[k] - origin[k]);
+        }
+    }
+    if mesh.refquat != [1.0, 0.0, 0.0, 0.0] {
+        let mut quat = mesh.refquat;
+        normalize(&mut quat);
+        let mat = quat_to_mat(quat);
+        for v in vert.iter_mut().chain(normal.iter_mut()) {
+            *v = mat_t_vec(&mat, v.map(f64::from)).map(|x| x as f32);
+        }
+    }
+    if mesh.scale != [1.0; 3] {
+        for v in vert.iter_mut().chain(normal.iter_mut()) {
+            *v = std::array::from_fn(|k| (f64::from(v[k]) * mesh.scale[k]) as f32);
+        }
+    }
+    for n in normal {
+        let square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        *n = if f64::from(square) > crate::math::MINVAL {
+            let factor = 1.0 / square.sqrt();
+            n.map(|x| x * factor)
+        } else {
+            [0.0, 0.0, 1.0]
+        };
+    }
+}
+
+/// Turns vertices and normals into the principal axes; returns the bounds of the vertices.
+fn turn(vert: &mut [[f32; 3]], normal: &mut [[f32; 3]], quat: [f64; 4]) -> [Vec3; 2] {
+    let mat = quat_to_mat([quat[0], -quat[1], -quat[2], -quat[3]]);
+    let (mut low, mut high) = ([1e10; 3], [-1e10; 3]);
+    for v in vert {
+        let turned = mat_vec(&mat, v.map(f64::from));
+        for k in 0..3 {
+            low[k] = turned[k].min(low[k]);
+            high[k] = turned[k].max(high[k]);
+        }
+        *v = turned.map(|x| x as f32);
+    }
+    for n in normal {
+        *n = mat_vec(&mat, n.map(f64::from)).map(|x| x as f32);
+    }
+    [low, high]
+}

@@ -1,0 +1,47 @@
+//! The table of meshes.
+
+use crate::math::Vec3;
+
+use super::attribute::Sign::Any;
+use super::attribute::{FLAG, Kind, TEXT, Words, int, reals, words};
+use super::table::table;
+use super::words::MAX_COUNT;
+
+/// How mass and inertia follow from a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MeshInertia {
+    /// Those of the convex hull.
+    Convex,
+    /// Those of what the surface encloses, which must be closed.
+    Exact,
+    /// Those of all pyramids over triangles, counted positive wherever they are.
+    Legacy,
+    /// Those of the surface.
+    Shell,
+}
+
+const INERTIAS: Words<MeshInertia> = words! {
+    "convex" => MeshInertia::Convex,
+    "legacy" => MeshInertia::Legacy,
+    "exact" => MeshInertia::Exact,
+    "shell" => MeshInertia::Shell,
+};
+
+table! {
+    /// `<mesh>`.
+    element Mesh {
+        "name" name: String = String::new(), TEXT, own, "Name; else that of the file.";
+        "file" file: Option<String> = None, TEXT, own, "File: OBJ, STL (binary) or MSH, by its ending.";
+        "content_type" content_type: Option<String> = None, TEXT, own, "Format of the file, whatever its ending: `model/obj`, `model/stl` or `model/vnd.mujoco.msh`.";
+        "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, own, "Vertices, m, three numbers each.";
+        "normal" normal: Vec<f64> = Vec::new(), Kind::Data, own, "Normals of the vertices, three numbers each; else they follow from the faces.";
+        "texcoord" texcoord: Vec<f64> = Vec::new(), Kind::Data, own, "Texture coordinates of the vertices, two numbers each, from the top of the image.";
+        "face" face: Vec<f64> = Vec::new(), Kind::Data, own, "Vertices of each triangle, from 0, counterclockwise from outside; else the triangles of the convex hull.";
+        "refpos" refpos: Vec3 = [0.0; 3], reals(3, Any), own, "Point that becomes the origin of the mesh, m.";
+        "refquat" refquat: [f64; 4] = [1.0, 0.0, 0.0, 0.0], Kind::Quat, own, "Orientation that becomes the axes of the mesh.";
+        "scale" scale: Vec3 = [1.0; 3], reals(3, Any), "Factors on the coordinates, after `refpos` and `refquat`.";
+        "smoothnormal" smoothnormal: bool = false, FLAG, own, "Whether normals are means over all faces of a vertex; else those that turn away from the mean by more than 37 degrees are left out.";
+        "maxhullvert" maxhullvert: i32 = -1, int(-1, MAX_COUNT), "Most corners of the convex hull; -1 for any number. A hull that has more is refused.";
+        "inertia" inertia: MeshInertia = MeshInertia::Legacy, INERTIAS, "Solid of which mass and inertia are: `convex`, the convex hull; `exact`, what the surface encloses; `legacy`, the same with all parts counted positive; `shell`, the surface.";
+    }
+}

@@ -1,0 +1,96 @@
+//! Triangle meshes.
+
+use crate::math::{Quat, Vec3};
+
+/// A mesh that geoms show and touch with, centred and along its principal axes, as MuJoCo keeps it: its entry in each of the
+/// arrays `mesh_*`.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Mesh {
+    /// Name.
+    pub name: String,
+    /// Vertices, m (`mesh_vert`).
+    pub vert: Vec<[f32; 3]>,
+    /// Unit normals (`mesh_normal`).
+    pub normal: Vec<[f32; 3]>,
+    /// Texture coordinates, from the top of the image; empty where there are none (`mesh_texcoord`).
+    pub texcoord: Vec<[f32; 2]>,
+    /// Vertices of each triangle, counterclockwise from outside (`mesh_face`).
+    pub face: Vec<[u32; 3]>,
+    /// Normals at the corners of each triangle; [`Mesh::NONE`] where a file gives none (`mesh_facenormal`).
+    pub facenormal: Vec<[u32; 3]>,
+    /// Texture coordinates at the corners of each triangle; [`Mesh::NONE`] where a file gives none, empty where `texcoord` is
+    /// (`mesh_facetexcoord`).
+    pub facetexcoord: Vec<[u32; 3]>,
+    /// The convex hull, which touches; `None` for a mesh that only is drawn (`mesh_graph`).
+    pub hull: Option<MeshHull>,
+    /// Scale that the vertices were multiplied with (`mesh_scale`).
+    pub scale: Vec3,
+    /// What was subtracted from the vertices to centre them, m (`mesh_pos`).
+    pub pos: Vec3,
+    /// Orientation of the principal axes, in which the vertices are given, in the axes of the document (`mesh_quat`).
+    pub quat: Quat,
+    /// Least and greatest coordinates, m.
+    pub bounds: [Vec3; 2],
+    /// Volume, m^3; of a shell the area, m^2.
+    pub volume: f64,
+    /// Whether volume and inertia are sums over the triangles of the hull. Their order is not MuJoCo's, and sums are in single
+    /// precision, so that the last of its digits may differ.
+    pub of_hull: bool,
+    /// Half lengths of the homogeneous box with the same inertia, m.
+    pub inertia_box: Vec3,
+}
+
+impl Mesh {
+    /// Stands where a corner of a triangle has no normal or texture coordinates.
+    pub const NONE: u32 = u32::MAX;
+}
+
+/// The convex hull of a mesh as a graph of its corners. Unlike MuJoCo's, which Qhull makes, its order is that of the vertices;
+/// where several corners are equally far, others may therefore be found first.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeshHull {
+    /// Vertex of the mesh that each corner is.
+    pub vert: Vec<u32>,
+    /// Where in `edge` the neighbours of each corner begin, and at last their number.
+    pub edge_adr: Vec<u32>,
+    /// Neighbours, by corner.
+    pub edge: Vec<u32>,
+    /// Vertices of the mesh at the corners of each triangle of the hull, counterclockwise from outside.
+    pub face: Vec<[u32; 3]>,
+}
+
+impl MeshHull {
+    /// Makes the graph of triangles that close a surface.
+    pub(crate) fn new(face: Vec<[u32; 3]>) -> Self {
+        let mut vert = face.as_flattened().to_vec();
+        vert.sort_unstable();
+        vert.dedup();
+        let corner = |vertex: u32| vert.binary_search(&vertex).unwrap_or_default() as u32;
+        let mut edges = Vec::with_capacity(3 * face.len());
+        for f in &face {
+            let [a, b, c] = f.map(corner);
+            edges.extend([[a, b], [b, c], [c, a]]);
+        }
+        // each edge stands once in either direction, as each has two triangles
+        edges.sort_unstable();
+        edges.dedup();
+        let starts = |at: usize| edges.partition_point(|edge| (edge[0] as usize) < at) as u32;
+        Self {
+            edge_adr: (0..=vert.len()).map(starts).collect(),
+            edge: edges.iter().map(|edge| edge[1]).collect(),
+            vert,
+            face,
+        }
+    }
+
+    /// Returns the neighbours of a corner.
+    #[inline(always)]
+    pub(crate) fn neighbours(&self, corner: usize) -> &[u32] {
+        match (self.edge_adr.get(corner), self.edge_adr.get(corner + 1)) {
+            (Some(&from), Some(&to)) => &self.edge[from as usize..to as usize],
+            _ => &[],
+        }
+    }
+}
