@@ -24,6 +24,7 @@ fn optional(values: &[Option<usize>]) -> Vec<f64> {
 fn shapes(values: &[GeomType]) -> Vec<f64> {
     let code = |shape: &GeomType| match shape {
         GeomType::Plane => 0,
+        GeomType::HField => 1,
         GeomType::Sphere => 2,
         GeomType::Capsule => 3,
         GeomType::Ellipsoid => 4,
@@ -270,6 +271,17 @@ pub fn of_meshes(m: &Model) -> Named {
         ("mesh_texcoordnum", number(|mesh| mesh.texcoord.len())),
         ("mesh_facenum", number(|mesh| mesh.face.len())),
         ("mesh_vert", vert.map(|&x| f64::from(x)).collect()),
+        ("hfield_size", m.hfields.iter().flat_map(|field| field.size).collect()),
+        ("hfield_nrow", m.hfields.iter().map(|field| field.nrow as f64).collect()),
+        ("hfield_ncol", m.hfields.iter().map(|field| field.ncol as f64).collect()),
+        (
+            "hfield_data",
+            m.hfields
+                .iter()
+                .flat_map(|field| &field.data)
+                .map(|&x| f64::from(x))
+                .collect(),
+        ),
         ("mesh_scale", m.meshes.iter().flat_map(|mesh| mesh.scale).collect()),
         ("mesh_pos", m.meshes.iter().flat_map(|mesh| mesh.pos).collect()),
         ("mesh_quat", m.meshes.iter().flat_map(|mesh| mesh.quat).collect()),

@@ -1,7 +1,8 @@
-//! File formats that other programs share: NumPy archives, pickles, Motion-JPEG videos, PNG pictures, triangle meshes.
+//! File formats that other programs share: NumPy archives, pickles, Motion-JPEG videos, PNG pictures, triangle meshes, heights on a grid.
 
 #[cfg(feature = "eval")]
 pub mod avi;
+pub mod heights;
 pub mod mesh;
 #[cfg(feature = "npz")]
 pub mod npz;

@@ -103,7 +103,7 @@ pub(super) fn reach(kind: GeomType, size: [f64; 3], direction: Vec3) -> f64 {
         // the rim of the disc at the end, which leans away from the direction
         GeomType::Cylinder => b * z + a * (1.0 - z * z).max(0.0).sqrt(),
         // the box around a mesh
-        GeomType::Box | GeomType::Mesh => a * x + b * y + c * z,
+        GeomType::Box | GeomType::HField | GeomType::Mesh => a * x + b * y + c * z,
         GeomType::Ellipsoid => ((a * x).powi(2) + (b * y).powi(2) + (c * z).powi(2)).sqrt(),
     }
 }

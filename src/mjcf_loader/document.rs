@@ -8,7 +8,7 @@ use super::actuator::Actuator;
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
 use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text};
-use super::mesh::Mesh;
+use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
 use super::surface::{Material, Texture};
@@ -81,6 +81,7 @@ table! {
         "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
         "mesh" mesh: Option<String> = None, TEXT, "Mesh; a primitive shape is fitted to it.";
+        "hfield" hfield: Option<String> = None, TEXT, "Height field.";
         "fitscale" fitscale: f64 = 1.0, real(Positive), "Factor on the size of a shape that is fitted to a mesh.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         with frame: Frame;
@@ -212,6 +213,7 @@ pub(super) struct Document {
     pub textures: Vec<Texture>,
     pub materials: Vec<Material>,
     pub meshes: Vec<Mesh>,
+    pub hfields: Vec<HField>,
     /// Density by which the inertia of meshes is scaled while their axes are sought, kg/m^3.
     pub mesh_density: f64,
     pub bodies: Vec<Body>,

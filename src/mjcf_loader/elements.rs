@@ -11,7 +11,7 @@ use super::custom::{Key, Numeric, Text};
 use super::document::{
     Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Replicate, Site, Size,
 };
-use super::mesh::Mesh;
+use super::mesh::{HField, Mesh};
 use super::relation::{
     ConnectEquality, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint,
     TendonLooks, TendonSite, WeldEquality,
@@ -85,7 +85,8 @@ static DEFAULT: Rule = rule(
 static TEXTURE: Rule = rule("texture", &[Texture::ATTRIBUTES], &[]);
 static MATERIAL: Rule = rule("material", &[CLASS, Material::ATTRIBUTES], &[]);
 static MESH: Rule = rule("mesh", &[CLASS, Mesh::ATTRIBUTES], &[]);
-static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH]);
+static HFIELD: Rule = rule("hfield", &[HField::ATTRIBUTES], &[]);
+static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH, &HFIELD]);
 
 static INERTIAL: Rule = rule("inertial", &[Inertial::ATTRIBUTES], &[]);
 static JOINT: Rule = rule("joint", &[CLASS, Joint::ATTRIBUTES], &[]);

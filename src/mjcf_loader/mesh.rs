@@ -1,4 +1,4 @@
-//! The table of meshes.
+//! The tables of meshes and height fields.
 
 use crate::math::Vec3;
 
@@ -43,5 +43,21 @@ table! {
         "smoothnormal" smoothnormal: bool = false, FLAG, own, "Whether normals are means over all faces of a vertex; else those that turn away from the mean by more than 37 degrees are left out.";
         "maxhullvert" maxhullvert: i32 = -1, int(-1, MAX_COUNT), "Most corners of the convex hull; -1 for any number. A hull that has more is refused.";
         "inertia" inertia: MeshInertia = MeshInertia::Legacy, INERTIAS, "Solid of which mass and inertia are: `convex`, the convex hull; `exact`, what the surface encloses; `legacy`, the same with all parts counted positive; `shell`, the surface.";
+    }
+}
+
+/// Greatest number of rows or columns.
+const MAX_SIDE: i64 = 1 << 16;
+
+table! {
+    /// `<hfield>`.
+    element HField {
+        "name" name: String = String::new(), TEXT, "Name; else that of the file.";
+        "file" file: Option<String> = None, TEXT, "File: a PNG picture, of which the red colour counts, or MuJoCo's binary format. Its numbers stand for those of the document.";
+        "content_type" content_type: Option<String> = None, TEXT, "Format of the file, whatever its ending: `image/png` or `image/vnd.mujoco.hfield`.";
+        "nrow" nrow: usize = 0, int(0, MAX_SIDE), "Number of rows, along y, where there is no file.";
+        "ncol" ncol: usize = 0, int(0, MAX_SIDE), "Number of columns, along x, where there is no file.";
+        "size" size: [f64; 4] = [0.0; 4], reals(4, Any), required, "Half lengths along x and y, greatest height over 0, depth of the base below 0, m.";
+        "elevation" elevation: Vec<f64> = Vec::new(), Kind::Data, "Heights, row by row from the greatest y; scaled so that they are from 0 to 1. Without any the field is flat.";
     }
 }

@@ -204,3 +204,115 @@ fn what_is_no_mesh_is_refused() {
             .contains("12 values")
     );
 }
+
+fn load_hfield(hfield: &str, geom: &str, limits: &Limits) -> Result<Model, String> {
+    let mut assets = MemoryAssets::new();
+    let heights = [0.0_f32, 1.0, 2.0, 4.0].into_iter().flat_map(f32::to_le_bytes);
+    let file: Vec<u8> = [2_i32, 2]
+        .into_iter()
+        .flat_map(i32::to_le_bytes)
+        .chain(heights)
+        .collect();
+    assets.insert("a.hf", file).expect("a plain name");
+    assets.insert("b.hf", b"short").expect("a plain name");
+    let text = format!("<mujoco><asset>{hfield}</asset><worldbody><geom {geom}/></worldbody></mujoco>");
+    let spec = load_str_with(&text, "m.xml", &assets, limits);
+    spec.and_then(compile).map_err(|e| e.to_string())
+}
+
+#[test]
+fn heights_are_scaled_and_begin_at_the_least_y() {
+    let load = |hfield: &str, name: &str| {
+        let geom = format!("type='hfield' hfield='{name}'");
+        load_hfield(hfield, &geom, &Limits::default()).expect("valid")
+    };
+    let model = load(
+        "<hfield name='h' nrow='2' ncol='2' size='2 3 4 1' elevation='1 3 5 5'/>",
+        "h",
+    );
+    let [hfield] = &model.hfields[..] else {
+        panic!("one height field")
+    };
+    assert_eq!(hfield.data, [1.0, 1.0, 0.0, 0.5]);
+    assert_eq!((model.geom_type[0], model.geom_dataid[0]), (GeomType::HField, Some(0)));
+    assert_eq!(model.geom_size[0], [2.0, 3.0, 1.5]);
+    assert_eq!(model.geom_aabb[0], [0.0, 0.0, 1.5, 2.0, 3.0, 2.5]);
+    assert_eq!(model.geom_rbound[0], 29.0_f64.sqrt());
+    let file = load("<hfield file='a.hf' size='2 3 4 1'/>", "a");
+    assert_eq!(
+        (file.hfields[0].name.as_str(), &file.hfields[0].data[..]),
+        ("a", &[0.0, 0.25, 0.5, 1.0][..])
+    );
+    let flat = load("<hfield name='h' nrow='3' ncol='2' size='2 3 4 1'/>", "h");
+    assert_eq!(flat.hfields[0].data, [0.0; 6]);
+}
+
+#[test]
+fn what_is_no_height_field_is_refused() {
+    let geom = "type='hfield' hfield='h'";
+    let own = |rest: &str| format!("<hfield name='h' {rest}/>");
+    let limits = Limits {
+        mesh_elements: 20,
+        ..Limits::default()
+    };
+    for (hfield, geom, part) in [
+        (own("nrow='2' ncol='2'"), geom, "attribute \"size\" is required"),
+        (own("nrow='2' ncol='2' size='1 1 1 0'"), geom, "must be positive"),
+        (own("nrow='1' ncol='2' size='1 1 1 1'"), geom, "2 rows and 2 columns"),
+        (
+            own("nrow='65536' ncol='65536' size='1 1 1 1'"),
+            geom,
+            "more than 20 heights",
+        ),
+        (
+            own("nrow='3' ncol='3' size='1 1 1 1'") + "<hfield name='i' nrow='3' ncol='4' size='1 1 1 1'/>",
+            geom,
+            "more than 11 heights",
+        ),
+        (
+            own("nrow='2' ncol='2' size='1 1 1 1' elevation='1 2 3'"),
+            geom,
+            "nrow times ncol",
+        ),
+        (
+            own("nrow='2' ncol='2' size='1 1 1 1' elevation='nan 2 3 4'"),
+            geom,
+            "not a finite number",
+        ),
+        (
+            own("nrow='2' ncol='2' size='1 1 1 1' elevation='3e38 -3e38 0 1e300'"),
+            geom,
+            "too far from each other",
+        ),
+        (
+            own("file='b.hf' size='1 1 1 1'"),
+            geom,
+            "file \"b.hf\": the file has 5 bytes",
+        ),
+        (own("file='c.hf' size='1 1 1 1'"), geom, "does not exist"),
+        (own("file='a.hf' content_type='a' size='1 1 1 1'"), geom, "content_type"),
+        (
+            "<hfield size='1 1 1 1'/>".to_owned(),
+            geom,
+            "attribute \"name\" is required",
+        ),
+        (
+            own("nrow='2' ncol='2' size='1 1 1 1'"),
+            "type='hfield'",
+            "attribute \"hfield\" is required",
+        ),
+        (
+            own("nrow='2' ncol='2' size='1 1 1 1'"),
+            "type='hfield' hfield='i'",
+            "there is no hfield \"i\"",
+        ),
+        (
+            own("nrow='2' ncol='2' size='1 1 1 1'"),
+            "size='1' hfield='h'",
+            "only a geom with type=\"hfield\"",
+        ),
+    ] {
+        let error = load_hfield(&hfield, geom, &limits).expect_err(&hfield);
+        assert!(error.contains("m.xml:1") && error.contains(part), "{hfield}: {error}");
+    }
+}

@@ -11,7 +11,7 @@ use super::document::{
     Orientation, Replicate, Site, Size,
 };
 use super::error::{ErrorKind, LoadError};
-use super::mesh::Mesh;
+use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{DEFAULT, Element};
 use super::sensor::{Object, Sensor};
@@ -141,6 +141,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         textures: Vec::new(),
         materials: Vec::new(),
         meshes: Vec::new(),
+        hfields: Vec::new(),
         mesh_density: Geom::initial().density,
         bodies: vec![world],
         frames: Vec::new(),
@@ -229,6 +230,7 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
     let class = || classes.of(e, MAIN);
     match (section, e.name) {
         ("asset", "texture") => document.textures.push(Texture::read(e)),
+        ("asset", "hfield") => document.hfields.push(HField::read(e)),
         ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
         ("asset", _) => document.materials.push(with(&class()?.material, e, Material::apply)),
         ("contact", "pair") => document.pairs.push(with(&class()?.pair, e, Pair::apply)),

@@ -75,6 +75,7 @@ counts! {
     nmat materials "materials",
     ntex textures "textures",
     nmesh meshes "meshes",
+    nhfield hfields "height fields",
     npair pair_geom "explicit contact pairs",
     nexclude exclude "excluded body pairs",
     neq eq_name "equality constraints",

@@ -150,7 +150,7 @@ fn values_are_checked() {
     );
     check_world(
         "<geom type='torus'/>",
-        "geom: type=\"torus\": not one of plane, sphere, capsule, ellipsoid, cylinder, box, mesh",
+        "geom: type=\"torus\": not one of plane, hfield, sphere, capsule, ellipsoid, cylinder, box, mesh",
     );
     check("<option timestep='0'/>", "mujoco/option: timestep: 0 must be positive");
     check(

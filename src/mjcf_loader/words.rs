@@ -36,6 +36,7 @@ pub(super) const JOINTS: Words<JointType> = words! {
 pub(super) const FLUID: Words<bool> = words! { "none" => false, "ellipsoid" => true };
 pub(super) const SHAPES: Words<GeomType> = words! {
     "plane" => GeomType::Plane,
+    "hfield" => GeomType::HField,
     "sphere" => GeomType::Sphere,
     "capsule" => GeomType::Capsule,
     "ellipsoid" => GeomType::Ellipsoid,
@@ -43,7 +44,7 @@ pub(super) const SHAPES: Words<GeomType> = words! {
     "box" => GeomType::Box,
     "mesh" => GeomType::Mesh,
 };
-/// The shapes of sites, which are neither planes nor meshes.
+/// The shapes of sites, which are neither planes nor height fields nor meshes.
 pub(super) const SITE_SHAPES: Words<GeomType> = words! {
     "sphere" => GeomType::Sphere,
     "capsule" => GeomType::Capsule,

@@ -51,6 +51,8 @@ impl JointType {
 pub enum GeomType {
     /// Infinite for collision; `size` is half width, half length, grid spacing.
     Plane,
+    /// A height field; `size` is half width, half length, and half of a mean height over the base.
+    HField,
     /// `size` is the radius.
     Sphere,
     /// `size` is radius, half length of the segment along z.

@@ -7,6 +7,7 @@
 
 mod complete;
 mod elements;
+mod hfield;
 mod mesh;
 mod sensor;
 
@@ -17,6 +18,7 @@ pub use elements::{
     JointType, Keyframe, Light, Material, Options, SolverType, Statistic, TrnType, Wrap,
 };
 internals!(use elements::{Builtin, Mark, SameFrame, Texture, TextureType, Visual});
+pub use hfield::HField;
 pub use mesh::{Mesh, MeshHull};
 pub use sensor::{DataType, ObjType, SensorType};
 
@@ -176,7 +178,7 @@ arrays! {
     geom_type: Vec<GeomType>,
     /// Size, m; see [`GeomType`].
     geom_size: Vec<Vec3>,
-    /// Mesh that the geom is, or that a primitive is fitted to.
+    /// Mesh that the geom is, or that a primitive is fitted to; of a height field, its id among those.
     geom_dataid: Vec<Option<usize>>,
     /// Body that carries the geom.
     geom_bodyid: Vec<usize>,
@@ -275,6 +277,8 @@ arrays! {
 
     /// Meshes.
     meshes: Vec<Mesh>,
+    /// Height fields.
+    hfields: Vec<HField>,
 
     /// Lights.
     lights: Vec<Light>,
@@ -484,6 +488,7 @@ sizes! {
     npair pair_geom "explicit contact pairs",
     nkey keys "keyframes",
     nmesh meshes "meshes",
+    nhfield hfields "height fields",
 }
 
 impl Arrays {

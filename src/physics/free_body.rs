@@ -90,8 +90,8 @@ impl State {
     /// Changes the size of the first geom of a body.
     fn resize(&mut self, model: &Model, body: usize, size: Vec3) -> Result<(), EngineError> {
         let geom = model.body_geomadr[body];
-        // the size of a mesh is that of its vertices, which stay as they are
-        if model.body_geomnum[body] == 0 || model.geom_type[geom] == GeomType::Mesh {
+        // meshes and height fields stay as they are
+        if model.body_geomnum[body] == 0 || matches!(model.geom_type[geom], GeomType::HField | GeomType::Mesh) {
             let body = model.body_name[body].clone();
             return Err(EngineError::NoGeom { body });
         }

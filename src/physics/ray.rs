@@ -65,8 +65,8 @@ pub(super) fn ray_shape(
         }
         GeomType::Cylinder => cylinder(size, p, v),
         GeomType::Box => cuboid(size, p, v),
-        // its triangles are with the model, and no site is one
-        GeomType::Mesh => None,
+        // its triangles are with the model, and no site is one; models with height fields have no rays
+        GeomType::HField | GeomType::Mesh => None,
     }
 }
 

@@ -35,7 +35,7 @@ pub enum Shape {
     Cylinder,
     /// A box: [`Mesh::cube`](crate::render::Mesh::cube).
     Box,
-    /// A mesh of the model, or a part of a large one.
+    /// A mesh or a height field of the model, or a part of a large one.
     Mesh,
 }
 
@@ -105,7 +105,7 @@ fn dimensions(kind: GeomType, size: Vec3, far: f32) -> (Shape, [f32; 3], f32) {
         GeomType::Ellipsoid => (Shape::Sphere, [a, b, c], a.max(b).max(c)),
         GeomType::Cylinder => (Shape::Cylinder, [a, a, b], length([a, b, 0.0])),
         GeomType::Box => (Shape::Box, [a, b, c], length([a, b, c])),
-        GeomType::Mesh => (Shape::Mesh, [1.0; 3], length([a, b, c])),
+        GeomType::HField | GeomType::Mesh => (Shape::Mesh, [1.0; 3], length([a, b, c])),
     }
 }
 
@@ -135,6 +135,11 @@ impl Drawable {
             far,
             texuniform: false,
         };
+        if let Element::Geom(g) = element
+            && kind == GeomType::HField
+        {
+            drawable.radius = model.geom_rbound[g] as f32;
+        }
         if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
             if drawable.rgba == DEFAULT_RGBA {
                 drawable.rgba = single(m.rgba);

@@ -1,20 +1,21 @@
-//! Meshes of the model, as pictures need them.
+//! Meshes and height fields of the model, as pictures need them.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::drawable::Element;
 use super::mesh::{LANES, Mesh, MeshPart};
-use crate::model::{self, Model};
+use crate::model::{self, GeomType, HField, Model};
 
 /// The most vertices of a part: triangles count them in 16 bits, and a part is filled up to whole groups.
 const MOST: usize = (1 << 16) - LANES;
 /// Least cosine between the normal of a vertex and that of a face for the face to be smooth there.
 const SMOOTH: f32 = 0.8;
 
-/// The meshes of a model that are drawn, each cut into parts.
+/// The meshes and height fields of a model that are drawn, each cut into parts.
 pub struct ModelMeshes {
-    parts: Vec<Option<Range<usize>>>,
+    meshes: Vec<Option<Range<usize>>>,
+    hfields: Vec<Option<Range<usize>>>,
 }
 
 /// A corner of a triangle: vertex, normal to the bit, texture coordinates.
@@ -23,29 +24,35 @@ type Corner = (u32, [u32; 3], u32);
 impl ModelMeshes {
     pub fn new(model: &Model) -> Self {
         Self {
-            parts: vec![None; model.meshes.len()],
+            meshes: vec![None; model.meshes.len()],
+            hfields: vec![None; model.hfields.len()],
         }
     }
 
-    /// Returns the places in `meshes` of the parts of the mesh that an element shows, which are added at the first call.
+    /// Returns the places in `meshes` of the parts of the mesh or height field that an element shows, which are added at the first call.
     pub fn parts(&mut self, model: &Model, element: Element, meshes: &mut Vec<Mesh>) -> Range<usize> {
-        let id = match element {
-            Element::Geom(g) => model.geom_dataid[g],
-            Element::Site(_) => None,
-        };
-        let (Some(mesh), Some(parts)) = (
-            id.and_then(|id| model.meshes.get(id)),
-            id.and_then(|id| self.parts.get_mut(id)),
-        ) else {
-            return 0..0;
-        };
-        parts
-            .get_or_insert_with(|| {
+        let Element::Geom(g) = element else { return 0..0 };
+        let Some(id) = model.geom_dataid[g] else { return 0..0 };
+        let mut add = |known: Option<&mut Option<Range<usize>>>, cut: &dyn Fn(&mut Vec<Mesh>)| {
+            let known = known?;
+            let range = known.get_or_insert_with(|| {
                 let first = meshes.len();
-                cut(mesh, meshes);
+                cut(meshes);
                 first..meshes.len()
-            })
-            .clone()
+            });
+            Some(range.clone())
+        };
+        let parts = match model.geom_type[g] {
+            GeomType::HField => {
+                let field = model.hfields.get(id);
+                field.and_then(|field| add(self.hfields.get_mut(id), &|meshes| cut_field(field, meshes)))
+            }
+            _ => {
+                let mesh = model.meshes.get(id);
+                mesh.and_then(|mesh| add(self.meshes.get_mut(id), &|meshes| cut(mesh, meshes)))
+            }
+        };
+        parts.unwrap_or(0..0)
     }
 }
 
@@ -107,6 +114,64 @@ fn cut(source: &model::Mesh, meshes: &mut Vec<Mesh>) {
             });
         }
         part.mesh.triangles.push(triangle);
+    }
+    part.finish(meshes);
+}
+
+/// Number of rectangles of each side of the base, as MuJoCo's renderer has it.
+const QUADS: usize = 4;
+
+/// Makes the parts of a height field: flat triangles of its surface, its sides and its base.
+fn cut_field(field: &HField, meshes: &mut Vec<Mesh>) {
+    let [x, y, top, base] = field.size.map(|v| v as f32);
+    let (rows, columns) = (field.nrow, field.ncol);
+    let mut part = Part::new();
+    let mut add = |corners: [[f32; 3]; 3], normal: [f32; 3]| {
+        if part.mesh.x.len() + 3 > MOST {
+            std::mem::replace(&mut part, Part::new()).finish(meshes);
+        }
+        let first = part.mesh.x.len() as u16;
+        corners.iter().for_each(|&corner| part.mesh.push((corner, normal)));
+        part.mesh.triangles.push([first, first + 1, first + 2]);
+    };
+    let along = |k: usize, count: usize| k as f32 / (0.5 * (count - 1) as f32) - 1.0;
+    let height = |r: usize, c: usize| field.data.get(r * columns + c).copied().unwrap_or_default() * top;
+    let at = |r: usize, c: usize| [x * along(c, columns), y * along(r, rows), height(r, c)];
+    for r in 0..rows - 1 {
+        for c in 0..columns - 1 {
+            let [a, b, d, e] = [at(r + 1, c), at(r, c), at(r + 1, c + 1), at(r, c + 1)];
+            for corners in [[a, b, d], [b, e, d]] {
+                add(corners, normal(corners));
+            }
+        }
+    }
+    let mut quad = |corners: [[f32; 3]; 4], normal: [f32; 3]| {
+        let [a, b, c, d] = corners;
+        // as the reference splits them
+        add([a, b, d], normal);
+        add([b, c, d], normal);
+    };
+    let low = |[x, y, _]: [f32; 3]| [x, y, -base];
+    for r in 0..rows - 1 {
+        let (a, b) = (at(r, 0), at(r + 1, 0));
+        quad([low(b), low(a), a, b], [-1.0, 0.0, 0.0]);
+        let (a, b) = (at(r, columns - 1), at(r + 1, columns - 1));
+        quad([low(a), low(b), b, a], [1.0, 0.0, 0.0]);
+    }
+    for c in 0..columns - 1 {
+        let (a, b) = (at(0, c), at(0, c + 1));
+        quad([low(a), low(b), b, a], [0.0, -1.0, 0.0]);
+        let (a, b) = (at(rows - 1, c), at(rows - 1, c + 1));
+        quad([low(b), low(a), a, b], [0.0, 1.0, 0.0]);
+    }
+    let place = |r: usize, c: usize| [x * along(c, QUADS + 1), y * along(r, QUADS + 1), -base];
+    for r in 0..QUADS {
+        for c in 0..QUADS {
+            quad(
+                [place(r, c), place(r + 1, c), place(r + 1, c + 1), place(r, c + 1)],
+                [0.0, 0.0, -1.0],
+            );
+        }
     }
     part.finish(meshes);
 }

@@ -213,6 +213,7 @@ const GEOM: &[Rule] = &[
         }),
     ),
     ("mesh", Placed(&["boulder"])),
+    ("hfield", Nothing),
     ("fitscale", Drawn(0.2, |d| d.log(0.5, 2.0))),
 ];
 
@@ -545,6 +546,7 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
     "visual",
     "asset/texture",
     "asset/material",
+    "asset/hfield",
     "custom",
     "keyframe",
     "worldbody/body/camera",

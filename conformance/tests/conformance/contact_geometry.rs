@@ -106,6 +106,7 @@ fn contacts_of_single_pairs_equal_mujocos() {
             pos: fixed(&recording.pos, 2 * pose + k),
             mat: &mats[k],
             mesh: None,
+            hfield: None,
         });
         let (radius_a, radius_b) = (recording.rbound[2 * pose], recording.rbound[2 * pose + 1]);
         let margin = recording.margin[pose];
@@ -166,6 +167,7 @@ fn a_moved_geom_is_noticed() {
             pos: fixed(&recording.pos, 2 * pose + k),
             mat: &mats[k],
             mesh: None,
+            hfield: None,
         });
         b.pos = b.pos.map(|x| x + 1e-10);
         if ncon > 0 {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate};
+use crate::mjcf_loader::compile::hfield::hfield_name;
 use crate::mjcf_loader::compile::mesh::mesh_name;
 use crate::mjcf_loader::document::{Compiler, Document, Tri};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
@@ -179,6 +180,7 @@ pub(super) struct Ids {
     pub texture: Names,
     pub material: Names,
     pub mesh: Names,
+    pub hfield: Names,
     pub camera: Names,
     pub tendon: Names,
     pub actuator: Names,
@@ -193,6 +195,12 @@ impl Ids {
         let geoms = bodies.iter().flat_map(|b| &b.geoms).map(|g| (g.at, &g.name));
         let sites = bodies.iter().flat_map(|b| &b.sites).map(|s| (s.at, &s.name));
         let cameras = bodies.iter().flat_map(|b| &b.cameras).map(|c| (c.at, &c.name));
+        let hfield_names = document
+            .hfields
+            .iter()
+            .map(|hfield| hfield_name(tree, hfield))
+            .collect::<Result<Vec<_>, _>>()?;
+        let hfields = document.hfields.iter().zip(&hfield_names).map(|(h, name)| (h.at, name));
         let mesh_names = document
             .meshes
             .iter()
@@ -209,6 +217,7 @@ impl Ids {
             camera: Names::new(tree, "camera", cameras)?,
             tendon: Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?,
             actuator: Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?,
+            hfield: Names::new(tree, "hfield", hfields)?,
             mesh: Names::new(tree, "mesh", meshes)?,
             material: Names::new(tree, "material", document.materials.iter().map(|m| (m.at, &m.name)))?,
         })

@@ -69,7 +69,7 @@ pub(super) fn fluid(kind: GeomType, size: &Vec3, coef: [f64; 5]) -> [f64; 12] {
         GeomType::Sphere => [size[0]; 3],
         GeomType::Capsule => [size[0], size[0], size[1] + size[0]],
         GeomType::Cylinder => [size[0], size[0], size[1]],
-        GeomType::Plane | GeomType::Ellipsoid | GeomType::Box | GeomType::Mesh => *size,
+        GeomType::Plane | GeomType::Ellipsoid | GeomType::Box | GeomType::Mesh | GeomType::HField => *size,
     };
     let volume = 4.0 / 3.0 * PI * x * y * z;
     let [kx, ky, kz] = [resistance([x, y, z]), resistance([y, z, x]), resistance([z, x, y])];

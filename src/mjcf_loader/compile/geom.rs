@@ -9,7 +9,7 @@ use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_to_mat};
 use crate::mjcf_loader::document::{Frame, Geom};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::settings::single;
-use crate::model::{Arrays, GeomType};
+use crate::model::{Arrays, GeomType, HField};
 
 /// Returns the position, orientation and size of a shape, from its frame or from `fromto`.
 pub(super) fn place(
@@ -30,7 +30,7 @@ pub(super) fn place(
     match kind {
         GeomType::Capsule | GeomType::Cylinder => size[1] = half,
         GeomType::Box | GeomType::Ellipsoid => size = [size[0], size[0], half],
-        GeomType::Plane | GeomType::Sphere | GeomType::Mesh => {
+        GeomType::Plane | GeomType::HField | GeomType::Sphere | GeomType::Mesh => {
             return Err(context.invalid(at, "fromto needs a capsule, cylinder, box or ellipsoid"));
         }
     }
@@ -66,6 +66,7 @@ pub(super) fn compile_geom(
     arrays: &mut Arrays,
 ) -> Result<Solid, LoadError> {
     let (mut pos, mut quat, mut size) = place(context, geom.at, geom.kind, geom.size, &geom.frame, geom.fromto)?;
+    let hfield = hfield_of(context, geom, ids)?;
     let mesh = place_mesh(context, geom, ids, (&mut pos, &mut quat, &mut size), arrays)?;
     let (pos, quat) = context.placed(geom.within, pos, quat);
     check_size(context, geom.at, geom.kind, &size)?;
@@ -78,6 +79,10 @@ pub(super) fn compile_geom(
     let find = |name: &String| ids.material.find(context.tree, geom.at, "material", name);
     arrays.geom_name.push(geom.name.clone());
     arrays.geom_type.push(geom.kind);
+    if let Some(id) = hfield {
+        let [x, y, top, base] = arrays.hfields[id].size;
+        size = [x, y, 0.25 * top + 0.5 * base];
+    }
     arrays.geom_size.push(size);
     arrays.geom_bodyid.push(body);
     arrays.geom_pos.push(pos);
@@ -97,10 +102,15 @@ pub(super) fn compile_geom(
     } else {
         [0.0; 12]
     });
-    let extent = Extent::of(geom.kind, &size, mesh, arrays);
+    let extent = match hfield.map(|id| &arrays.hfields[id]) {
+        Some(hfield) => Extent::of_hfield(hfield),
+        None => Extent::of(geom.kind, &size, mesh, arrays),
+    };
     arrays.geom_aabb.push(extent.aabb);
-    arrays.geom_dataid.push(mesh);
-    arrays.geom_rbound.push(bounding_radius(geom.kind, &size));
+    arrays.geom_dataid.push(mesh.or(hfield));
+    arrays
+        .geom_rbound
+        .push(extent.radius.unwrap_or_else(|| bounding_radius(geom.kind, &size)));
     arrays.geom_group.push(geom.group);
     arrays.geom_rgba.push(geom.rgba.map(single));
     arrays.geom_matid.push(geom.material.as_ref().map(find).transpose()?);
@@ -123,9 +133,23 @@ struct Extent {
     volume: f64,
     /// The size by which inertia is computed.
     inertia_box: Vec3,
+    /// Radius of the sphere around it, where that does not follow from its size.
+    radius: Option<f64>,
 }
 
 impl Extent {
+    /// Returns that of a height field, which weighs as much as a box of its mean height.
+    fn of_hfield(hfield: &HField) -> Self {
+        let [x, y, top, base] = hfield.size;
+        let size = [x, y, 0.25 * top + 0.5 * base];
+        Self {
+            aabb: [0.0, 0.0, (top - base) / 2.0, x, y, (top + base) / 2.0],
+            volume: volume(GeomType::HField, &size),
+            inertia_box: size,
+            radius: Some((x * x + y * y + (top * top).max(base * base)).sqrt()),
+        }
+    }
+
     /// Returns that of a mesh, where the geom is one, else that of its shape, to which one may have been fitted.
     fn of(kind: GeomType, size: &Vec3, mesh: Option<usize>, arrays: &Arrays) -> Self {
         match mesh.filter(|_| kind == GeomType::Mesh).map(|id| &arrays.meshes[id]) {
@@ -137,14 +161,26 @@ impl Extent {
                     aabb: [centre[0], centre[1], centre[2], reach[0], reach[1], reach[2]],
                     volume: mesh.volume,
                     inertia_box: mesh.inertia_box,
+                    radius: None,
                 }
             }
             None => Self {
                 aabb: bounding_box(kind, size),
                 volume: volume(kind, size),
                 inertia_box: *size,
+                radius: None,
             },
         }
+    }
+}
+
+/// Returns the height field of a geom that is one.
+fn hfield_of(context: &Context, geom: &Geom, ids: &Ids) -> Result<Option<usize>, LoadError> {
+    match (&geom.hfield, geom.kind) {
+        (Some(name), GeomType::HField) => ids.hfield.find(context.tree, geom.at, "hfield", name).map(Some),
+        (None, GeomType::HField) => Err(context.error(geom.at, ErrorKind::MissingAttribute("hfield"))),
+        (Some(_), _) => Err(context.invalid(geom.at, "only a geom with type=\"hfield\" has a height field")),
+        (None, _) => Ok(None),
     }
 }
 

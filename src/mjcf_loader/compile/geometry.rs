@@ -159,7 +159,7 @@ pub(super) fn size_count(kind: GeomType) -> usize {
         GeomType::Sphere => 1,
         GeomType::Capsule | GeomType::Cylinder => 2,
         GeomType::Plane | GeomType::Ellipsoid | GeomType::Box => 3,
-        GeomType::Mesh => 0,
+        GeomType::HField | GeomType::Mesh => 0,
     }
 }
 
@@ -178,7 +178,7 @@ pub(in crate::mjcf_loader) fn volume(kind: GeomType, size: &Vec3) -> f64 {
             PI * a * a * height
         }
         GeomType::Ellipsoid => 4.0 * PI * a * b * c / 3.0,
-        GeomType::Box => a * b * c * 8.0,
+        GeomType::Box | GeomType::HField => a * b * c * 8.0,
     }
 }
 
@@ -209,7 +209,7 @@ pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
             mass * (a * a + c * c) / 5.0,
             mass * (a * a + b * b) / 5.0,
         ],
-        GeomType::Box | GeomType::Mesh => [
+        GeomType::Box | GeomType::HField | GeomType::Mesh => [
             mass * (b * b + c * c) / 3.0,
             mass * (a * a + c * c) / 3.0,
             mass * (a * a + b * b) / 3.0,
@@ -226,7 +226,7 @@ pub(crate) fn bounding_radius(kind: GeomType, size: &Vec3) -> f64 {
         GeomType::Capsule => a + b,
         GeomType::Cylinder => (a * a + b * b).sqrt(),
         GeomType::Ellipsoid => a.max(b).max(c),
-        GeomType::Box | GeomType::Mesh => (a * a + b * b + c * c).sqrt(),
+        GeomType::Box | GeomType::HField | GeomType::Mesh => (a * a + b * b + c * c).sqrt(),
     }
 }
 
@@ -241,7 +241,7 @@ pub(super) fn bounding_box(kind: GeomType, size: &Vec3) -> [f64; 6] {
         GeomType::Sphere => [0.0, 0.0, 0.0, a, a, a],
         GeomType::Capsule => [0.0, 0.0, 0.0, a, a, a + b],
         GeomType::Cylinder => [0.0, 0.0, 0.0, a, a, b],
-        GeomType::Ellipsoid | GeomType::Box | GeomType::Mesh => [0.0, 0.0, 0.0, a, b, c],
+        GeomType::Ellipsoid | GeomType::Box | GeomType::HField | GeomType::Mesh => [0.0, 0.0, 0.0, a, b, c],
     }
 }
 

@@ -8,6 +8,7 @@ mod custom;
 mod fluid;
 mod geom;
 mod geometry;
+mod hfield;
 mod mesh;
 mod sensor;
 mod surface;
@@ -24,7 +25,7 @@ use crate::assets::AssetSource;
 use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
-/// Compiles the document into everything but what needs dynamics. Images and meshes are looked up in `source`, relative to `dir`;
+/// Compiles the document into everything but what needs dynamics. Images, meshes and heights are looked up in `source`, relative to `dir`;
 /// images are not decoded.
 pub(super) fn compile(
     tree: &Tree,
@@ -61,6 +62,7 @@ pub(super) fn compile(
         arrays.materials.push(material);
     }
     mesh::compile_meshes(&context, document, &ids, (source, dir), &mut arrays)?;
+    arrays.hfields = hfield::compile_hfields(&context, document, source, dir)?;
     body::compile(&context, document, &ids, &mut arrays)?;
     same_frames(&mut arrays);
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;

@@ -177,7 +177,7 @@ fn two(
         ObjType::Body => Some(arrays.geom_bodyid[g]) == id,
         _ => Some(g) == id,
     };
-    let unlike = |g: usize| matches!(arrays.geom_type[g], GeomType::Mesh);
+    let unlike = |g: usize| matches!(arrays.geom_type[g], GeomType::Mesh | GeomType::HField);
     if (0..arrays.ngeom()).any(|g| unlike(g) && (measured(first, g) || measured(second, g))) {
         let message =
             "distances from meshes and height fields are not measured: fit a shape to the mesh, and measure from that";

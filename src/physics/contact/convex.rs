@@ -81,7 +81,7 @@ impl Search<'_, '_> {
             Rod => self.deep(&Cylinder::new(a, margin) as &dyn Support, mesh),
             Box => self.deep(&Cuboid::new(a, margin) as &dyn Support, mesh),
             GeomType::Mesh => self.deep(&MeshShape::new(a, a.mesh?, margin) as &dyn Support, mesh),
-            GeomType::Plane => None,
+            GeomType::Plane | GeomType::HField => None,
         }
     }
 

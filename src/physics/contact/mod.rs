@@ -15,11 +15,12 @@
 //! |---|---|---|
 //! | plane with sphere, capsule, ellipsoid, cylinder, box, mesh | deepest points | up to 1, 2, 1, 4, 4, 3 |
 //! | sphere with sphere, capsule, cylinder, box | nearest points | up to 1 |
+//! | height field with everything but planes and height fields | GJK and EPA with each prism of its grid | up to 50 |
 //! | capsule with capsule, box | nearest points, a second one along the capsule | up to 2 |
 //! | box with box | separating axes, then clipping | up to 24 |
 //! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1 |
 //!
-//! Planes touch no planes. Of meshes the convex hulls touch. The order of
+//! Planes and height fields touch neither planes nor height fields. Of meshes the convex hulls touch. The order of
 //! a hull's edges is that of its vertices, not that of Qhull, which MuJoCo has: where several corners are equally far in a direction another one may be
 //! found first, and where more than two neighbours of the deepest corner are below a plane, others of them may touch it.
 //!
@@ -29,8 +30,8 @@
 //! use babybench::model::GeomType;
 //! use babybench::physics::contact::{ContactOptions, PlacedGeom, Scratch, collide};
 //!
-//! let floor = PlacedGeom { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID, mesh: None };
-//! let ball = PlacedGeom { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID, mesh: None };
+//! let floor = PlacedGeom { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID, mesh: None, hfield: None };
+//! let ball = PlacedGeom { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID, mesh: None, hfield: None };
 //! let mut contacts = Vec::new();
 //! collide(&floor, &ball, 0.0, &ContactOptions::default(), &mut Scratch::new(), &mut contacts);
 //! assert_eq!(contacts[0].dist, -0.25);
@@ -45,8 +46,10 @@ mod capsule_box;
 mod convex;
 mod distance;
 mod epa;
+mod fix_normal;
 pub(crate) mod frame;
 mod gjk;
+mod hfield;
 mod mesh;
 mod nearest;
 mod plane;
@@ -59,7 +62,7 @@ mod tests;
 pub use distance::{Span, distance};
 
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
-use crate::model::{GeomType, Mesh};
+use crate::model::{GeomType, HField, Mesh};
 use crate::physics::MAXVAL as BIG;
 
 /// A geom with its pose.
@@ -75,6 +78,8 @@ pub struct PlacedGeom<'a> {
     pub mat: &'a Mat3,
     /// The mesh, of a geom that is one, which without it touches nothing, or of an ellipsoid that was fitted to one.
     pub mesh: Option<&'a Mesh>,
+    /// The height field, of a geom that is one: without it the geom touches nothing.
+    pub hfield: Option<&'a HField>,
 }
 
 impl PlacedGeom<'_> {
@@ -228,12 +233,13 @@ pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f6
 
 /// Tells whether contacts of two kinds of geoms, in any order, come from the routine for all convex shapes (MuJoCo's `mjc_Convex`).
 pub(crate) fn needs_convex(a: GeomType, b: GeomType) -> bool {
-    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Mesh, Sphere};
+    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, HField, Mesh, Sphere};
     matches!(
         (a.min(b), a.max(b)),
         (Sphere | Capsule | Ellipsoid, Ellipsoid)
             | (Capsule | Ellipsoid | Cylinder, Cylinder)
             | (Ellipsoid | Cylinder, Box)
+            | (HField, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh)
             | (Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh, Mesh)
     )
 }
@@ -250,7 +256,7 @@ pub fn collide(
     scratch: &mut Scratch,
     out: &mut Vec<ContactPoint>,
 ) {
-    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, Mesh, Plane, Sphere};
+    use GeomType::{Box, Capsule, Cylinder, Ellipsoid, HField, Mesh, Plane, Sphere};
     match (a.kind, b.kind) {
         (Plane, Sphere) => plane::plane_sphere(a, b, margin, out),
         (Plane, Capsule) => plane::plane_capsule(a, b, margin, out),
@@ -267,6 +273,9 @@ pub fn collide(
             if let Some(mesh) = b.mesh {
                 mesh::plane_mesh(a, b, mesh, margin, out);
             }
+        }
+        (HField, Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh) => {
+            hfield::hfield(a, b, margin, options, &mut scratch.polytope, out);
         }
         (Sphere, Sphere) => push(round::sphere_sphere(a, b, margin), out),
         (Sphere, Capsule) => push(round::sphere_capsule(a, b, margin), out),

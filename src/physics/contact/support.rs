@@ -293,6 +293,7 @@ mod tests {
             pos: [1.0, 0.0, 0.0],
             mat: &MAT3_ID,
             mesh: None,
+            hfield: None,
         };
         let cylinder = Cylinder::new(&geom, 0.0);
         assert_eq!(cylinder.support([0.0, 0.0, 1.0]), [1.0, 0.0, 2.0]);

@@ -124,6 +124,7 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
             pos: [0.0; 3],
             mat: &MAT3_ID,
             mesh: None,
+            hfield: None,
         };
         let b = PlacedGeom {
             kind: second,
@@ -131,6 +132,7 @@ fn normals_point_from_first_to_second_and_positions_lie_midway() {
             pos: [0.003, -0.002, below + above - depth],
             mat: &MAT3_ID,
             mesh: None,
+            hfield: None,
         };
         let found = contacts(
             &a,
@@ -171,6 +173,7 @@ fn frames_are_rotations_and_a_used_scratch_changes_nothing() {
                 pos,
                 mat: &mat_a,
                 mesh: None,
+                hfield: None,
             };
             let b = PlacedGeom {
                 kind: second,
@@ -178,6 +181,7 @@ fn frames_are_rotations_and_a_used_scratch_changes_nothing() {
                 pos: add(pos, random.vec(0.15)),
                 mat: &mat_b,
                 mesh: None,
+                hfield: None,
             };
             let mut out = Vec::new();
             collide(&a, &b, 0.0, &options, &mut scratch, &mut out);
@@ -210,6 +214,7 @@ fn pairs_that_do_not_collide_or_come_in_the_wrong_order_give_nothing() {
                 pos: [x, 0.0, 0.1],
                 mat: &MAT3_ID,
                 mesh: None,
+                hfield: None,
             };
             assert!(contacts(&geom(first, 0.0), &geom(second, 0.1), 0.0, &ContactOptions::default()).is_empty());
             checked += 1;
@@ -237,6 +242,7 @@ fn input_that_is_not_sane_is_survived() {
                     pos: part(3),
                     mat: &mat_a,
                     mesh: None,
+                    hfield: None,
                 };
                 let b = PlacedGeom {
                     kind: second,
@@ -244,6 +250,7 @@ fn input_that_is_not_sane_is_survived() {
                     pos: part(18),
                     mat: &mat_b,
                     mesh: None,
+                    hfield: None,
                 };
                 let margin = if round % 2 == 0 { 0.0 } else { random.pick(&ODD) };
                 let quirks = if round % 4 < 2 {
@@ -274,6 +281,7 @@ fn a_stack_of_boxes_has_half_the_depth_by_default() {
         pos: [0.0; 3],
         mat: &MAT3_ID,
         mesh: None,
+        hfield: None,
     };
     let b = PlacedGeom {
         pos: [0.25, 0.125, 0.75],
@@ -305,6 +313,7 @@ fn geoms_with_one_centre_touch_only_without_the_quirks() {
         pos: [0.0; 3],
         mat: &MAT3_ID,
         mesh: None,
+        hfield: None,
     };
     for other in [&MAT3_ID, &mat] {
         let b = PlacedGeom { mat: other, ..a };
@@ -371,6 +380,7 @@ fn every_quirk_can_be_switched_off() {
                 pos: [0.0; 3],
                 mat: &mat_a,
                 mesh: None,
+                hfield: None,
             };
             let b = PlacedGeom {
                 kind: GeomType::Box,
@@ -378,6 +388,7 @@ fn every_quirk_can_be_switched_off() {
                 pos: grid(random.vec(0.2)),
                 mat: &mat_b,
                 mesh: None,
+                hfield: None,
             };
             let other = ContactOptions {
                 quirks,

@@ -92,6 +92,7 @@ impl ContactDispatcher {
             pos: [0.0; 3],
             mat: &mat1,
             mesh: None,
+            hfield: None,
         };
         let second = PlacedGeom {
             kind: kind2,
@@ -99,6 +100,7 @@ impl ContactDispatcher {
             pos: [t.x, t.y, t.z],
             mat: &mat2,
             mesh: None,
+            hfield: None,
         };
         let flipped = kind1 > kind2;
         let ((a, ra), (b, rb)) = if flipped {

@@ -112,7 +112,7 @@ pub(super) fn shape(kind: GeomType, s: Vec3) -> SharedShape {
         GeomType::Ellipsoid => SharedShape::ball(s[0].max(s[1]).max(s[2])),
         GeomType::Cylinder => SharedShape::cylinder(s[1], s[0]),
         // a mesh that touches is refused; queries see the box around it
-        GeomType::Box | GeomType::Mesh => SharedShape::cuboid(s[0], s[1], s[2]),
+        GeomType::Box | GeomType::HField | GeomType::Mesh => SharedShape::cuboid(s[0], s[1], s[2]),
     }
 }
 

@@ -63,7 +63,9 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
             || model.pair_geom.iter().any(|pair| pair.contains(&g));
         let what = match model.geom_type[g] {
             GeomType::Ellipsoid => "Parry has no ellipsoid that things could touch",
-            GeomType::Mesh => "meshes that things could touch are the soft engine's only",
+            GeomType::HField | GeomType::Mesh => {
+                "meshes and height fields that things could touch are the soft engine's only"
+            }
             _ => continue,
         };
         if touches {

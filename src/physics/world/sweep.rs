@@ -247,11 +247,15 @@ pub(in crate::physics) fn placed<'a>(model: &'a Model, s: &'a State, g: usize) -
             GeomType::Mesh | GeomType::Ellipsoid => model.geom_dataid[g].and_then(|mesh| model.meshes.get(mesh)),
             _ => None,
         },
+        hfield: match model.geom_type[g] {
+            GeomType::HField => model.geom_dataid[g].and_then(|hfield| model.hfields.get(hfield)),
+            _ => None,
+        },
     }
 }
 
-/// Returns the world box of a geom, enlarged by `slack` (m), from its size and the box around it in its frame, which only a mesh
-/// needs. A plane fills the half space behind it.
+/// Returns the world box of a geom, enlarged by `slack` (m), from its size and the box around it in its frame, which only meshes
+/// and height fields need. A plane fills the half space behind it.
 #[inline(always)]
 fn aabb(kind: GeomType, (size, own): (Vec3, &[f64; 6]), mut pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3; 2] {
     let half: Vec3 = match kind {
@@ -268,7 +272,7 @@ fn aabb(kind: GeomType, (size, own): (Vec3, &[f64; 6]), mut pos: Vec3, mat: &Mat
             let a = mat[3 * k + 2];
             a.abs() * size[1] + size[0] * (1.0 - a * a).max(0.0).sqrt()
         }),
-        GeomType::Mesh => {
+        GeomType::HField | GeomType::Mesh => {
             pos = add(pos, mat_vec(mat, [own[0], own[1], own[2]]));
             std::array::from_fn(|k| {
                 mat[3 * k].abs() * own[3] + mat[3 * k + 1].abs() * own[4] + mat[3 * k + 2].abs() * own[5]

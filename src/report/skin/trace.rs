@@ -7,7 +7,7 @@ use crate::model::GeomType;
 /// there, all in the geom's frame. The ray must start outside. Planes are not met.
 pub(super) fn trace(kind: GeomType, size: Vec3, o: Vec3, d: Vec3) -> Option<(f64, Vec3)> {
     match kind {
-        GeomType::Plane | GeomType::Mesh => None,
+        GeomType::Plane | GeomType::HField | GeomType::Mesh => None,
         GeomType::Sphere => ellipsoid([size[0]; 3], o, d),
         GeomType::Ellipsoid => ellipsoid(size, o, d),
         GeomType::Box => cuboid(size, o, d),

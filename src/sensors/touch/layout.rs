@@ -30,9 +30,9 @@ pub enum SkinError {
         /// Distance between its sensors, m.
         spacing: f64,
     },
-    /// A geom that touches is a mesh.
+    /// A geom that touches is a mesh or a height field.
     #[error(
-        "{body:?} has a mesh that touches, on which touch sensors are not placed; give the body shapes that touch, and contype=\"0\" conaffinity=\"0\" to the mesh"
+        "{body:?} has a mesh or a height field that touches, on which touch sensors are not placed; give the body shapes that touch, and contype=\"0\" conaffinity=\"0\" to the other"
     )]
     Mesh {
         /// Name of the body.
@@ -161,7 +161,10 @@ impl SkinLayout {
             let geoms: Vec<usize> = (0..model.ngeom())
                 .filter(|&g| model.geom_bodyid[g] == body && (model.geom_contype[g] | model.geom_conaffinity[g]) != 0)
                 .collect();
-            if geoms.iter().any(|&g| model.geom_type[g] == GeomType::Mesh) {
+            if geoms
+                .iter()
+                .any(|&g| matches!(model.geom_type[g], GeomType::HField | GeomType::Mesh))
+            {
                 return Err(SkinError::Mesh { body: name });
             }
             for &g in &geoms {

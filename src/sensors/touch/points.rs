@@ -14,7 +14,7 @@ use crate::model::GeomType;
 pub fn surface_points(kind: GeomType, size: Vec3, spacing: f64) -> Vec<Vec3> {
     match kind {
         // a skin refuses meshes before it places points
-        GeomType::Plane | GeomType::Mesh => Vec::new(),
+        GeomType::Plane | GeomType::HField | GeomType::Mesh => Vec::new(),
         GeomType::Sphere => ellipsoid([size[0]; 3], spacing),
         GeomType::Ellipsoid => ellipsoid(size, spacing),
         GeomType::Box => cuboid(size, spacing),
@@ -26,7 +26,7 @@ pub fn surface_points(kind: GeomType, size: Vec3, spacing: f64) -> Vec<Vec3> {
 /// Estimates how many points [`surface_points`] makes, never less than a quarter of it.
 pub(super) fn estimate(kind: GeomType, size: Vec3, spacing: f64) -> f64 {
     let half = match kind {
-        GeomType::Plane | GeomType::Mesh => return 0.0,
+        GeomType::Plane | GeomType::HField | GeomType::Mesh => return 0.0,
         GeomType::Sphere => [size[0]; 3],
         GeomType::Ellipsoid | GeomType::Box => size,
         GeomType::Capsule => [size[0], size[0], size[0] + size[1]],

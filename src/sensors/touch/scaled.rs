@@ -41,7 +41,7 @@ fn scale(body: &mut SkinBody, from: &Model, to: &Model) {
 fn stretch(kind: GeomType, a: Vec3, b: Vec3, [x, y, z]: Vec3) -> Vec3 {
     let [r, l] = [b[0] / a[0], b[1] / a[1]];
     match kind {
-        GeomType::Plane => [x, y, z],
+        GeomType::Plane | GeomType::HField => [x, y, z],
         GeomType::Sphere => [x * r, y * r, z * r],
         GeomType::Box | GeomType::Ellipsoid | GeomType::Mesh => [x * r, y * l, z * (b[2] / a[2])],
         GeomType::Cylinder => [x * r, y * r, z * l],

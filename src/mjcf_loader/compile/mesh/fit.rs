@@ -35,7 +35,7 @@ fn like_box(kind: GeomType, [a, b, c]: Vec3) -> Option<Vec3> {
         }
         GeomType::Cylinder => Some([(a + b) / 2.0, c, 0.0]),
         GeomType::Ellipsoid | GeomType::Box => Some([a, b, c]),
-        GeomType::Plane | GeomType::Mesh => None,
+        GeomType::Plane | GeomType::HField | GeomType::Mesh => None,
     }
 }
 
@@ -54,6 +54,6 @@ fn around(kind: GeomType, mesh: &Mesh, centre: Vec3) -> Option<Vec3> {
             Some([radius, arms().map(above).fold(0.0, f64::max), 0.0])
         }
         GeomType::Ellipsoid | GeomType::Box => Some(sub(mesh.bounds[1], centre)),
-        GeomType::Plane | GeomType::Mesh => None,
+        GeomType::Plane | GeomType::HField | GeomType::Mesh => None,
     }
 }

@@ -51,15 +51,20 @@ pub(super) fn compile_meshes(
 
 /// Returns the name of a mesh; one without a name is called after its file, without directory and extension.
 pub(super) fn mesh_name(tree: &Tree, mesh: &Mesh) -> Result<String, LoadError> {
-    if !mesh.name.is_empty() {
-        return Ok(mesh.name.clone());
-    }
-    let file = mesh.file.as_deref().unwrap_or_default();
-    let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
-    match stem.rsplit_once('.').map_or(stem, |(name, _)| name) {
+    match stem(&mesh.name, mesh.file.as_deref()) {
         "" => Err(tree.error(mesh.at, ErrorKind::MissingAttribute("name"))),
         name => Ok(name.to_owned()),
     }
+}
+
+/// Returns a name, or, where it is empty, the name of a file without directory and extension.
+pub(super) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> &'n str {
+    if !name.is_empty() {
+        return name;
+    }
+    let file = file.unwrap_or_default();
+    let stem = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    stem.rsplit_once('.').map_or(stem, |(name, _)| name)
 }
 
 /// Tells which meshes need a hull: those of geoms that may touch others.

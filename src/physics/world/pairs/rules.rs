@@ -152,7 +152,8 @@ impl ContactRules {
     /// Tells whether two geoms may touch that are no explicit pair.
     fn collide(&self, a: usize, b: usize) -> bool {
         let (x, y) = (&self.geoms[a], &self.geoms[b]);
-        if x.kind == GeomType::Plane && y.kind == GeomType::Plane {
+        let flat = |kind: GeomType| matches!(kind, GeomType::Plane | GeomType::HField);
+        if flat(x.kind) && flat(y.kind) {
             return false;
         }
         if x.contype & y.conaffinity == 0 && y.contype & x.conaffinity == 0 {

@@ -1,0 +1,119 @@
+//! Compiles height fields.
+
+use super::context::Context;
+use super::mesh::stem;
+use super::surface::asset_path;
+use crate::assets::AssetSource;
+use crate::formats::heights::{HeightFormat, Heights};
+use crate::limits::Limits;
+use crate::mjcf_loader::document::Document;
+use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::mesh::HField;
+use crate::mjcf_loader::xml::Tree;
+use crate::model;
+
+/// Returns the name of a height field; one without a name is called after its file.
+pub(super) fn hfield_name(tree: &Tree, hfield: &HField) -> Result<String, LoadError> {
+    match stem(&hfield.name, hfield.file.as_deref()) {
+        "" => Err(tree.error(hfield.at, ErrorKind::MissingAttribute("name"))),
+        name => Ok(name.to_owned()),
+    }
+}
+
+/// Compiles the height fields, whose files are looked up in `source`, relative to `dir`. All together have so many heights as
+/// the limits allow for elements of meshes.
+pub(super) fn compile_hfields(
+    context: &Context,
+    document: &Document,
+    source: &dyn AssetSource,
+    dir: &str,
+) -> Result<Vec<model::HField>, LoadError> {
+    let mut limits = context.tree.limits.clone();
+    let compile = |hfield| {
+        let compiled = compile_hfield(context, hfield, (source, dir), &limits)?;
+        limits.mesh_elements = limits.mesh_elements.saturating_sub(compiled.data.len());
+        Ok(compiled)
+    };
+    document.hfields.iter().map(compile).collect()
+}
+
+fn compile_hfield(
+    context: &Context,
+    hfield: &HField,
+    files: (&dyn AssetSource, &str),
+    limits: &Limits,
+) -> Result<model::HField, LoadError> {
+    let invalid = |message| Err(context.invalid(hfield.at, message));
+    if hfield.size.iter().any(|&v| v <= 0.0) {
+        return invalid("the four numbers of size must be positive");
+    }
+    let Heights { nrow, ncol, mut data } = match &hfield.file {
+        Some(file) => from_file(context, hfield, file, files, limits)?,
+        None => from_numbers(hfield, limits)
+            .map_err(|message| context.error(hfield.at, ErrorKind::Mesh { file: None, message }))?,
+    };
+    if nrow < 2 || ncol < 2 {
+        return invalid("a height field needs 2 rows and 2 columns at least");
+    }
+    let (mut low, mut high) = (1e10_f32, -1e10_f32);
+    for &v in &data {
+        (low, high) = (low.min(v), high.max(v));
+    }
+    for v in &mut data {
+        *v -= low;
+        if high > low {
+            *v /= high - low;
+        }
+    }
+    if !data.iter().all(|v| v.is_finite()) {
+        return invalid("the heights are too far from each other for single precision");
+    }
+    Ok(model::HField {
+        name: hfield_name(context.tree, hfield)?,
+        size: hfield.size,
+        nrow,
+        ncol,
+        data,
+    })
+}
+
+/// Reads the numbers in the document, whose first row is that of the greatest y.
+fn from_numbers(hfield: &HField, limits: &Limits) -> Result<Heights, String> {
+    let (nrow, ncol) = (hfield.nrow, hfield.ncol);
+    let count = nrow.saturating_mul(ncol);
+    Heights::check_count(count, limits)?;
+    let data = if hfield.elevation.is_empty() {
+        vec![0.0; count]
+    } else if hfield.elevation.len() == count {
+        let rows = hfield.elevation.chunks(ncol.max(1)).rev();
+        rows.flatten().map(|&v| v as f32).collect()
+    } else {
+        return Err("elevation must have nrow times ncol numbers".to_owned());
+    };
+    Ok(Heights { nrow, ncol, data })
+}
+
+fn from_file(
+    context: &Context,
+    hfield: &HField,
+    file: &str,
+    (source, dir): (&dyn AssetSource, &str),
+    limits: &Limits,
+) -> Result<Heights, LoadError> {
+    let path = asset_path(context, hfield.at, file, &context.compiler.meshdir, source, dir)?;
+    let format = match &hfield.content_type {
+        Some(content_type) => HeightFormat::of_content(content_type)
+            .ok_or_else(|| context.invalid(hfield.at, "content_type must be image/png or image/vnd.mujoco.hfield"))?,
+        None => HeightFormat::of_path(&path),
+    };
+    let bytes = source.read(&path).map_err(|e| context.error(hfield.at, e))?;
+    Heights::read(&bytes, format, limits).map_err(|message| {
+        context.error(
+            hfield.at,
+            ErrorKind::Mesh {
+                file: Some(path),
+                message,
+            },
+        )
+    })
+}
