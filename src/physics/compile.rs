@@ -1,7 +1,7 @@
 //! The last step from a document to a model: the constants that need dynamics.
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
-use crate::model::{Arrays, Constants, GeomType, JointType, Model, SameFrame, SensorType};
+use crate::model::{Arrays, Constants, JointType, Model, SameFrame};
 use crate::physics::contact::needs_convex;
 use crate::physics::dynamics::{MAX_WEIGHT, constants};
 use crate::physics::length_range;
@@ -15,7 +15,6 @@ const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (
     a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
 const SEVERAL_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder \
     or a box), which gives one contact only: remove multiccd=\"enable\"";
-const NO_RAYS: &str = "it has a height field, which range finders do not see: leave out either";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
 
 /// Compiles a document into a model, as MuJoCo's `mj_compile` does: the only way to a [`Model`].
@@ -44,17 +43,7 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     check(&arrays, &constants, &places)?;
     let model = Model::new(arrays, constants);
     check_convex(&model, &places)?;
-    check_rays(&model, &places)?;
     length_range::complete(model, &lengthrange, &places)
-}
-
-/// Refuses height fields that a range finder might see.
-fn check_rays(model: &Model, places: &Places) -> Result<(), LoadError> {
-    let hfield = model.geom_type.iter().position(|&kind| kind == GeomType::HField);
-    match hfield.filter(|_| model.sensor_type.contains(&SensorType::RangeFinder)) {
-        Some(geom) => Err(places.body_error(model.geom_bodyid[geom], NO_RAYS)),
-        None => Ok(()),
-    }
 }
 
 /// Refuses other convex collision than MuJoCo's default where two geoms may touch whose contacts it finds.

@@ -1,7 +1,7 @@
 //! Rays against shapes.
 
 use crate::math::*;
-use crate::model::{GeomType, Mesh, Model};
+use crate::model::{GeomType, HField, Mesh, Model};
 use crate::physics::state::State;
 
 /// Returns the nearest geom that a ray meets, and its distance in lengths of `direction`, leaving out the geoms of one body and
@@ -23,15 +23,16 @@ pub(super) fn nearest_geom(
             continue;
         }
         let (pos, mat, size) = (s.geom_xpos[g], &s.geom_xmat[g], s.params.geom_size[g]);
-        let found = match model.geom_dataid[g].and_then(|mesh| model.meshes.get(mesh)) {
-            Some(mesh) if model.geom_type[g] == GeomType::Mesh => {
+        let within = || (mat_t_vec(mat, sub(origin, pos)), mat_t_vec(mat, direction));
+        let found = match (model.geom_type[g], model.geom_dataid[g]) {
+            (GeomType::Mesh, Some(id)) => {
                 let radius = s.params.geom_rbound[g];
-                ray_mesh(
-                    mesh,
-                    radius,
-                    mat_t_vec(mat, sub(origin, pos)),
-                    mat_t_vec(mat, direction),
-                )
+                let mesh = model.meshes.get(id);
+                mesh.and_then(|mesh| ray_mesh(mesh, radius, within()))
+            }
+            (GeomType::HField, Some(id)) => {
+                let field = model.hfields.get(id);
+                field.and_then(|field| ray_hfield(field, within()))
             }
             _ => ray_shape(model.geom_type[g], size, pos, mat, origin, direction),
         };
@@ -65,15 +66,29 @@ pub(super) fn ray_shape(
         }
         GeomType::Cylinder => cylinder(size, p, v),
         GeomType::Box => cuboid(size, p, v),
-        // its triangles are with the model, and no site is one; models with height fields have no rays
+        // their triangles are with the model, and no site is one
         GeomType::HField | GeomType::Mesh => None,
     }
 }
 
 /// Returns the distance at which a ray meets a triangle of a mesh, from either side.
-fn ray_mesh(mesh: &Mesh, radius: f64, p: Vec3, v: Vec3) -> Option<f64> {
+fn ray_mesh(mesh: &Mesh, radius: f64, (p, v): (Vec3, Vec3)) -> Option<f64> {
     first(quadratic(dot(v, v), dot(v, p), dot(p, p) - radius * radius))?;
-    // two directions across the ray
+    let basis = across(v);
+    let mut nearest = None;
+    for corners in &mesh.face {
+        let corner = |k: usize| mesh.vert.get(corners[k] as usize).map(|v| sub(v.map(f64::from), p));
+        if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2))
+            && let Some(x) = ray_triangle([a, b, c], v, &basis)
+        {
+            keep(&mut nearest, x);
+        }
+    }
+    nearest
+}
+
+/// Returns two directions across a ray.
+fn across(v: Vec3) -> [Vec3; 2] {
     let along = unit(v).0;
     let axis = (0..3).fold(
         0,
@@ -82,14 +97,66 @@ fn ray_mesh(mesh: &Mesh, radius: f64, p: Vec3, v: Vec3) -> Option<f64> {
     let mut e = [0.0; 3];
     e[axis] = 1.0;
     let across = unit(cross(along, e)).0;
-    let basis = [across, cross(along, across)];
-    let mut nearest = None;
-    for corners in &mesh.face {
-        let corner = |k: usize| mesh.vert.get(corners[k] as usize).map(|v| sub(v.map(f64::from), p));
-        if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2))
-            && let Some(x) = ray_triangle([a, b, c], v, &basis)
-        {
-            keep(&mut nearest, x);
+    [across, cross(along, across)]
+}
+
+/// Returns the distance at which a ray meets a height field: its base, a triangle of its surface or a side (MuJoCo's
+/// `mj_rayHfield`).
+fn ray_hfield(field: &HField, (p, v): (Vec3, Vec3)) -> Option<f64> {
+    let [x, y, top, base] = field.size;
+    let part = |middle: f64, half: f64| sides([x, y, half], [p[0], p[1], p[2] - middle], v);
+    let mut nearest = least(&part(-0.5 * base, 0.5 * base));
+    let upper = part(0.5 * top, 0.5 * top);
+    let Some(enters) = least(&upper) else { return nearest };
+    let mut segment = [0.0, enters];
+    for &found in upper.iter().flatten() {
+        if found > segment[1] {
+            segment = [enters, found];
+        }
+    }
+    let (rows, columns) = (field.nrow, field.ncol);
+    let steps = [2.0 * x / (columns - 1) as f64, 2.0 * y / (rows - 1) as f64];
+    let place = |k: usize, at: f64| (p[k] + at * v[k] + field.size[k]) / steps[k];
+    let range = |k: usize, count: usize| {
+        let [a, b] = segment.map(|at| place(k, at));
+        let last = (count - 1) as f64;
+        let first = (a.min(b).floor() - 1.0).clamp(0.0, last) as usize;
+        first..(a.max(b).ceil() + 1.0).clamp(0.0, last) as usize
+    };
+    let height = |place: usize| field.data.get(place).copied().map_or(0.0, f64::from);
+    let basis = across(v);
+    for r in range(1, rows) {
+        for c in range(0, columns) {
+            let corner = |r: usize, c: usize| {
+                let [x, y] = [steps[0] * c as f64 - x, steps[1] * r as f64 - y];
+                sub([x, y, height(r * columns + c) * top], p)
+            };
+            let (near, far) = (corner(r, c), corner(r + 1, c + 1));
+            for third in [corner(r, c + 1), corner(r + 1, c)] {
+                if let Some(x) = ray_triangle([near, far, third], v, &basis) {
+                    keep(&mut nearest, x);
+                }
+            }
+        }
+    }
+    for (side, found) in upper.iter().take(4).enumerate() {
+        let Some(found) = found.filter(|found| nearest.is_none_or(|x| *found < x)) else {
+            continue;
+        };
+        let (k, count) = if side < 2 { (1, rows) } else { (0, columns) };
+        let at = place(k, found);
+        let before = at.floor().clamp(0.0, count.saturating_sub(2) as f64);
+        let n = before as usize;
+        // MuJoCo takes rows for as long as there are rows
+        let [low, high] = [n, n + 1].map(|n| match side {
+            0 => height(n * rows),
+            1 => height(n * rows + columns - 1),
+            2 => height(n),
+            _ => height((rows - 1) * columns + n),
+        });
+        let edge = low * (before + 1.0 - at) + high * (at - before);
+        if (p[2] + found * v[2]) / top < edge {
+            nearest = Some(found);
         }
     }
     nearest
@@ -199,16 +266,30 @@ fn cylinder(size: Vec3, p: Vec3, v: Vec3) -> Option<f64> {
 }
 
 fn cuboid(size: Vec3, p: Vec3, v: Vec3) -> Option<f64> {
-    first(quadratic(dot(v, v), dot(v, p), dot(p, p) - dot(size, size)))?;
+    least(&sides(size, p, v))
+}
+
+/// Returns the least of distances.
+fn least(all: &[Option<f64>]) -> Option<f64> {
     let mut nearest = None;
+    all.iter().flatten().for_each(|&x| keep(&mut nearest, x));
+    nearest
+}
+
+/// Returns where a ray meets the sides of a box: those of x, y and z, the lower one first.
+fn sides(size: Vec3, p: Vec3, v: Vec3) -> [Option<f64>; 6] {
+    let mut all = [None; 6];
+    if first(quadratic(dot(v, v), dot(v, p), dot(p, p) - dot(size, size))).is_none() {
+        return all;
+    }
     for k in (0..3).filter(|&k| v[k].abs() > MINVAL) {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        for side in [-1.0, 1.0] {
+        for (place, side) in [(2 * k, -1.0), (2 * k + 1, 1.0)] {
             let x = (side * size[k] - p[k]) / v[k];
             if x >= 0.0 && (p[i] + x * v[i]).abs() <= size[i] && (p[j] + x * v[j]).abs() <= size[j] {
-                keep(&mut nearest, x);
+                all[place] = Some(x);
             }
         }
     }
-    nearest
+    all
 }

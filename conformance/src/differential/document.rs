@@ -47,6 +47,8 @@ struct Writer<'a> {
     cameras: Vec<String>,
     /// Whether there is a plane, which does not touch meshes: which corners touch depends on the order of the edges that Qhull finds.
     plane: bool,
+    /// The height field, where there is one.
+    hfield: Option<Node>,
     /// Meshes, with the elements that define them.
     meshes: Vec<Node>,
     tendons: Vec<String>,
@@ -73,6 +75,7 @@ pub fn document(language: &Language, seed: u64) -> Node {
         rounds: Vec::new(),
         cameras: Vec::new(),
         plane: false,
+        hfield: None,
         meshes: Vec::new(),
         tendons: Vec::new(),
         limited_tendons: Vec::new(),
@@ -134,6 +137,7 @@ impl Writer<'_> {
         let world = self.world();
         let mut asset = Node::new("asset");
         asset.children.append(&mut self.meshes);
+        asset.children.extend(self.hfield.take());
         root.push_section(asset);
         root.children.push(world);
         for section in [
@@ -300,6 +304,10 @@ impl Writer<'_> {
                 .dress(&mut plane, "worldbody/body/geom", false, &mut self.dice);
             self.geoms.push(name);
             world.children.push(plane);
+        }
+        if self.dice.chance(0.3) {
+            let terrain = self.terrain();
+            world.children.push(terrain);
         }
         for _ in 0..self.dice.pick(&[0, 0, 1, 2]) {
             let geom = self.geom();
@@ -530,6 +538,29 @@ impl Writer<'_> {
         self.language
             .dress(&mut geom, "worldbody/body/geom", false, &mut self.dice);
         geom
+    }
+
+    /// Writes a height field and the geom that is one.
+    fn terrain(&mut self) -> Node {
+        let (nrow, ncol) = (self.dice.pick(&[2, 3, 5, 8]), self.dice.pick(&[2, 3, 6, 9]));
+        let size = [0.8, 0.8, 0.3, 0.2].map(|most| self.dice.magnitude(0.1 * most, most));
+        let name = self.name("h");
+        let mut hfield = Node::new("hfield").with("name", name.as_str());
+        hfield.set("nrow", nrow.to_string());
+        hfield.set("ncol", ncol.to_string());
+        hfield.set("size", numbers(&size));
+        if self.dice.chance(0.9) {
+            hfield.set("elevation", self.dice.reals(nrow * ncol, 1.0));
+        }
+        self.hfield = Some(hfield);
+        let (geom, height) = (self.name("g"), self.dice.uniform(-0.4, 0.0));
+        let mut terrain = Node::new("geom").with("name", geom.as_str()).with("type", "hfield");
+        terrain.set("hfield", name);
+        terrain.set("pos", numbers(&[0.0, 0.0, height]));
+        self.language
+            .dress(&mut terrain, "worldbody/body/geom", false, &mut self.dice);
+        self.geoms.push(geom);
+        terrain
     }
 
     /// Returns the name of a mesh: of one that is there, or of a new one, rings of vertices between two tips.

@@ -213,8 +213,18 @@ const GEOM: &[Rule] = &[
         }),
     ),
     ("mesh", Placed(&["boulder"])),
-    ("hfield", Nothing),
+    ("hfield", Placed(&[])),
     ("fitscale", Drawn(0.2, |d| d.log(0.5, 2.0))),
+];
+
+const HFIELD: &[Rule] = &[
+    ("name", Nothing),
+    ("file", Nothing),
+    ("content_type", Nothing),
+    ("nrow", Placed(&[])),
+    ("ncol", Placed(&[])),
+    ("size", Placed(&["0.2 0.1 0.1 0.03"])),
+    ("elevation", Placed(&["5 4 3 2 1 0 3 3 3 1 2 1"])),
 ];
 
 const MESH: &[Rule] = &[
@@ -546,7 +556,6 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
     "visual",
     "asset/texture",
     "asset/material",
-    "asset/hfield",
     "custom",
     "keyframe",
     "worldbody/body/camera",
@@ -563,6 +572,7 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("default", &[&[("class", Nothing)]]),
     ("asset", &[]),
     ("asset/mesh", &[CLASS, MESH]),
+    ("asset/hfield", &[HFIELD]),
     ("worldbody", &[]),
     (
         "worldbody/body",
