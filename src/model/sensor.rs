@@ -83,13 +83,13 @@ sensors! {
     /// Rate of that distance while the limit is active; else 0.
     JointLimitVel = 20, "jointlimitvel", 1, Real;
     /// Force of the limit of a joint, N m or N.
-    JointLimitFrc = 21, "jointlimitfrc", 1, Positive;
+    JointLimitFrc = 21, "jointlimitfrc", 1, Real;
     /// Distance of a tendon to its limit less the margin while the limit is active; else 0.
     TendonLimitPos = 22, "tendonlimitpos", 1, Real;
     /// Rate of that distance while the limit is active; else 0.
     TendonLimitVel = 23, "tendonlimitvel", 1, Real;
     /// Force of the limit of a tendon.
-    TendonLimitFrc = 24, "tendonlimitfrc", 1, Positive;
+    TendonLimitFrc = 24, "tendonlimitfrc", 1, Real;
     /// Position of an object, m, in the world or in the frame of a reference.
     FramePos = 25, "framepos", 3, Real;
     /// Orientation of an object as a quaternion, likewise.

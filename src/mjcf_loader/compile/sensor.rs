@@ -162,11 +162,12 @@ fn two(
     ids: &Ids,
     arrays: &Arrays,
 ) -> Result<(Sensed, Sensed), LoadError> {
-    let find = |geom: &Option<String>, body: &Option<String>, [of_geom, of_body]: [&'static str; 2]| match (geom, body)
-    {
-        (Some(name), _) => Ok((ObjType::Geom, Some(ids.geom.find(context.tree, at, of_geom, name)?))),
-        (None, Some(name)) => Ok((ObjType::Body, Some(ids.body.find(context.tree, at, of_body, name)?))),
-        (None, None) => Err(context.error(at, ErrorKind::MissingAttribute(of_geom))),
+    let find = |geom: &Option<String>, body: &Option<String>, [of_geom, of_body]: [&'static str; 2]| {
+        Ok::<_, LoadError>(match (geom, body) {
+            (Some(name), _) => (ObjType::Geom, Some(ids.geom.find(context.tree, at, of_geom, name)?)),
+            (None, Some(name)) => (ObjType::Body, Some(ids.body.find(context.tree, at, of_body, name)?)),
+            (None, None) => return Err(context.error(at, ErrorKind::MissingAttribute(of_geom))),
+        })
     };
     let first = find(&between.geom1, &between.body1, ["geom1", "body1"])?;
     let second = find(&between.geom2, &between.body2, ["geom2", "body2"])?;

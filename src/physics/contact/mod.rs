@@ -59,7 +59,7 @@ mod support;
 #[cfg(test)]
 mod tests;
 
-pub use distance::{Span, distance};
+pub use distance::distance;
 
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use crate::model::{GeomType, HField, Mesh};
