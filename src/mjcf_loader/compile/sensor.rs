@@ -178,10 +178,9 @@ fn two(
         ObjType::Body => Some(arrays.geom_bodyid[g]) == id,
         _ => Some(g) == id,
     };
-    let unlike = |g: usize| matches!(arrays.geom_type[g], GeomType::Mesh | GeomType::HField);
-    if (0..arrays.ngeom()).any(|g| unlike(g) && (measured(first, g) || measured(second, g))) {
-        let message =
-            "distances from meshes and height fields are not measured: fit a shape to the mesh, and measure from that";
+    let terrain = |g: usize| arrays.geom_type[g] == GeomType::HField;
+    if (0..arrays.ngeom()).any(|g| terrain(g) && (measured(first, g) || measured(second, g))) {
+        let message = "distances from height fields are not measured: use a rangefinder, or measure from another geom";
         return Err(context.invalid(at, message));
     }
     Ok((first, second))

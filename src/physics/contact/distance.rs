@@ -2,6 +2,7 @@
 
 use super::epa::epa;
 use super::gjk::{Limits, Simplex, gjk};
+use super::mesh::MeshShape;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
 use super::{BIG, ContactOptions, ContactPoint, PlacedGeom, Scratch, add_scaled, collide, sub};
@@ -30,7 +31,7 @@ pub fn distance(
     scratch: &mut Scratch,
     points: &mut Vec<ContactPoint>,
 ) -> Option<Span> {
-    use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Sphere};
+    use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh, Sphere};
     let turned = first.kind > second.kind;
     let (a, b) = if turned { (second, first) } else { (first, second) };
     let (rod, egg, cuboid) = (
@@ -55,6 +56,12 @@ pub fn distance(
         (Rod, Rod) => find.whole(rod(a), rod(b)),
         (Rod, Box) => find.whole(rod(a), cuboid(b)),
         (Box, Box) => find.whole(cuboid(a), cuboid(b)),
+        (Sphere, Mesh) => find.rounded(Point::new(a), Ball::new(a, 0.0), mesh(b)?),
+        (Pill, Mesh) => find.rounded(Segment::new(a), Capsule::new(a, 0.0), mesh(b)?),
+        (Egg, Mesh) => find.whole(egg(a), mesh(b)?),
+        (Rod, Mesh) => find.whole(rod(a), mesh(b)?),
+        (Box, Mesh) => find.whole(cuboid(a), mesh(b)?),
+        (Mesh, Mesh) => find.whole(mesh(a)?, mesh(b)?),
         _ => {
             points.clear();
             collide(a, b, most, options, scratch, points);
@@ -62,6 +69,11 @@ pub fn distance(
         }
     };
     (span.dist < most).then_some(span)
+}
+
+/// Returns the shape of a mesh.
+fn mesh<'g>(geom: &PlacedGeom<'g>) -> Option<MeshShape<'g>> {
+    geom.mesh.map(|mesh| MeshShape::new(geom, mesh, 0.0))
 }
 
 /// Returns the span of the nearest of some contacts.

@@ -195,10 +195,6 @@ fn invariant_7_unsupported_mjcf_is_an_error_that_names_the_element() {
             r#"<mujoco><asset><skin name="a" file="a.skn"/></asset></mujoco>"#,
         ),
         (
-            "hfield",
-            r#"<mujoco><asset><hfield name="a" nrow="2" ncol="2" size="1 1 1 1"/></asset></mujoco>"#,
-        ),
-        (
             "planar",
             r#"<mujoco><worldbody><body><joint type="planar"/><geom size=".1"/></body></worldbody></mujoco>"#,
         ),
