@@ -26,8 +26,8 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     The action is a vector of motor commands (``action_space``, float32); values out of bounds are clipped. BabyBench's
     behaviors have no extrinsic reward (always 0), and no end but truncation after ``max_episode_steps``; tasks (``reach``,
-    ``standup``, ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``) have both. The observation has an entry for each sense that the
-    configuration turns on:
+    ``standup``, ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``) have both. The observation has an entry for
+    each sense that the configuration turns on:
 
     | entry           | type    | meaning                                                                              |
     |-----------------|---------|--------------------------------------------------------------------------------------|

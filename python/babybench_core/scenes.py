@@ -31,8 +31,8 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
 
     Args:
         config: A mapping, the name of an example (``self_touch``, ``hand_regard``, ``test_installation``, or a task: ``reach``,
-            ``standup``, ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``), the path of a YAML file, or nothing for the defaults. The
-            path of a scene starts at the folder of that file.
+            ``standup``, ``selfbody``, ``catch``, ``roll_over``, ``mobile``, ``play``), the path of a YAML file, or nothing for
+            the defaults. The path of a scene starts at the folder of that file.
         **keys: Keys that replace those of ``config``; a path starts at the working directory.
 
     Raises:

@@ -52,11 +52,13 @@ def test_what_the_librarys_own_tasks_measure_is_in_the_information():
     env = babybench.make("mobile", vision_active=False, touch_active=False, mobile_limb="left_foot", mobile_reward=True)
     env.reset(seed=0)
     _, reward, *_, info = env.step(env.action_space.sample())
-    assert info["phase"] == 0 and info["mobile_movement_baseline"] == reward > 0
+    assert info["phase"] == 0
+    assert info["mobile_movement_baseline"] == reward > 0
     assert info["left_foot_movements_baseline"] >= 0 == info["mobile_movement_reinforcement"]
     env = babybench.make("play", vision_active=False, touch_active=False)
     _, info = env.reset(seed=0)
-    assert info["toys"] == 7 and info["toys_touched"] == info["holding_time"] == 0
+    assert info["toys"] == 7
+    assert info["toys_touched"] == info["holding_time"] == 0
 
 
 def test_reach_follows_the_goal_that_is_set():
