@@ -217,7 +217,7 @@ fn many_environments_at_once_say_how_fast_they_are() {
     refused(
         folder.path(),
         &["run", "--config", &config, "--envs", "1000000000"],
-        &["1000000000 environments would take", "PiB of memory", "use at most"],
+        &["1000000000 environments would take", "TiB of memory", "use at most"],
     );
     refused(
         folder.path(),
@@ -506,6 +506,11 @@ fn all_behaviors_and_actuation_models_run_from_the_command_line() {
             let config = Config {
                 actuation_model: kind,
                 touch_active: behavior == Behavior::SelfBody, // it is about touch
+                scene: match behavior {
+                    // what they are about is in their scenes
+                    Behavior::Mobile | Behavior::Play => Config::of(behavior).scene,
+                    _ => Scene::Base,
+                },
                 ..free(behavior, Scene::Base)
             };
             if config.validate().is_err() {

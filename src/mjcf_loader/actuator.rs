@@ -158,6 +158,8 @@ table! {
 const TWO_DAMPINGS: &str = "kv and dampratio are two ways to say the same: give one of them";
 const TWO_CTRL_RANGES: &str = "ctrlrange and inheritrange are two ways to say the same: give one of them";
 const TWO_ACT_RANGES: &str = "actrange and inheritrange are two ways to say the same: give one of them";
+const NEGATIVE_SMOOTHING: &str =
+    "a muscle's tausmooth, which it may have from dynprm of a default class, must be 0 or more";
 const NEGATIVE_ADHESION: &str = "the ctrlrange of adhesion must not be negative";
 const NO_CRANK: &str = "slidersite and cranklength are for slider-cranks: give cranksite, too";
 const NO_SITE: &str = "refsite needs the attribute site";
@@ -216,7 +218,12 @@ impl Actuator {
                     return Err(NEGATIVE_ADHESION);
                 }
             }
-            "muscle" => self.muscle(&Muscle::read(e)),
+            "muscle" => {
+                self.muscle(&Muscle::read(e));
+                if self.law.dynprm[2] < 0.0 {
+                    return Err(NEGATIVE_SMOOTHING);
+                }
+            }
             _ => {}
         }
         Ok(())

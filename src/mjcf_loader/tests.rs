@@ -363,7 +363,7 @@ fn actuators_are_checked() {
     );
     told(
         "position jointinparent='j' inheritrange='1'",
-        "inheritrange needs the attribute joint, not jointinparent",
+        "inheritrange needs the attribute joint or tendon",
     );
     // a class is wrong even where nothing takes its defaults from it
     check(

@@ -168,10 +168,11 @@ impl Writer<'_> {
         root
     }
 
-    /// Makes up a name.
+    /// Makes up a name. It ends in a letter: MuJoCo takes what stands beside a `<replicate>` for its contents where a name is another one with
+    /// the number of a copy behind it.
     fn name(&mut self, kind: &str) -> String {
         self.named += 1;
-        format!("{kind}{}", self.named)
+        format!("{kind}{}n", self.named)
     }
 
     fn option(&mut self) -> Node {

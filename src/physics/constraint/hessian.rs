@@ -52,8 +52,8 @@ const NONE: u32 = u32::MAX;
 impl Hessian {
     /// Reserves memory for `nv` degrees of freedom and `contacts` contacts.
     pub(super) fn with_capacity(nv: usize, contacts: usize) -> Self {
-        // tiles are mostly full, and few trees touch each other at a time
-        let (rows, tiles) = (nv.min(MANY), (nv * (nv + 1) / 16).min(4 * nv));
+        // tiles are mostly full, and of many trees few touch each other at a time, though toys lie in heaps
+        let (rows, tiles) = (nv.min(MANY), (nv * (nv + 1) / 16).min(16 * nv));
         Self {
             words: 0,
             bits: Vec::with_capacity(rows * rows.div_ceil(64)),
@@ -65,7 +65,7 @@ impl Hessian {
             h: Vec::with_capacity(tiles),
             factor: Vec::with_capacity(tiles),
             inv: Vec::with_capacity(rows),
-            update: Vec::with_capacity(tiles),
+            update: Vec::with_capacity(2 * tiles),
             changed: Vec::with_capacity(rows),
             weight: Vec::with_capacity(nv + contacts),
             zone: Vec::with_capacity(contacts),

@@ -78,7 +78,8 @@ fn named_behind<'t>(code: &'t str, prefix: &str) -> BTreeSet<&'t str> {
 /// Returns the code of a file, without its unit tests: no comments, no strings that span lines.
 fn code(path: &Path) -> String {
     let text = std::fs::read_to_string(path).expect("UTF-8");
-    let is_test = path.components().any(|part| part.as_os_str() == "tests") || path.ends_with("tests.rs");
+    let is_test =
+        path.components().any(|part| part.as_os_str() == "tests") || path.to_string_lossy().ends_with("tests.rs");
     let text = if is_test {
         ""
     } else {
