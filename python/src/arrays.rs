@@ -43,11 +43,13 @@ numbers! {
     // MuJoCo's numbers
     GeomType => i32, |v| match v {
         GeomType::Plane => 0,
+        GeomType::HField => 1,
         GeomType::Sphere => 2,
         GeomType::Capsule => 3,
         GeomType::Ellipsoid => 4,
         GeomType::Cylinder => 5,
         GeomType::Box => 6,
+        GeomType::Mesh => 7,
     };
     JointType => i32, |v| match v {
         JointType::Free => 0,
