@@ -194,7 +194,8 @@ class Record(Mapping[int, Episode]):
         """Returns the measures of an episode, or the means of all: touches, smoothness, symmetry, as the guide defines them."""
         from babybench_core import _native
 
-        return json.loads(_native.measure_record(self.folder, episode))
+        measures: dict[str, Any] = json.loads(_native.measure_record(self.folder, episode))
+        return measures
 
     def replay(self, episode: int) -> int | None:
         """Repeats an episode; returns the first step whose bits differ, ``None`` if all are the same."""
