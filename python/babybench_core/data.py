@@ -39,26 +39,29 @@ class Episode(Mapping[str, np.ndarray]):
     """
 
     def __init__(self, path: Path, description: Mapping[str, Any], manifest: Mapping[str, Any]) -> None:
-        """Opens the archive; :func:`open` and ``record[number]`` do that."""
+        """Reads the names of the arrays; :func:`open` and ``record[number]`` do that."""
         self.path = path
         self.description = description
         self.manifest = manifest
-        self._archive = np.load(path, allow_pickle=False)
+        with np.load(path, allow_pickle=False) as archive:
+            self._names: list[str] = archive.files
         self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._read:
-            if name not in self._archive.files:
-                there = ", ".join(self._archive.files)
+            if name not in self._names:
+                there = ", ".join(self._names)
                 raise KeyError(f"{self.path}: no array {name!r}; there are {there}")
-            self._read[name] = self._archive[name]
+            # nothing keeps the file open: an episode has no end at which to close it
+            with np.load(self.path, allow_pickle=False) as archive:
+                self._read[name] = archive[name]
         return self._read[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._archive.files)
+        return iter(self._names)
 
     def __len__(self) -> int:
-        return len(self._archive.files)
+        return len(self._names)
 
     @property
     def number(self) -> int:

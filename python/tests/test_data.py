@@ -18,20 +18,20 @@ STEPS = 30
 def recorded(tmp_path):
     """The folder of a record of two episodes, and what the skin felt in the last step."""
     env = babybench.make(SMALL, touch_active=True)
-    noise = babybench.ActionNoise("held:0.1", env.action_space, env.dt, 7)
+    noise = babybench.ActionNoise("held:0.1", env, seed=7)
     with babybench.data.Recorder(env, tmp_path / "record", policy="held") as recorder:
         for seed in (3, 4):
             recorder.reset(seed=seed)
             for _ in range(STEPS):
-                observation, *_ = recorder.step(noise.sample())
+                observation, *_ = recorder.step(noise())
     np.save(tmp_path / "touch.npy", observation["touch"])
     return tmp_path / "record"
 
 
 def test_two_lines_of_numpy_read_an_episode(folder):
-    episode = np.load(folder / "episode_0.npz")
-    assert episode["qpos"].shape[0] == episode["actions"].shape[0] == STEPS
-    assert episode["time"][0] == pytest.approx(0.005)
+    with np.load(folder / "episode_0.npz") as episode:
+        assert episode["qpos"].shape[0] == episode["actions"].shape[0] == STEPS
+        assert episode["time"][0] == pytest.approx(0.005)
 
 
 def test_a_record_has_episodes_by_number(folder):
@@ -63,12 +63,27 @@ def test_a_record_is_repeated_and_measured(folder):
     assert record.measure(0)["seconds"] == pytest.approx(STEPS * 0.005)
 
 
-def test_tables_need_the_libraries_that_have_them(folder):
-    episode = babybench.data.open(folder)[0]
+def test_an_episode_is_a_table_of_pandas(folder):
     pandas = pytest.importorskip("pandas")
+    episode = babybench.data.open(folder)[0]
     table = episode.to_pandas()
     assert isinstance(table, pandas.DataFrame)
+    assert table.index.name == "time"
     assert len(table) == STEPS
+    np.testing.assert_array_equal(table["reward"], episode["reward"])
+
+
+def test_an_episode_is_a_data_set_of_xarray(folder):
+    xarray = pytest.importorskip("xarray")
+    episode = babybench.data.open(folder)[0]
+    data = episode.to_xarray()
+    assert isinstance(data, xarray.Dataset)
+    assert dict(data.sizes) == {
+        "time": STEPS,
+        "joint": len(episode.manifest["joints"]),
+        "actuator": episode["actions"].shape[1],
+    }
+    np.testing.assert_array_equal(data["action"], episode["actions"])
 
 
 def test_what_is_no_record_is_refused(folder, tmp_path):
