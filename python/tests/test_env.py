@@ -179,7 +179,8 @@ def test_information_names_what_was_touched():
 def test_pictures_depth_and_segmentation_show_one_scene():
     env = babybench.Env(SEEING, render_mode="rgb_array")
     observation, info = env.reset(seed=0)
-    assert set(info) == {"steps", *babybench_regards()}
+    assert set(info) == {"steps", "page_regards", "kit_regards", *babybench_regards()}
+    assert list(info["page_regards"]) == list(info["kit_regards"]) == babybench_regards()
     assert env.render().shape == (48, 48, 3)
     np.testing.assert_array_equal(env.picture("eye_left", 16, 16), observation["eye_left"])
     depth, geoms = env.depth("closeup", 40, 30), env.segmentation("closeup", 40, 30)
