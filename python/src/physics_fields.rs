@@ -161,10 +161,6 @@ fields! { state_fields, state_fields_mut, State;
     SENSORS => sensordata = sensordata;
 }
 
-/// Numbers of each row in MuJoCo where the engine keeps fewer of them, the first ones.
-const GEAR: u32 = 6;
-const PRM: u32 = 10;
-
 // what a program may change between two steps: all that is read in each step and of which nothing is derived beforehand
 fields! { model_fields, model_fields_mut, Arrays;
     0 => opt_timestep = opt.timestep, opt_gravity = opt.gravity, opt_tolerance = opt.tolerance,
@@ -187,9 +183,8 @@ fields! { model_fields, model_fields_mut, Arrays;
         tendon_solimp_lim = tendon_solimp_lim, tendon_lengthspring = tendon_lengthspring,
         tendon_stiffness = tendon_stiffness, tendon_damping = tendon_damping, tendon_invweight0 = tendon_invweight0,
         actuator_ctrlrange = actuator_ctrlrange, actuator_forcerange = actuator_forcerange,
-        actuator_actrange = actuator_actrange;
-    GEAR => actuator_gear = actuator_gear6;
-    PRM => actuator_dynprm = actuator_dynprm, actuator_gainprm = actuator_gainprm, actuator_biasprm = actuator_biasprm;
+        actuator_actrange = actuator_actrange, actuator_gear = actuator_gear6, actuator_dynprm = actuator_dynprm,
+        actuator_gainprm = actuator_gainprm, actuator_biasprm = actuator_biasprm;
 }
 
 /// Returns the name, the group and the shape of each field of a state, in the order of the memory.
@@ -205,13 +200,7 @@ pub fn state_layout(state: &State) -> Vec<(&'static str, u32, Vec<usize>)> {
 pub fn model_layout(arrays: &Arrays) -> Vec<(&'static str, Vec<usize>)> {
     let mut layout = Vec::new();
     model_fields(arrays, |field| {
-        let own = shape(field.width, field.values.len());
-        let wide = if field.group > 0 {
-            vec![own[0], field.group as usize]
-        } else {
-            own
-        };
-        layout.push((field.name, wide));
+        layout.push((field.name, shape(field.width, field.values.len())));
     });
     layout
 }
@@ -263,45 +252,27 @@ pub fn part<'a>(state: &State, memory: &'a [f64], name: &str) -> &'a [f64] {
     memory.get(found).unwrap_or_default()
 }
 
-/// Returns the numbers of a model that a program may change, in MuJoCo's widths.
+/// Returns the numbers of a model that a program may change.
 pub fn write_model(arrays: &Arrays) -> Vec<f64> {
     let mut memory = Vec::new();
-    model_fields(arrays, |field| {
-        let own = field.width.unwrap_or(1);
-        let wide = (field.group as usize).max(own);
-        for row in field.values.chunks_exact(own) {
-            memory.extend_from_slice(row);
-            memory.resize(memory.len() + wide - own, 0.0);
-        }
-    });
+    model_fields(arrays, |field| memory.extend_from_slice(field.values));
     memory
 }
 
 /// Reads the numbers of a model from memory.
 ///
 /// # Errors
-/// The field, the position in it, and the number that is not finite or stands where the engine keeps none.
+/// The field, the position in it, and the number that is not finite.
 pub fn read_model(memory: &[f64], arrays: &mut Arrays) -> Result<(), (&'static str, usize, f64)> {
     let (mut rest, mut fault) = (memory, None);
     model_fields_mut(arrays, |field| {
-        let own = field.width.unwrap_or(1);
-        let wide = (field.group as usize).max(own);
-        let rows = field.values.len() / own;
-        let Some((values, after)) = rest.split_at_checked(rows * wide) else {
+        let Some((values, after)) = rest.split_at_checked(field.values.len()) else {
             return;
         };
-        for (k, (to, from)) in field
-            .values
-            .chunks_exact_mut(own)
-            .zip(values.chunks_exact(wide))
-            .enumerate()
-        {
-            let bad = |(i, v): &(usize, &f64)| !v.is_finite() || (*i >= own && **v != 0.0);
-            if let Some((i, v)) = from.iter().enumerate().find(bad) {
-                fault.get_or_insert((field.name, k * wide + i, *v));
-            }
-            to.copy_from_slice(&from[..own]);
+        if let Some((i, v)) = values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+            fault.get_or_insert((field.name, i, *v));
         }
+        field.values.copy_from_slice(values);
         rest = after;
     });
     fault.map_or(Ok(()), Err)

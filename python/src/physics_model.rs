@@ -34,7 +34,7 @@ impl IntoException for RenderError {
 }
 
 table! { ARRAYS, array, Arrays,
-    body_gravcomp sensor_needstage geom_fluid body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
+    body_gravcomp sensor_needstage geom_dataid geom_fluid body_mocapid body_user jnt_user geom_user site_user actuator_user sensor_user tendon_user cam_pos0 cam_poscom0 cam_mat0
     cam_targetbodyid tendon_lengthspring tendon_stiffness tendon_damping
 }
 
@@ -110,8 +110,7 @@ impl PhysicsModel {
             fault.map_err(|(name, index, value)| {
                 let name = name.replacen("opt_", "opt.", 1);
                 PyValueError::new_err(format!(
-                    "model.{name}, number {index}, is {value}: only finite numbers can be simulated, and only those that the engine \
-                     has; write 0 where it has none"
+                    "model.{name}, number {index}, is {value}: only finite numbers can be simulated"
                 ))
             })?;
             if model.opt.timestep <= 0.0 {
@@ -264,6 +263,8 @@ impl PhysicsModel {
         names.set_item("texture", list(m.textures.iter().map(|t| &t.name[..]).collect()))?;
         names.set_item("material", list(m.materials.iter().map(|t| &t.name[..]).collect()))?;
         names.set_item("light", list(m.lights.iter().map(|l| &l.name[..]).collect()))?;
+        names.set_item("mesh", list(m.meshes.iter().map(|mesh| &mesh.name[..]).collect()))?;
+        names.set_item("hfield", list(m.hfields.iter().map(|field| &field.name[..]).collect()))?;
         names.set_item("key", list(m.keys.iter().map(|k| &k.name[..]).collect()))?;
         names.set_item("numeric", &m.numeric_name)?;
         names.set_item("text", &m.text_name)?;
@@ -278,6 +279,8 @@ impl PhysicsModel {
             ("nkey", m.nkey()),
             ("nlight", m.lights.len()),
             ("nexclude", m.exclude.len()),
+            ("nmesh", m.nmesh()),
+            ("nhfield", m.nhfield()),
         ] {
             settings.set_item(name, size)?;
         }

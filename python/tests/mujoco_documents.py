@@ -26,3 +26,9 @@ ALL = """<mujoco><size nuser_body="2"/><default><geom friction=".8 .1 .1"/></def
   <keyframe><key name="first" time="1.5" qpos="0 0 1 1 0 0 0 .1 .1 .2" act=".3" ctrl=".1 .2 .3"/>
     <key qvel="0 0 0 0 0 1 1 1 1"/></keyframe></mujoco>"""
 """Some of everything: a free body, joints, limits, a tendon, an equality, activations, sensors, keyframes."""
+
+SHAPES = """<mujoco><asset><mesh name="wedge" vertex="-.1 -.1 0 .1 -.1 0 0 .1 0 0 0 .15"/>
+    <hfield name="hills" nrow="3" ncol="3" size="1 1 .1 .05" elevation="0 1 0 1 .2 1 0 1 0"/></asset>
+  <worldbody><geom name="ground" type="hfield" hfield="hills"/>
+    <body name="stone" pos=".1 .05 .4"><freejoint/><geom name="stone" type="mesh" mesh="wedge"/></body></worldbody></mujoco>"""
+"""A mesh that falls on a height field."""

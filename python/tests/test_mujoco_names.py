@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mujoco_documents import ALL, ARM
+from mujoco_documents import ALL, ARM, SHAPES
 
 from babybench import mujoco
 
@@ -145,6 +145,31 @@ def test_numbers_that_are_not_finite_and_runs_that_diverge_are_errors() -> None:
     model.opt.timestep = 0
     with pytest.raises(ValueError, match=r"opt\.timestep is 0: it must be > 0"):
         mujoco.mj_step(model, data)
+
+
+def test_all_gears_of_an_actuator_act() -> None:
+    model, data = (
+        pair("""<mujoco><option gravity="0 0 0"/><worldbody><body><freejoint name="root"/><geom size=".1"/></body>
+      </worldbody><actuator><motor joint="root"/></actuator></mujoco>""")
+    )
+    model.actuator_gear[0] = [0, 0, 0, 0, 0, 2]
+    data.ctrl[0] = 1
+    mujoco.mj_step(model, data)
+    assert data.qvel[5] > 0
+    assert not data.qvel[:5].any()
+
+
+def test_meshes_and_height_fields_have_names_and_numbers() -> None:
+    model, data = pair(SHAPES)
+    assert (model.nmesh, model.nhfield) == (1, 1)
+    assert model.geom_type.tolist() == [int(mujoco.mjtGeom.mjGEOM_HFIELD), int(mujoco.mjtGeom.mjGEOM_MESH)]
+    assert model.geom_dataid.tolist() == [0, 0]
+    assert mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_MESH, "wedge") == 0
+    assert mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_HFIELD, 0) == "hills"
+    for _ in range(400):
+        mujoco.mj_step(model, data)
+    assert data.ncon > 0
+    assert 0 < data.body("stone").xpos[2] < 0.3
 
 
 def test_a_mocap_body_is_moved_by_the_program() -> None:

@@ -52,7 +52,7 @@ _SIZES = (
         "nsensordata",
         "npair",
     ),
-    *("nkey", "nlight", "nexclude"),
+    *("nkey", "nlight", "nexclude", "nmesh", "nhfield"),
 )
 
 
@@ -239,7 +239,7 @@ class MjModel(Named):
         own.update(arrays)
         own["writable"] = tuple(arrays)
         own.update(ntex=len(names["texture"]), nmat=len(names["material"]), nnumeric=len(names["numeric"]))
-        own.update(ntext=len(names["text"]), nuserdata=0, nplugin=0, nmesh=0, nwrap=len(extras["wrap_objid"]))
+        own.update(ntext=len(names["text"]), nuserdata=0, nplugin=0, nwrap=len(extras["wrap_objid"]))
         own["opt"] = MjOption(native, floats, settings)
         stat = {name: settings[name] for name in ("extent", "meaninertia", "meanmass", "meansize")}
         own["stat"] = Settings("stat", {**stat, "center": _fixed(settings["center"], "stat.center")})
