@@ -48,7 +48,7 @@ def test_a_task_has_goals_and_rewards_that_can_be_computed_again(name):
     assert np.ptp(rewards) > 0 or TASKS[name] in ("selfbody", "catch", "mobile", "play")
 
 
-def test_what_the_librarys_own_tasks_measure_is_in_the_information():
+def test_what_tasks_of_the_library_measure_is_in_the_information():
     env = babybench.make("mobile", vision_active=False, touch_active=False, mobile_limb="left_foot", mobile_reward=True)
     env.reset(seed=0)
     _, reward, *_, info = env.step(env.action_space.sample())

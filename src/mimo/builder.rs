@@ -23,7 +23,7 @@ use crate::math::Vec3;
 /// assert!(blueprint.model().body("ball").is_some());
 ///
 /// // faults have their place: each fragment begins on a line of its own
-/// let error = Blueprint::new(scene.with("<geom sise='0.1'/>").config(config)).unwrap_err();
+/// let error = Blueprint::new(scene.with("<geom colour='0.1'/>").config(config)).unwrap_err();
 /// assert!(error.to_string().contains("scene_extra:3:"), "{error}");
 /// # Ok::<(), babybench::EnvError>(())
 /// ```

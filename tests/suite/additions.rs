@@ -88,7 +88,7 @@ fn configurations_hold_it_through_files_and_scenes() {
 #[test]
 fn faults_have_their_place_in_the_text() {
     for (fragments, place, what) in [
-        (&["<geom sise='1'/>"][..], "scene_extra:1:", "sise"),
+        (&["<geom colour='1'/>"][..], "scene_extra:1:", "colour"),
         (
             &[RED, "<body>\n  <geom size='0.1' material='blue'/>\n</body>"],
             "scene_extra:3:3",

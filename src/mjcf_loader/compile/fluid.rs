@@ -81,6 +81,6 @@ pub(super) fn fluid(kind: GeomType, size: &Vec3, coef: [f64; 5]) -> [f64; 12] {
     let mass = |k: f64| volume * k / EPS.max(2.0 - k);
     let [a, b, c, d, e] = coef;
     let moments = [moment(y, z, ky, kz), moment(z, x, kz, kx), moment(x, y, kx, ky)];
-    let [ix, iy, iz] = moments.map(|m| volume * m / 5.0);
-    [1.0, a, b, c, d, e, mass(kx), mass(ky), mass(kz), ix, iy, iz]
+    let [jx, jy, jz] = moments.map(|m| volume * m / 5.0);
+    [1.0, a, b, c, d, e, mass(kx), mass(ky), mass(kz), jx, jy, jz]
 }

@@ -132,7 +132,7 @@ impl Swimmer {
             sub(s.geom_xpos[g], s.subtree_com[model.body_rootid[b]]),
         );
         let moving = mat_t_vec(mat, velocity_at(&s.cvel[b], offset));
-        let [_, a, b1, c, d, e, x, y, z, ix, iy, iz] = model.geom_fluid[g];
+        let [_, a, b1, c, d, e, x, y, z, jx, jy, jz] = model.geom_fluid[g];
         Self {
             axes: semi_axes(model.geom_type[g], s.params.geom_size[g]),
             turning: mat_t_vec(mat, angular(&s.cvel[b])),
@@ -140,7 +140,7 @@ impl Swimmer {
             density: model.opt.density,
             viscosity: model.opt.viscosity,
             coefs: [a, b1, c, d, e],
-            added: [[x, y, z], [ix, iy, iz]],
+            added: [[x, y, z], [jx, jy, jz]],
         }
     }
 
