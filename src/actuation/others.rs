@@ -24,9 +24,12 @@ impl WithOthers {
     /// Adds the actuators that `mimo` does not drive.
     pub fn new(mimo: Box<dyn Actuation>, model: &Model) -> Self {
         let others: Vec<usize> = (0..model.nu()).filter(|i| !mimo.actuators().contains(i)).collect();
-        let bounds = |&i: &usize| match model.actuator_ctrllimited[i] {
-            true => model.actuator_ctrlrange[i],
-            false => UNLIMITED,
+        let bounds = |&i: &usize| {
+            if model.actuator_ctrllimited[i] {
+                model.actuator_ctrlrange[i]
+            } else {
+                UNLIMITED
+            }
         };
         let side = |of: &[f32], k: usize| {
             let more = others.iter().map(|i| bounds(i)[k] as f32);

@@ -124,7 +124,8 @@ mod tests {
         clock.save(&mut bytes);
         assert!(other.load(&bytes) && !other.load(&bytes[1..]) && !other.load(&[0xff; 24]));
         for _ in 0..50 {
-            (clock.advance(), other.advance());
+            clock.advance();
+            other.advance();
             assert_eq!((clock.is_due(), clock.age()), (other.is_due(), other.age()));
         }
     }

@@ -29,7 +29,7 @@ fn kick(env: &Env, step: usize, action: &mut [f32]) {
         let leg =
             env.model().actuator_name[id].contains("right_hip") || env.model().actuator_name[id].contains("right_knee");
         *value = match leg {
-            true if step / 40 % 2 == 0 => -1.0,
+            true if (step / 40).is_multiple_of(2) => -1.0,
             true => 1.0,
             false => 0.0,
         };
@@ -89,7 +89,7 @@ fn moving_more_is_success_and_the_mobile_a_reward() {
     let mut sum = 0.0;
     for step in 0..1000 {
         action.fill(0.0);
-        if step < 40 || step >= 200 {
+        if !(40..200).contains(&step) {
             kick(&env, step, &mut action);
         }
         sum += env.step(&action).expect("no divergence").reward;

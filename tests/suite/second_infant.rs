@@ -175,7 +175,7 @@ fn what_cannot_be_is_said() {
         other_age: Some(3.0),
         ..plain(Behavior::SelfTouch)
     };
-    let error = try_two(&config, room).err().expect("nobody is there");
+    let error = try_two(&config, room).expect_err("nobody is there");
     assert!(
         error.contains("rooms/two.xml") && error.contains("other_mimo.xml"),
         "{error}"

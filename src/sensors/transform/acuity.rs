@@ -90,7 +90,7 @@ impl Acuity {
         let (transfer, filter) = if options.reference {
             let filter = Filter::Wrapped {
                 fourier: Box::new(Fourier::new(height, width)),
-                symmetric: height % 2 == 0 && width % 2 == 0,
+                symmetric: height.is_multiple_of(2) && width.is_multiple_of(2),
             };
             (transfer_of_waves(options, height, width), filter)
         } else {

@@ -112,7 +112,8 @@ fn a_restored_environment_shows_the_picture_that_the_original_held() {
             }
             let mut one = one.clone();
             for _ in 0..6 {
-                (random_steps(&mut one, 1), random_steps(&mut other, 1));
+                random_steps(&mut one, 1);
+                random_steps(&mut other, 1);
                 assert!(seen(&one) == seen(&other), "what follows");
                 assert_eq!(one.info(), other.info());
             }
