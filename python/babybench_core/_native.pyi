@@ -14,6 +14,7 @@ import numpy.typing as npt
 from babybench_core.records import LockReport, TouchBody
 
 __all__ = [
+    "CHANGEABLE",
     "ActionNoise",
     "Blocks",
     "Blueprint",
@@ -24,7 +25,9 @@ __all__ = [
     "PhysicsRenderer",
     "Recorder",
     "VectorEnv",
+    "Watch",
     "__version__",
+    "command_line",
     "config_examples",
     "config_from_mapping",
     "config_from_yaml",
@@ -37,12 +40,21 @@ __all__ = [
     "write_video",
 ]
 
+CHANGEABLE: list[str]
+"""The names of the numbers of a model that :meth:`Env.change_model` changes."""
+
 __version__: str
+
+_Camera = str | tuple[Sequence[float], float, float, float]
+"""A camera of the scene by name, or a free one: the point that it looks at (m), distance (m), azimuth, elevation (degrees)."""
 
 _Space = tuple[str, list[int], str, float, float]
 _Floats = npt.NDArray[np.float64]
 _Flags = npt.NDArray[np.bool_]
 _Array = npt.NDArray[Any]
+
+def command_line(arguments: Sequence[str], program: str) -> int:
+    """Runs a command of the command line, and returns the exit code of the process; ``program`` is what users type before it."""
 
 def config_keys() -> dict[str, dict[str, Any]]:
     """Returns every key of a configuration: ``default``, ``section``, ``expected``, ``doc`` and, for names, ``choices``."""
@@ -195,6 +207,10 @@ class Env:
 
         What follows from them is computed by the next step, or by :meth:`forward`.
         """
+    def apply_force(self, body: int, force: Sequence[float], point: Sequence[float]) -> None:
+        """Adds a force (N, world) on a body at a point (m, world); it acts until :meth:`release_forces` or a reset."""
+    def release_forces(self) -> None:
+        """Takes off all forces on bodies."""
     def contacts(self) -> dict[str, _Array]:
         """Returns the contacts of the start of the last physics step, in MuJoCo's order.
 
@@ -207,6 +223,16 @@ class Env:
         """Goes back to a snapshot of this environment, or of another of the same configuration and scene."""
     def resume(self, snapshot: bytes) -> dict[str, _Array]:
         """Goes back to a snapshot, with touch and images computed; returns the observation."""
+    def model_array(self, name: str) -> _Array:
+        """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
+    def change_model(self, changes: dict[str, _Array]) -> None:
+        """Changes numbers of the model from the next step on; the arrays are whole."""
+    @property
+    def model_changes(self) -> dict[str, _Array]:
+        """The arrays that differ from those of the scene."""
+    @property
+    def dt(self) -> float:
+        """The time between two steps, s."""
     def lock(self, target: str | int, angle: float = 0.0) -> LockReport:
         """Locks a joint (name or number), or all joints of a part such as ``"head"``, at an angle in rad."""
     def unlock(self, target: str | int) -> LockReport:
@@ -231,11 +257,11 @@ class Env:
     def proprioception_entries(self) -> list[tuple[str, str, int, int]]:
         """Component, name, first and last plus one place of each entry of the observation."""
 
-    def render(self, camera: str, width: int, height: int) -> npt.NDArray[np.uint8]:
-        """Draws from a camera of the scene, (height, width, 3), red, green, blue, rows from the top."""
-    def depth(self, camera: str, width: int, height: int) -> npt.NDArray[np.float32]:
+    def render(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.uint8]:
+        """Draws from a camera of the scene or a free one, (height, width, 3), red, green, blue, rows from the top."""
+    def depth(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.float32]:
         """Draws the distance from the camera's plane, (height, width), m; infinite where nothing is."""
-    def segmentation(self, camera: str, width: int, height: int) -> npt.NDArray[np.int32]:
+    def segmentation(self, camera: _Camera, width: int, height: int) -> npt.NDArray[np.int32]:
         """Draws the ids of geoms, (height, width); -1 where none is."""
 
 @final
@@ -248,6 +274,15 @@ class ActionNoise:
         """Returns the next action."""
     def reset(self, seed: int) -> None:
         """Begins anew."""
+
+@final
+class Watch:
+    """Arrays that a program may write to, and what was in them."""
+
+    def __new__(cls, arrays: Sequence[_Floats]) -> Watch:
+        """Remembers what is in the arrays."""
+    def changed(self, arrays: Sequence[_Floats]) -> list[int]:
+        """Returns the numbers of those that differ, of the same arrays in the same order; the next call compares with these."""
 
 @final
 class PhysicsModel:
@@ -435,6 +470,12 @@ class VectorEnv:
         """Returns the present moment of one environment."""
     def restore(self, env: int, snapshot: bytes) -> None:
         """Takes one environment back to a snapshot."""
+    def model_array(self, env: int, name: str) -> _Array:
+        """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
+    def change_model(self, env: int, changes: dict[str, _Array]) -> None:
+        """Changes numbers of the model from the next step on; the arrays are whole."""
+    def model_changes(self, env: int) -> dict[str, _Array]:
+        """Returns the arrays of one environment that differ from those of its scene."""
     def lock(self, env: int, target: str | int, angle: float = 0.0) -> LockReport:
         """Locks a joint, or all joints of a part, of one environment at an angle in rad."""
     def unlock(self, env: int, target: str | int) -> LockReport:

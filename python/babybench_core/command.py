@@ -5,27 +5,26 @@ from __future__ import annotations
 import argparse
 import os
 import runpy
+import signal
 import sys
 from collections.abc import Sequence
 from typing import Optional
 
-from babybench_core import swap
+from babybench_core import _native, swap
+
+_SCRIPTS = """
+view [CONFIG] shows MIMo in a window: turn, pull, pause, step.
+run [-m] SCRIPT [ARGUMENT ...] runs a Python script that was written for the starter kit on the engine of this package,
+wherever MIMo is installed; processes that the script starts inherit that."""
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(program: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="python -m babybench", description="BabyBench for Python.", allow_abbrev=False
+        prog=f"{program} run", usage="%(prog)s [-m] SCRIPT [ARGUMENT ...]", allow_abbrev=False
     )
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    run = commands.add_parser(
-        "run",
-        help="run a script for the starter kit on the engine of this package, wherever MIMo is installed",
-        usage="%(prog)s [-m] SCRIPT [ARGUMENT ...]",
-        allow_abbrev=False,
-    )
-    run.add_argument("-m", dest="module", action="store_true", help="SCRIPT is the name of a module")
-    run.add_argument("script", metavar="SCRIPT", help="a Python file")
-    run.add_argument("arguments", metavar="ARGUMENT", nargs=argparse.REMAINDER, help="what the script is given")
+    parser.add_argument("-m", dest="module", action="store_true", help="SCRIPT is the name of a module")
+    parser.add_argument("script", metavar="SCRIPT", help="a Python file")
+    parser.add_argument("arguments", metavar="ARGUMENT", nargs=argparse.REMAINDER, help="what the script is given")
     return parser
 
 
@@ -44,7 +43,36 @@ def _run(script: str, arguments: Sequence[str], module: bool) -> None:
     runpy.run_path(script, run_name="__main__")
 
 
+def _program() -> str:
+    """Returns what users type to get here."""
+    called = os.path.basename(sys.argv[0] or "")
+    if called != "__main__.py":
+        return "babybench"
+    return f"python -m {os.path.basename(os.path.dirname(os.path.abspath(sys.argv[0])))}"
+
+
 def main(arguments: Optional[Sequence[str]] = None) -> None:
-    """Does what the arguments of a command line say."""
-    args = _parser().parse_args(arguments)
-    _run(args.script, args.arguments, args.module)
+    """Does what the arguments of a command line say.
+
+    Raises:
+        SystemExit: It has failed.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    program = _program()
+    if given[:1] == ["run"] and len(given) > 1 and (given[1] == "-m" or not given[1].startswith("-")):
+        args = _parser(program).parse_args(given[1:])
+        _run(args.script, args.arguments, args.module)
+        return
+    if given[:1] == ["view"]:
+        from babybench_core import view
+
+        view.main(given[1:], program)
+        return
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        # commands save what they have when they are interrupted
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    code = _native.command_line(given, program)
+    if not given or given[0] in ("-h", "--help", "help") or (given[0] == "run" and code == 2):
+        print(_SCRIPTS, file=sys.stderr if code else sys.stdout)
+    if code:
+        raise SystemExit(code)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, Optional, Union
 
@@ -11,7 +11,7 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from babybench_core import _native, hints, locks, scenes, spaces
+from babybench_core import _native, changes, hints, locks, scenes, spaces
 from babybench_core.goals import ComputeReward, compute_reward
 from babybench_core.records import LockReport
 from babybench_core.senses import Proprioception, Touch
@@ -79,8 +79,11 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Args:
             config: A mapping, the name of an example, the path of a YAML file, or nothing for the defaults.
-            render_mode: ``None``, ``"rgb_array"``, ``"depth_array"`` (m) or ``"human"`` (a window, by pygame).
-            camera: The camera of :meth:`render`; by default ``corner``, or the left eye in the scene of a task.
+            render_mode: ``None``, ``"rgb_array"``, ``"depth_array"`` (m) or ``"human"``: a window by pygame, in real time, in
+                which the pointer turns the camera and pulls bodies, and keys pause (space), take one step (right), change the
+                speed (up, down), show contacts (c) and touch (t). Closed, it leaves steps as fast as without it.
+            camera: The camera of :meth:`render`; by default ``corner``, or the left eye in the scene of a task; a window begins
+                with one that looks at MIMo.
             assets: A folder with MJCF and textures laid out like the kit's, instead of those that come with the package.
             views: Observations are read-only arrays that stay the same and change with the next step or reset: nothing
                 is allocated. Copy what is to be kept.
@@ -103,14 +106,17 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self._build()
         self.action_space = spaces.action_space(self._core.action_bounds)
         self.observation_space = spaces.observation_space(self._core)
-        options = self._core.blueprint.model_options
         self.camera = scenes.camera_of(self._core.blueprint, camera)
-        self.dt: float = options["timestep"] * self.config["frame_skip"]
-        """The time between two steps, s."""
+        self._window_camera = camera
         self.metadata = {**self.metadata, "render_fps": round(1 / self.dt)}
 
     def _build(self) -> None:
         self._core = _native.Env(scenes.blueprint(self.config, self._assets), self._views)
+
+    @property
+    def dt(self) -> float:
+        """The time between two steps, s."""
+        return self._core.dt
 
     # --- Gymnasium ---
 
@@ -121,14 +127,17 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Args:
             seed: Reseeds every random choice; without, they go on. Under ``compat: reference`` it seeds nothing.
-            options: Ignored.
+            options: ``{"model": changes}`` changes the model before the episode: see :meth:`change_model`.
 
         Returns:
             The observation and the information.
         """
         super().reset(seed=seed)
+        wanted = changes.of_options(options)
+        if wanted is not None:
+            self.change_model(wanted)
         observation = self._core.reset(seed)
-        self._show()
+        self._show(0.0)
         return observation, self._core.info()
 
     def step(self, action: npt.NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -142,7 +151,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             RuntimeError: The simulation diverged, or there was no reset; reset it.
         """
         observation, reward, terminated, truncated = self._core.step(action)
-        self._show()
+        self._show(self.dt)
         return observation, reward, terminated, truncated, self._core.info()
 
     @property
@@ -195,21 +204,27 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
             self._window = None
         self._core.close()
 
-    def _show(self) -> None:
+    def _show(self, seconds: float) -> None:
         if self.render_mode != "human":
             return
-        size = self.config["render_size"]
         if self._window is None:
-            self._window = Window("BabyBench", size, size)
-        self._window.show(self._core.render(self.camera, size, size), self.metadata["render_fps"])
+            size = self.config["render_size"]
+            self._window = Window("BabyBench", self._core, (size, size), self._window_camera)
+        self._window.show(seconds)
 
     # --- pictures ---
 
-    def picture(self, camera: str, width: int = 480, height: int = 480) -> npt.NDArray[np.uint8]:
-        """Draws from a camera of the scene.
+    def picture(
+        self,
+        camera: Union[str, tuple[Sequence[float], float, float, float]],
+        width: int = 480,
+        height: int = 480,
+    ) -> npt.NDArray[np.uint8]:
+        """Draws from a camera.
 
         Args:
-            camera: ``corner``, ``top``, ``side1``, ``side2``, ``closeup``, ``eye_left`` or ``eye_right``.
+            camera: ``corner``, ``top``, ``side1``, ``side2``, ``closeup``, ``eye_left`` or ``eye_right``; or one anywhere: the
+                point that it looks at (m), distance (m), azimuth and elevation (degrees).
             width: Pixels.
             height: Pixels.
 
@@ -271,7 +286,35 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """
         if name in self._core.STATE_ARRAYS:
             return self._core.state_array(name)
-        return self._core.blueprint.model_array(name)
+        return self._core.model_array(name)
+
+    def change_model(self, model: changes.Changes) -> None:
+        """Changes numbers of the model from the next step on, in this and in later episodes.
+
+        Args:
+            model: Arrays by MuJoCo's names, as :meth:`array` returns them, or mappings from names of elements to rows.
+
+        What can change are ``opt.gravity``, ``opt.timestep``, ``opt.impratio``, ``opt.density``, ``opt.viscosity``, ``opt.wind``;
+        ``body_mass``, ``body_inertia``, ``geom_size``, ``geom_friction``, ``dof_damping``, ``dof_armature``,
+        ``dof_frictionloss``, ``jnt_stiffness``, ``actuator_gear``; ``solref``, ``solimp``, ``margin``, ``gap`` and
+        ``friction`` of geoms and pairs, and ``solref`` and ``solimp`` of joints, dofs and equalities; and the constants
+        ``body_invweight0``, ``dof_invweight0`` and ``geom_rbound``, which do not follow by themselves, as they do not in
+        MuJoCo without ``mj_setConst``.
+
+        Example:
+            >>> import babybench
+            >>> env = babybench.make("self_touch", vision_active=False)
+            >>> env.change_model({"opt.gravity": [0, 0, -1.62], "geom_friction": env.array("geom_friction") / 2})
+            >>> env.change_model({"body_mass": {"head": 1.5}})
+            >>> mass = env.array("body_mass")
+            >>> observation, info = env.reset(seed=0, options={"model": {"body_mass": mass * 1.1}})
+
+        Raises:
+            KeyError: There is nothing of that name, or it cannot change.
+            ValueError: Numbers of another shape, that are not finite or too small; nothing has changed then.
+        """
+        core = self._core
+        core.change_model(changes.arrays(model, core.model_array, core.blueprint))
 
     # --- other moments ---
 
@@ -346,14 +389,16 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         for made in ("_core", "_window", "proprioception", "touch"):
             state.pop(made, None)
         state["_snapshot"] = None if self._core.closed else self._core.snapshot()
+        state["_changes"] = {} if self._core.closed else self._core.model_changes
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Builds the copy."""
-        snapshot = state.pop("_snapshot")
+        snapshot, changed = state.pop("_snapshot"), state.pop("_changes")
         self.__dict__.update(state)
         self._window = None
         self._build()
+        self._core.change_model(changed)
         if snapshot is None:
             self._core.close()
         else:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.vector.utils import batch_space
 
-from babybench_core import _native, locks, scenes, spaces
+from babybench_core import _native, changes, locks, scenes, spaces
 from babybench_core.goals import Infos, compute_reward
 from babybench_core.records import LockReport
 from babybench_core.senses import Proprioception, TouchLayout
@@ -46,7 +46,7 @@ _MODES = {
 _USUAL = AutoresetMode.NEXT_STEP if hasattr(gymnasium.vector, "AutoresetMode") else AutoresetMode.SAME_STEP
 
 
-_EACH = ("array", "compute_reward", "info", "lock", "restore", "snapshot", "unlock")
+_EACH = ("array", "change_model", "compute_reward", "info", "lock", "restore", "snapshot", "unlock")
 """Methods that take the number of an environment first."""
 
 _SINGLE = {
@@ -177,7 +177,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
         Args:
             seed: With one seed, environment i gets the seed plus i; a list has one, or none, for each.
-            options: ``reset_mask`` (N), bool: which environments to reset; the rows of the others stay.
+            options: ``reset_mask`` (N), bool: which environments to reset; the rows of the others stay. ``model``: changes of
+                the model of those that are reset, one mapping or a list with one, or ``None``, for each: :meth:`change_model`.
 
         Returns:
             Observations and information.
@@ -188,6 +189,9 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             if mask.shape != (self.num_envs,) or mask.dtype != np.bool_:
                 expected = f"bool of shape ({self.num_envs},)"
                 raise ValueError(f"reset_mask is {mask.dtype} of shape {mask.shape}, expected {expected}")
+        for env, wanted in enumerate(changes.of_vector(changes.of_options(options), self.num_envs)):
+            if wanted is not None and (mask is None or mask[env]):
+                self.change_model(env, wanted)
         return self._core.reset(seed, mask, self._copy), self._infos()
 
     def step(self, actions: npt.ArrayLike) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
@@ -368,8 +372,15 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             return self._core.unlock(env, target)
 
     def array(self, env: int, name: str) -> npt.NDArray[Any]:
-        """Returns a copy of an array of the state of one environment by MuJoCo's name, such as ``xpos``."""
-        return self._core.state_array(env, name)
+        """Returns a copy of an array of the scene or of the state of one environment by MuJoCo's name, such as ``xpos``."""
+        if name in _native.Env.STATE_ARRAYS:
+            return self._core.state_array(env, name)
+        return self._core.model_array(env, name)
+
+    def change_model(self, env: int, model: changes.Changes) -> None:
+        """Changes numbers of the model of one environment from its next step on: see :meth:`babybench.Env.change_model`."""
+        present = functools.partial(self._core.model_array, env)
+        self._core.change_model(env, changes.arrays(model, present, self._blueprints[env]))
 
     @property
     def threads(self) -> int:
@@ -420,13 +431,16 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         for made in ("_core", "_blueprints", "proprioception", "touch"):
             state.pop(made, None)
         state["_snapshots"] = None if self.closed else self.call("snapshot")
+        state["_changes"] = [] if self.closed else [self._core.model_changes(env) for env in range(self.num_envs)]
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Builds the copy."""
-        snapshots = state.pop("_snapshots")
+        snapshots, changed = state.pop("_snapshots"), state.pop("_changes")
         self.__dict__.update(state)
         self._build()
+        for env, numbers in enumerate(changed):
+            self._core.change_model(env, numbers)
         if snapshots is None:
             self._core.close()
         else:

@@ -14,7 +14,7 @@ use crate::errors::{IntoException, detached};
 use crate::info::{Space, info_dict, report_dict, spaces, target_of};
 use crate::observation::{Views, fresh};
 use crate::pictures::{self, Painters};
-use crate::{state, task, touch};
+use crate::{model_change, state, task, touch};
 
 /// Steps of a run between two looks at whether somebody has pressed Ctrl-C: 3 ms without pictures, 60 ms with both eyes.
 pub const UNINTERRUPTED: usize = 64;
@@ -305,6 +305,17 @@ impl Env {
         state::write(self.guard()?.open()?.env.state_mut(), name, values)
     }
 
+    fn apply_force(&self, body: usize, force: [f64; 3], point: [f64; 3]) -> PyResult<()> {
+        let mut guard = self.guard()?;
+        let applied = guard.open()?.env.state_mut().apply_force(body, force, [0.0; 3], point);
+        applied.map_err(|e| babybench::EnvError::from(e).into_exception())
+    }
+
+    fn release_forces(&self) -> PyResult<()> {
+        self.guard()?.open()?.env.state_mut().release_forces();
+        Ok(())
+    }
+
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         state::contacts(py, self.guard()?.open()?.env.state())
     }
@@ -326,6 +337,24 @@ impl Env {
         let inner = guard.open()?;
         detached(py, || inner.env.by_hand().resume(&snapshot).map(drop))?;
         Self::observed(py, inner)
+    }
+
+    fn model_array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        model_change::array(py, &self.guard()?.open()?.env, name)
+    }
+
+    fn change_model(&self, changes: &Bound<'_, PyDict>) -> PyResult<()> {
+        model_change::change(&mut self.guard()?.open()?.env, changes)
+    }
+
+    #[getter]
+    fn model_changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        model_change::changes(py, &self.guard()?.open()?.env)
+    }
+
+    #[getter]
+    fn dt(&self) -> PyResult<f64> {
+        Ok(self.guard()?.open()?.env.blueprint().dt())
     }
 
     #[pyo3(signature = (target, angle=0.0))]
@@ -386,22 +415,34 @@ impl Env {
 
     // --- pictures ---
 
-    fn render<'py>(&self, py: Python<'py>, camera: &str, width: usize, height: usize) -> PyResult<Bound<'py, PyAny>> {
-        pictures::colour(py, self.guard()?.open()?, camera, [width, height])
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        camera: pictures::Camera,
+        width: usize,
+        height: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        pictures::colour(py, self.guard()?.open()?, &camera, [width, height])
     }
 
-    fn depth<'py>(&self, py: Python<'py>, camera: &str, width: usize, height: usize) -> PyResult<Bound<'py, PyAny>> {
-        pictures::depth(py, self.guard()?.open()?, camera, [width, height])
+    fn depth<'py>(
+        &self,
+        py: Python<'py>,
+        camera: pictures::Camera,
+        width: usize,
+        height: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        pictures::depth(py, self.guard()?.open()?, &camera, [width, height])
     }
 
     fn segmentation<'py>(
         &self,
         py: Python<'py>,
-        camera: &str,
+        camera: pictures::Camera,
         width: usize,
         height: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
-        pictures::segmentation(py, self.guard()?.open()?, camera, [width, height])
+        pictures::segmentation(py, self.guard()?.open()?, &camera, [width, height])
     }
 }
 

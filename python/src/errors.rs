@@ -37,6 +37,7 @@ impl IntoException for EnvError {
             | Self::Skin(_)
             | Self::Render(_)
             | Self::Actuation(_)
+            | Self::ModelChange(_)
             | Self::NoVision
             | Self::SenseOff { .. }
             | Self::Rapier(_)

@@ -6,11 +6,13 @@
 mod arrays;
 mod blocks;
 mod blueprint;
+mod command_line;
 mod config;
 mod env;
 mod errors;
 mod info;
 mod model;
+mod model_change;
 mod noise;
 mod observation;
 mod parts;
@@ -38,9 +40,13 @@ mod _native {
     #[pymodule_export]
     use super::blueprint::Blueprint;
     #[pymodule_export]
+    use super::command_line::command_line;
+    #[pymodule_export]
     use super::config::{config_examples, config_from_mapping, config_from_yaml, config_keys};
     #[pymodule_export]
     use super::env::Env;
+    #[pymodule_export]
+    use super::model_change::Watch;
     #[pymodule_export]
     use super::noise::ActionNoise;
     #[pymodule_export]
@@ -62,6 +68,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("CHANGEABLE", babybench::env::CHANGEABLE.to_vec())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

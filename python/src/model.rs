@@ -96,6 +96,8 @@ pub fn options<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDic
         ("ls_tolerance", model.opt.ls_tolerance),
         ("impratio", model.opt.impratio),
         ("ccd_tolerance", model.opt.ccd_tolerance),
+        ("density", model.opt.density),
+        ("viscosity", model.opt.viscosity),
         ("extent", model.stat.extent),
         ("znear", model.vis.znear),
         ("zfar", model.vis.zfar),
@@ -103,6 +105,7 @@ pub fn options<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDic
         options.set_item(name, value)?;
     }
     options.set_item("gravity", model.opt.gravity[..].to_array(py)?)?;
+    options.set_item("wind", model.opt.wind[..].to_array(py)?)?;
     options.set_item("name", &model.name)?;
     Ok(options)
 }

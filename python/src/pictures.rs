@@ -1,14 +1,15 @@
 //! Pictures of an environment from any of its cameras.
 
-use babybench::env::Viewer;
-use babybench::render::{Poses, RenderRequest, Renderer, View};
+use babybench::env::{ViewFrom, Viewer};
+use babybench::math::Vec3;
+use babybench::render::{FreeCamera, Poses, RenderRequest, Renderer, View};
 use numpy::Element;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use crate::arrays::shaped;
 use crate::env::Inner;
-use crate::errors::detached;
+use crate::errors::{IntoException, detached};
 
 /// What has been made to draw with.
 #[derive(Default)]
@@ -17,11 +18,34 @@ pub struct Painters {
     renderer: Option<Renderer>,
 }
 
+/// A camera as Python names it.
+#[derive(FromPyObject)]
+pub enum Camera {
+    /// One of the scene.
+    Named(String),
+    /// One anywhere: the point that it looks at, m, distance, m, azimuth and elevation, degrees.
+    Free((Vec3, f64, f64, f64)),
+}
+
+impl Camera {
+    fn view(&self) -> ViewFrom<'_> {
+        match self {
+            Self::Named(name) => ViewFrom::Camera(name),
+            Self::Free((lookat, distance, azimuth, elevation)) => ViewFrom::Free(FreeCamera {
+                lookat: *lookat,
+                distance: *distance,
+                azimuth: *azimuth,
+                elevation: *elevation,
+            }),
+        }
+    }
+}
+
 /// Draws a picture as people see it, (height, width, 3).
 pub fn colour<'py>(
     py: Python<'py>,
     inner: &mut Inner,
-    camera: &str,
+    camera: &Camera,
     [width, height]: [usize; 2],
 ) -> PyResult<Bound<'py, PyAny>> {
     let Inner { env, painters, .. } = inner;
@@ -31,7 +55,7 @@ pub fn colour<'py>(
             *viewer = Some(Viewer::new(env.blueprint())?);
         }
         match viewer {
-            Some(viewer) => Ok(viewer.draw(env, camera, width, height)?.to_vec()),
+            Some(viewer) => Ok(viewer.draw(env, camera.view(), width, height)?.to_vec()),
             None => Ok(Vec::new()),
         }
     })?;
@@ -39,7 +63,12 @@ pub fn colour<'py>(
 }
 
 /// Draws distances from the camera's plane, (height, width), m.
-pub fn depth<'py>(py: Python<'py>, inner: &mut Inner, camera: &str, size: [usize; 2]) -> PyResult<Bound<'py, PyAny>> {
+pub fn depth<'py>(
+    py: Python<'py>,
+    inner: &mut Inner,
+    camera: &Camera,
+    size: [usize; 2],
+) -> PyResult<Bound<'py, PyAny>> {
     map::<f32>(py, inner, camera, size, |renderer, views, out| {
         renderer.depth(views, [out])
     })
@@ -49,7 +78,7 @@ pub fn depth<'py>(py: Python<'py>, inner: &mut Inner, camera: &str, size: [usize
 pub fn segmentation<'py>(
     py: Python<'py>,
     inner: &mut Inner,
-    camera: &str,
+    camera: &Camera,
     size: [usize; 2],
 ) -> PyResult<Bound<'py, PyAny>> {
     map::<i32>(py, inner, camera, size, |renderer, views, out| {
@@ -64,21 +93,31 @@ type Draw<T> = fn(&mut Renderer, &[RenderRequest], &mut [T]) -> Result<(), babyb
 fn map<'py, T: Element + Copy + Default + Send>(
     py: Python<'py>,
     inner: &mut Inner,
-    camera: &str,
+    camera: &Camera,
     [width, height]: [usize; 2],
     method: Draw<T>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let Inner { env, painters, .. } = inner;
     let renderer = &mut painters.renderer;
-    let camera = env.model().camera(camera).ok_or_else(|| {
-        let cameras = env.model().cam_name.join(", ");
-        PyKeyError::new_err(format!("there is no camera {camera:?}; there are {cameras}"))
-    })?;
+    let known = |name: &str| {
+        env.model().camera(name).ok_or_else(|| {
+            let cameras = env.model().cam_name.join(", ");
+            PyKeyError::new_err(format!("there is no camera {name:?}; there are {cameras}"))
+        })
+    };
+    let (camera, free) = match camera.view() {
+        ViewFrom::Camera(name) => (known(name)?, None),
+        ViewFrom::Free(free) => {
+            let pose = free.pose().map_err(IntoException::into_exception)?;
+            (View::FREE, Some(pose))
+        }
+    };
     let picture = detached(py, || -> Result<Vec<T>, babybench::EnvError> {
         let view = View { camera, width, height };
         view.check()?;
         let mut picture = vec![T::default(); view.pixels()];
-        let poses = Poses::from(env.state());
+        let mut poses = Poses::from(env.state());
+        poses.free = free;
         let renderer = match renderer {
             Some(renderer) => renderer,
             None => renderer.insert(env.blueprint().renderer()?),

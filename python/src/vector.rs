@@ -19,7 +19,7 @@ use crate::errors::{IntoException, detached};
 use crate::info::{Space, info_dict, report_dict, spaces, target_of};
 use crate::observation::dict_of_row;
 use crate::rows::Arrays;
-use crate::task;
+use crate::{model_change, task};
 
 /// What a vector of Python's holds.
 struct Inner {
@@ -400,6 +400,24 @@ impl VectorEnv {
         let snapshot = Snapshot::from_bytes(snapshot.to_vec()).map_err(IntoException::into_exception)?;
         let restored = self.guard()?.open()?.envs.restore(env, &snapshot);
         restored.map_err(IntoException::into_exception)
+    }
+
+    fn model_array<'py>(&self, py: Python<'py>, env: usize, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let mut guard = self.guard()?;
+        let env = guard.open()?.envs.env(env).map_err(IntoException::into_exception)?;
+        model_change::array(py, env, name)
+    }
+
+    fn change_model(&self, env: usize, changes: &Bound<'_, PyDict>) -> PyResult<()> {
+        let mut guard = self.guard()?;
+        let env = guard.open()?.envs.env_mut(env).map_err(IntoException::into_exception)?;
+        model_change::change(env, changes)
+    }
+
+    fn model_changes<'py>(&self, py: Python<'py>, env: usize) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let env = guard.open()?.envs.env(env).map_err(IntoException::into_exception)?;
+        model_change::changes(py, env)
     }
 
     #[pyo3(signature = (env, target, angle=0.0))]

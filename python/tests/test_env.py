@@ -295,3 +295,49 @@ def test_a_scene_may_be_a_room_of_ones_own(tmp_path, monkeypatch):
     (tmp_path / "nursery" / "room.xml").write_text(ROOM.replace("mimo_settings", "mimo_setup"))
     with pytest.raises(ValueError, match=r"room\.xml:2:3: .*mimo_setup\.xml.* does not exist"):
         babybench.make(config)
+
+
+def test_the_model_is_changed_for_this_and_for_later_episodes():
+    plain, moon = babybench.Env(SMALL), babybench.Env(SMALL)
+    for env in (plain, moon):
+        env.reset(seed=0)
+    moon.change_model({"opt.gravity": [0, 0, 3.0], "body_mass": {"head": 2.0}})
+    assert moon.array("opt.gravity").tolist() == [0, 0, 3.0]
+    assert np.count_nonzero(moon.array("body_mass") != plain.array("body_mass")) == 1
+    run(plain, 30), run(moon, 30)
+    assert moon.array("subtree_com")[1, 2] > plain.array("subtree_com")[1, 2] + 0.01  # a weld holds the hip
+    copied = pickle.loads(pickle.dumps(moon))
+    assert same(run(copied, 3), run(moon, 3))
+    original = {name: plain.array(name) for name in ("opt.gravity", "body_mass")}
+    moon.reset(seed=4, options={"model": original})
+    plain.reset(seed=4)
+    assert same(run(plain, 5), run(moon, 5))
+    moon.reset(options={"model": {"opt.timestep": 0.004, "dof_damping": {"robot:right_elbow": 3.0}}})
+    assert moon.dt == 0.004
+    with pytest.raises(ValueError, match=r"model.dof_damping was another one; model.opt.timestep"):
+        plain.restore(moon.snapshot())
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "match"),
+    [
+        ({"body_mas": 1}, KeyError, "nothing of the model that can change is called .*body_mas"),
+        ({"body_pos": np.zeros((3, 3))}, KeyError, "nothing of the model that can change is called"),
+        ({"body_mass": [1.0, 2.0]}, ValueError, r"body_mass has the shape \(2,\)"),
+        ({"body_mass": {"haed": 1.0}}, KeyError, "there is no body 'haed'; did you mean `head`"),
+        ({"body_mass": {"head": [1.0, 2.0]}}, ValueError, "'head' has numbers of the shape"),
+        ({"opt.gravity": {"head": 1.0}}, TypeError, "not an array with a row for each element"),
+        ({"opt.timestep": 0.0}, ValueError, "opt.timestep, number 0, is 0: it must be above 0"),
+        ({"opt.gravity": [0, 0, np.inf]}, ValueError, "opt.gravity, number 2, is inf"),
+        ({"opt.gravity": np.zeros(3) + 1j}, TypeError, "real numbers are needed"),
+        ([1], TypeError, "expected a mapping"),
+        ({3: 1}, TypeError, "3 is no name"),
+    ],
+)
+def test_changes_of_the_model_that_are_none(env, changes, error, match):
+    before = env.snapshot()
+    with pytest.raises(error, match=match):
+        env.change_model(changes)
+    with pytest.raises(error, match=match):
+        env.reset(options={"model": changes})
+    assert env.snapshot() == before

@@ -9,7 +9,7 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
-from conftest import SEEING, SMALL
+from conftest import SMALL
 
 import babybench
 from babybench_core.registration import IDS as IDS_OF_ALL
@@ -90,16 +90,6 @@ def test_gymnasiums_own_vectors_hold_the_same_bits(kind):
             a, b = envs.step(actions)[0], ours.step(actions)[0]
     finally:
         envs.close()
-
-
-def test_a_window_shows_the_room(monkeypatch):
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    pytest.importorskip("pygame", reason="render_mode human needs pygame")
-    env = babybench.Env({**SEEING, "render_size": 32}, render_mode="human")
-    env.reset(seed=0)
-    assert env.render() is None
-    env.step(env.action_space.sample())
-    env.close()
 
 
 def test_the_spaces_say_what_is_observed():

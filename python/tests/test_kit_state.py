@@ -176,22 +176,58 @@ def test_forces_from_outside_act_and_others_are_refused(make: Make) -> None:
     assert u.data.qvel[arm] > before
 
 
-def test_writes_to_the_model_are_refused(make: Make) -> None:
+def test_what_is_written_into_the_model_acts_in_the_next_step(make: Make) -> None:
+    plain, env = make(), make()
+    for one in (plain, env):
+        one.reset(seed=0)
+    model, held = env.unwrapped.model, plain.unwrapped.model
+    steps(plain, 2), steps(env, 2)
+
+    def height(one: object) -> float:
+        steps(one, 20)
+        return float(one.unwrapped._core.engine.state_array("subtree_com")[1, 2])
+
+    model.opt.gravity[2] = 9.81
+    assert height(env) > height(plain) + 0.01  # a weld holds the hip
+    assert list(env.unwrapped._core.engine.model_changes) == ["opt.gravity"]
+    model.opt.gravity[:] = held.opt.gravity
+    steps(env, 1)
+    assert env.unwrapped._core.engine.model_changes == {}
+    writes = {
+        "body_mass": lambda: model.body_mass.__setitem__(3, 2 * model.body_mass[3]),
+        "body_inertia": lambda: model.body_inertia.__imul__(1.1),
+        "geom_size": lambda: model.geom_size.__setitem__((1, 0), model.geom_size[1, 0] * 1.01),
+        "geom_friction": lambda: setattr(model.geom(1), "friction", [0.3, 0.001, 0.001]),
+        "dof_damping": lambda: model.dof_damping.__imul__(2),
+        "jnt_stiffness": lambda: setattr(model.joint("robot:right_elbow"), "stiffness", 3.0),
+        "dof_armature": lambda: setattr(model.joint("robot:right_elbow"), "armature", 0.01),
+        "actuator_gear": lambda: model.actuator_gear.__imul__(1.1),
+        "opt.timestep": lambda: setattr(model.opt, "timestep", 0.004),
+    }
+    for name, write in writes.items():
+        write()
+        steps(env, 1)
+        assert name in env.unwrapped._core.engine.model_changes
+    assert set(env.unwrapped._core.engine.model_changes) == set(writes)
+    assert env.unwrapped.dt == pytest.approx(0.004)
+    copied = pickle.loads(pickle.dumps(env))
+    assert copied.unwrapped.model.body_mass[3] == model.body_mass[3]
+    for a, b in zip(steps(copied, 3), steps(env, 3)):
+        np.testing.assert_array_equal(a[0]["observation"], b[0]["observation"])
+    env.reset()
+    assert set(env.unwrapped._core.engine.model_changes) == set(writes), "a reset keeps them"
+
+
+def test_what_the_engine_cannot_take_over_is_refused_at_once(make: Make) -> None:
     env = make()
     env.reset()
     model = env.unwrapped.model
-
-    def write_mass() -> None:
-        model.body_mass[3] = 0.1
-        env.reset()
-
-    def write_timestep() -> None:
-        model.opt.timestep = 0.001
-        env.reset()
-
-    for write in (write_mass, write_timestep):
-        with pytest.raises((ValueError, AttributeError), match=r"read-only|cannot be"):
-            write()
+    for name in ("body_pos", "jnt_range", "geom_pos", "qpos0"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(model, name)[:] = 0
+    model.body_mass[3] = -1
+    with pytest.raises(ValueError, match=r"body_mass, number 3, is -1: it must be above 0"):
+        steps(env, 1)
 
 
 def test_joints_are_locked_through_the_model(make: Make) -> None:

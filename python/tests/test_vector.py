@@ -323,3 +323,30 @@ def test_observations_for_learners_outlive_the_next_step(monkeypatch):
     envs.close()
     with pytest.raises(ValueError, match="copy=False"):
         sb3.VecEnv(SMALL, 2, copy=False)
+
+
+def test_each_environment_has_its_own_changes_of_the_model():
+    envs, one = babybench.VectorEnv(SMALL, 3), babybench.Env(SMALL)
+    changes = [None, {"opt.gravity": [0, 0, -2.0]}, {"geom_friction": one.array("geom_friction") / 2}]
+    observations, _ = envs.reset(seed=0, options={"model": changes})
+    assert [array[2] for array in envs.call("array", "opt.gravity")] == [-9.81, -2, -9.81]
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(envs.action_space.low, envs.action_space.high, (5, *envs.action_space.shape)).astype(
+        np.float32
+    )
+    for action in actions:
+        observations, *_ = envs.step(action)
+    for number, change in enumerate(changes):
+        one = babybench.Env(SMALL)
+        one.reset(seed=number, options=None if change is None else {"model": change})
+        for action in actions:
+            observation, *_ = one.step(action[number])
+        np.testing.assert_array_equal(observations["observation"][number], observation["observation"])
+    copied = pickle.loads(pickle.dumps(envs))
+    np.testing.assert_array_equal(copied.step(actions[0])[0]["observation"], envs.step(actions[0])[0]["observation"])
+    envs.reset(options={"model": {"opt.gravity": [0, 0, -1.0]}, "reset_mask": np.array([True, False, True])})
+    assert [array[2] for array in envs.call("array", "opt.gravity")] == [-1, -2, -1]
+    with pytest.raises(ValueError, match="2 entries, but there are 3"):
+        envs.reset(options={"model": [None, None]})
+    with pytest.raises(TypeError, match="expected a mapping or a list"):
+        envs.reset(options={"model": 3})

@@ -21,6 +21,7 @@ class Beneath(Protocol):
     engine: _native.Env
     parts: _native.Parts
     place: list[float] | None
+    timestep: float
     width: int
     height: int
     mimo_joints: NDArray[np.int_]

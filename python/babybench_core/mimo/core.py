@@ -117,8 +117,12 @@ class Core:
         self._change("write")
 
     def pull(self) -> None:
-        """Reads back what a script has written to the state."""
-        if self._live is not None and self.course.turn is Turn.SCRIPT:
+        """Reads back what a script has written to the model and to the state."""
+        if self.course.turn is not Turn.SCRIPT:
+            return
+        if self._watched is not None:
+            self._watched.follow()
+        if self._live is not None:
             self._live.pull()
 
     def reset_data(self) -> None:

@@ -379,13 +379,15 @@ class MIMoEnv(SensingEnv):
     def __getstate__(self) -> dict[str, Any]:
         """Returns what a copy continues with: the arguments, the state of the engine, and what else the environment holds."""
         kept = {name: value for name, value in self.__dict__.items() if name not in _REMADE}
-        return {"snapshot": self._core.engine.snapshot(), "kept": kept}
+        engine = self._core.engine
+        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "kept": kept}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Makes the environment anew and continues there."""
         kept = state["kept"]
         self.__init__(*kept["_ezpickle_args"], **kept["_ezpickle_kwargs"])  # type: ignore[misc,unused-ignore]
         self.__dict__.update(kept)
+        self._core.engine.change_model(state["changes"])
         self._core.engine.restore(state["snapshot"])
         self._own_seed = self.action_space._np_random
         self._core.changed()

@@ -1,4 +1,4 @@
-"""The model that scripts see, ``env.model``: MuJoCo's own, or what stands for it; only its locks may be changed."""
+"""The model that scripts see, ``env.model``: MuJoCo's own, or what stands for it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _native
 from ..standin import MUJOCO
@@ -15,9 +16,9 @@ from .beneath import Beneath
 from .utils import JOINT_EQUALITY
 from .views import ModelView
 
-_CHECKED = ("body", "jnt", "dof", "geom", "site", "cam", "tendon", "actuator", "pair", "eq", "qpos")
+_CHECKED = ("body", "jnt", "dof", "geom", "site", "cam", "tendon", "actuator", "pair", "eq", "qpos0", "qpos")
 _ALLOWED = frozenset({"eq_active0", "eq_data", "geom_rgba", "site_rgba"})
-"""Arrays of the model that scripts may write to: those of locks are read back, colours are MuJoCo's own pictures' business."""
+"""Arrays that scripts may write to, too: those of locks are read back, colours are MuJoCo's own pictures' business."""
 
 
 def mujoco_module() -> ModuleType | None:
@@ -83,41 +84,88 @@ def view_model(core: Beneath) -> ModelView:
 
 
 class Watched:
-    """A model that a script has, of which only locks may be changed."""
+    """A model that a script has: what it writes goes to the engine before the next step, or is refused."""
 
     def __init__(self, core: Beneath, model: Any) -> None:
         """Remembers what the model is."""
         self.core = core
         self.model = model
         self.locks = self._locks()
-        names = (
-            []
-            if isinstance(model, ModelView)
-            else [n for n in dir(model) if n.split("_")[0] in _CHECKED and n not in _ALLOWED]
-        )
-        if core.config["actuation_model"] == "muscle":
-            names = [name for name in names if name != "actuator_gear"]
-        self.arrays = {name: array.copy() for name in names if isinstance(array := getattr(model, name), np.ndarray)}
-        self.gravity = np.array(model.opt.gravity)
-        self.timestep = float(model.opt.timestep)
+        # muscles set the gears in each step
+        muscles = core.config["actuation_model"] == "muscle"
+        free = [name for name in _native.CHANGEABLE if not (muscles and name == "actuator_gear")]
+        self.names = [name for name in free if isinstance(_get(model, name), np.ndarray)]
+        """Arrays that can change."""
+        self.changeable = [_get(model, name) for name in self.names]
+        self.watch = _native.Watch(self.changeable)
+        self.seen = [array.copy() for array in self.changeable]
+        self.option_names = [name for name in free if name not in self.names]
+        self.options = self._options()
+        self.fixed = {} if isinstance(model, ModelView) else self._fix()
+
+    def _fix(self) -> dict[str, NDArray[Any]]:
+        """Makes MuJoCo's other arrays read-only, and remembers them, as they can be written in other ways."""
+        fixed = {}
+        for name in dir(self.model):
+            known = name.split("_")[0] in _CHECKED and name not in _ALLOWED and name not in _native.CHANGEABLE
+            array = getattr(self.model, name) if known else None
+            if isinstance(array, np.ndarray):
+                fixed[name] = array.copy()
+                array.flags.writeable = False
+        return fixed
+
+    def _options(self) -> tuple[float, ...]:
+        opt = self.model.opt
+        return tuple(getattr(opt, name[4:]) for name in self.option_names)
+
+    def follow(self) -> None:
+        """Gives the engine what a script has written into the model.
+
+        Raises:
+            ValueError: Numbers that the engine does not have, that are not finite or too small.
+        """
+        options, changed = self._options(), self.watch.changed(self.changeable)
+        if not changed and options == self.options:
+            return
+        engine = self.core.engine
+        changes = {
+            name: np.asarray(now, np.float64)
+            for name, now, before in zip(self.option_names, options, self.options)
+            if now != before
+        }
+        for number in changed:
+            name, now = self.names[number], self.changeable[number]
+            whole = engine.model_array(name)
+            # the last bits of what is left alone may be others in MuJoCo
+            written = now != self.seen[number]
+            if name == "actuator_gear":
+                if written[:, 1:].any():
+                    raise ValueError("actuator_gear: the engine has the first number of each row only")
+                now, written = now[:, 0], written[:, 0]
+            whole[written] = now[written]
+            changes[name] = whole
+        engine.change_model(changes)
+        self.options = options
+        self.seen = [array.copy() for array in self.changeable]
+        self.core.timestep = engine.dt / self.core.config["frame_skip"]
 
     def _locks(self) -> list[tuple[int, float]]:
         active = np.asarray(self.model.eq_active0).tolist()
         return list(zip(active, np.asarray(self.model.eq_data)[:, 0].tolist()))
 
     def check(self) -> None:
-        """Applies changed locks to the engine.
+        """Applies changes, and changed locks, to the engine.
 
         Raises:
             ValueError: Something else was changed.
         """
-        changed = [name for name, array in self.arrays.items() if not np.array_equal(getattr(self.model, name), array)]
-        if not np.array_equal(self.model.opt.gravity, self.gravity) or self.model.opt.timestep != self.timestep:
-            changed.append("opt")
+        self.follow()
+        changed = [name for name, array in self.fixed.items() if not np.array_equal(getattr(self.model, name), array)]
         if changed:
             raise ValueError(
-                f"env.model was changed ({', '.join(changed)}), but the engine's model cannot be: change the configuration or "
-                "the MJCF files that the scene includes, or run this with MuJoCo and the original kit"
+                f"env.model was changed ({', '.join(changed)}), but what the engine takes over are "
+                f"{', '.join(_native.CHANGEABLE)}: for the rest change the configuration or the MJCF files that the scene "
+                "includes, or run this with MuJoCo and the original kit"
             )
         now = self._locks()
         for number, (before, after) in enumerate(zip(self.locks, now)):
@@ -143,4 +191,21 @@ def make_model(core: Beneath) -> Any:
     model = mujoco_model(mujoco, core) if mujoco is not None else view_model(core)
     active = np.asarray(core.parts.eq_active0)
     model.eq_active0[:] = active
+    for name, array in core.engine.model_changes.items():
+        _put(model, name, array)  # of the environment that this one is a copy of
     return model
+
+
+def _get(model: Any, name: str) -> Any:
+    """Returns an array of a model, or one of its options."""
+    return getattr(model.opt, name[4:]) if name.startswith("opt.") else getattr(model, name)
+
+
+def _put(model: Any, name: str, array: NDArray[Any]) -> None:
+    """Writes an array of a model, or one of its options."""
+    if name == "actuator_gear":
+        model.actuator_gear[:, 0] = array
+    elif name.startswith("opt.") and not array.ndim:
+        setattr(model.opt, name[4:], float(array))
+    else:
+        _get(model, name)[:] = array

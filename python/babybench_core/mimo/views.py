@@ -1,7 +1,9 @@
 """What stands for MuJoCo's ``MjModel`` and ``MjData`` where MuJoCo is not installed.
 
 Names, shapes, number types and units are MuJoCo's. The arrays of a state show the present after every step; ``qpos``, ``qvel``,
-``ctrl`` and ``qfrc_applied`` can be written. Of a model only ``eq_active0`` and ``eq_data`` can be written: they lock joints.
+``ctrl`` and ``qfrc_applied`` can be written. Of a model ``eq_active0`` and ``eq_data`` can be written, which lock joints, and
+what the engine takes over in the next step: gravity, timestep, mass, inertia, size, friction, damping, stiffness, armature,
+gears, softness.
 """
 
 from __future__ import annotations
@@ -57,18 +59,25 @@ _SIZES = {
     "nsensordata": "nsensordata",
     "npair": "npair",
 }
-_WRITABLE = frozenset({"eq_active0", "eq_data"})
+_WRITABLE = frozenset({"eq_active0", "eq_data"}).union(_native.CHANGEABLE)
+OPTIONS = tuple(name[4:] for name in _native.CHANGEABLE if name.startswith("opt."))
+"""The options that can be written."""
 
 
 class Options:
-    """The options of a model, ``model.opt``; they cannot be changed."""
+    """The options of a model, ``model.opt``."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         """Takes the values over."""
         self.__dict__.update(values)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError(_FIXED.format(name=f"opt.{name}"))
+        if name not in OPTIONS:
+            raise AttributeError(_FIXED.format(name=f"opt.{name}"))
+        if isinstance(self.__dict__[name], np.ndarray):
+            self.__dict__[name][...] = value
+        else:
+            self.__dict__[name] = float(value)
 
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(_MODEL_HELP.format(name=f"opt.{name}"))
@@ -96,19 +105,8 @@ class ModelView(_Named):
             nmat=len(names["material"]),
         )
         own.update({name: array for name, array in extras.items() if name.startswith("eq_")})
-        gravity = np.array(options["gravity"])
-        gravity.flags.writeable = False
-        keys = (
-            "timestep",
-            "iterations",
-            "tolerance",
-            "ls_iterations",
-            "ls_tolerance",
-            "impratio",
-            "ccd_iterations",
-            "ccd_tolerance",
-        )
-        own["opt"] = Options({**{key: options[key] for key in keys}, "gravity": gravity})
+        keys = ("iterations", "tolerance", "ls_iterations", "ls_tolerance", "ccd_iterations", "ccd_tolerance")
+        own["opt"] = Options({key: options[key] for key in (*keys, *OPTIONS)})
 
     def __getattr__(self, name: str) -> Any:
         """Returns an array by MuJoCo's name; it is read once."""
@@ -125,12 +123,17 @@ class ModelView(_Named):
                 array = array.astype(np.float32)
             elif name in _WIDTHS:
                 array = _widened(array, _WIDTHS[name])
-        array.flags.writeable = name in _WRITABLE
+        if name in _WRITABLE:
+            array = array.copy()  # it owns its numbers, as what is written to has to
+        else:
+            array.flags.writeable = False
         self.__dict__[name] = array
         return array
 
     def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError(_FIXED.format(name=name))
+        if name not in _WRITABLE:
+            raise AttributeError(_FIXED.format(name=name))
+        getattr(self, name)[...] = value
 
     def _derived(self, name: str) -> NDArray[Any] | None:
         """Returns arrays that MuJoCo has and the engine keeps in another form."""
