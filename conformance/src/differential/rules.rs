@@ -533,7 +533,7 @@ const BETWEEN: &[Rule] = &[
     ("geom1", Placed(&["ball"])),
     ("body1", Placed(&["mid"])),
     ("geom2", Placed(&["ball"])),
-    ("body2", Placed(&["second"])),
+    ("body2", Placed(&["ball"])),
 ];
 const REACH: &[Rule] = &[
     ("name", Nothing),
