@@ -95,22 +95,31 @@ limits! {
         /// Configurations: bytes of a YAML text.
         config_bytes: usize = MIB,
         /// NumPy archives: bytes of a file.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         npz_bytes: u64 = 4 * GIB,
         /// NumPy archives: arrays in an archive.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         npz_arrays: usize = 65_536,
         /// NumPy archives: bytes of the header of an array.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         npz_header_bytes: usize = 16 * KIB,
         /// NumPy archives: bytes of an array in memory, as stored and as converted.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         npz_array_bytes: usize = GIB,
         /// Pickles: bytes of a file.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pickle_bytes: usize = 256 * MIB,
         /// Pickles: numbers in arrays and items in lists, all together.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pickle_numbers: usize = 67_108_864,
         /// Pickles: lists, dictionaries, texts and arrays.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pickle_objects: usize = 8_388_608,
         /// Pickles: levels of nested values. A level takes up to 1 KiB of stack without optimisation.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pickle_depth: usize = 32,
         /// Pickles: dimensions of an array.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pickle_dimensions: usize = 8,
         /// Logs: records of a log.
         records: usize = 2_000_000,

@@ -35,7 +35,7 @@ pub use by_hand::Parts;
 pub use details::{InfoDetails, PartNames, Regards};
 internals!(use error::EnvError);
 pub use eyes::draw_eyes;
-pub use fields::{InfoField, InfoValue};
+internals!(use fields::{InfoField, InfoValue});
 #[cfg(feature = "eval")]
 pub(crate) use fields::{InfoSource, PARTS, STEPS};
 #[cfg(feature = "eval")]

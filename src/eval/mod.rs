@@ -53,14 +53,16 @@ mod pack;
 mod scores;
 
 #[cfg(feature = "npz")]
-pub use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult};
-pub use episodes::{EpisodeError, Observer, Plan, run_episodes, run_episodes_watched};
+internals!(use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult});
+pub use episodes::{EpisodeError, Plan, run_episodes};
+internals!(use episodes::{Observer, run_episodes_watched});
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
-pub use film::{Film, FilmError, RoomFilm};
+pub use film::{Film, FilmError};
+internals!(use film::RoomFilm);
 #[cfg(feature = "npz")]
-pub use measures::{HandMeasures, Measures, RegionMeasures};
+internals!(use measures::{HandMeasures, Measures, RegionMeasures});
 #[cfg(feature = "npz")]
-pub use pack::{PackError, PackOptions, Packed, pack};
+internals!(use pack::{PackError, PackOptions, Packed, pack});
 pub use scores::{Score, ScoreError, ScoreParts, Touchables};
 internals!(use scores::{MAX_EPISODES, steps});
 

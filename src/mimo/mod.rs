@@ -15,7 +15,7 @@ mod standards;
 internals!(use anatomy::{BodyKind, body_kind});
 pub use assets::embedded;
 pub use builder::SceneBuilder;
-pub use figures::BodyFigures;
+internals!(use figures::BodyFigures);
 #[cfg(feature = "report")]
 pub(crate) use figures::upright_extent;
 internals!(use growth::Growth);
@@ -34,4 +34,4 @@ pub use room::{RoomError, scene_assets};
 pub(crate) use scene::{document_path, has_own_scene};
 internals!(use scene::{DOCUMENT, build_scene});
 pub use scene::{SceneError, Version, build_model, scene_xml};
-pub use standards::{GrowthStandard, Lms};
+internals!(use standards::{GrowthStandard, Lms});

@@ -475,28 +475,40 @@ pub struct Options {
     /// Gravity, m/s^2.
     pub gravity: Vec3,
     /// Greatest number of iterations of the solver per step.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub iterations: usize,
     /// Scaled improvement or gradient below which the solver stops.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub tolerance: f64,
     /// Greatest number of iterations of the solver against slip, which changes friction after the other; 0 for none.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub noslip_iterations: usize,
     /// Scaled improvement below which it stops.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub noslip_tolerance: f64,
     /// Greatest number of line-search iterations per Newton iteration.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ls_iterations: usize,
     /// Line-search tolerance.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ls_tolerance: f64,
     /// Ratio of frictional to normal constraint impedance.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub impratio: f64,
     /// Shape of the friction cones.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cone: ConeType,
     /// Format of the constraint Jacobian in MuJoCo.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub jacobian: JacobianFormat,
     /// Greatest number of iterations of the convex collision routine.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ccd_iterations: usize,
     /// Tolerance of the convex collision routine, m.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ccd_tolerance: f64,
     /// Solver of constraints.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub solver: SolverType,
     /// Method of integration.
     pub integrator: IntegratorType,
@@ -509,6 +521,7 @@ pub struct Options {
     /// Magnetic flux, which magnetometers read.
     pub magnetic: Vec3,
     /// Parts of the simulation that may be switched off.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub flags: Flags,
 }
 

@@ -13,25 +13,30 @@ mod sensor;
 
 pub use complete::Model;
 pub(crate) use complete::{CameraPose, Constants, LightPose, WeldPose};
-pub use elements::{
-    BiasType, CamLight, ConeType, DynType, EqualityKind, Flags, GainType, GeomType, IntegratorType, JacobianFormat,
-    JointType, Keyframe, Light, Material, Options, SolverType, Statistic, TrnType, Wrap,
-};
-internals!(use elements::{Builtin, Mark, SameFrame, Texture, TextureType, Visual});
-pub use hfield::HField;
-pub use mesh::{Mesh, MeshHull};
-pub use sensor::{DataType, ObjType, SensorType};
+pub use elements::{GeomType, IntegratorType, JointType, Keyframe, Options};
+internals!(use elements::{
+    BiasType, Builtin, CamLight, ConeType, DynType, EqualityKind, Flags, GainType, JacobianFormat, Light, Mark, Material, SameFrame,
+    SolverType, Statistic, Texture, TextureType, TrnType, Visual, Wrap,
+});
+internals!(use hfield::HField);
+internals!(use mesh::{Mesh, MeshHull});
+internals!(use sensor::{DataType, ObjType, SensorType});
 
 use crate::math::{Mat3, Quat, Vec3};
 
+// A field with `["internals"]` before it is shown in the documentation with that feature only: it serves physics, pictures and MuJoCo's
+// names, and changes in any release.
 macro_rules! arrays {
-    ($($(#[$setting_doc:meta])* $setting:ident : $setting_ty:ty),*; $($(#[$doc:meta])* $field:ident : $ty:ty),* $(,)?) => {
+    (
+        $($(#[$setting_doc:meta])* $([$setting_of:tt])? $setting:ident : $setting_ty:ty),*;
+        $($(#[$doc:meta])* $([$of:tt])? $field:ident : $ty:ty),* $(,)?
+    ) => {
         /// The numbers of a scene under MuJoCo's names, as a [`Model`] shows them; see the [module documentation](self).
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub struct Arrays {
-            $($(#[$setting_doc])* pub $setting: $setting_ty,)*
-            $($(#[$doc])* pub $field: $ty,)*
+            $($(#[$setting_doc])* $(#[cfg_attr(not(feature = $setting_of), doc(hidden))])? pub $setting: $setting_ty,)*
+            $($(#[$doc])* $(#[cfg_attr(not(feature = $of), doc(hidden))])? pub $field: $ty,)*
         }
 
         impl Arrays {
@@ -49,10 +54,9 @@ arrays! {
     /// Options.
     opt: Options,
     /// Visual settings.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    vis: Visual,
+    ["internals"] vis: Visual,
     /// Statistics.
-    stat: Statistic;
+    ["internals"] stat: Statistic;
 
     /// Number of position coordinates.
     nq: usize,
@@ -68,9 +72,9 @@ arrays! {
     /// Parent body; 0 for the world itself.
     body_parentid: Vec<usize>,
     /// Top body of the tree that holds the body (the ancestor that is a child of the world).
-    body_rootid: Vec<usize>,
+    ["internals"] body_rootid: Vec<usize>,
     /// Body that it is rigidly welded to: itself when it has joints, else its parent's.
-    body_weldid: Vec<usize>,
+    ["internals"] body_weldid: Vec<usize>,
     /// First joint, `njnt` range start.
     body_jntadr: Vec<usize>,
     /// Number of joints.
@@ -98,14 +102,13 @@ arrays! {
     /// Principal moments of inertia, kg m^2.
     body_inertia: Vec<Vec3>,
     /// Whether the inertial frame is the body's.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    body_sameframe: Vec<SameFrame>,
+    ["internals"] body_sameframe: Vec<SameFrame>,
     /// Place in `mocap_pos` and `mocap_quat` of a body that a program moves.
     body_mocapid: Vec<Option<usize>>,
     /// Part of the weight that is compensated, 0 for none.
-    body_gravcomp: Vec<f64>,
+    ["internals"] body_gravcomp: Vec<f64>,
     /// Mean inverse weight at `qpos0`: translation 1/kg, rotation 1/(kg m^2).
-    body_invweight0: Vec<[f64; 2]>,
+    ["internals"] body_invweight0: Vec<[f64; 2]>,
     /// Numbers for programs, `nuser_body` for each body.
     body_user: Vec<Vec<f64>>,
 
@@ -128,21 +131,21 @@ arrays! {
     /// Lower and upper limit, rad or m.
     jnt_range: Vec<[f64; 2]>,
     /// Distance at which a limit becomes active.
-    jnt_margin: Vec<f64>,
+    ["internals"] jnt_margin: Vec<f64>,
     /// Spring stiffness, N m/rad or N/m.
     jnt_stiffness: Vec<f64>,
     /// Whether `jnt_actfrcrange` applies.
-    jnt_actfrclimited: Vec<bool>,
+    ["internals"] jnt_actfrclimited: Vec<bool>,
     /// Limits of the force of all actuators on the joint, N m or N.
-    jnt_actfrcrange: Vec<[f64; 2]>,
+    ["internals"] jnt_actfrcrange: Vec<[f64; 2]>,
     /// Time constant, s, and damping ratio from which its spring and damper follow; zeros where those are given.
-    jnt_springdamper: Vec<[f64; 2]>,
+    ["internals"] jnt_springdamper: Vec<[f64; 2]>,
     /// `solref` of the limit.
-    jnt_solref: Vec<[f64; 2]>,
+    ["internals"] jnt_solref: Vec<[f64; 2]>,
     /// `solimp` of the limit.
-    jnt_solimp: Vec<[f64; 5]>,
+    ["internals"] jnt_solimp: Vec<[f64; 5]>,
     /// Visual group.
-    jnt_group: Vec<usize>,
+    ["internals"] jnt_group: Vec<usize>,
     /// Numbers for programs, `nuser_jnt` for each joint.
     jnt_user: Vec<Vec<f64>>,
 
@@ -151,7 +154,7 @@ arrays! {
     /// Joint of a degree of freedom.
     dof_jntid: Vec<usize>,
     /// Next degree of freedom towards the root.
-    dof_parentid: Vec<Option<usize>>,
+    ["internals"] dof_parentid: Vec<Option<usize>>,
     /// Inertia of the rotor, kg m^2.
     dof_armature: Vec<f64>,
     /// Damping, N m s/rad.
@@ -159,18 +162,18 @@ arrays! {
     /// Dry friction, N m.
     dof_frictionloss: Vec<f64>,
     /// Diagonal of the inverse inertia at `qpos0`, 1/kg or 1/(kg m^2).
-    dof_invweight0: Vec<f64>,
+    ["internals"] dof_invweight0: Vec<f64>,
     /// Diagonal of the inertia at `qpos0` (MuJoCo's `dof_M0`), kg or kg m^2.
-    dof_m0: Vec<f64>,
+    ["internals"] dof_m0: Vec<f64>,
     /// `solref` of dry friction.
-    dof_solref: Vec<[f64; 2]>,
+    ["internals"] dof_solref: Vec<[f64; 2]>,
     /// `solimp` of dry friction.
-    dof_solimp: Vec<[f64; 5]>,
+    ["internals"] dof_solimp: Vec<[f64; 5]>,
 
     /// Reference configuration (nq).
     qpos0: Vec<f64>,
     /// Rest configuration of the springs (nq).
-    qpos_spring: Vec<f64>,
+    ["internals"] qpos_spring: Vec<f64>,
 
     /// Geom names; may be empty.
     geom_name: Vec<String>,
@@ -179,7 +182,7 @@ arrays! {
     /// Size, m; see [`GeomType`].
     geom_size: Vec<Vec3>,
     /// Mesh that the geom is, or that a primitive is fitted to; of a height field, its id among those.
-    geom_dataid: Vec<Option<usize>>,
+    ["internals"] geom_dataid: Vec<Option<usize>>,
     /// Body that carries the geom.
     geom_bodyid: Vec<usize>,
     /// Position in the body, m.
@@ -187,8 +190,7 @@ arrays! {
     /// Orientation in the body.
     geom_quat: Vec<Quat>,
     /// Whether its frame is one that the body has already.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    geom_sameframe: Vec<SameFrame>,
+    ["internals"] geom_sameframe: Vec<SameFrame>,
     /// Collision type bits.
     geom_contype: Vec<u32>,
     /// Collision affinity bits.
@@ -196,65 +198,64 @@ arrays! {
     /// Dimension of its contacts: 1, 3, 4 or 6.
     geom_condim: Vec<usize>,
     /// Priority in contact parameter mixing.
-    geom_priority: Vec<i32>,
+    ["internals"] geom_priority: Vec<i32>,
     /// Sliding, torsional, rolling friction.
     geom_friction: Vec<[f64; 3]>,
     /// Weight in contact parameter mixing.
-    geom_solmix: Vec<f64>,
+    ["internals"] geom_solmix: Vec<f64>,
     /// Contact `solref`.
-    geom_solref: Vec<[f64; 2]>,
+    ["internals"] geom_solref: Vec<[f64; 2]>,
     /// Contact `solimp`.
-    geom_solimp: Vec<[f64; 5]>,
+    ["internals"] geom_solimp: Vec<[f64; 5]>,
     /// Contact margin, m.
-    geom_margin: Vec<f64>,
+    ["internals"] geom_margin: Vec<f64>,
     /// Contact gap, m.
-    geom_gap: Vec<f64>,
+    ["internals"] geom_gap: Vec<f64>,
     /// How a medium acts on the geom as on an ellipsoid: 1 if it does, coefficients of blunt, slender and angular drag, of Kutta's lift
     /// and of Magnus's, volumes (3), m^3, and moments (3), m^5, of the medium that moves with it; zeros if it does not.
-    geom_fluid: Vec<[f64; 12]>,
+    ["internals"] geom_fluid: Vec<[f64; 12]>,
     /// Box around it in its frame: centre and half lengths, m. Planes fill half of it.
-    geom_aabb: Vec<[f64; 6]>,
+    ["internals"] geom_aabb: Vec<[f64; 6]>,
     /// Radius of the bounding sphere, m; 0 for planes.
-    geom_rbound: Vec<f64>,
+    ["internals"] geom_rbound: Vec<f64>,
     /// Visual group.
-    geom_group: Vec<usize>,
+    ["internals"] geom_group: Vec<usize>,
     /// Own colour, 0..1.
     geom_rgba: Vec<[f64; 4]>,
     /// Index into [`Arrays::materials`].
-    geom_matid: Vec<Option<usize>>,
+    ["internals"] geom_matid: Vec<Option<usize>>,
     /// Numbers for programs, `nuser_geom` for each geom.
     geom_user: Vec<Vec<f64>>,
 
     /// Site names.
     site_name: Vec<String>,
     /// Shape.
-    site_type: Vec<GeomType>,
+    ["internals"] site_type: Vec<GeomType>,
     /// Body that carries the site.
     site_bodyid: Vec<usize>,
     /// Size, m.
-    site_size: Vec<Vec3>,
+    ["internals"] site_size: Vec<Vec3>,
     /// Position in the body, m.
     site_pos: Vec<Vec3>,
     /// Orientation in the body.
     site_quat: Vec<Quat>,
     /// Whether its frame is one that the body has already.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    site_sameframe: Vec<SameFrame>,
+    ["internals"] site_sameframe: Vec<SameFrame>,
     /// Visual group.
-    site_group: Vec<usize>,
+    ["internals"] site_group: Vec<usize>,
     /// Colour, 0..1.
-    site_rgba: Vec<[f64; 4]>,
+    ["internals"] site_rgba: Vec<[f64; 4]>,
     /// Index into [`Arrays::materials`].
-    site_matid: Vec<Option<usize>>,
+    ["internals"] site_matid: Vec<Option<usize>>,
     /// Numbers for programs, `nuser_site` for each site.
     site_user: Vec<Vec<f64>>,
 
     /// Camera names.
     cam_name: Vec<String>,
     /// How it is placed and aimed.
-    cam_mode: Vec<CamLight>,
+    ["internals"] cam_mode: Vec<CamLight>,
     /// Body that it looks at in modes that aim at one.
-    cam_targetbodyid: Vec<Option<usize>>,
+    ["internals"] cam_targetbodyid: Vec<Option<usize>>,
     /// Body that carries the camera.
     cam_bodyid: Vec<usize>,
     /// Position in the body, m.
@@ -262,109 +263,108 @@ arrays! {
     /// Orientation in the body; the camera looks along its -z.
     cam_quat: Vec<Quat>,
     /// Position at `qpos0` relative to the origin of its body, along the axes of the world, m.
-    cam_pos0: Vec<Vec3>,
+    ["internals"] cam_pos0: Vec<Vec3>,
     /// Position at `qpos0` relative to the centre of mass of the target, or else its body, and those below, along the axes of
     /// the world, m.
-    cam_poscom0: Vec<Vec3>,
+    ["internals"] cam_poscom0: Vec<Vec3>,
     /// Orientation at `qpos0` in the world.
-    cam_mat0: Vec<Mat3>,
+    ["internals"] cam_mat0: Vec<Mat3>,
     /// Width and height of its picture for sensors, pixels.
-    cam_resolution: Vec<[usize; 2]>,
+    ["internals"] cam_resolution: Vec<[usize; 2]>,
     /// Vertical field of view, degrees.
     cam_fovy: Vec<f64>,
     /// Numbers for programs, `nuser_cam` for each camera. They mean nothing to physics and pictures.
     cam_user: Vec<Vec<f64>>,
 
     /// Meshes.
-    meshes: Vec<Mesh>,
+    ["internals"] meshes: Vec<Mesh>,
     /// Height fields.
-    hfields: Vec<HField>,
+    ["internals"] hfields: Vec<HField>,
 
     /// Lights.
-    lights: Vec<Light>,
+    ["internals"] lights: Vec<Light>,
     /// Textures.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    textures: Vec<Texture>,
+    ["internals"] textures: Vec<Texture>,
     /// Materials.
-    materials: Vec<Material>,
+    ["internals"] materials: Vec<Material>,
 
     /// Explicit pair: geoms, that of the lower body first.
-    pair_geom: Vec<[usize; 2]>,
+    ["internals"] pair_geom: Vec<[usize; 2]>,
     /// Explicit pair: contact dimension.
-    pair_dim: Vec<usize>,
+    ["internals"] pair_dim: Vec<usize>,
     /// Explicit pair: `solref` of the normal.
-    pair_solref: Vec<[f64; 2]>,
+    ["internals"] pair_solref: Vec<[f64; 2]>,
     /// Explicit pair: `solref` of friction; zeros mean that of the normal.
-    pair_solreffriction: Vec<[f64; 2]>,
+    ["internals"] pair_solreffriction: Vec<[f64; 2]>,
     /// Explicit pair: `solimp`.
-    pair_solimp: Vec<[f64; 5]>,
+    ["internals"] pair_solimp: Vec<[f64; 5]>,
     /// Explicit pair: the five friction coefficients.
-    pair_friction: Vec<[f64; 5]>,
+    ["internals"] pair_friction: Vec<[f64; 5]>,
     /// Explicit pair: margin, m.
-    pair_margin: Vec<f64>,
+    ["internals"] pair_margin: Vec<f64>,
     /// Explicit pair: gap, m.
-    pair_gap: Vec<f64>,
+    ["internals"] pair_gap: Vec<f64>,
     /// Body pairs excluded from collision, lower id first, sorted.
-    exclude: Vec<[usize; 2]>,
+    ["internals"] exclude: Vec<[usize; 2]>,
 
     /// Equality names.
     eq_name: Vec<String>,
     /// Kind of each constraint, with what it holds.
-    eq_kind: Vec<EqualityKind>,
+    ["internals"] eq_kind: Vec<EqualityKind>,
     /// Whether it is active after a reset.
-    eq_active0: Vec<bool>,
+    ["internals"] eq_active0: Vec<bool>,
     /// `solref`.
-    eq_solref: Vec<[f64; 2]>,
+    ["internals"] eq_solref: Vec<[f64; 2]>,
     /// `solimp`.
-    eq_solimp: Vec<[f64; 5]>,
+    ["internals"] eq_solimp: Vec<[f64; 5]>,
 
     /// Tendon names.
     tendon_name: Vec<String>,
     /// What each tendon runs along, in document order.
-    tendon_wrap: Vec<Vec<Wrap>>,
+    ["internals"] tendon_wrap: Vec<Vec<Wrap>>,
     /// Whether `tendon_range` applies.
     tendon_limited: Vec<bool>,
     /// Shortest and longest length; m for spatial tendons.
     tendon_range: Vec<[f64; 2]>,
     /// Distance at which a limit becomes active.
-    tendon_margin: Vec<f64>,
+    ["internals"] tendon_margin: Vec<f64>,
     /// `solref` of the limit.
-    tendon_solref_lim: Vec<[f64; 2]>,
+    ["internals"] tendon_solref_lim: Vec<[f64; 2]>,
     /// `solimp` of the limit.
-    tendon_solimp_lim: Vec<[f64; 5]>,
+    ["internals"] tendon_solimp_lim: Vec<[f64; 5]>,
     /// Lengths between which the spring is slack; that of `qpos_spring` where none is given.
-    tendon_lengthspring: Vec<[f64; 2]>,
+    ["internals"] tendon_lengthspring: Vec<[f64; 2]>,
     /// Dry friction.
-    tendon_frictionloss: Vec<f64>,
+    ["internals"] tendon_frictionloss: Vec<f64>,
     /// `solref` of dry friction.
-    tendon_solref_fri: Vec<[f64; 2]>,
+    ["internals"] tendon_solref_fri: Vec<[f64; 2]>,
     /// `solimp` of dry friction.
-    tendon_solimp_fri: Vec<[f64; 5]>,
+    ["internals"] tendon_solimp_fri: Vec<[f64; 5]>,
     /// Stiffness of the spring.
-    tendon_stiffness: Vec<f64>,
+    ["internals"] tendon_stiffness: Vec<f64>,
     /// Damping.
-    tendon_damping: Vec<f64>,
+    ["internals"] tendon_damping: Vec<f64>,
     /// Inverse weight at `qpos0`.
-    tendon_invweight0: Vec<f64>,
+    ["internals"] tendon_invweight0: Vec<f64>,
     /// Length at `qpos0`.
-    tendon_length0: Vec<f64>,
+    ["internals"] tendon_length0: Vec<f64>,
     /// Numbers for programs, `nuser_tendon` for each tendon.
     tendon_user: Vec<Vec<f64>>,
 
     /// Actuator names.
     actuator_name: Vec<String>,
     /// Kind of what it acts on.
-    actuator_trntype: Vec<TrnType>,
+    ["internals"] actuator_trntype: Vec<TrnType>,
     /// Joint, tendon, site or body that it acts on; the site of the crank of a slider-crank.
     actuator_trnid: Vec<usize>,
     /// Reference site of a site, site of the slider of a slider-crank (MuJoCo's second `actuator_trnid`).
-    actuator_refid: Vec<Option<usize>>,
+    ["internals"] actuator_refid: Vec<Option<usize>>,
     /// Length of the rod of a slider-crank, m.
-    actuator_cranklength: Vec<f64>,
+    ["internals"] actuator_cranklength: Vec<f64>,
     /// Gear, the first of MuJoCo's six.
     actuator_gear: Vec<f64>,
     /// All six gears of MuJoCo's, of which sites use more than the first: force and torque per unit of the actuator's force.
-    actuator_gear6: Vec<[f64; 6]>,
+    ["internals"] actuator_gear6: Vec<[f64; 6]>,
     /// Whether `actuator_ctrlrange` applies.
     actuator_ctrllimited: Vec<bool>,
     /// Limits of the control.
@@ -375,56 +375,56 @@ arrays! {
     actuator_forcerange: Vec<[f64; 2]>,
     /// Shortest and longest length, which only MuJoCo's muscles use: as given, else found by simulation where `<lengthrange>` of
     /// `<compiler>` asks for it.
-    actuator_lengthrange: Vec<[f64; 2]>,
+    ["internals"] actuator_lengthrange: Vec<[f64; 2]>,
     /// How the activation follows the control.
-    actuator_dyntype: Vec<DynType>,
+    ["internals"] actuator_dyntype: Vec<DynType>,
     /// Parameters of the activation; see [`DynType`].
-    actuator_dynprm: Vec<[f64; 10]>,
+    ["internals"] actuator_dynprm: Vec<[f64; 10]>,
     /// Address of the activation; `None` without one.
-    actuator_actadr: Vec<Option<usize>>,
+    ["internals"] actuator_actadr: Vec<Option<usize>>,
     /// Whether `actuator_actrange` applies.
-    actuator_actlimited: Vec<bool>,
+    ["internals"] actuator_actlimited: Vec<bool>,
     /// Limits of the activation.
-    actuator_actrange: Vec<[f64; 2]>,
+    ["internals"] actuator_actrange: Vec<[f64; 2]>,
     /// Whether the force follows from the activation at the end of the step.
-    actuator_actearly: Vec<bool>,
+    ["internals"] actuator_actearly: Vec<bool>,
     /// Gain type.
-    actuator_gaintype: Vec<GainType>,
+    ["internals"] actuator_gaintype: Vec<GainType>,
     /// Gain parameters; see [`GainType`].
-    actuator_gainprm: Vec<[f64; 10]>,
+    ["internals"] actuator_gainprm: Vec<[f64; 10]>,
     /// Bias type.
-    actuator_biastype: Vec<BiasType>,
+    ["internals"] actuator_biastype: Vec<BiasType>,
     /// Bias parameters; see [`BiasType`]. The damping of a servo that is given by its damping ratio is that at `qpos0`.
-    actuator_biasprm: Vec<[f64; 10]>,
+    ["internals"] actuator_biasprm: Vec<[f64; 10]>,
     /// Norm of the acceleration at `qpos0` per unit of its force.
-    actuator_acc0: Vec<f64>,
+    ["internals"] actuator_acc0: Vec<f64>,
     /// Length at `qpos0`.
-    actuator_length0: Vec<f64>,
+    ["internals"] actuator_length0: Vec<f64>,
     /// User data, `nuser_actuator` values each.
     actuator_user: Vec<Vec<f64>>,
 
     /// Sensor names.
     sensor_name: Vec<String>,
     /// Sensor type.
-    sensor_type: Vec<SensorType>,
+    ["internals"] sensor_type: Vec<SensorType>,
     /// Kind of the object that it measures.
-    sensor_objtype: Vec<ObjType>,
+    ["internals"] sensor_objtype: Vec<ObjType>,
     /// Id of that object; none for the clock.
-    sensor_objid: Vec<Option<usize>>,
+    ["internals"] sensor_objid: Vec<Option<usize>>,
     /// Kind of the object in whose frame it measures.
-    sensor_reftype: Vec<ObjType>,
+    ["internals"] sensor_reftype: Vec<ObjType>,
     /// Id of that object; none for the frame of the world.
-    sensor_refid: Vec<Option<usize>>,
+    ["internals"] sensor_refid: Vec<Option<usize>>,
     /// Bound of its numbers; 0 for none.
-    sensor_cutoff: Vec<f64>,
+    ["internals"] sensor_cutoff: Vec<f64>,
     /// Standard deviation of noise, for programs: sensors are exact.
-    sensor_noise: Vec<f64>,
+    ["internals"] sensor_noise: Vec<f64>,
     /// How many numbers it gives.
     sensor_dim: Vec<usize>,
     /// Kind of its numbers.
-    sensor_datatype: Vec<DataType>,
+    ["internals"] sensor_datatype: Vec<DataType>,
     /// Stage of a step after which it can be read: 1 positions, 2 velocities, 3 accelerations; 0 where a user's says none.
-    sensor_needstage: Vec<usize>,
+    ["internals"] sensor_needstage: Vec<usize>,
     /// First entry in `sensordata`.
     sensor_adr: Vec<usize>,
     /// Numbers for programs, `nuser_sensor` for each sensor.
@@ -493,11 +493,13 @@ sizes! {
 
 impl Arrays {
     /// Tells whether a tendon is spatial, its length one in space.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn tendon_is_spatial(&self, tendon: usize) -> bool {
         !matches!(self.tendon_wrap[tendon].first(), Some(Wrap::Joint { .. }))
     }
 
     /// Returns the number of what all tendons run along.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn nwrap(&self) -> usize {
         self.tendon_wrap.iter().map(Vec::len).sum()
     }

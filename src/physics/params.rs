@@ -13,6 +13,7 @@ table! {
         /// Which equality constraints hold (neq).
         pub eq_active: [bool; model.neq()] => model.eq_active0.clone();
         /// Constant term of each equality of joints or tendons (neq), rad; unused for welds.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub eq_offset: [f64; model.neq()] finite => model.eq_kind.iter().map(offset).collect();
         /// Joint stiffness (njnt), N m/rad.
         pub jnt_stiffness: [f64; model.njnt()] finite => model.jnt_stiffness.clone();
@@ -25,19 +26,23 @@ table! {
         /// Gravity, m/s^2.
         pub gravity: (Vec3) finite = if model.opt.flags.gravity { model.opt.gravity } else { [0.0; 3] };
         /// Inverse weight of each degree of freedom (nv), as [`Arrays::dof_invweight0`].
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub dof_invweight0: [f64; model.nv] => model.dof_invweight0.clone();
         /// Mass of each body (nbody), kg. [`State::set_free_body`](crate::physics::State::set_free_body) keeps what depends on it
         /// in step; the same is true of the fields below.
         pub body_mass: [f64; model.nbody()] => model.body_mass.clone();
         /// Mass of each body with all below it (nbody), kg.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub body_subtreemass: [f64; model.nbody()] => model.body_subtreemass.clone();
         /// Principal moments of inertia (nbody), kg m^2.
         pub body_inertia: [Vec3; model.nbody()] => model.body_inertia.clone();
         /// Inverse weights of each body (nbody), as [`Arrays::body_invweight0`].
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub body_invweight0: [[f64; 2]; model.nbody()] => model.body_invweight0.clone();
         /// Size of each geom (ngeom), m; see [`GeomType`](crate::model::GeomType). Touch sensors stay where the model has them.
         pub geom_size: [Vec3; model.ngeom()] => model.geom_size.clone();
         /// Radius of each geom's bounding sphere (ngeom), m.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub geom_rbound: [f64; model.ngeom()] => model.geom_rbound.clone();
     }
     computed {}

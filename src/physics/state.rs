@@ -30,14 +30,19 @@ pub struct Contact {
     /// Two sliding, one torsional, two rolling friction coefficients.
     pub friction: [f64; 5],
     /// `solref` of the normal.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub solref: [f64; 2],
     /// `solref` of friction; zeros mean that of the normal.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub solreffriction: [f64; 2],
     /// `solimp`.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub solimp: [f64; 5],
     /// Distance at which the contact becomes a constraint: margin minus gap, m.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub includemargin: f64,
     /// First constraint row, when it is a constraint.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub efc_address: Option<usize>,
     /// Force that the first geom exerts on the second, and torque, in the contact frame, N and N m. Filled by the
     /// solver.
@@ -73,11 +78,14 @@ table! {
         pub act: [f64; any] finite => vec![0.0; model.na];
         /// What the actuators were last told to reach: excitations of muscles (2 nu), 0..1, or desired angles of position
         /// servos (nu), rad. Empty for motors.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub actuator_target: [f64; any];
         /// Forces of the muscles (2 nu) at the last activation, relative to their isometric maxima. Empty without muscles.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub muscle_force: [f64; any];
         /// Torques of the muscles on the joints of the actuators (nu), N m, which act at control 1 in place of the
         /// actuators' own. Empty without muscles.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub muscle_torque: [f64; maybe model.nu()] finite;
         /// Generalised force applied from outside (nv), N and N m.
         pub qfrc_applied: [f64; model.nv] finite = 0.0;
@@ -90,6 +98,7 @@ table! {
         /// Orientations of the bodies that a program moves (nmocap); they need not have unit length.
         pub mocap_quat: [Quat; model.nmocap] finite => mocap(model).map(|b| model.body_quat[b]).collect();
         /// Start of the solver (nv): the last acceleration.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub qacc_warmstart: [f64; model.nv] = 0.0;
         /// Parameters that may change.
         pub params: (Params) = Params::new(model);
@@ -105,6 +114,7 @@ table! {
         /// Centres of mass (nbody), world, m.
         pub xipos: [Vec3; model.nbody()] = [0.0; 3];
         /// Orientations of the principal axes (nbody).
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub ximat: [Mat3; model.nbody()] = MAT3_ID;
         /// Joint anchors (njnt), world, m.
         pub xanchor: [Vec3; model.njnt()] = [0.0; 3];
@@ -125,9 +135,11 @@ table! {
         /// Centre of mass of each subtree (nbody), world, m.
         pub subtree_com: [Vec3; model.nbody()] = [0.0; 3];
         /// Motion axes (nv) about the centre of mass of their tree: rotation, translation.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cdof: [[f64; 6]; model.nv] = [0.0; 6];
         /// Body inertias (nbody) about the centre of mass of their tree, along the axes of the world: `Ixx, Iyy, Izz, Ixy, Ixz, Iyz`,
         /// kg m^2, mass times the offset of the body's centre of mass (3), kg m, mass, kg. Those of the world are zero.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cinert: [[f64; 10]; model.nbody()] = [0.0; 10];
         /// Composite inertias of subtrees (nbody).
         pub(crate) crb: [Inertia; model.nbody()] = [0.0; 10];
@@ -141,13 +153,17 @@ table! {
         /// different bodies of which one can move.
         pub(crate) ten_entries: [bool; model.ntendon()] = true;
         /// First point of each tendon in `wrap_xpos` (ntendon).
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub ten_wrapadr: [usize; model.ntendon()] = 0;
         /// Number of points of each tendon (ntendon); none for fixed ones.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub ten_wrapnum: [usize; model.ntendon()] = 0;
         /// Points that spatial tendons run through (twice the number of what they run along), world, m: sites, and where a tendon comes
         /// onto a geom and leaves it. Zeros for a pulley, where the tendon is interrupted.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub wrap_xpos: [Vec3; 2 * model.nwrap()] = [0.0; 3];
         /// What each of these points is on: a geom, or -1 for a site, -2 for a pulley.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub wrap_obj: [i32; 2 * model.nwrap()] = 0;
         /// Derivatives of the lengths of actuators on sites, slider-cranks and contacts by the degrees of freedom, one after another.
         pub(crate) actuator_moment: [f64; topology.actuators.len()] = 0.0;
@@ -164,6 +180,7 @@ table! {
         /// Body velocities (nbody) about the centre of mass of their tree: rotation, rad/s, translation, m/s.
         pub cvel: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Rates of the motion axes (nv): rotation, translation, 1/s.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
         /// Lengths of the actuators (nu): the coordinate of the joint or the length of the tendon, rad or m, times the gear; of a site
         /// its displacement from the reference site along the gears; of a slider-crank that of the slider.
@@ -177,28 +194,34 @@ table! {
 
         // acceleration stage
         /// Rates of the activations (na), 1/s. MIMo's muscles have none.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub act_dot: [f64; model.na] = 0.0;
         /// Actuator force before the gear (nu); with muscles their torque on the joint, N m.
         pub actuator_force: [f64; model.nu()] = 0.0;
         /// Actuator force on the joints (nv).
         pub qfrc_actuator: [f64; model.nv] = 0.0;
         /// All forces but those of constraints (nv).
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub qfrc_smooth: [f64; model.nv] = 0.0;
         /// Acceleration without constraints (nv).
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub qacc_smooth: [f64; model.nv] = 0.0;
         /// Constraint force (nv).
         pub qfrc_constraint: [f64; model.nv] = 0.0;
         /// Acceleration (nv), without the implicit damping of the integrator.
         pub qacc: [f64; model.nv] = 0.0;
         /// Iterations of the solver in the last step, summed over islands.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub solver_iterations: (usize) = 0;
 
         // after constraints
         /// Body accelerations (nbody), gravity as upward acceleration of the world: rotation, rad/s^2, translation, m/s^2.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cacc: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// External wrench on each body (nbody), of contacts, welds and `xfrc_applied`: torque, N m, force, N.
         pub cfrc_ext: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Wrench that the parent exerts on each body (nbody): torque, N m, force, N.
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cfrc_int: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Values of the model's sensors (nsensordata), from `sensor_adr` of each on; [`SensorType`](crate::model::SensorType)
         /// tells quantities, units and frames. Those of MIMo give three each, in the frame of their site: linear acceleration minus

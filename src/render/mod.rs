@@ -51,7 +51,7 @@ internals!(use cpu::CpuRenderer);
 pub(crate) use cpu::luma;
 internals!(use drawable::{Drawable, Element, Shape});
 #[cfg(feature = "wgpu")]
-pub use gpu::GpuError;
+internals!(use gpu::GpuError);
 internals!(use gpu_of_build::SharedGpu);
 pub(crate) use gpu_of_build::{draw_on, open_gpu};
 internals!(use mesh::{Mesh, MeshPart});

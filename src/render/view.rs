@@ -118,10 +118,13 @@ pub struct Poses<'a> {
     /// Position and orientation of the free camera, if there is one: [`FreeCamera::pose`].
     pub free: Option<(Vec3, Mat3)>,
     /// Positions of the bodies, which carry the lights.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub xpos: &'a [Vec3],
     /// Orientations of the bodies.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub xmat: &'a [Mat3],
     /// Centres of mass of the bodies with those below them, which some lights follow.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub subtree_com: &'a [Vec3],
 }
 

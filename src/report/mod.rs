@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 #[cfg(feature = "npz")]
-pub use benchmark::benchmark_page;
+internals!(use benchmark::benchmark_page);
 
 use crate::files::replace_file;
 use run::Run;

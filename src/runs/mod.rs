@@ -55,18 +55,19 @@ mod replay;
 mod scene_file;
 mod training;
 
-pub use logs::{EvaluationLog, LogError, TrainingLog, TrainingTotals, read_training};
+pub use logs::{LogError, TrainingLog};
+internals!(use logs::{EvaluationLog, TrainingTotals, read_training});
 pub use many::RunVector;
 #[cfg(feature = "npz")]
-pub use record::{
-    ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest, Record, RecordError,
-    RecordOptions, Recorder, Replayed,
-};
+pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed};
+#[cfg(feature = "npz")]
+internals!(use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest});
 #[cfg(feature = "npz")]
 internals!(use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images});
 #[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
-pub use scene_file::{SceneFileError, read_config, read_scene, write_scene};
+pub use scene_file::{SceneFileError, write_scene};
+internals!(use scene_file::{read_config, read_scene});
 internals!(use scene_file::{
     KeptScene, SceneFile, complete_scene, complete_scene_from, keep_scene, scene_compat, write_scene_from,
 });

@@ -54,6 +54,7 @@ impl EyeImages {
     };
 
     /// Makes room for images of so many pixels.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
         let len = |output| if outputs.contains(output) { pixels } else { 0 };
         Self {
@@ -76,6 +77,7 @@ impl EyeImages {
     }
 
     /// Returns the memory of the images that are observed, for a renderer.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn buffers(&mut self) -> ImageBuffers<'_> {
         fn wanted<T>(values: &mut [T]) -> Option<&mut [T]> {
             (!values.is_empty()).then_some(values)
@@ -89,6 +91,7 @@ impl EyeImages {
     }
 
     /// Copies images of the same sizes.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn copy_from(&mut self, other: &Self) {
         self.rgb.clone_from(&other.rgb);
         self.gray.clone_from(&other.gray);
@@ -97,6 +100,7 @@ impl EyeImages {
     }
 
     /// Returns the memory that the images take, bytes.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn bytes(&self) -> usize {
         self.rgb.len() + self.gray.len() + 4 * (self.depth.len() + self.segmentation.len())
     }
@@ -118,6 +122,7 @@ impl Vision {
     }
 
     /// Creates the eyes of `model`, drawn by any renderer of its look.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn with_renderer(model: &Model, renderer: Renderer, resolution: usize) -> Option<Self> {
         Some(Self {
             renderer,
@@ -147,6 +152,7 @@ impl Vision {
     }
 
     /// Returns the renderer that draws the images.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
     }
@@ -204,6 +210,7 @@ impl Vision {
     }
 
     /// Returns the images that [`Self::observe`] draws, left and right.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn requests<'a>(&self, s: &'a State) -> [RenderRequest<'a>; 2] {
         self.eyes.map(|camera| RenderRequest {
             poses: Poses::from(s),

@@ -33,6 +33,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::reset_where`]; memory of another shape.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reset_into<'s>(
         &mut self,
         mask: Option<&[bool]>,
@@ -99,7 +100,8 @@ impl VectorEnv {
     /// Applies an action in each environment and writes the results into the caller's memory; the
     /// results of [`VectorEnv::infos`], [`VectorEnv::finals`] and [`VectorEnv::failures`] belong to the same step.
     ///
-    /// ```
+    #[cfg_attr(feature = "internals", doc = "```")]
+    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
     /// use babybench::vector::Buffers;
     /// use babybench::{Blueprint, Config, VectorEnv, VectorOptions};
     ///
@@ -114,6 +116,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::step`]; memory of another shape.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn step_into(&mut self, actions: &[f32], mut buffers: Buffers<'_>) -> Result<(), VectorError> {
         buffers.check(self.len(), &self.layout)?;
         self.submit_all(actions)?;
@@ -164,6 +167,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::recv`]; memory of another shape.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn recv_into(&mut self, n: usize, mut buffers: Buffers<'_>) -> Result<&[usize], VectorError> {
         self.check_sent(n)?;
         buffers.check(n, &self.layout)?;

@@ -32,7 +32,7 @@ mod single;
 mod slot;
 
 pub use batch::{Batch, Failure, Finals};
-pub use buffers::Buffers;
+internals!(use buffers::Buffers);
 pub use error::VectorError;
 pub use infos::Infos;
 internals!(use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions});

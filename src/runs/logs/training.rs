@@ -249,6 +249,7 @@ impl TrainingLog {
     }
 
     /// Returns the totals over the records so far.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn totals(&self) -> &TrainingTotals {
         &self.totals
     }

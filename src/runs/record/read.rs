@@ -77,6 +77,7 @@ impl Record {
     }
 
     /// Returns the description.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }

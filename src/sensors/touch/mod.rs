@@ -112,6 +112,7 @@ impl Touch {
     }
 
     /// Creates the sense that `touch_function`, `touch_response` and `compat` ask for.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn configured(layout: Arc<SkinLayout>, config: &Config) -> Self {
         Self::new(layout, config.touch_function, config.touch_response, config.compat)
     }
@@ -210,6 +211,7 @@ impl Touch {
     /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, in place of earlier values.
     ///
     /// The cost grows with the number of contacts, not of sensors; nothing is allocated after a few calls.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn sense(&mut self, model: &Model, contacts: &[Contact], xpos: &[Vec3], xmat: &[Mat3]) {
         self.clear();
         let layout = self.layout.clone();
