@@ -1,4 +1,4 @@
-//! What many environments cost: `cargo bench --features parallel --bench vector [FILTER]`.
+//! The cost of many environments: `cargo bench --features parallel --bench vector [FILTER]`.
 //!
 //! - `threads`: two threads against one, and one against a plain loop over environments, in pairs that alternate: the same
 //!   environments, seeds and actions. Figures are medians of the ratios of pairs; the spread is between the quartiles.

@@ -35,9 +35,9 @@ const RAPIER_STEPS: u64 = 200;
 const RAPIER_STARTS: u64 = 10;
 /// Starts between two that make sense.
 const SENSE_EVERY: u64 = 100;
-/// What memory may grow by in one row, kB.
+/// Greatest growth of memory in one row, kB.
 const GROWTH: u64 = 8192;
-/// What a start with its steps may take.
+/// Longest time that a start with its steps may take.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A number from 0 to `n` - 1.
@@ -271,7 +271,7 @@ fn absurd(rng: &mut NumpyRng, qpos: &mut [f64], qvel: &mut [f64]) {
     }
 }
 
-/// What became of a row of starts.
+/// The outcomes of a row of starts.
 #[derive(Default)]
 struct Starts {
     number: u64,

@@ -22,12 +22,12 @@ const ELITE: usize = 8;
 const TRIALS: usize = 3;
 /// Episodes of the comparison with random actions: a round of all environments each.
 const ROUNDS: u64 = 4;
-/// What a torque depends on: a constant, the way from the fingers to the ball, angles and velocities of the arm.
+/// Inputs of a torque: a constant, the way from the fingers to the ball, angles and velocities of the arm.
 const INPUTS: usize = 1 + 3 + JOINTS + JOINTS;
 /// Joints of the arm, which are also the actuators.
 const JOINTS: usize = 8;
 
-/// What came of an episode.
+/// The outcome of an episode.
 #[derive(Clone, Copy, Default)]
 struct Outcome {
     /// Step of the first success, if there was one.

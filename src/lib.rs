@@ -78,7 +78,7 @@
 //! | `wgpu` | images on a GPU: `renderer: wgpu`, [`env::draw_eyes`] |
 //! | `internals` | unstable: what only the project's own packages use |
 //!
-//! What needs `internals` changes in any release and has no semantic version: file formats, contact routines, meshes, parts of
+//! Items that need `internals` change in any release and have no semantic version: file formats, contact routines, meshes, parts of
 //! the senses and of the command line. `default-features = false` leaves the environments alone. In the dev profile a step takes
 //! thirty times as long; games want `[profile.dev.package.babybench] opt-level = 3`.
 //!

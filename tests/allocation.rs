@@ -9,7 +9,7 @@ use babybench::config::Example;
 use common::*;
 
 const WARM_UP: usize = 200;
-/// What a heap of toys shows to the eyes may take new maxima for a while: so many times the steps are counted anew, until none allocates.
+/// Number of times that the steps are counted anew until none allocates: the view of a heap of toys may reach new maxima for a while.
 const AGAIN: usize = 4;
 const COUNTED: usize = 300;
 /// At the end of the counted steps even vectors that grow to a new maximum have to be large enough.

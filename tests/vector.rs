@@ -70,7 +70,7 @@ fn course(envs: &mut VectorEnv) -> usize {
     allocations::of_all_threads()[0] - before
 }
 
-/// What a further environment takes, against the estimate and the goals.
+/// The memory of a further environment, against the estimate and the goals.
 fn memory(name: &str) {
     const ENVS: usize = 8;
     let blueprint = blueprint(example(name));

@@ -1,4 +1,4 @@
-//! What a build lacks says how to build it: with `--no-default-features --features eval` alone all of these run.
+//! Messages about parts that a build lacks say how to build them: with `--no-default-features --features eval` alone all of these run.
 
 /// Checks that a configuration is refused with an error that has all of `words`.
 #[cfg(not(all(feature = "wgpu", feature = "rapier")))]

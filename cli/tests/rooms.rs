@@ -29,7 +29,7 @@ fn refused(folder: &Folder, arguments: &[&str], parts: &[&str]) {
     }
 }
 
-/// What the eyes observe is drawn as observed: in their resolution, and blurred as the configuration says.
+/// Observed images are drawn as observed: in the eyes' resolution, and blurred as the configuration says.
 #[test]
 fn what_he_observes_is_drawn_as_he_sees_it() {
     let folder = Folder::new("observed");

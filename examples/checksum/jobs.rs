@@ -3,7 +3,7 @@
 use crate::cases::{Case, EXAMPLES, VARIANTS};
 use crate::sums::{self, Sum};
 
-/// What is computed.
+/// The computations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Episodes of the examples.

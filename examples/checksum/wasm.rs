@@ -9,7 +9,7 @@ mod fold;
 mod jobs;
 mod sums;
 
-/// What the caller reads, and where he writes a snapshot.
+/// The text for the caller, and the room in which he writes a snapshot.
 static BYTES: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 fn bytes() -> MutexGuard<'static, Vec<u8>> {

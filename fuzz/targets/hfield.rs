@@ -13,9 +13,10 @@ fuzz_target!(|data: &[u8]| {
         mesh_elements: 1 << 16,
         ..Limits::default()
     };
-    let (name, format) = match data.starts_with(b"\x89PNG") {
-        true => ("a.png", HeightFormat::Png),
-        false => ("a.hf", HeightFormat::Custom),
+    let (name, format) = if data.starts_with(b"\x89PNG") {
+        ("a.png", HeightFormat::Png)
+    } else {
+        ("a.hf", HeightFormat::Custom)
     };
     let Ok(read) = Heights::read(data, format, &limits) else {
         return;
@@ -37,6 +38,9 @@ fuzz_target!(|data: &[u8]| {
             return;
         }
     };
-    assert!(model.hfields[0].data.iter().all(|v| (0.0..=1.0).contains(v)), "heights are not scaled");
+    assert!(
+        model.hfields[0].data.iter().all(|v| (0.0..=1.0).contains(v)),
+        "heights are not scaled"
+    );
     let _ = Scenery::new(&model, &assets);
 });

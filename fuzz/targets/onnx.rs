@@ -13,7 +13,7 @@ const GROW: [&str; 13] = [
     "Upsample",
 ];
 
-/// What is observed: vectors of a few numbers, and eyes of two by two pixels.
+/// The observation: vectors of a few numbers, and eyes of two by two pixels.
 fn spaces() -> Vec<ObservationSpace> {
     let space = |key, shape: &[usize], dtype, high| ObservationSpace { key, shape: shape.to_vec(), dtype, low: 0.0, high };
     vec![

@@ -86,7 +86,7 @@ fn references<'py>(
     Ok(counts)
 }
 
-/// What a sense felt last: touch as arrays (sensors, 1 or 3), N, proprioception as vectors.
+/// Last values of a sense: touch as arrays (sensors, 1 or 3), N, proprioception as vectors.
 #[pyclass(frozen, module = "babybench_core._native")]
 pub struct Blocks {
     env: Py<Env>,

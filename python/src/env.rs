@@ -1,16 +1,15 @@
 //! One environment.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
-
 use babybench::env::Snapshot;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::{Pair, read};
 use crate::blueprint::Blueprint;
 use crate::errors::{IntoException, detached};
+use crate::guarded::{Guard, Guarded};
 use crate::info::{Space, info_dict, report_dict, spaces, target_of};
 use crate::observation::{Views, fresh};
 use crate::pictures::{self, Painters};
@@ -19,10 +18,10 @@ use crate::{model_change, state, task, touch};
 /// Steps of a run between two looks at whether somebody has pressed Ctrl-C: 3 ms without pictures, 60 ms with both eyes.
 pub const UNINTERRUPTED: usize = 64;
 
-/// What an environment of Python's holds.
+/// The contents of a Python environment.
 pub struct Inner {
     pub env: babybench::Env,
-    /// What it was made from, which others may share as long as it lives.
+    /// Its blueprint, which others may share as long as it lives.
     blueprint: Py<Blueprint>,
     pub painters: Painters,
     pub action: Vec<f32>,
@@ -32,31 +31,13 @@ pub struct Inner {
 /// An environment.
 #[pyclass(frozen, module = "babybench_core._native")]
 pub struct Env {
-    /// Nothing, once it is closed.
-    inner: Mutex<Option<Box<Inner>>>,
-}
-
-/// An environment in use.
-pub struct Guard<'a>(MutexGuard<'a, Option<Box<Inner>>>);
-
-impl Guard<'_> {
-    /// Returns the environment, if it is not closed.
-    pub fn open(&mut self) -> PyResult<&mut Inner> {
-        let closed = "the environment is closed: make another";
-        self.0.as_deref_mut().ok_or_else(|| PyRuntimeError::new_err(closed))
-    }
+    inner: Guarded<Inner>,
 }
 
 impl Env {
     /// Takes the environment for a while.
-    pub fn guard(&self) -> PyResult<Guard<'_>> {
-        match self.inner.try_lock() {
-            Ok(guard) => Ok(Guard(guard)),
-            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
-                "another thread is using the environment: give each thread one of its own",
-            )),
-            Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err("the environment is broken: make another")),
-        }
+    pub fn guard(&self) -> PyResult<Guard<'_, Inner>> {
+        self.inner.guard()
     }
 
     /// Puts the scene at positions and velocities, and returns the observation.
@@ -93,15 +74,15 @@ impl Env {
         let shared = &blueprint.get().inner;
         let env = detached(py, || shared.env())?;
         let views = if views { Some(Views::new(py, &env)?) } else { None };
-        let inner = Box::new(Inner {
+        let inner = Inner {
             env,
             blueprint,
             painters: Painters::default(),
             action: Vec::new(),
             views,
-        });
+        };
         Ok(Self {
-            inner: Mutex::new(Some(inner)),
+            inner: Guarded::new(inner, "environment", "give each thread one of its own"),
         })
     }
 
@@ -226,13 +207,13 @@ impl Env {
     }
 
     fn close(&self) -> PyResult<()> {
-        self.guard()?.0.take();
+        self.guard()?.close();
         Ok(())
     }
 
     #[getter]
     fn closed(&self) -> PyResult<bool> {
-        Ok(self.guard()?.0.is_none())
+        Ok(self.guard()?.closed())
     }
 
     #[getter]

@@ -3,9 +3,14 @@
 use babybench::config::Part;
 use babybench::env::{EYE_HAND_PAIRS, Info, InfoValue};
 use babybench::mimo::{LockReport, LockTarget};
+use babybench::vector::Infos;
+use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
+
+use crate::arrays::shaped;
 
 /// Key, shape, number type, lower and upper bound.
 pub type Space = (&'static str, Vec<usize>, &'static str, f64, f64);
@@ -74,6 +79,34 @@ pub fn info_dict<'py>(py: Python<'py>, info: &Info, details: bool) -> PyResult<B
             }
             _ => {}
         }
+    }
+    Ok(dict)
+}
+
+/// Returns the information of all environments of a vector, as arrays over them.
+pub fn infos_dict<'py>(py: Python<'py>, infos: Infos<'_>) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    let n = infos.steps.len();
+    let steps = PyArray1::from_iter(py, infos.steps.iter().map(|&s| s as i64));
+    dict.set_item(intern!(py, "steps"), steps)?;
+    if let Some(touches) = infos.touches {
+        let geoms = touches.len() / (2 * n).max(1);
+        dict.set_item(intern!(py, "touches"), shaped(py, touches, &[n, 2, geoms])?)?;
+    }
+    if let Some(regards) = infos.regards {
+        let counts: Vec<i64> = regards.iter().map(|&r| r as i64).collect();
+        dict.set_item(intern!(py, "regards"), shaped(py, &counts, &[n, 4])?)?;
+    }
+    if let Some(ages) = infos.vision_age {
+        dict.set_item(intern!(py, "vision_age"), PyArray1::from_slice(py, ages))?;
+    }
+    if let (Some(outcomes), Some(terms)) = (infos.outcomes, infos.reward_terms) {
+        let success = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_success));
+        let failure = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_failure));
+        dict.set_item(intern!(py, "is_success"), success)?;
+        dict.set_item(intern!(py, "is_failure"), failure)?;
+        let shape = [n, terms.len() / n.max(1)];
+        dict.set_item(intern!(py, "reward_terms"), shaped(py, terms, &shape)?)?;
     }
     Ok(dict)
 }

@@ -1,6 +1,6 @@
 //! The native part of the Python package `babybench`: environments, vectors of environments, and the numbers in them.
 //!
-//! What Python sees is documented in `babybench_core/_native.pyi`.
+//! Python's view of this module is documented in `babybench_core/_native.pyi`.
 #![deny(missing_docs, unsafe_code)]
 
 mod arrays;
@@ -10,6 +10,7 @@ mod command_line;
 mod config;
 mod env;
 mod errors;
+mod guarded;
 mod info;
 mod model;
 mod model_change;

@@ -12,7 +12,7 @@ use crate::env::Env;
 use crate::errors::detached;
 use crate::observation::sparse;
 
-/// What [`Parts`] remembers between calls.
+/// The memory of [`Parts`] between calls.
 #[derive(Default)]
 struct Memory {
     action: Vec<f32>,

@@ -30,7 +30,7 @@ impl IntoException for EngineError {
     }
 }
 
-/// What a state of Python's holds.
+/// The contents of a Python state.
 struct Inner {
     engine: SoftEngine,
     state: State,

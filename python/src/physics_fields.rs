@@ -63,7 +63,7 @@ impl<const N: usize> Flat for Vec<[f64; N]> {
     }
 }
 
-/// What is told of a field: name, group, numbers of each row, and the numbers.
+/// The description of a field: name, group, numbers of each row, and the numbers.
 pub struct Field<T> {
     pub name: &'static str,
     pub group: u32,
@@ -97,11 +97,11 @@ fn width<T: Flat>(_: &T) -> Option<usize> {
     T::WIDTH
 }
 
-/// What a program writes and a step reads: the first fields of a state.
+/// Fields that a program writes and a step reads: the first of a state.
 pub const INPUT: u32 = 1;
 /// Poses of bodies, joints, geoms and sites.
 const KINEMATICS: u32 = 1 << 1;
-/// What is about the centres of mass.
+/// Fields about the centres of mass.
 const COM: u32 = 1 << 2;
 /// Poses of cameras.
 const CAMERAS: u32 = 1 << 3;
@@ -117,13 +117,13 @@ const VELOCITY: u32 = 1 << 7;
 const ACTUATION: u32 = 1 << 8;
 /// Accelerations.
 const ACCELERATION: u32 = 1 << 9;
-/// What follows from accelerations and the forces of constraints.
+/// Fields that follow from accelerations and the forces of constraints.
 pub const POST: u32 = 1 << 10;
 /// Values of sensors.
 const SENSORS: u32 = 1 << 11;
 /// Contacts and rows of constraints, which are no fields.
 pub const CONSTRAINTS: u32 = 1 << 12;
-/// What all steps compute.
+/// Fields that all steps compute.
 pub const COMPUTED: u32 = (CONSTRAINTS << 1) - 1 - INPUT - POST;
 
 /// The groups by name.

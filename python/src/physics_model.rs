@@ -38,7 +38,7 @@ table! { ARRAYS, array, Arrays,
     cam_targetbodyid tendon_lengthspring tendon_stiffness tendon_damping
 }
 
-/// What changes when a program writes into the arrays of a model.
+/// The parts that change when a program writes into the arrays of a model.
 struct Current {
     soft: SoftModel,
     model: Arc<Model>,

@@ -11,7 +11,7 @@ use crate::arrays::shaped;
 use crate::env::Inner;
 use crate::errors::{IntoException, detached};
 
-/// What has been made to draw with.
+/// The renderers made so far.
 #[derive(Default)]
 pub struct Painters {
     viewer: Option<Viewer>,

@@ -11,7 +11,7 @@ use crate::recycled::Recycled;
 pub struct Slab<T> {
     array: Py<PyArray1<T>>,
     shape: Vec<usize>,
-    /// What Python sees: the same memory, in its shape, read-only.
+    /// Python's array: the same memory, in its shape, read-only.
     pub view: Py<PyAny>,
     copies: Recycled<T>,
 }

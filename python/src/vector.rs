@@ -1,13 +1,10 @@
 //! Many environments at once, with arrays of NumPy over them.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
-
 use babybench::env::Snapshot;
 use babybench::vector::Seeds;
 use babybench::{AutoresetMode, VectorOptions};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
-use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -16,12 +13,13 @@ use crate::blueprint::Blueprint;
 use crate::config::to_dict;
 use crate::env::UNINTERRUPTED;
 use crate::errors::{IntoException, detached};
-use crate::info::{Space, info_dict, report_dict, spaces, target_of};
+use crate::guarded::{Guard, Guarded};
+use crate::info::{Space, info_dict, infos_dict, report_dict, spaces, target_of};
 use crate::observation::dict_of_row;
 use crate::rows::Arrays;
 use crate::{model_change, task};
 
-/// What a vector of Python's holds.
+/// The contents of a Python vector.
 struct Inner {
     envs: babybench::VectorEnv,
     touch_width: usize,
@@ -35,8 +33,7 @@ struct Inner {
 /// A vector of environments.
 #[pyclass(frozen, module = "babybench_core._native")]
 pub struct VectorEnv {
-    /// Nothing, once it is closed.
-    inner: Mutex<Option<Box<Inner>>>,
+    inner: Guarded<Inner>,
     /// The process that the threads are in.
     process: u32,
 }
@@ -44,40 +41,21 @@ pub struct VectorEnv {
 impl Drop for VectorEnv {
     /// Leaves threads alone that stayed behind in the process that this one was forked from: nobody could wait for them.
     fn drop(&mut self) {
-        if std::process::id() != self.process
-            && let Ok(inner) = self.inner.get_mut()
-        {
-            std::mem::forget(inner.take());
+        if std::process::id() != self.process {
+            self.inner.forget();
         }
     }
 }
 
-/// A vector in use.
-struct Guard<'a>(MutexGuard<'a, Option<Box<Inner>>>);
-
-impl Guard<'_> {
-    fn open(&mut self) -> PyResult<&mut Inner> {
-        let closed = "the vector is closed: make another";
-        self.0.as_deref_mut().ok_or_else(|| PyRuntimeError::new_err(closed))
-    }
-}
-
 impl VectorEnv {
-    fn guard(&self) -> PyResult<Guard<'_>> {
+    fn guard(&self) -> PyResult<Guard<'_, Inner>> {
         if std::process::id() != self.process {
             return Err(PyRuntimeError::new_err(
                 "the vector was made in another process, and its threads stayed there: make vectors after the fork, or \
                  start processes with the method `spawn`",
             ));
         }
-        match self.inner.try_lock() {
-            Ok(guard) => Ok(Guard(guard)),
-            Err(TryLockError::WouldBlock) => {
-                let text = "another thread is using the vector: one thread at a time";
-                Err(PyRuntimeError::new_err(text))
-            }
-            Err(TryLockError::Poisoned(_)) => Err(PyRuntimeError::new_err("the vector is broken: make another")),
-        }
+        self.inner.guard()
     }
 }
 
@@ -113,15 +91,15 @@ impl VectorEnv {
             .ok()
             .and_then(|env| env.senses().touch())
             .map_or(0, |touch| touch.width());
-        let inner = Box::new(Inner {
+        let inner = Inner {
             all: Arrays::new(py, envs.len(), envs.single_observation_space(), touch_width)?,
             touch_width,
             some: None,
             actions: Vec::new(),
             envs,
-        });
+        };
         Ok(Self {
-            inner: Mutex::new(Some(inner)),
+            inner: Guarded::new(inner, "vector", "one thread at a time"),
             process: std::process::id(),
         })
     }
@@ -224,13 +202,13 @@ impl VectorEnv {
     }
 
     fn close(&self) -> PyResult<()> {
-        self.guard()?.0.take();
+        self.guard()?.close();
         Ok(())
     }
 
     #[getter]
     fn closed(&self) -> PyResult<bool> {
-        Ok(self.guard()?.0.is_none())
+        Ok(self.guard()?.closed())
     }
 
     // --- what came of it ---
@@ -244,30 +222,7 @@ impl VectorEnv {
 
     fn infos<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
-        let (dict, infos) = (PyDict::new(py), guard.open()?.envs.infos());
-        let n = infos.steps.len();
-        let steps = PyArray1::from_iter(py, infos.steps.iter().map(|&s| s as i64));
-        dict.set_item(intern!(py, "steps"), steps)?;
-        if let Some(touches) = infos.touches {
-            let geoms = touches.len() / (2 * n).max(1);
-            dict.set_item(intern!(py, "touches"), shaped(py, touches, &[n, 2, geoms])?)?;
-        }
-        if let Some(regards) = infos.regards {
-            let counts: Vec<i64> = regards.iter().map(|&r| r as i64).collect();
-            dict.set_item(intern!(py, "regards"), shaped(py, &counts, &[n, 4])?)?;
-        }
-        if let Some(ages) = infos.vision_age {
-            dict.set_item(intern!(py, "vision_age"), PyArray1::from_slice(py, ages))?;
-        }
-        if let (Some(outcomes), Some(terms)) = (infos.outcomes, infos.reward_terms) {
-            let success = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_success));
-            let failure = PyArray1::from_iter(py, outcomes.iter().map(|o| o.is_failure));
-            dict.set_item(intern!(py, "is_success"), success)?;
-            dict.set_item(intern!(py, "is_failure"), failure)?;
-            let shape = [n, terms.len() / n.max(1)];
-            dict.set_item(intern!(py, "reward_terms"), shaped(py, terms, &shape)?)?;
-        }
-        Ok(dict)
+        infos_dict(py, guard.open()?.envs.infos())
     }
 
     fn failures(&self) -> PyResult<Vec<(usize, String)>> {

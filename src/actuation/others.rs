@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::physics::State;
 use crate::spaces::BoxSpace;
 
-/// What a control without a range is bounded by.
+/// Bound of a control without a range.
 const UNLIMITED: [f64; 2] = [-1.0, 1.0];
 
 /// Drives MIMo as an actuation model does, and behind that the other actuators of the scene, each by a number of the action that is its

@@ -96,22 +96,23 @@ fn own_conflict(config: &Config) -> Option<Conflict> {
     None
 }
 
+/// Returns a value about a second infant in a scene that has none.
+fn second_infant(config: &Config) -> Option<Conflict> {
+    let (key, value) = if matches!(config.scene, Scene::File(_)) {
+        return None;
+    } else if config.learner != Learner::Mimo {
+        ("learner", config.learner.to_string())
+    } else {
+        ("other_age", config.other_age?.to_string())
+    };
+    let reason = "only a document of one's own has a second infant; set `scene` to its path, or leave it out";
+    Some((key, value, reason.to_string()))
+}
+
 /// Returns the first value that the task of a configuration excludes: key, value, and why.
 pub(super) fn conflict(config: &Config) -> Option<Conflict> {
-    let second = [
-        ("learner", config.learner.to_string(), config.learner != Learner::Mimo),
-        (
-            "other_age",
-            config.other_age.unwrap_or_default().to_string(),
-            config.other_age.is_some(),
-        ),
-    ];
-    if let Some((key, value, _)) = second
-        .into_iter()
-        .find(|(.., set)| *set && !matches!(config.scene, Scene::File(_)))
-    {
-        let reason = "only a document of one's own has a second infant; set `scene` to its path, or leave it out";
-        return Some((key, value, reason.to_string()));
+    if let Some(conflict) = second_infant(config) {
+        return Some(conflict);
     }
     if config.act_others && config.actuation_model == ActuationModel::Muscle {
         let reason = "with muscles all actuators pull as muscles do, which other bodies do not have; use spring_damper or positional";

@@ -2,6 +2,16 @@
 
 use super::{Config, ConfigError};
 
+/// Makes the example of a name from `configs/config_NAME.yml`.
+macro_rules! example {
+    ($name:literal) => {
+        Example {
+            name: $name,
+            yaml: include_str!(concat!("../../configs/config_", $name, ".yml")),
+        }
+    };
+}
+
 /// An example configuration, as it stands in `configs/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Example {
@@ -23,42 +33,18 @@ impl Example {
         yaml: include_str!("../../configs/config_handregard.yml"),
     };
     /// Installation test: MIMo v1 on the bare floor with every sense.
-    pub const TEST_INSTALLATION: Self = Self {
-        name: "test_installation",
-        yaml: include_str!("../../configs/config_test_installation.yml"),
-    };
+    pub const TEST_INSTALLATION: Self = example!("test_installation");
     /// BabyBench's three examples.
     pub const ALL: [Self; 3] = [Self::SELF_TOUCH, Self::HAND_REGARD, Self::TEST_INSTALLATION];
     /// An example for each task, by the name of its behavior.
     pub const TASKS: [Self; 7] = [
-        Self {
-            name: "reach",
-            yaml: include_str!("../../configs/config_reach.yml"),
-        },
-        Self {
-            name: "standup",
-            yaml: include_str!("../../configs/config_standup.yml"),
-        },
-        Self {
-            name: "selfbody",
-            yaml: include_str!("../../configs/config_selfbody.yml"),
-        },
-        Self {
-            name: "catch",
-            yaml: include_str!("../../configs/config_catch.yml"),
-        },
-        Self {
-            name: "roll_over",
-            yaml: include_str!("../../configs/config_roll_over.yml"),
-        },
-        Self {
-            name: "mobile",
-            yaml: include_str!("../../configs/config_mobile.yml"),
-        },
-        Self {
-            name: "play",
-            yaml: include_str!("../../configs/config_play.yml"),
-        },
+        example!("reach"),
+        example!("standup"),
+        example!("selfbody"),
+        example!("catch"),
+        example!("roll_over"),
+        example!("mobile"),
+        example!("play"),
     ];
 
     /// Parses the example.

@@ -12,7 +12,7 @@ use super::kinds::{KeyKind, KeyValue, Misfit};
 use super::table::KEYS;
 use super::{Config, ConfigError, yaml};
 
-/// What errors call a configuration that is no file.
+/// Name in errors of a configuration that is not a file.
 const NAME: &str = "configuration";
 
 impl Serialize for KeyValue {

@@ -1,22 +1,28 @@
 //! The part that all environments of one configuration share.
 
-use std::collections::BTreeMap;
-use std::sync::{Arc, OnceLock};
+mod options;
+mod settled;
+mod surface;
 
-use crate::actuation;
+pub use options::BlueprintOptions;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use crate::assets::AssetSource;
-use crate::config::{ActuationModel, Compat, Config, EngineKind, FacialExpression, Part, RendererKind};
-use crate::env::engines::{EngineSource, Engines};
+use crate::config::{ActuationModel, Config, EngineKind, FacialExpression, RendererKind};
+use crate::env::engines::Engines;
 use crate::env::pipeline::effective;
 use crate::env::snapshot::Identity;
-use crate::env::task::{TaskScene, TaskSizes, of_config};
+use crate::env::task::{TaskSizes, of_config};
 use crate::env::{Env, EnvError, Task};
-use crate::mimo::{build_scene, embedded, lock, scene_assets};
+use crate::mimo::scene_assets;
 use crate::model::Model;
 use crate::physics::{Engine, Params};
-use crate::render::{RenderError, Renderer, Scenery, SharedGpu, SharedMemory, open_gpu};
+use crate::render::{RenderError, SharedMemory};
 use crate::sensors::SkinLayout;
-use crate::spaces::NumpyRng;
+use settled::{Settled, make_skin, task_model};
+use surface::Surface;
 
 /// A configuration, its compiled model and its settled initial state. Made once; environments from it are cheap.
 ///
@@ -41,104 +47,19 @@ pub struct Blueprint {
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
-    /// What a snapshot must fit.
+    /// The identity that a snapshot must fit.
     identity: Arc<Identity>,
     /// The same, the model and its parameters before a program changed the model.
     origin: Arc<Origin>,
     surface: Surface,
 }
 
-/// What a blueprint was before its model was changed.
+/// The state of a blueprint before its model was changed.
 #[derive(Debug)]
 struct Origin {
     model: Arc<Model>,
     params: Arc<Params>,
     identity: Arc<Identity>,
-}
-
-/// What belongs to the bodies of a scene, whatever moves them.
-#[derive(Clone)]
-struct Surface {
-    /// What the caller gave.
-    given: Arc<dyn AssetSource>,
-    /// The same with the files of a scene of one's own.
-    assets: Arc<dyn AssetSource>,
-    skin: Option<Arc<SkinLayout>>,
-    /// Meshes and textures, made when they are first needed.
-    scenery: Arc<OnceLock<Arc<Scenery>>>,
-    /// The memory in which the eyes of environments are drawn on the CPU.
-    painting: SharedMemory,
-    /// The renderer on a GPU, opened when it is first needed.
-    gpu: Arc<OnceLock<SharedGpu>>,
-}
-
-impl std::fmt::Debug for Surface {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Surface")
-            .field("skin", &self.skin)
-            .finish_non_exhaustive()
-    }
-}
-
-/// What a blueprint is built from besides its configuration.
-///
-/// ```
-/// use babybench::assets::{MemoryAssets, Overlay};
-/// use babybench::config::Scene;
-/// use babybench::env::BlueprintOptions;
-/// use babybench::mimo::embedded;
-/// use babybench::{Blueprint, Config};
-///
-/// // files of one's own over the embedded ones
-/// let mut own = MemoryAssets::new();
-/// let wall = "<geom name='wall' type='box' size='.05 1 .5' pos='2 0 .5'/>";
-/// own.insert("babybench/crib.xml", format!("<mujocoinclude><worldbody>{wall}</worldbody></mujocoinclude>"))?;
-/// let options = BlueprintOptions::default().with_assets(Overlay::new(embedded()).with(own));
-/// let config = Config { scene: Scene::Crib, touch_active: false, vision_active: false, ..Config::default() };
-/// let blueprint = Blueprint::with(config, options)?;
-/// assert!(blueprint.model().geom_name.iter().any(|name| name == "wall"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Clone)]
-pub struct BlueprintOptions {
-    /// The task; `None` for that of the key `behavior`, which is not used otherwise.
-    pub task: Option<Box<dyn Task>>,
-    /// Where documents and textures come from, laid out like the embedded ones, which are the default. A scene of one's own
-    /// ([`Scene::File`](crate::config::Scene::File)) is looked for here first; this may then hold its files alone.
-    pub assets: Arc<dyn AssetSource>,
-}
-
-impl Default for BlueprintOptions {
-    fn default() -> Self {
-        Self {
-            task: None,
-            assets: Arc::new(embedded()),
-        }
-    }
-}
-
-impl BlueprintOptions {
-    /// Sets the task.
-    #[must_use]
-    pub fn with_task(mut self, task: impl Task + 'static) -> Self {
-        self.task = Some(Box::new(task));
-        self
-    }
-
-    /// Sets where documents and textures come from.
-    #[must_use]
-    pub fn with_assets(mut self, assets: impl AssetSource + 'static) -> Self {
-        self.assets = Arc::new(assets);
-        self
-    }
-}
-
-impl std::fmt::Debug for BlueprintOptions {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("BlueprintOptions")
-            .field("task", &self.task)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Blueprint {
@@ -413,124 +334,5 @@ impl Blueprint {
     /// Returns where the touch sensors are, if touch is active.
     pub fn skin(&self) -> Option<&Arc<SkinLayout>> {
         self.surface.skin.as_ref()
-    }
-
-    /// Returns the look of the scene, which its environments share.
-    ///
-    /// # Errors
-    /// Textures that cannot be read.
-    pub fn scenery(&self) -> Result<Arc<Scenery>, EnvError> {
-        let shared = &self.surface.scenery;
-        if let Some(scenery) = shared.get() {
-            return Ok(scenery.clone());
-        }
-        let made = Arc::new(Scenery::new(&self.model, self.assets())?);
-        Ok(shared.get_or_init(|| made).clone())
-    }
-
-    /// Creates the renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
-    ///
-    /// # Errors
-    /// Textures that cannot be read; for `renderer: wgpu` no graphics adapter, a build without it, a browser.
-    pub fn renderer(&self) -> Result<Renderer, EnvError> {
-        match self.config.renderer {
-            RendererKind::Cpu => Ok(Renderer::cpu(self.scenery()?)),
-            RendererKind::Wgpu => Ok(Renderer::gpu(self.gpu()?)),
-        }
-    }
-
-    /// Creates the renderer of an environment's eyes, which draw in memory that the environments of the blueprint share.
-    pub(super) fn eyes_renderer(&self) -> Result<Renderer, EnvError> {
-        match self.config.renderer {
-            RendererKind::Cpu => Ok(Renderer::sharing(self.scenery()?, self.surface.painting.clone())),
-            RendererKind::Wgpu => self.renderer(),
-        }
-    }
-
-    /// Returns the renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
-    /// whatever renderer the configuration asks for.
-    ///
-    /// # Errors
-    /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
-        if let Some(gpu) = self.surface.gpu.get() {
-            return Ok(gpu.clone());
-        }
-        let opened = open_gpu(self.scenery()?)?;
-        Ok(self.surface.gpu.get_or_init(|| opened).clone())
-    }
-}
-
-/// Compiles the scene of a task.
-fn task_model(config: &Config, task: &dyn Task, assets: &dyn AssetSource) -> Result<Model, EnvError> {
-    let document = task.document(config);
-    Ok(build_scene(&document.xml, document.version, config, assets)?)
-}
-
-/// Places the sensors of the skin.
-fn make_skin(
-    model: &Model,
-    config: &Config,
-    task: &dyn Task,
-    assets: &dyn AssetSource,
-) -> Result<SkinLayout, EnvError> {
-    let layout = |model: &Model| match task.document(config).touch_spacing {
-        [] => SkinLayout::new(model, config),
-        own => SkinLayout::with_spacing(model, |body| {
-            let found = own.iter().find(|(name, _)| *name == body);
-            found.map(|(_, distance)| distance * config.touch_scale)
-        }),
-    };
-    if !config.touch_grows {
-        return Ok(layout(model)?);
-    }
-    let mut original = config.clone();
-    original.age = None;
-    let original_model = task_model(&original, task, assets)?;
-    Ok(layout(&original_model)?.scaled(&original_model, model))
-}
-
-/// A scene after it came to rest.
-struct Settled {
-    qpos: Vec<f64>,
-    qvel: Vec<f64>,
-    params: Params,
-}
-
-impl Settled {
-    /// Lets a task settle the scene, with the locks of the configuration; under `compat: reference` they hold from the first
-    /// reset on.
-    fn new(config: &Config, task: &dyn Task, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
-        let actuation = actuation::build(model, config)?;
-        let mut state = engines.reader().new_state();
-        actuation.prepare(model, &mut state);
-        let mut params = state.params.clone();
-        for part in Part::ALL {
-            if config.lock.get(part) {
-                lock(model, &mut params, part.into(), 0.0)?;
-            }
-        }
-        if config.compat == Compat::Api {
-            state.params.clone_from(&params);
-        }
-        let still = vec![0.0; model.nv];
-        task.settle(&mut TaskScene {
-            config,
-            model,
-            state: &mut state,
-            rng: &mut NumpyRng::seed(config.seed),
-            engine: EngineSource::Shared(engines),
-            base: &mut params,
-            actuation: &*actuation,
-            delay: None,
-            start: [&model.qpos0, &still],
-            action: &mut Vec::new(),
-        })?;
-        Ok(Self {
-            qpos: state.qpos,
-            qvel: state.qvel,
-            params,
-        })
     }
 }

@@ -71,7 +71,7 @@ pub enum EnvError {
         what: &'static str,
         /// Its name.
         name: String,
-        /// What needs it.
+        /// The part that needs it.
         purpose: &'static str,
     },
     /// An action has the wrong length.

@@ -1,4 +1,4 @@
-//! What information consists of: keys and values, for whoever writes or reads it. Logs, lines of JSON, serde, snapshots and Python's
+//! The contents of information: keys and values, for whoever writes or reads it. Logs, lines of JSON, serde, snapshots and Python's
 //! dictionaries follow from this one description.
 
 use std::sync::Arc;

@@ -99,9 +99,9 @@ pub(crate) const SCORED_PARTS: usize = 34;
 pub struct Info {
     /// Number of steps done in this episode; under `compat: reference` one less.
     pub steps: u64,
-    /// What the behavior counts.
+    /// Counters of the behavior.
     pub behavior: BehaviorInfo,
-    /// What the reference does not report: names of touched parts, angles of gaze.
+    /// Details that the reference does not report: names of touched parts, angles of gaze.
     pub details: InfoDetails,
 }
 
@@ -121,11 +121,11 @@ pub enum BehaviorInfo {
         /// Number of steps for each eye and hand.
         counts: PerEyeAndHand<u64>,
     },
-    /// What came of a task with a goal.
+    /// The outcome of a task with a goal.
     Task(TaskInfo),
 }
 
-/// What a task with a goal reports.
+/// The report of a task with a goal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TaskInfo {
     /// The name of the task: [`Task::name`](crate::env::Task::name).
@@ -134,11 +134,11 @@ pub struct TaskInfo {
     pub outcome: Outcome,
     /// Sum of the rewards in this episode.
     pub episode_return: f64,
-    /// What the task measures besides.
+    /// Further measures of the task.
     pub measures: Measures,
 }
 
-/// What a task measures in an episode beside its outcome: numbers with names. Information, logs and Python's dictionaries have them under
+/// Measures of a task in an episode, besides its outcome: numbers with names. Information, logs and Python's dictionaries have them under
 /// these names.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {

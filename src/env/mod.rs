@@ -8,6 +8,7 @@ mod by_hand;
 mod clock;
 mod details;
 mod engines;
+mod episode;
 pub(crate) mod error;
 mod eyes;
 mod fields;
@@ -19,6 +20,7 @@ mod other;
 mod outcome;
 mod physics;
 mod pipeline;
+mod placed;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod senses;
@@ -67,11 +69,12 @@ use std::sync::Arc;
 use crate::actuation::{self, Actuation};
 use crate::config::{Compat, Config};
 use crate::mimo::{LockReport, LockTarget};
-use crate::physics::EngineError;
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;
+use episode::{Episode, Play};
 use outcome::clear;
 use physics::Physics;
+use placed::check_vector;
 use task::Goals;
 
 /// A BabyBench environment.
@@ -133,29 +136,6 @@ impl Clone for Env {
     }
 }
 
-/// The scene of an environment and its task, to be used together.
-struct Play<'a> {
-    scene: TaskScene<'a>,
-    task: &'a mut dyn Task,
-    goals: &'a mut Goals,
-    applied: &'a mut Vec<f32>,
-}
-
-/// The progress of an episode.
-#[derive(Clone, Copy, Debug, Default)]
-struct Episode {
-    /// Number of steps done.
-    steps: u64,
-    /// Whether a step may follow: there was a reset, and nothing diverged since.
-    ready: bool,
-    /// Whether information goes on from episode to episode.
-    accumulate: bool,
-    /// Reward of the last step.
-    reward: f64,
-    /// Whether the last step ended the episode in success or failure.
-    terminated: bool,
-}
-
 impl std::fmt::Debug for Env {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Env")
@@ -197,132 +177,6 @@ impl Env {
         })
     }
 
-    /// Starts an episode as the task says: for `self_touch` and `hand_regard` the settled state, then ten physics steps with random
-    /// actions. The information of a reset is empty.
-    ///
-    /// Under `compat: api` a seed reseeds every random choice. Under `compat: reference` it is ignored, as the start
-    /// actions come from the generator of the action space: see [`Env::seed_action_space`].
-    ///
-    /// # Errors
-    /// The simulation diverged.
-    pub fn reset(&mut self, seed: Option<u64>) -> Result<Observation<'_>, EnvError> {
-        if let (Some(seed), Compat::Api) = (seed, self.config().compat) {
-            self.seed_action_space(seed);
-        }
-        self.end_episode();
-        let Play { mut scene, task, .. } = self.play();
-        task.reset(&mut scene)?;
-        self.begin_episode()?;
-        Ok(self.observation())
-    }
-
-    /// Returns the scene and the task that plays in it.
-    fn play(&mut self) -> Play<'_> {
-        let (engine, state, base) = self.physics.parts();
-        let scene = TaskScene {
-            config: self.blueprint.config(),
-            model: self.blueprint.model(),
-            state,
-            rng: &mut self.rng,
-            engine,
-            base,
-            actuation: &*self.actuation,
-            delay: Some(&mut self.action_delay),
-            start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
-            action: &mut self.action,
-        };
-        Play {
-            scene,
-            task: &mut *self.task,
-            goals: &mut self.goals,
-            applied: &mut self.applied,
-        }
-    }
-
-    /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
-    /// chooses a goal.
-    ///
-    /// # Errors
-    /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges; the episode is then over.
-    pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
-        self.end_episode();
-        self.play().scene.place(qpos, qvel)?;
-        self.begin_episode()?;
-        Ok(self.observation())
-    }
-
-    /// Puts the scene at positions (nq) and velocities (nv) in the middle of an episode, with everything computed there.
-    /// Time, counters, information, locks, muscle activations and the start of the solver stay.
-    ///
-    /// # Errors
-    /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
-    pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
-        self.set_position(qpos, qvel)?;
-        if let Err(e) = self.physics.forward() {
-            self.episode.ready = false;
-            return Err(e.into());
-        }
-        self.sense()?;
-        self.judge();
-        Ok(self.observation())
-    }
-
-    /// Computes poses, contacts, forces and senses anew from the present state, after [`Env::restore`] or changes to
-    /// [`Env::state_mut`], and returns the observation.
-    ///
-    /// The next step has the same bits as without it: time, the start of the solver, the random generator and what delays, pain and
-    /// other transforms remember are left as they were. So are counters, reward and the end of the episode. After a step, poses and
-    /// forces are those at the start of its last physics step; here they belong to the present positions. Noise is that of the next
-    /// draw, and a delayed sense shows the moment that it would show one step later.
-    ///
-    /// ```
-    /// use babybench::{Config, Env};
-    ///
-    /// let mut env = Env::new(Config { vision_active: false, ..Config::default() })?;
-    /// env.reset(Some(0))?;
-    /// let snapshot = env.snapshot();
-    /// let mut other = env.blueprint().env()?;
-    /// other.restore(&snapshot)?;
-    /// assert!(other.observation().touch.is_none()); // a snapshot does not hold it
-    /// assert_eq!(other.refresh()?, env.refresh()?);
-    /// # Ok::<(), babybench::EnvError>(())
-    /// ```
-    ///
-    /// # Errors
-    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which
-    /// [`Env::reset`] is needed; as the renderer.
-    pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
-        // the solver leaves its solution in the state as the start of the next one: the state gets its own back
-        let before = self.physics.state.clone();
-        let posed = self.physics.forward();
-        self.physics.state.copy_dynamic_from(&before);
-        if let Err(e) = posed {
-            self.episode.ready = false;
-            return Err(e.into());
-        }
-        let (rng, mut memory) = (self.rng.clone(), Vec::new());
-        self.save_memory(&mut memory);
-        let sensed = self.sense();
-        self.load_memory(&memory)?;
-        self.rng = rng;
-        sensed?;
-        let last = self.episode;
-        self.judge();
-        self.episode = last;
-        Ok(self.observation())
-    }
-
-    /// Sets positions (nq) and velocities (nv), of which nothing is computed yet.
-    fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
-        let model = self.blueprint.model();
-        check_vector("qpos", qpos, model.nq)?;
-        check_vector("qvel", qvel, model.nv)?;
-        self.physics.check_shape()?;
-        self.physics.state.qpos.copy_from_slice(qpos);
-        self.physics.state.qvel.copy_from_slice(qvel);
-        Ok(())
-    }
-
     /// Locks a joint, or all joints of a part, at an angle in rad, from the next step on. Locks outlast resets; those that
     /// the configuration asks for can be moved and taken off too.
     ///
@@ -352,46 +206,6 @@ impl Env {
     /// No such joint, a joint that cannot be locked.
     pub fn unlock<'a>(&mut self, target: impl Into<LockTarget<'a>>) -> Result<LockReport, EnvError> {
         self.physics.unlock(self.blueprint.model(), target.into())
-    }
-
-    /// Returns whether a step may follow: there was a reset, and nothing diverged since.
-    pub fn ready(&self) -> bool {
-        self.episode.ready
-    }
-
-    /// Returns whether the episode has reached `max_episode_steps`.
-    pub fn truncated(&self) -> bool {
-        self.episode.steps >= self.blueprint.config().max_episode_steps
-    }
-
-    fn end_episode(&mut self) -> u64 {
-        self.episode.ready = false;
-        std::mem::take(&mut self.episode.steps)
-    }
-
-    /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
-    pub fn accumulate_info(&mut self, on: bool) {
-        self.episode.accumulate = on;
-    }
-
-    fn begin_episode(&mut self) -> Result<(), EnvError> {
-        self.episode.steps = 0;
-        self.info.steps = 0;
-        if !self.episode.accumulate || self.info.behavior.task().is_some() {
-            self.task.forget();
-            clear(&*self.task, &mut self.info);
-        }
-        let Play {
-            mut scene, task, goals, ..
-        } = self.play();
-        task.begin(&mut scene, &mut goals.desired);
-        self.action_delay.rest();
-        self.senses.reset(self.phase());
-        self.episode.ready = true;
-        self.sense()?;
-        self.judge();
-        (self.episode.reward, self.episode.terminated) = (0.0, false);
-        Ok(())
     }
 
     /// Applies an action for `frame_skip` physics steps.
@@ -487,13 +301,6 @@ impl Env {
         self.info.details.vision_age = age.map(|steps| steps as f64 * self.blueprint.dt());
     }
 
-    /// Returns where in their periods the senses begin an episode that do not look in every step: a number from 0 to 1 that follows
-    /// from the generator without drawing from it, so that environments with other seeds look in other steps.
-    fn phase(&self) -> f64 {
-        let word = self.rng.clone().word();
-        (word >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     fn sense(&mut self) -> Result<(), EnvError> {
         self.physics.check_shape()?;
         let model = self.blueprint.model();
@@ -529,17 +336,6 @@ impl Env {
     /// Seeds the generator of [`Env::sample_action`] and of start actions.
     pub fn seed_action_space(&mut self, seed: u64) {
         self.rng = NumpyRng::seed(seed);
-    }
-}
-
-fn check_vector(what: &'static str, values: &[f64], expected: usize) -> Result<(), EnvError> {
-    let found = values.len();
-    if found != expected {
-        return Err(EnvError::StateLength { what, found, expected });
-    }
-    match values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-        Some((index, &value)) => Err(EngineError::NotFinite { what, index, value }.into()),
-        None => Ok(()),
     }
 }
 

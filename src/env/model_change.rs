@@ -40,7 +40,7 @@ pub enum ModelChangeError {
         index: usize,
         /// Its value, as text.
         value: String,
-        /// What it must be.
+        /// The bound.
         least: &'static str,
     },
     /// Muscles write the gears in each step.

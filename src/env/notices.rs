@@ -1,4 +1,4 @@
-//! What a configuration asks for and cannot have.
+//! Notices about requests of a configuration that cannot be met.
 
 use super::Blueprint;
 use crate::sensors::EYES;

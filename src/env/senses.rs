@@ -27,7 +27,7 @@ pub struct Senses {
     pub(super) vestibular: Option<Vestibular>,
     pub(super) pool: Option<TouchPool>,
     pub(super) pain: Option<Pain>,
-    /// What a sense reports in numbers, by sense; `None` for those that are off, and for skins and eyes.
+    /// The numbers that a sense reports, by sense; `None` for those that are off, and for skins and eyes.
     numbers: [Option<Vec<f64>>; Sense::ALL.len()],
     pub(super) eyes: [EyeImages; 2],
     pub(super) pipeline: Pipeline,

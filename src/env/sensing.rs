@@ -1,4 +1,4 @@
-//! What a program may read of the senses of an environment, and change.
+//! The senses of an environment as a program may read and change them.
 
 use std::ops::Deref;
 

@@ -78,7 +78,7 @@ pub struct Viewer {
     renderer: Renderer,
     rgb: Vec<u8>,
     rgba: Vec<u8>,
-    /// What the eyes make of their images, from when they were first looked through.
+    /// The transforms of the eyes' images, from when they were first looked through.
     optics: Option<[Vec<Box<dyn Transform>>; 2]>,
 }
 

@@ -120,36 +120,8 @@ impl Benchmark {
         for folder in ["runs", "records"].map(|name| dir.join(name)) {
             std::fs::create_dir_all(&folder).map_err(io(&folder))?;
         }
-        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let found: Mutex<Vec<Option<RunResult>>> = Mutex::new(vec![None; all.len()]);
-        let work = || -> Result<(), BenchmarkError> {
-            while !failed.load(Ordering::Relaxed) {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                let Some(job) = all.get(number) else {
-                    break;
-                };
-                let result = job.run_or_read(dir, limit, progress);
-                failed.fetch_or(result.is_err(), Ordering::Relaxed);
-                let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-                found[number] = Some(result?);
-            }
-            Ok(())
-        };
-        let results: Vec<Result<(), BenchmarkError>> = std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..jobs.clamp(1, all.len().max(1)))
-                .map(|_| scope.spawn(work))
-                .collect();
-            let join =
-                |t: std::thread::ScopedJoinHandle<'_, _>| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
-            threads.into_iter().map(join).collect()
-        });
-        let runs: Vec<RunResult> = found
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner)
-            .into_iter()
-            .flatten()
-            .collect();
-        match results.into_iter().collect::<Result<(), _>>() {
+        let (runs, ended) = side_by_side(&all, jobs, |job| job.run_or_read(dir, limit, progress));
+        match ended {
             Err(BenchmarkError::Stopped { .. }) => {
                 let (done, planned) = (runs.len(), all.len());
                 return Err(BenchmarkError::Stopped { done, planned });
@@ -194,4 +166,38 @@ fn env_error(episode: u64) -> impl Fn(EnvError) -> EpisodeError {
 /// Names the error of a policy.
 fn policy_error(error: PolicyError) -> EpisodeError {
     EpisodeError::Policy(error)
+}
+
+/// Runs all jobs in threads, and returns the results that there are, in the order of the jobs, with the first error: after one, no
+/// job is begun.
+fn side_by_side(
+    all: &[Job],
+    threads: usize,
+    run: impl Fn(&Job) -> Result<RunResult, BenchmarkError> + Sync,
+) -> (Vec<RunResult>, Result<(), BenchmarkError>) {
+    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let found: Mutex<Vec<Option<RunResult>>> = Mutex::new(vec![None; all.len()]);
+    let work = || -> Result<(), BenchmarkError> {
+        while !failed.load(Ordering::Relaxed) {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(job) = all.get(number) else {
+                break;
+            };
+            let result = run(job);
+            failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+            found[number] = Some(result?);
+        }
+        Ok(())
+    };
+    let results: Vec<Result<(), BenchmarkError>> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads.clamp(1, all.len().max(1)))
+            .map(|_| scope.spawn(work))
+            .collect();
+        // a panic in a run is the caller's, as without threads
+        let join = |t: std::thread::ScopedJoinHandle<'_, _>| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e));
+        threads.into_iter().map(join).collect()
+    });
+    let runs = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    (runs.into_iter().flatten().collect(), results.into_iter().collect())
 }

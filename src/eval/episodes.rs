@@ -65,7 +65,7 @@ pub enum EpisodeError {
     /// The policy fails.
     #[error(transparent)]
     Policy(#[from] PolicyError),
-    /// What watches the episodes fails.
+    /// The observer of the episodes fails.
     #[error(transparent)]
     Observer(Box<dyn std::error::Error + Send + Sync>),
     /// A log or a video cannot be written.
@@ -78,7 +78,7 @@ pub trait Observer {
     /// An episode begins; the environment has been reset, and the policy has begun.
     ///
     /// # Errors
-    /// Whatever keeps the evaluation from going on.
+    /// Any error that keeps the evaluation from going on.
     fn begin(&mut self, env: &Env, episode: u64) -> Result<(), EpisodeError> {
         let _ = (env, episode);
         Ok(())
@@ -99,7 +99,7 @@ pub trait Observer {
     /// The episode ends.
     ///
     /// # Errors
-    /// Whatever keeps the evaluation from going on.
+    /// Any error that keeps the evaluation from going on.
     fn end(&mut self, env: &Env) -> Result<(), EpisodeError> {
         let _ = env;
         Ok(())

@@ -28,9 +28,9 @@ pub struct Measures {
     pub seconds: f64,
     /// Parts that both palms touch in an episode, each palm's counted for itself.
     pub parts_per_episode: Option<f64>,
-    /// What the right hand touches.
+    /// Touches of the right hand.
     pub right_hand: HandMeasures,
-    /// What the left hand touches.
+    /// Touches of the left hand.
     pub left_hand: HandMeasures,
     /// Share of the time in which the hands touch each other.
     pub hand_to_hand: f64,
@@ -48,7 +48,7 @@ pub struct Measures {
     pub hands_seen: Option<PerEyeAndHand<f64>>,
 }
 
-/// What a hand, with its fingers, touches of its own body.
+/// Touches of the own body by a hand with its fingers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct HandMeasures {
@@ -62,7 +62,7 @@ pub struct HandMeasures {
     pub regions: BTreeMap<String, RegionMeasures>,
 }
 
-/// What a hand touches of a region.
+/// Touches of a region by a hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RegionMeasures {

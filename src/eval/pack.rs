@@ -65,7 +65,7 @@ pub enum PackError {
     Archive(#[from] rawzip::Error),
 }
 
-/// What is packed.
+/// The contents of a submission.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PackOptions {
     /// The extended abstract, a PDF document.
@@ -82,7 +82,7 @@ pub struct Packed {
     pub score: Score,
     /// The names of the files in the archive.
     pub files: Vec<String>,
-    /// What the page asks for and is not there, or is unusual: a sentence each.
+    /// Requirements of the page that are not met, and unusual things: a sentence each.
     pub notices: Vec<String>,
 }
 

@@ -7,7 +7,7 @@ use crate::math::Vec3;
 
 /// Adds bodies of one's own to a scene of the library, without writing files.
 ///
-/// What is added is [MJCF](https://mujoco.readthedocs.io/en/3.3.0/XMLreference.html): elements of the world (bodies, geoms, sites, cameras, lights, frames) and whole sections (assets, defaults, contacts, equalities, actuators, sensors,
+/// Additions are [MJCF](https://mujoco.readthedocs.io/en/3.3.0/XMLreference.html): elements of the world (bodies, geoms, sites, cameras, lights, frames) and whole sections (assets, defaults, contacts, equalities, actuators, sensors,
 /// keyframes). It becomes [`Config::scene_extra`], so that whatever takes a configuration takes it.
 ///
 /// ```

@@ -26,7 +26,7 @@ pub struct Mesh {
     pub hull: Option<MeshHull>,
     /// Scale that the vertices were multiplied with (`mesh_scale`).
     pub scale: Vec3,
-    /// What was subtracted from the vertices to centre them, m (`mesh_pos`).
+    /// Position subtracted from the vertices to centre them, m (`mesh_pos`).
     pub pos: Vec3,
     /// Orientation of the principal axes, in which the vertices are given, in the axes of the document (`mesh_quat`).
     pub quat: Quat,

@@ -126,7 +126,7 @@ sensors! {
     EKinetic = 41, "e_kinetic", 1, Real;
     /// Time, s.
     Clock = 42, "clock", 1, Real;
-    /// What a program writes: `sensor_dim` numbers of its own, which no step touches.
+    /// Values that a program writes: `sensor_dim` numbers of its own, which no step touches.
     User = 44, "user", 0, Real;
 }
 

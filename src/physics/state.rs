@@ -76,7 +76,7 @@ table! {
         /// Activations of the actuators that have one (na), in their order. With MIMo's muscles theirs (2 nu), 0..1: muscle 1 of
         /// every actuator, then muscle 2.
         pub act: [f64; any] finite => vec![0.0; model.na];
-        /// What the actuators were last told to reach: excitations of muscles (2 nu), 0..1, or desired angles of position
+        /// Last targets of the actuators: excitations of muscles (2 nu), 0..1, or desired angles of position
         /// servos (nu), rad. Empty for motors.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub actuator_target: [f64; any];
@@ -162,7 +162,7 @@ table! {
         /// onto a geom and leaves it. Zeros for a pulley, where the tendon is interrupted.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub wrap_xpos: [Vec3; 2 * model.nwrap()] = [0.0; 3];
-        /// What each of these points is on: a geom, or -1 for a site, -2 for a pulley.
+        /// The object that each of these points is on: a geom, or -1 for a site, -2 for a pulley.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub wrap_obj: [i32; 2 * model.nwrap()] = 0;
         /// Derivatives of the lengths of actuators on sites, slider-cranks and contacts by the degrees of freedom, one after another.

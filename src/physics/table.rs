@@ -187,7 +187,7 @@ macro_rules! table {
             }
         }
 
-        /// What decides how a run goes on.
+        /// The fields that decide how a run goes on.
         impl $crate::physics::table::Row for $name {
             fn numbers<'a>(&'a self, out: &mut Vec<&'a [f64]>) {
                 $($crate::physics::table::Row::numbers(&self.$field, out);)*

@@ -3,7 +3,7 @@
 /// Runs `work` with the vector instructions that the processor has: those of AVX2, or else those that every processor of
 /// the target has.
 ///
-/// What is inlined into `work` is compiled once for each, so hot functions are `#[inline(always)]` down to their kernels,
+/// Code that is inlined into `work` is compiled once for each, so hot functions are `#[inline(always)]` down to their kernels,
 /// and `work` is a closure with the same attribute. The bits are those of any other target: the compiler neither reorders
 /// sums nor fuses products with them.
 #[inline(always)]

@@ -336,7 +336,7 @@ fn kill_group(_: &Child) {}
 mod tests {
     use super::*;
 
-    /// What a program gives that writes this in one piece.
+    /// Returns the answers of a program that writes this in one piece.
     fn read(text: &[u8], longest: usize) -> Vec<Answer> {
         let (sender, answers) = sync_channel(100);
         read_lines(text, longest, &sender);

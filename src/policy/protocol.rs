@@ -14,7 +14,7 @@ use crate::config::VisionOutput;
 use crate::env::{Env, Observation};
 use crate::spaces::{BoxSpace, ObservationSpace, Values};
 
-/// What a policy is told before each action. Senses that are not active are left out.
+/// The message to a policy before each action. Senses that are not active are left out.
 pub(super) struct Line<'a> {
     moment: Moment,
     /// At the start of an episode.

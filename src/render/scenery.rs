@@ -139,18 +139,12 @@ impl Scenery {
         Self::build(model, None)
     }
 
-    fn build(model: &Model, mut loader: Option<Loader>) -> Result<Self, RenderError> {
-        let mut textures = Vec::new();
-        let mut index = vec![None; model.textures.len()];
-        let mut use_texture = |id: usize, textures: &mut Vec<TexturePixels>| -> Result<Option<usize>, RenderError> {
-            let (Some(recipe), Some(loader)) = (model.textures.get(id), &mut loader) else {
-                return Ok(None);
-            };
-            if index[id].is_none() {
-                textures.push(loader.texture(recipe)?);
-                index[id] = Some(textures.len() - 1);
-            }
-            Ok(index[id])
+    fn build(model: &Model, loader: Option<Loader>) -> Result<Self, RenderError> {
+        let mut used = Used {
+            model,
+            loader,
+            index: vec![None; model.textures.len()],
+            textures: Vec::new(),
         };
         let far = model.vis.zfar * model.stat.extent;
         let mut drawables = Vec::new();
@@ -168,7 +162,7 @@ impl Scenery {
                 continue;
             }
             if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
-                drawable.texture = use_texture(texture, &mut textures)?;
+                drawable.texture = used.texture(texture)?;
             }
             if drawable.shape == Shape::Mesh {
                 let parts = model_meshes.parts(model, element, &mut meshes);
@@ -179,9 +173,10 @@ impl Scenery {
         }
         let sky = model.textures.iter().position(|t| t.kind == TextureType::Skybox);
         let sky = match sky {
-            Some(id) => use_texture(id, &mut textures)?,
+            Some(id) => used.texture(id)?,
             None => None,
         };
+        let textures = used.textures;
         for drawable in &mut drawables {
             let explicit = !meshes[drawable.mesh].texcoord.is_empty();
             if explicit && matches!(drawable.texture.map(|t| &textures[t]), Some(TexturePixels::Cube(_))) {
@@ -322,5 +317,28 @@ impl LightSource {
             },
             exponent: if all_round { 0.0 } else { light.exponent as f32 },
         }
+    }
+}
+
+/// The textures that something shows: others are not decoded.
+struct Used<'a> {
+    model: &'a Model,
+    loader: Option<Loader<'a>>,
+    /// The place of each texture of the model among those that are used.
+    index: Vec<Option<usize>>,
+    textures: Vec<TexturePixels>,
+}
+
+impl Used<'_> {
+    /// Returns the place of a texture, which is loaded when it is first asked for; `None` without a loader.
+    fn texture(&mut self, id: usize) -> Result<Option<usize>, RenderError> {
+        let (Some(recipe), Some(loader)) = (self.model.textures.get(id), &mut self.loader) else {
+            return Ok(None);
+        };
+        if self.index[id].is_none() {
+            self.textures.push(loader.texture(recipe)?);
+            self.index[id] = Some(self.textures.len() - 1);
+        }
+        Ok(self.index[id])
     }
 }

@@ -1,13 +1,16 @@
 //! Textures: decoded or computed, with the mip levels that Mesa generates.
 
+mod pattern;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::assets::AssetSource;
 use crate::formats::png::decode_png;
 use crate::limits::Limits;
-use crate::model::{Builtin, Mark, Texture as Recipe, TextureType};
+use crate::model::{Builtin, Texture as Recipe, TextureType};
 use crate::render::{RenderError, plain};
+use pattern::{Mt19937, cube_builtin, flat_builtin, truncated};
 
 /// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
 /// of 2500 and 5000 pixels stay small.
@@ -290,217 +293,8 @@ fn decode(path: &str, bytes: &[u8]) -> Result<Level, RenderError> {
     Ok(Level { width, height, pixels })
 }
 
-/// Converts a colour to bytes, rounding down as MuJoCo does.
-fn truncated(rgb: [f64; 3]) -> [u8; 3] {
-    rgb.map(|v| (255.0 * v) as u8)
-}
-
-/// Interpolates from `b` to `a` along MuJoCo's soft step.
-fn interpolate(a: [f64; 3], b: [f64; 3], pos: f64) -> [u8; 3] {
-    let alpha = (0.5 * (1.0 + pos / (1.0 + pos * pos).sqrt() * std::f64::consts::SQRT_2)).clamp(0.0, 1.0);
-    [0, 1, 2].map(|k| (255.0 * (alpha * a[k] + (1.0 - alpha) * b[k])) as u8)
-}
-
 /// Seed of random marks.
 const MARK_SEED: u64 = 42;
 
-/// The 64-bit Mersenne Twister (Matsumoto and Nishimura), with which MuJoCo places random marks.
-struct Mt19937 {
-    words: [u64; 312],
-    next: usize,
-}
-
-impl Mt19937 {
-    fn new(seed: u64) -> Self {
-        let mut words = [seed; 312];
-        for i in 1..312 {
-            let last = words[i - 1];
-            words[i] = (last ^ last >> 62)
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(i as u64);
-        }
-        Self { words, next: 312 }
-    }
-
-    fn next(&mut self) -> u64 {
-        // the constants of MT19937-64
-        const UPPER: u64 = !0 << 31;
-        if self.next == 312 {
-            for i in 0..312 {
-                let x = self.words[i] & UPPER | self.words[(i + 1) % 312] & !UPPER;
-                let odd = if x & 1 == 1 { 0xb502_6f5a_a966_19e9 } else { 0 };
-                self.words[i] = self.words[(i + 156) % 312] ^ x >> 1 ^ odd;
-            }
-            self.next = 0;
-        }
-        let mut x = self.words[self.next];
-        self.next += 1;
-        x ^= x >> 29 & 0x5555_5555_5555_5555;
-        x ^= x << 17 & 0x71d6_7fff_eda6_0000;
-        x ^= x << 37 & 0xfff7_eee0_0000_0000;
-        x ^ x >> 43
-    }
-
-    /// Draws a number in 0..1.
-    fn uniform(&mut self) -> f64 {
-        self.next() as f64 / 18_446_744_073_709_551_616.0
-    }
-}
-
-/// Draws marks.
-fn marked(recipe: &Recipe, mut level: Level, dice: &mut Mt19937) -> Level {
-    let (w, h) = (level.width, level.height);
-    let [r, g, b] = truncated(recipe.markrgb);
-    let colour = [r, g, b, 255];
-    for (i, pixel) in level.pixels.iter_mut().enumerate() {
-        let (row, column) = (i / w, i % w);
-        let on = match recipe.mark {
-            Mark::Edge => row == 0 || column == 0 || row == h - 1 || column == w - 1,
-            Mark::Cross => row == h / 2 || column == w / 2,
-            Mark::Random => dice.uniform() < recipe.random,
-            Mark::None => false,
-        };
-        if on {
-            *pixel = colour;
-        }
-    }
-    level
-}
-
-/// Maps a pixel to -1..1 along an edge.
-fn across(i: usize, n: usize) -> f64 {
-    2.0 * i as f64 / (n as f64 - 1.0).max(1.0) - 1.0
-}
-
-fn checker(w: usize, h: usize, row: usize, column: usize) -> bool {
-    (row < h / 2) == (column < w / 2)
-}
-
-fn flat_builtin(recipe: &Recipe, w: usize, h: usize) -> Level {
-    let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
-    let level = Level::from_fn(w, h, |row, column| match recipe.builtin {
-        Builtin::Gradient => {
-            let (x, y) = (across(column, w), -across(row, h));
-            interpolate(recipe.rgb2, recipe.rgb1, 2.0 * (x * x + y * y).sqrt() - 1.0)
-        }
-        Builtin::Checker if !checker(w, h, row, column) => two,
-        _ => one,
-    });
-    marked(recipe, level, &mut Mt19937::new(MARK_SEED))
-}
-
-fn cube_builtin(recipe: &Recipe, w: usize, side: usize, dice: &mut Mt19937) -> Level {
-    use std::f64::consts::FRAC_PI_2;
-    let (one, two) = (truncated(recipe.rgb1), truncated(recipe.rgb2));
-    let level = match recipe.builtin {
-        Builtin::Gradient => Level::from_fn(w, w, |row, column| {
-            let (x, y) = (across(column, w), -across(row, w));
-            let steep = || 1.0 - pxfm::f_acos(1.0 / (1.0 + x * x + y * y).sqrt()) / FRAC_PI_2;
-            let elevation = match side {
-                2 => steep(),
-                3 => -steep(),
-                _ => pxfm::f_asin(y / (1.0 + x * x + y * y).sqrt()) / FRAC_PI_2,
-            };
-            interpolate(recipe.rgb1, recipe.rgb2, elevation)
-        }),
-        Builtin::Checker => Level::from_fn(w, w, |row, column| {
-            if checker(w, w, row, column) == (side < 4) {
-                one
-            } else {
-                two
-            }
-        }),
-        _ => Level::filled(w, w, if side == 3 { two } else { one }),
-    };
-    marked(recipe, level, dice)
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A pattern with a side of `width` pixels.
-    fn pattern(kind: TextureType, width: usize) -> Recipe {
-        let text = format!(
-            "<mujoco><asset><texture name='t' type='2d' builtin='flat' width='{width}' height='{width}'/></asset></mujoco>"
-        );
-        let spec = crate::mjcf_loader::load_str(&text, "t.xml", &crate::assets::MemoryAssets::new());
-        let recipe = spec.expect("it is valid").into_parts().0.textures.remove(0);
-        Recipe { kind, ..recipe }
-    }
-
-    #[test]
-    fn parts_and_mirrored_images_are_those_of_the_image() {
-        let level = || Level::from_fn(3, 2, |row, column| [row as u8, column as u8, 0]);
-        let at = |level: &Level| level.pixels.iter().map(|p| 10 * p[0] + p[1]).collect::<Vec<u8>>();
-        assert_eq!(at(&level()), [0, 1, 2, 10, 11, 12]);
-        assert_eq!(at(&level().part(0, 1, 2)), [1, 2, 11, 12]);
-        let mut flipped = level();
-        flipped.flip([true, false]);
-        assert_eq!(at(&flipped), [2, 1, 0, 12, 11, 10]);
-        flipped.flip([true, true]);
-        assert_eq!(at(&flipped), [10, 11, 12, 0, 1, 2]);
-    }
-
-    #[test]
-    fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
-        // columns of 2 pixels, red by number
-        let image = image::RgbImage::from_fn(8, 6, |x, y| image::Rgb([(x / 2) as u8, (y / 2) as u8, 7]));
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        image.write_to(&mut bytes, image::ImageFormat::Png).expect("a picture");
-        let mut assets = crate::assets::MemoryAssets::new();
-        assets.insert("a.png", bytes.into_inner()).expect("a path");
-        let cube = |grid: &str| {
-            let text = format!("<mujoco><asset><texture file='a.png' rgb1='1 0 0' {grid}/></asset></mujoco>");
-            let spec = crate::mjcf_loader::load_str(&text, "t.xml", &assets).expect("valid");
-            let recipe = spec.into_parts().0.textures.remove(0);
-            match Loader::new(&assets).texture(&recipe) {
-                Ok(TexturePixels::Cube(faces)) => {
-                    Ok(faces.map(|face| (face[0].width, [0, 1, 2].map(|c| face[0].pixels[0][c]))))
-                }
-                Ok(_) => Err("not a cube".to_string()),
-                Err(e) => Err(e.to_string()),
-            }
-        };
-        let faces = cube("gridsize='3 4' gridlayout='.U..LFRB.D..'").expect("squares");
-        let expected = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
-        assert_eq!(faces, expected.map(|[column, row]| (2, [column, row, 7])));
-        let plain = cube("gridsize='3 4' gridlayout='.U..........'").expect("squares");
-        assert_eq!(plain[0], (2, [255, 0, 0]));
-        let error = cube("gridsize='2 4' gridlayout='RLUDFB..'").expect_err("no squares");
-        assert!(error.contains("which are not 2 rows of 4 squares"), "{error}");
-        assert!(
-            cube("")
-                .expect_err("not square")
-                .contains("a cube needs a square image")
-        );
-    }
-
-    #[test]
-    fn all_textures_together_have_a_limit() {
-        let none = crate::assets::MemoryAssets::new();
-        let mut loader = Loader::new(&none);
-        let before = loader.left;
-        let small = loader.texture(&pattern(TextureType::Flat2d, 16));
-        assert!(small.is_ok());
-        let small = loader.texture(&pattern(TextureType::Cube, 16));
-        assert!(small.is_ok());
-        assert_eq!(loader.left, before - 7 * 256);
-        let large = loader.texture(&pattern(TextureType::Cube, 8192));
-        let error = large.expect_err("400 million pixels").to_string();
-        assert_eq!(
-            error,
-            "texture \"t\": with it the textures have more than 268435456 pixels; make them smaller, or fewer"
-        );
-        // what is left is there for smaller ones
-        assert!(loader.texture(&pattern(TextureType::Flat2d, 16)).is_ok());
-    }
-
-    #[test]
-    fn the_twister_is_the_standard_one() {
-        // the C++ standard gives the 10,000th word of the default seed
-        let mut twister = Mt19937::new(5489);
-        let last = (0..10_000).map(|_| twister.next()).last();
-        assert_eq!(last, Some(9_981_545_732_273_789_042));
-    }
-}
+mod tests;

@@ -92,16 +92,8 @@ impl Run {
         let touchables = model.as_ref().and_then(Touchables::new);
         // the parts of a likely scene need not be those of the run
         let skin = touchables.as_ref().filter(|_| own);
-        let tasks = training.iter().any(|r| r.behavior.task().is_some());
-        let score = if training.is_empty() || tasks {
-            None
-        } else {
-            let compat = config.as_ref().map_or(Compat::Api, |c| c.compat);
-            Score::new(&training, compat)
-                .map_err(|e| notices.push(e.to_string()))
-                .ok()
-        };
-        let score = score.map(|score| skin.map_or(score.clone(), |skin| score.within_reach(skin)));
+        let compat = config.as_ref().map_or(Compat::Api, |c| c.compat);
+        let score = score(&training, compat, skin, &mut notices);
         Ok(Self {
             dir: dir.to_path_buf(),
             behavior,
@@ -168,6 +160,19 @@ impl Run {
             parts
         })
     }
+}
+
+/// Returns the score of a training, unless it is of a task, which has none; `skin` tells what the hands can reach.
+fn score(training: &[Info], compat: Compat, skin: Option<&Touchables>, notices: &mut Vec<String>) -> Option<Score> {
+    if training.is_empty() || training.iter().any(|r| r.behavior.task().is_some()) {
+        return None;
+    }
+    let score = Score::new(training, compat).map_err(|e| notices.push(e.to_string()));
+    let score = score.ok()?;
+    Some(match skin {
+        Some(skin) => score.within_reach(skin),
+        None => score,
+    })
 }
 
 /// Reads the training log, if there is one.

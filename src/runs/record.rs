@@ -107,7 +107,7 @@ fn numbers(there: &[u64]) -> String {
     }
 }
 
-/// What is recorded beside states, actions, touch, contacts, rewards and information.
+/// Further contents of a record, besides states, actions, touch, contacts, rewards and information.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordOptions {
     /// Whether every other sense is recorded as it was observed, step by step. Without it they are left to a replay, which has the same
@@ -115,11 +115,11 @@ pub struct RecordOptions {
     pub senses: bool,
     /// Every how many steps what both eyes observed is recorded, the first of an episode among them; `None` for never.
     pub eyes_every: Option<u64>,
-    /// What acted, in words, for the description.
+    /// Name of the policy, for the description.
     pub policy: String,
 }
 
-/// What the recorders of one folder share.
+/// The parts that the recorders of one folder share.
 #[derive(Debug)]
 struct Shared {
     dir: PathBuf,

@@ -1,4 +1,4 @@
-//! What an observation consists of: the senses, and the entries that they report. The types of observations, their arrays in vectors, their
+//! The contents of an observation: the senses, and the entries that they report. The types of observations, their arrays in vectors, their
 //! keys and types in files, in Python and in JavaScript follow from the two tables here.
 
 use crate::config::{Config, VisionOutput};
@@ -87,20 +87,20 @@ macro_rules! observation_entries {
                 /// where. A task may append to it: the last number of `catch` is the radius of the ball, m.
                 proprioception: f64, ANY, sense(Sense::Proprioception);
             }
-            /// What the skin feels, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) tells what stands where.
+            /// Touch of the skin, N, if `touch_active`; [`Senses::touch`](crate::env::Senses::touch) tells what stands where.
             touch: f32, ANY, sense(Sense::Touch);
-            /// What each body with skin feels, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
+            /// Touch of each body with skin, (bodies, 5), if `touch_pooled`: see [`TouchPool`](crate::sensors::TouchPool).
             touch_pooled: f64, ANY, sense(Sense::TouchPooled);
-            /// What hurts, a number for each touch sensor, if `pain_active`: see [`Pain`](crate::sensors::Pain).
+            /// Pain, a number for each touch sensor, if `pain_active`: see [`Pain`](crate::sensors::Pain).
             pain: f32, NOT_NEGATIVE, sense(Sense::Pain);
-            /// What the left eye sees, (H, W, 3) bytes from the top, if `vision_active` and `vision_outputs` has `rgb`.
+            /// Image of the left eye, (H, W, 3) bytes from the top, if `vision_active` and `vision_outputs` has `rgb`.
             eye_left: u8, BYTES, eye(Sense::EyeLeft, VisionOutput::Rgb);
-            /// What the right eye sees.
+            /// Image of the right eye.
             eye_right: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Rgb);
-            /// What the left eye sees in grey, (H, W) bytes, if `vision_outputs` has `gray`: see
+            /// Grey image of the left eye, (H, W) bytes, if `vision_outputs` has `gray`: see
             /// [`SensesMut::eye_gray`](crate::env::SensesMut::eye_gray).
             eye_left_gray: u8, BYTES, eye(Sense::EyeLeft, VisionOutput::Gray);
-            /// What the right eye sees in grey.
+            /// Grey image of the right eye.
             eye_right_gray: u8, BYTES, eye(Sense::EyeRight, VisionOutput::Gray);
             /// How far away is what the left eye sees, (H, W), m, if `vision_outputs` has `depth`: see
             /// [`SensesMut::eye_depth`](crate::env::SensesMut::eye_depth).
@@ -149,7 +149,7 @@ pub struct ObservationEntry {
     pub high: f64,
 }
 
-/// What reports an entry: a sense, and which image, of an eye.
+/// The source of an entry: a sense, and which image, of an eye.
 type Source = (Option<Sense>, Option<VisionOutput>);
 
 const GOAL: Source = (None, None);

@@ -124,7 +124,7 @@ pub struct ActionNoise {
     process: Process,
 }
 
-/// What the noises remember from step to step.
+/// The memory of a noise from step to step.
 #[derive(Clone, Debug)]
 enum Process {
     White,

@@ -18,7 +18,7 @@ pub struct Infos<'a> {
     pub vision_age: Option<&'a [f64]>,
     /// Success and failure (N) of tasks that report them.
     pub outcomes: Option<&'a [Outcome]>,
-    /// What the rewards of such tasks depend on beside goals, (N, len): [`Goal::terms`](crate::env::Goal::terms).
+    /// Further inputs of the rewards of such tasks besides goals, (N, len): [`Goal::terms`](crate::env::Goal::terms).
     pub reward_terms: Option<&'a [f64]>,
 }
 

@@ -137,20 +137,7 @@ impl VectorEnv {
         let mode = options.autoreset;
         let each = memory::estimate(&first, &Layout::new([&first]), mode);
         memory::check(n, each, options.max_memory)?;
-        let mut envs = vec![first];
-        for env in 1..n {
-            let made = make(env)?;
-            let spaces = envs[0].observation_space();
-            if let Some((what, expected, found)) = difference(envs[0].action_space(), &spaces, &made) {
-                return Err(VectorError::Spaces {
-                    env,
-                    what,
-                    expected,
-                    found,
-                });
-            }
-            envs.push(made);
-        }
+        let envs = alike(first, n, make)?;
         let deferred = envs
             .iter()
             .all(|e| e.senses().vision().is_some() && e.config().renderer == RendererKind::Wgpu);
@@ -252,6 +239,25 @@ impl VectorEnv {
     pub fn failures(&self) -> &[Failure] {
         &self.failures
     }
+}
+
+/// Makes the environments after the first, whose spaces must be those of the first.
+fn alike(first: Env, n: usize, make: impl Fn(usize) -> Result<Env, VectorError>) -> Result<Vec<Env>, VectorError> {
+    let spaces = first.observation_space();
+    let mut envs = vec![first];
+    for env in 1..n {
+        let made = make(env)?;
+        if let Some((what, expected, found)) = difference(envs[0].action_space(), &spaces, &made) {
+            return Err(VectorError::Spaces {
+                env,
+                what,
+                expected,
+                found,
+            });
+        }
+        envs.push(made);
+    }
+    Ok(envs)
 }
 
 /// Says of which environment an error is.

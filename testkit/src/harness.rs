@@ -76,7 +76,7 @@ impl Need {
 pub struct Trial {
     /// The path of its function, crate included.
     pub path: &'static str,
-    /// What it needs.
+    /// Its requirements.
     pub needs: &'static [Need],
     /// The function, which panics when the test fails.
     pub run: fn(),
@@ -109,7 +109,7 @@ macro_rules! show {
 }
 
 thread_local! {
-    /// What the test of this thread has said, while it is kept back.
+    /// The output of this thread's test, while it is kept back.
     static SAID: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 

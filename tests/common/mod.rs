@@ -21,7 +21,7 @@ pub const EXAMPLES: [(&str, &str); 3] = [
     ),
 ];
 
-/// What pictures are drawn of: all default senses but touch, MIMo v2 among the cubes and v1 elsewhere.
+/// The scene of pictures: all default senses but touch, MIMo v2 among the cubes and v1 elsewhere.
 pub fn seen(scene: Scene) -> Config {
     Config {
         behavior: if scene == Scene::Cubes {

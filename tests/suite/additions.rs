@@ -1,4 +1,4 @@
-//! What is added to a scene of the library, and actuators of bodies that are not MIMo's.
+//! Additions to a scene of the library, and actuators of bodies that are not MIMo's.
 
 use babybench::config::{ActuationModel, Behavior, Scene};
 use babybench::mimo::SceneBuilder;

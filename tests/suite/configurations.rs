@@ -235,7 +235,7 @@ const ELSEWHERE: [&str; 11] = [
     "thumb_diameter",
 ];
 
-/// What keys of senses begin with that have tests of their own.
+/// Prefixes of keys of senses that have tests of their own.
 const SENSES: [&str; 7] = [
     "touch_",
     "vision_",

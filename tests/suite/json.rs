@@ -236,7 +236,7 @@ fn lines(folder: &Path) -> Vec<Value> {
     texts.flat_map(|t| t.lines().map(json).collect::<Vec<_>>()).collect()
 }
 
-/// What a run is told by a policy that writes down what it hears.
+/// The messages that a policy gets in a run, as it writes them down.
 #[cfg(unix)]
 fn listening(folder: &Folder, actions: usize) -> String {
     let answer = vec!["0"; actions].join(",");

@@ -1,6 +1,6 @@
 //! The tests that need nothing but the repository, in one program: each one more would link the whole library anew.
 //!
-//! What needs something else is in `tests/yardsticks`, what counts for a whole process in programs of its own.
+//! Tests that need something else are in `tests/yardsticks`, those that count for a whole process in programs of their own.
 
 #[path = "../common/allocations.rs"]
 mod allocations;

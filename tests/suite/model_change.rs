@@ -19,7 +19,7 @@ fn course(env: &mut Env, steps: usize) -> Vec<u64> {
     env.state().qpos.iter().map(|q| q.to_bits()).collect()
 }
 
-/// What a change makes of a model.
+/// The effect of a change on a model.
 type Edit = fn(&mut Arrays);
 
 /// A change of each kind of number.

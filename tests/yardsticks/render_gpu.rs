@@ -10,7 +10,7 @@ use testkit::{show, trials};
 
 use crate::common::{infant, seen};
 
-/// What both eyes see.
+/// Images of both eyes.
 fn eyes_of(env: &Env) -> [RenderRequest<'_>; 2] {
     env.senses().vision().unwrap().requests(env.state())
 }

@@ -77,7 +77,7 @@ pub enum Command {
     Evaluate(evaluate::Evaluate),
 }
 
-/// What an environment is built from.
+/// The ingredients of an environment.
 #[derive(Args)]
 struct Source {
     /// Configuration file (YAML); see configs/

@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::arguments::count;
 
-/// What is recorded, and where.
+/// The contents of a recording, and its place.
 #[derive(Args)]
 pub struct Recording {
     /// Record everything into this new folder: manifest.json and an archive of NumPy's for each episode, which babybench replay repeats

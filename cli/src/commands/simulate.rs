@@ -36,7 +36,7 @@ pub struct Simulate {
     /// Keyframe to start from, by name or number; qpos0 at rest by default
     #[arg(long, value_name = "KEY")]
     keyframe: Option<String>,
-    /// What the actuators are told: zero, the keyframe's controls (keyframe), or random within their ranges
+    /// Controls of the actuators: zero, those of the keyframe (keyframe), or random within their ranges
     #[arg(long, value_name = "WHICH", default_value = "zero")]
     policy: Policy,
     /// Seed of random controls
@@ -57,7 +57,7 @@ pub struct Simulate {
     out: Option<PathBuf>,
 }
 
-/// What the actuators are told.
+/// The source of controls.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Policy {
     Zero,
@@ -267,7 +267,7 @@ impl Controls {
     }
 }
 
-/// What the archive holds of every step: the state at its start, and what was computed there.
+/// The arrays of the archive, for every step: the state at its start, and the quantities computed there.
 #[derive(Default)]
 struct Rows {
     time: Vec<f64>,

@@ -14,13 +14,13 @@ const SECONDS: u64 = 5;
 /// How long it may wait for something, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// What is told of while the answers are written anew.
+/// Time from which a case is reported as slow while the answers are written anew.
 const SLOW: Duration = Duration::from_secs(2);
 
 /// A file of a case.
 #[derive(Clone)]
 pub enum Content {
-    /// What it holds.
+    /// Contents.
     Bytes(Vec<u8>),
     /// A link to a place.
     Link(&'static str),

@@ -3,7 +3,7 @@
 use crate::case::{Case, Content};
 use crate::runs::run;
 
-/// What stands in `<worldbody>`, by what is wrong with it.
+/// Contents of `<worldbody>`, by their fault.
 const WORLDS: &[(&str, &str)] = &[
     ("unknown element", "<mesh/>"),
     ("unknown attribute", "<geom size='1' colour='red'/>"),

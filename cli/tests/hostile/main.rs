@@ -28,7 +28,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use case::Case;
 
-/// What the program must answer, by the name of the case.
+/// The answer that the program must give, by the name of the case.
 const EXPECTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hostile/expected.txt");
 /// Cases that run side by side.
 const THREADS: usize = 2;

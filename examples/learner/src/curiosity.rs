@@ -108,7 +108,7 @@ impl Foresight {
     /// Makes a model that foresees `feelings` numbers from `inputs` numbers.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn new(inputs: usize, feelings: usize, noise: &mut Noise) -> Result<Self, Error> {
         let network = Mlp::new(&[inputs, 128, feelings], 0.1, noise)?;
         let params = ParamsAdamW {
@@ -126,7 +126,7 @@ impl Foresight {
     /// Returns the reward for each row of `inputs` (rows, inputs) that was followed by feelings (rows, feelings).
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn surprise(&mut self, inputs: &Tensor, feelings: &[f32]) -> Result<Vec<f32>, Error> {
         let errors = self.errors(inputs, feelings)?.to_vec1::<f32>()?;
         let mean = errors.iter().sum::<f32>() / errors.len().max(1) as f32;
@@ -141,7 +141,7 @@ impl Foresight {
     /// Learns to foresee.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn learn(&mut self, inputs: &Tensor, feelings: &[f32]) -> Result<(), Error> {
         let loss = self.errors(inputs, feelings)?.mean_all()?;
         Ok(self.optimizer.backward_step(&loss)?)

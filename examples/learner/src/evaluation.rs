@@ -12,10 +12,10 @@ use crate::mind::{HOLD, Mind};
 use crate::network::Noise;
 use crate::training::Kind;
 
-/// What a mind has learned, as a policy: it goes on as it did, but learns no more.
+/// A trained mind as a policy: it goes on as it did, but learns no more.
 pub struct Learned {
     mind: Arc<Mind>,
-    /// What was touched in this episode.
+    /// The parts touched in this episode.
     touched: Vec<bool>,
     noise: Noise,
 }

@@ -40,7 +40,7 @@ struct Arguments {
     out: PathBuf,
 }
 
-/// What a training came to.
+/// The result of a training.
 struct Outcome {
     seed: u64,
     kind: Kind,

@@ -12,7 +12,7 @@ use crate::senses::{Normalizer, Senses};
 /// Number of steps for which an action is held: a tenth of a second.
 pub const HOLD: u64 = 20;
 
-/// What an infant has in mind: what it knows, what it wants to know, and what it does.
+/// The mind of an infant: its knowledge, its curiosity, and its actions.
 pub struct Mind {
     pub(crate) senses: Senses,
     pub(crate) normalizer: Normalizer,
@@ -59,7 +59,7 @@ impl Mind {
     /// Writes what the policy decides to do, with the noise that it has learned with, as an action of the environment.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn act(&self, env: &Env, touched: &[bool], noise: &mut Noise, action: &mut Vec<f32>) -> Result<(), Error> {
         let (mut row, mut decided) = (Vec::new(), Experience::default());
         let progress = env.info().steps as f32 / env.config().max_episode_steps.max(1) as f32;

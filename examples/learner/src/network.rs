@@ -41,7 +41,7 @@ impl Mlp {
     /// Makes layers of the given sizes. The weights of the last one are multiplied by `last`.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn new(sizes: &[usize], last: f32, noise: &mut Noise) -> Result<Self, Error> {
         let mut layers = Vec::new();
         for (k, size) in sizes.windows(2).enumerate() {
@@ -60,7 +60,7 @@ impl Mlp {
     /// Computes the outputs for rows of inputs.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn forward(&self, inputs: &Tensor) -> Result<Tensor, Error> {
         let mut x = inputs.clone();
         for (k, [weights, bias]) in self.layers.iter().enumerate() {

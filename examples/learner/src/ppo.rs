@@ -21,20 +21,20 @@ const RATE: f64 = 5e-4;
 /// Logarithm of the standard deviation of the first policy.
 const FIRST_DEVIATION: f32 = -0.5;
 
-/// What happened in episodes of equal length: arrays over decisions and environments, (decisions, environments, ..).
+/// The history of episodes of equal length: arrays over decisions and environments, (decisions, environments, ..).
 #[derive(Clone, Debug, Default)]
 pub struct Experience {
-    /// What the policy knew.
+    /// Inputs of the policy.
     pub senses: Vec<f32>,
-    /// What it wanted to do.
+    /// Actions that it chose.
     pub actions: Vec<f32>,
     /// Logarithm of the probability density of that.
     pub likelihoods: Vec<f32>,
-    /// What it expected of the rest of the episode.
+    /// Value that it expected of the rest of the episode.
     pub values: Vec<f32>,
-    /// What came of it.
+    /// Rewards of the actions.
     pub rewards: Vec<f32>,
-    /// What the skin felt after it.
+    /// Touch after the action.
     pub feelings: Vec<f32>,
 }
 
@@ -87,7 +87,7 @@ impl Ppo {
     /// Makes a policy that knows nothing.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn new(senses: usize, actions: usize, noise: &mut Noise) -> Result<Self, Error> {
         let actor = Mlp::new(&[senses, 128, 64, actions], 0.05, noise)?;
         let critic = Mlp::new(&[senses, 128, 64, 1], 0.5, noise)?;
@@ -112,7 +112,7 @@ impl Ppo {
     /// Returns the means of the actions for rows of senses.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn means(&self, senses: &Tensor) -> Result<Vec<f32>, Error> {
         Ok(self.actor.forward(senses)?.flatten_all()?.to_vec1()?)
     }
@@ -120,7 +120,7 @@ impl Ppo {
     /// Decides for rows of senses, and appends actions, likelihoods and values.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn decide(&self, senses: &Tensor, noise: &mut Noise, out: &mut Experience) -> Result<(), Error> {
         let means = self.means(senses)?;
         let log_deviation = self.deviation.to_vec1::<f32>()?;
@@ -141,7 +141,7 @@ impl Ppo {
     /// Learns from experience. Calls `also` with the rows of every minibatch, so that others can learn from the same.
     ///
     /// # Errors
-    /// What candle says.
+    /// Errors of candle.
     pub fn learn(
         &mut self,
         experience: &Experience,
@@ -185,11 +185,11 @@ impl Ppo {
 
 /// Decisions to learn from, a row each.
 pub struct Batch {
-    /// What the policy knew.
+    /// Inputs of the policy.
     pub senses: Tensor,
-    /// What it did.
+    /// Actions.
     pub actions: Tensor,
-    /// What the skin felt after it.
+    /// Touch after the action.
     pub feelings: Tensor,
     likelihoods: Tensor,
     advantages: Tensor,
@@ -213,7 +213,7 @@ impl Batch {
 /// Returns numbers as a matrix of `n` rows.
 ///
 /// # Errors
-/// What candle says.
+/// Errors of candle.
 pub fn rows(values: &[f32], n: usize) -> Result<Tensor, Error> {
     Ok(Tensor::from_slice(values, (n, values.len() / n.max(1)), &Device::Cpu)?)
 }

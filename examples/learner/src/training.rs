@@ -47,7 +47,7 @@ pub struct Settings {
     pub seed: u64,
 }
 
-/// What one round of episodes brought, one in each environment.
+/// The results of a round of episodes, one in each environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round {
     /// Mean intrinsic reward of an episode.

@@ -1,14 +1,36 @@
-//! A model of one mesh.
+//! Meshes: what is read names what is there, takes memory in proportion to the file, and makes a model or an error that names the file.
 
 use babybench::assets::MemoryAssets;
+use babybench::formats::mesh::{MeshFormat, NONE, Triangles};
 use babybench::render::Scenery;
-use babybench::{mjcf_loader, physics};
+use babybench::{Limits, mjcf_loader, physics};
 
 /// Larger files are left alone: their cost hides others.
 const LARGE: usize = 1 << 14;
 
+/// Reads a file, and compiles a model of it.
+pub fn check(data: &[u8], format: MeshFormat, name: &str) {
+    let limits = Limits {
+        mesh_elements: 1 << 16,
+        ..Limits::default()
+    };
+    // the length decides about a flag, so that both ways are tried
+    let Ok(read) = Triangles::read(data, format, data.len() % 2 == 1, &limits) else {
+        return;
+    };
+    assert!(read.elements() <= limits.mesh_elements);
+    let within = |corners: &[[u32; 3]], count: usize, may_lack: bool| {
+        let mut all = corners.as_flattened().iter();
+        all.all(|&i| (i as usize) < count || may_lack && i == NONE)
+    };
+    assert!(within(&read.face, read.vert.len(), false));
+    assert!(within(&read.facenormal, read.normal.len(), true));
+    assert!(within(&read.facetexcoord, read.texcoord.len(), true));
+    compile(data, name);
+}
+
 /// Compiles a document with the mesh, solid and touching.
-pub fn compile(file: &[u8], name: &str) {
+fn compile(file: &[u8], name: &str) {
     if file.len() > LARGE {
         return;
     }

@@ -28,7 +28,7 @@ pub struct Snapshot {
     pub(super) bytes: Vec<u8>,
 }
 
-/// What a [`Snapshot`] says about itself.
+/// The description that a [`Snapshot`] carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SnapshotInfo {
@@ -66,13 +66,13 @@ pub enum SnapshotError {
     /// The bytes were cut or changed.
     #[error("the snapshot is damaged: {what}")]
     Damaged {
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// Taken with other values of keys of the configuration, or with another model ([`Env::change_model`](crate::Env::change_model)).
     #[error("the snapshot was taken with another configuration: {differences}")]
     OtherConfiguration {
-        /// What differs: each key with its value of then and of now.
+        /// The differences: each key with its value of then and of now.
         differences: String,
     },
     /// Taken from an environment of another scene, or, in a layout that does not tell, of another configuration.

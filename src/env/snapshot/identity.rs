@@ -1,4 +1,4 @@
-//! What a snapshot belongs to: a scene, and the keys of a configuration.
+//! The owner of a snapshot: a scene, and the keys of a configuration.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use crate::model::Model;
 use crate::sensors::transform::Sense;
 use crate::text::quoted;
 
-/// What an environment can restore snapshots of.
+/// The scenes and configurations whose snapshots an environment can restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::env) struct Identity {
-    /// What must be equal.
+    /// Checksum of all that must be equal.
     pub fingerprint: u64,
     /// Keys of the configuration that are not as they are by default, a line each: what is told where a snapshot does not fit.
     pub keys: String,

@@ -82,7 +82,7 @@ pub(super) struct Catch {
     memory: Memory,
 }
 
-/// What the task remembers from step to step.
+/// The task's memory from step to step.
 #[derive(Clone, Debug)]
 struct Memory {
     /// Steps of the episode.

@@ -4,18 +4,18 @@ use thiserror::Error;
 
 use super::{Task, TaskSizes};
 
-/// What a reward depends on: a row of goals.
+/// The inputs of a reward: a row of goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal<'a> {
     /// The goal that is achieved.
     pub achieved: &'a [f64],
     /// The goal that is desired.
     pub desired: &'a [f64],
-    /// What the reward depends on beside the goals, such as the cost of the action.
+    /// Further inputs of the reward besides the goals, such as the cost of the action.
     pub terms: &'a [f64],
 }
 
-/// What came of a step of a task.
+/// The outcome of a step of a task.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
     /// Whether the goal is reached.

@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::physics::State;
 
 const PURPOSE: &str = "behavior mobile";
-/// What is measured.
+/// The names of the measures.
 pub(super) const NAMES: &[&str] = &[
     "phase",
     "mobile_movement_baseline",
@@ -71,7 +71,7 @@ pub(super) struct Mobile {
     memory: Memory,
 }
 
-/// What is remembered from step to step.
+/// The task's memory from step to step.
 #[derive(Clone, Debug, Default)]
 struct Memory {
     steps: u64,

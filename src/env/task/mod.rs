@@ -44,7 +44,7 @@ pub struct TaskSizes {
     pub observation: usize,
 }
 
-/// What the scene of a task is compiled from.
+/// The source of a task's scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskDocument {
     /// The MJCF document. It lies in the folder `babybench` of the assets, and includes files from there.
@@ -67,7 +67,7 @@ impl TaskDocument {
     }
 }
 
-/// What a step was worth.
+/// The value of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Verdict {
     /// The reward.
@@ -89,7 +89,7 @@ pub enum TaskEvent<'a> {
     Restored,
 }
 
-/// What an environment is for: its scene, the start of its episodes, goals, reward, success and failure.
+/// The purpose of an environment: its scene, the start of its episodes, goals, reward, success and failure.
 ///
 /// An environment holds one, made by cloning that of its blueprint, and calls it in this order: [`Task::document`], [`Task::bind`] and
 /// [`Task::settle`] once, while the blueprint is made; [`Task::reset`] and [`Task::begin`] at the start of an episode; in each step

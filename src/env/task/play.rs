@@ -9,7 +9,7 @@ use crate::mimo::MimoBodies;
 use crate::model::{JointType, Model};
 use crate::physics::State;
 
-/// What is measured.
+/// The names of the measures.
 pub(super) const NAMES: &[&str] = &[
     "toys",
     "toys_touched",
@@ -29,7 +29,7 @@ const MOVED: f64 = 0.05;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Play {
     toys: Vec<usize>,
-    /// What each geom (ngeom) belongs to.
+    /// The owner of each geom (ngeom).
     owner: Vec<Owner>,
     /// Time of a step, s.
     dt: f64,
@@ -51,7 +51,7 @@ enum Owner {
     Toy(usize),
 }
 
-/// What a toy touches.
+/// The kinds of things that a toy touches.
 #[derive(Clone, Copy, Debug, Default)]
 struct Contacts {
     mimo: bool,
@@ -71,7 +71,7 @@ struct Toy {
     last: Vec3,
 }
 
-/// What is remembered from step to step.
+/// The task's memory from step to step.
 #[derive(Clone, Debug, Default)]
 struct Memory {
     toys: Vec<Toy>,

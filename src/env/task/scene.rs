@@ -44,7 +44,7 @@ impl std::fmt::Debug for TaskScene<'_> {
     }
 }
 
-/// What a task may look at after a step.
+/// The parts of an environment that a task may look at after a step.
 #[derive(Clone, Copy)]
 pub struct TaskView<'a> {
     /// The compiled scene.

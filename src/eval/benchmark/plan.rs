@@ -18,7 +18,7 @@ const MAX_SEEDS: u64 = 1000;
 /// Greatest number of steps of a run.
 const MAX_STEPS: u64 = 1_000_000_000;
 
-/// What a benchmark runs: every configuration, at every age, with every policy, from every seed.
+/// The plan of a benchmark: every configuration, at every age, with every policy, from every seed.
 ///
 /// ```yaml
 /// name: Noise                                     # a title

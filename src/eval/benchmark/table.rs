@@ -155,35 +155,7 @@ impl Benchmark {
         );
         let columns = self.columns();
         for group in self.rows.chunk_by(|a, b| a.config == b.config) {
-            let Some(first) = group.first() else {
-                continue;
-            };
-            let _ = writeln!(out, "## {} ({})\n", first.behavior.replace('_', " "), first.config);
-            let shown: Vec<_> = columns
-                .iter()
-                .filter(|(name, ..)| group.iter().any(|row| row.metrics.contains_key(name)))
-                .collect();
-            let ages = group.iter().any(|row| row.age.is_some());
-            let _ = write!(out, "| policy |{}", if ages { " age, months |" } else { "" });
-            for (_, heading, _) in &shown {
-                let _ = write!(out, " {heading} |");
-            }
-            let _ = writeln!(out, "\n|---|{}", "--:|".repeat(shown.len() + usize::from(ages)));
-            for row in group {
-                let _ = write!(out, "| `{}` |", row.policy.replace('|', "\\|"));
-                if ages {
-                    let _ = write!(
-                        out,
-                        " {} |",
-                        row.age.map_or("original".to_string(), |age| age.to_string())
-                    );
-                }
-                for (name, _, decimals) in &shown {
-                    let _ = write!(out, " {} |", row.text(name, *decimals).unwrap_or_default());
-                }
-                out.push('\n');
-            }
-            out.push('\n');
+            section(&mut out, group, &columns);
         }
         let names = |list: &[String]| list.join(", ");
         let ages = plan
@@ -204,4 +176,37 @@ impl Benchmark {
         );
         out
     }
+}
+
+/// Appends the section of a configuration: a table with a line for each policy and age.
+fn section(out: &mut String, group: &[Row], columns: &[(String, String, usize)]) {
+    let Some(first) = group.first() else {
+        return;
+    };
+    let _ = writeln!(out, "## {} ({})\n", first.behavior.replace('_', " "), first.config);
+    let shown: Vec<_> = columns
+        .iter()
+        .filter(|(name, ..)| group.iter().any(|row| row.metrics.contains_key(name)))
+        .collect();
+    let ages = group.iter().any(|row| row.age.is_some());
+    let _ = write!(out, "| policy |{}", if ages { " age, months |" } else { "" });
+    for (_, heading, _) in &shown {
+        let _ = write!(out, " {heading} |");
+    }
+    let _ = writeln!(out, "\n|---|{}", "--:|".repeat(shown.len() + usize::from(ages)));
+    for row in group {
+        let _ = write!(out, "| `{}` |", row.policy.replace('|', "\\|"));
+        if ages {
+            let _ = write!(
+                out,
+                " {} |",
+                row.age.map_or("original".to_string(), |age| age.to_string())
+            );
+        }
+        for (name, _, decimals) in &shown {
+            let _ = write!(out, " {} |", row.text(name, *decimals).unwrap_or_default());
+        }
+        out.push('\n');
+    }
+    out.push('\n');
 }

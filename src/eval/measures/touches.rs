@@ -8,7 +8,7 @@ use crate::runs::{GeomDescription, Manifest};
 /// A touch goes on through gaps of less than this, s.
 const GAP: f64 = 0.1;
 
-/// What touches what in a step.
+/// The touches of a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Step {
     /// The regions that the right and the left hand touch, by number.
@@ -17,7 +17,7 @@ pub(super) struct Step {
     pub double_touch: bool,
 }
 
-/// What touches what, step by step.
+/// The touches of an episode, step by step.
 #[derive(Debug, Default)]
 pub(super) struct Steps {
     steps: Vec<Step>,

@@ -117,7 +117,7 @@ pub enum MeshError {
     Corner {
         /// Face, from 0.
         face: usize,
-        /// What is named.
+        /// The kind of thing that is named.
         what: &'static str,
         /// The index, from 0.
         index: u32,

@@ -1,4 +1,4 @@
-//! What the document of a scene of one's own may say, before it is compiled.
+//! Checks of the document of a custom scene, before it is compiled.
 
 use super::{FOLDER, Own, PARTS, Room, RoomError};
 use crate::assets::AssetSource;
@@ -18,7 +18,7 @@ const COMPILER: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// What a document with a second infant includes.
+/// The include that a document with a second infant has.
 const SECOND: &str = "other_mimo.xml";
 
 /// The time step of all scenes, s.

@@ -35,11 +35,11 @@ pub enum RoomError {
     Lacks {
         /// Path of the document.
         path: String,
-        /// What it should include.
+        /// The include that it needs.
         file: &'static str,
         /// Where.
         place: &'static str,
-        /// What that has.
+        /// The contents of that file.
         what: &'static str,
     },
     /// An element that no scene of one's own may have, or not like this.
@@ -59,7 +59,7 @@ pub enum RoomError {
     Changed {
         /// Path of the document.
         path: String,
-        /// What is changed: its kind and name.
+        /// The changed element: its kind and name.
         part: String,
         /// Which of its numbers, by the name of MuJoCo's array.
         field: &'static str,

@@ -1,11 +1,11 @@
-//! What is added to a scene of the library, as text.
+//! Additions to a scene of the library, as text.
 
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 
 use crate::mjcf_loader::Place;
 
-/// What the text is called in errors.
+/// Name of the text in errors.
 pub(super) const SHOWN: &str = "scene_extra";
 /// The file as which it is read.
 pub(in crate::mimo) const FILE: &str = "scene_extra.xml";
@@ -31,7 +31,7 @@ struct Inserted {
 impl Extra {
     /// Makes a document of a text: elements of the world are put into the world, sections stay what they are.
     ///
-    /// What is wrong with the text is for the loader to say, so that nothing is an error here.
+    /// Faults of the text are for the loader to name, so that nothing is an error here.
     pub fn new(text: &str) -> Self {
         let mut extra = Self {
             document: String::with_capacity(text.len() + 64),

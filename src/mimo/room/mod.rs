@@ -36,7 +36,7 @@ const SETTINGS: &str = "babybench/settings.xml";
 /// The same under another name: a document may include both [`PARTS`] and `base.xml`, and no file twice.
 const SETTINGS_AGAIN: &str = "mimo_options.xml";
 
-/// What a scene of one's own includes: file, where it belongs, and what it has.
+/// The files that a custom scene includes: name, where it belongs, and its contents.
 pub const PARTS: [(&str, &str, &str); 3] = [
     ("mimo.xml", "in <body name=\"mimo_location\">", "MIMo's body"),
     (

@@ -7,9 +7,9 @@ use quick_xml::reader::Reader;
 use crate::config::{Config, Learner};
 use crate::mimo::scene::{MIMO, Version, actuators, include};
 
-/// What the names of the second infant's parts begin with.
+/// Prefix of the names of the second infant's parts.
 pub(crate) const PREFIX: &str = "other:";
-/// What the names of the files begin with in which he is.
+/// Prefix of the names of his files.
 const FILE: &str = "other_";
 /// The body that places the second infant in the world.
 const LOCATION: &str = "other_location";

@@ -1,4 +1,4 @@
-//! What a document says to no effect.
+//! Attributes of a document that have no effect.
 
 use super::{FOLDER, Room};
 use crate::assets::AssetSource;
@@ -14,7 +14,7 @@ pub struct Unused {
     pub place: Place,
     /// The attribute.
     pub attribute: String,
-    /// What it would mean, and why it changes nothing.
+    /// Its meaning, and why it changes nothing.
     pub meaning: &'static str,
 }
 

@@ -17,7 +17,7 @@ pub struct Impedance {
 const MINIMP: f64 = 0.0001;
 const MAXIMP: f64 = 0.9999;
 
-/// What holds where a `solref` mixes the two ways of giving it.
+/// The values that hold where a `solref` mixes the two ways of giving it.
 const DEFAULT_SOLREF: [f64; 2] = [0.02, 1.0];
 
 /// Tells whether a `solref` is neither zero nor mixed, that is, positive and not positive: MuJoCo takes such a

@@ -7,7 +7,7 @@ use crate::model::{Model, SolverType};
 use crate::physics::constraint::cone::Cone;
 use crate::physics::constraint::conjugate::Conjugate;
 use crate::physics::constraint::hessian::Hessian;
-use crate::physics::constraint::island::Island;
+use crate::physics::constraint::island::{AlongSearch, Island};
 use crate::physics::constraint::line_search::LineSearch;
 use crate::physics::constraint::{Block, ConstraintType, Efc};
 use crate::physics::dynamics::Articulated;
@@ -205,20 +205,7 @@ impl Newton {
             for (c, _) in &mut island.cones {
                 c.prepare_line();
             }
-            let line = LineSearch {
-                slope: along.inertial_slope,
-                curvature: along.inertial_curvature,
-                island,
-            };
-            let tolerance = model.opt.tolerance * model.opt.ls_tolerance * along.length / scale;
-            let alpha = if cut_off(model) {
-                line.follow(tolerance, model.opt.ls_iterations)
-            } else {
-                vectorize(
-                    #[inline(always)]
-                    || line.minimise(1.0, tolerance, model.opt.ls_iterations),
-                )
-            };
+            let alpha = step_length(model, island, &along, scale);
             if alpha == 0.0 {
                 break;
             }
@@ -234,6 +221,26 @@ impl Newton {
             }
         }
         island.store(topology, efc, s);
+    }
+}
+
+/// Returns how far to go along the search direction of an island.
+#[inline(always)]
+fn step_length(model: &Model, island: &Island, along: &AlongSearch, scale: f64) -> f64 {
+    let line = LineSearch {
+        slope: along.inertial_slope,
+        curvature: along.inertial_curvature,
+        island,
+    };
+    // MuJoCo's tolerance is one of the scaled gradient: the slope is the gradient times the length of the direction
+    let tolerance = model.opt.tolerance * model.opt.ls_tolerance * along.length / scale;
+    if cut_off(model) {
+        line.follow(tolerance, model.opt.ls_iterations)
+    } else {
+        vectorize(
+            #[inline(always)]
+            || line.minimise(1.0, tolerance, model.opt.ls_iterations),
+        )
     }
 }
 

@@ -38,18 +38,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
         }
         let length = transmission::length(model, s, i, gear);
         let velocity = transmission::velocity(model, topology, s, i, gear);
-        let affine = |p: &[f64; 10]| p[0] + p[1] * length + p[2] * velocity;
-        let gain = match model.actuator_gaintype[i] {
-            GainType::Fixed => model.actuator_gainprm[i][0],
-            GainType::Affine => affine(&model.actuator_gainprm[i]),
-            GainType::Muscle => muscle::gain(model, i, length, velocity),
-        };
-        let mut force = gain * ctrl;
-        match model.actuator_biastype[i] {
-            BiasType::None => {}
-            BiasType::Affine => force += affine(&model.actuator_biasprm[i]),
-            BiasType::Muscle => force += muscle::bias(model, i, length),
-        }
+        let mut force = gain_and_bias(model, i, ctrl, [length, velocity]);
         if let Some(torque) = muscle {
             force *= torque;
         }
@@ -77,4 +66,21 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
     let mut acc = std::mem::take(&mut s.qacc_smooth);
     bodies.solve(model, s, Damping::Without, &s.qfrc_smooth, &mut acc);
     s.qacc_smooth = acc;
+}
+
+/// Returns the force of an actuator by its control or activation, its length and its velocity.
+#[inline(always)]
+fn gain_and_bias(model: &Model, i: usize, ctrl: f64, [length, velocity]: [f64; 2]) -> f64 {
+    let affine = |p: &[f64; 10]| p[0] + p[1] * length + p[2] * velocity;
+    let gain = match model.actuator_gaintype[i] {
+        GainType::Fixed => model.actuator_gainprm[i][0],
+        GainType::Affine => affine(&model.actuator_gainprm[i]),
+        GainType::Muscle => muscle::gain(model, i, length, velocity),
+    };
+    let force = gain * ctrl;
+    match model.actuator_biastype[i] {
+        BiasType::None => force,
+        BiasType::Affine => force + affine(&model.actuator_biasprm[i]),
+        BiasType::Muscle => force + muscle::bias(model, i, length),
+    }
 }

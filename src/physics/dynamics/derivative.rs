@@ -239,14 +239,20 @@ mod tests {
         parts.map(|((p, a), b)| p + a - b).collect()
     }
 
-    #[test]
-    fn it_is_the_slope_of_the_forces() {
+    /// Returns a state in motion, and the derivative there.
+    fn filled() -> (SoftEngine, State, Topology, TreeMatrix) {
         let mut engine = engine();
         let mut s = moving(&engine);
         forces(&mut engine, &mut s);
         let topology = Topology::new(engine.model());
         let (mut derivative, mut matrix) = (Derivative::default(), TreeMatrix::default());
         derivative.fill(engine.model(), &topology, &s, true, &mut matrix);
+        (engine, s, topology, matrix)
+    }
+
+    #[test]
+    fn it_is_the_slope_of_the_forces() {
+        let (mut engine, _, topology, matrix) = filled();
         let nv = engine.model().nv;
         let mut worst = 0.0_f64;
         for col in 0..nv {
@@ -268,12 +274,7 @@ mod tests {
 
     #[test]
     fn factors_solve_the_matrix() {
-        let mut engine = engine();
-        let mut s = moving(&engine);
-        forces(&mut engine, &mut s);
-        let topology = Topology::new(engine.model());
-        let (mut derivative, mut matrix) = (Derivative::default(), TreeMatrix::default());
-        derivative.fill(engine.model(), &topology, &s, true, &mut matrix);
+        let (engine, s, topology, mut matrix) = filled();
         matrix.subtract_from(&topology, &s.qm, 0.01);
         let nv = engine.model().nv;
         let expected: Vec<f64> = (0..nv).map(|d| (d % 7) as f64 - 3.0).collect();

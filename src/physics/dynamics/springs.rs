@@ -1,4 +1,4 @@
-//! What springs and servos get from their rest configuration and the inertia at `qpos0`.
+//! Parameters of springs and servos that follow from their rest configuration and the inertia at `qpos0`.
 
 use crate::math::MINVAL;
 use crate::model::Arrays;

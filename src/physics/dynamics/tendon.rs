@@ -42,6 +42,20 @@ fn fixed(model: &Arrays, topology: &Topology, s: &mut State, t: usize) {
     (s.ten_length[t], s.ten_velocity[t]) = (length, velocity);
 }
 
+/// Geom, side site and whether it is a cylinder, of what a tendon may wrap around.
+type Wrapped = (usize, Option<usize>, bool);
+
+/// Returns the geom that a tendon may wrap around after a site, and how many entries of its path on the next site is; `None` where the
+/// path ends at the site.
+fn after_site(next: &Wrap) -> Option<(Option<Wrapped>, usize)> {
+    match *next {
+        Wrap::Pulley { .. } | Wrap::Joint { .. } => None,
+        Wrap::Site { .. } => Some((None, 1)),
+        Wrap::Sphere { geom, side } => Some((Some((geom, side, false)), 2)),
+        Wrap::Cylinder { geom, side } => Some((Some((geom, side, true)), 2)),
+    }
+}
+
 /// Computes a spatial tendon; kept out of the code that is compiled twice.
 #[inline(never)]
 fn spatial(model: &Arrays, topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
@@ -63,14 +77,9 @@ fn spatial(model: &Arrays, topology: &Topology, s: &mut State, t: usize, points:
             k += 1;
             continue;
         };
-        let (round, step) = match path[k + 1] {
-            Wrap::Pulley { .. } | Wrap::Joint { .. } => {
-                k += 1;
-                continue;
-            }
-            Wrap::Site { .. } => (None, 1),
-            Wrap::Sphere { geom, side } => (Some((geom, side, false)), 2),
-            Wrap::Cylinder { geom, side } => (Some((geom, side, true)), 2),
+        let Some((round, step)) = after_site(&path[k + 1]) else {
+            k += 1;
+            continue;
         };
         // the compiler put geoms between sites
         let Some(&Wrap::Site { site: second }) = path.get(k + step) else {
@@ -111,7 +120,7 @@ fn spatial(model: &Arrays, topology: &Topology, s: &mut State, t: usize, points:
     s.ten_velocity[t] = entries.map(|(&d, v)| v * s.qvel[d as usize]).sum();
 }
 
-/// What a point of a tendon is in `wrap_obj` that is not on a geom.
+/// Marks in `wrap_obj` of a tendon's points that are not on a geom.
 const SITE: i32 = -1;
 const PULLEY: i32 = -2;
 

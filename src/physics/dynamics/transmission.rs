@@ -1,4 +1,4 @@
-//! What actuators act on: their lengths, and how these change with the coordinates.
+//! Transmission of actuators: their lengths, and how these change with the coordinates.
 
 use crate::math::*;
 use crate::model::{Arrays, JointType, Model, TrnType};

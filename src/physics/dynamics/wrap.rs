@@ -180,15 +180,45 @@ fn arc([p0, p1]: [Vec2; 2], turned: bool, radius: f64) -> f64 {
     }
 }
 
+/// Solves the equation of [`inside`] for `z`; `None` where Newton's method leaves the way down to the root, as MuJoCo then gives up.
+fn sine_at_touch([a, b]: [f64; 2], seen: f64) -> Option<f64> {
+    const STEPS: usize = 20;
+    const START: f64 = 1.0 - 1e-7;
+    const TOLERANCE: f64 = 1e-6;
+    let asin = pxfm::f_asin;
+    let excess = |z: f64| asin(a * z) + asin(b * z) - 2.0 * asin(z) + seen;
+    let mut z = START;
+    let mut f = excess(z);
+    if f > 0.0 {
+        return None;
+    }
+    let mut step = 0;
+    while step < STEPS && f.abs() > TOLERANCE {
+        let part = |r: f64| r / (1.0 - z * z * r * r).sqrt().max(MINVAL);
+        let slope = part(a) + part(b) - 2.0 / (1.0 - z * z).sqrt().max(MINVAL);
+        if slope > -MINVAL {
+            return None;
+        }
+        let next = z - f / slope;
+        if next > z {
+            return None;
+        }
+        z = next;
+        f = excess(z);
+        if f > TOLERANCE {
+            return None;
+        }
+        step += 1;
+    }
+    (step < STEPS).then_some(z)
+}
+
 /// Returns the point, twice, where a string touches a circle about the origin from inside.
 ///
 /// With `z` the sine of the angle between a part of the string and the radius at that point, and `A`, `B` the ratios of the radius to
 /// the distances of the ends, the angles of the triangles add up to `asin(A z) + asin(B z) - 2 asin(z) + G = 0`, `G` the angle
 /// between the ends seen from the centre; Newton's method solves it from `z = 1` downwards.
 fn inside(d: [Vec2; 2], radius: f64) -> Option<[Vec2; 2]> {
-    const STEPS: usize = 20;
-    const START: f64 = 1.0 - 1e-7;
-    const TOLERANCE: f64 = 1e-6;
     let length = d.map(norm2);
     let apart = sub2(d[1], d[0]);
     let distance = dot2(apart, apart);
@@ -213,35 +243,10 @@ fn inside(d: [Vec2; 2], radius: f64) -> Option<[Vec2; 2]> {
     if cosine > 1.0 - MINVAL {
         return middle;
     }
-    let seen = pxfm::f_acos(cosine);
+    let Some(z) = sine_at_touch([a, b], pxfm::f_acos(cosine)) else {
+        return middle;
+    };
     let asin = pxfm::f_asin;
-    let excess = |z: f64| asin(a * z) + asin(b * z) - 2.0 * asin(z) + seen;
-    let mut z = START;
-    let mut f = excess(z);
-    if f > 0.0 {
-        return middle;
-    }
-    let mut step = 0;
-    while step < STEPS && f.abs() > TOLERANCE {
-        let part = |r: f64| r / (1.0 - z * z * r * r).sqrt().max(MINVAL);
-        let slope = part(a) + part(b) - 2.0 / (1.0 - z * z).sqrt().max(MINVAL);
-        if slope > -MINVAL {
-            return middle;
-        }
-        let next = z - f / slope;
-        if next > z {
-            return middle;
-        }
-        z = next;
-        f = excess(z);
-        if f > TOLERANCE {
-            return middle;
-        }
-        step += 1;
-    }
-    if step >= STEPS {
-        return middle;
-    }
     let (from, angle) = if d[0][0] * d[1][1] - d[0][1] * d[1][0] > 0.0 {
         (d[0], asin(z) - asin(a * z))
     } else {

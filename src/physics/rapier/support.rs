@@ -10,7 +10,17 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         let what = "mocap bodies are not supported";
         return Err(RapierError::unsupported("body", &model.body_name[b], what));
     }
-    let tree = |j: usize| topology.dof_tree[model.jnt_dofadr[j]];
+    joints(model)?;
+    if let Some(i) = (0..model.nu()).find(|&i| model.actuator_turns(i).is_some()) {
+        let what = "free joints have no actuators";
+        return Err(RapierError::unsupported("actuator", &model.actuator_name[i], what));
+    }
+    couplings(model, topology)?;
+    shapes(model)
+}
+
+/// Refuses joints that multibodies do not have.
+fn joints(model: &Model) -> Result<(), RapierError> {
     for j in 0..model.njnt() {
         let b = model.jnt_bodyid[j];
         let what = match model.jnt_type[j] {
@@ -22,10 +32,12 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
         };
         return Err(RapierError::unsupported("joint", &model.jnt_name[j], what));
     }
-    if let Some(i) = (0..model.nu()).find(|&i| model.actuator_turns(i).is_some()) {
-        let what = "free joints have no actuators";
-        return Err(RapierError::unsupported("actuator", &model.actuator_name[i], what));
-    }
+    Ok(())
+}
+
+/// Refuses tendons and equalities that do not couple two coordinates of a multibody.
+fn couplings(model: &Model, topology: &Topology) -> Result<(), RapierError> {
+    let tree = |j: usize| topology.dof_tree[model.jnt_dofadr[j]];
     for t in 0..model.ntendon() {
         if model.tendon_frictionloss[t] > 0.0 {
             let what = "a tendon cannot have dry friction";
@@ -58,6 +70,11 @@ pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierErro
             return Err(RapierError::unsupported("equality", &model.eq_name[e], what));
         }
     }
+    Ok(())
+}
+
+/// Refuses shapes that Parry does not have, where anything could touch them.
+fn shapes(model: &Model) -> Result<(), RapierError> {
     for g in 0..model.ngeom() {
         let touches = model.geom_contype[g] | model.geom_conaffinity[g] != 0
             || model.pair_geom.iter().any(|pair| pair.contains(&g));

@@ -9,7 +9,7 @@ use crate::eval::Score;
 use crate::report::run::{Evaluated, Run};
 use crate::report::strip::{frames, moments};
 
-/// What an evaluation episode counted by itself. Under `compat: reference` counters and lists go on from episode to episode.
+/// The counters of an evaluation episode by itself. Under `compat: reference` counters and lists go on from episode to episode.
 #[derive(Default)]
 struct Alone {
     /// Parts that each hand touched; where lists go on, those that are new.

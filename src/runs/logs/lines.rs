@@ -47,7 +47,7 @@ struct Resumed {
     first: Info,
 }
 
-/// What is known about the `.jsonl` file next to a training log.
+/// The known contents of the `.jsonl` file next to a training log.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     /// For the names of touched parts.

@@ -13,7 +13,7 @@ use crate::files::Owner;
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
 
-/// What is said where only the lines of a log are left.
+/// Advice where only the lines of a log are left.
 const LOST: &str = "it is missing, but training.jsonl beside it has records: bring it back to go on with them, or train anew, \
                     which replaces both";
 

@@ -1,4 +1,4 @@
-//! What stands in a record: its geoms, its skin, and the meaning of its arrays.
+//! The description of a record: its geoms, its skin, and the meaning of its arrays.
 
 use std::path::Path;
 
@@ -91,106 +91,45 @@ pub(super) fn meaning(name: &str) -> (&'static str, &'static str) {
     )
 }
 
+/// Lists names, dimensions and meanings, an array a line.
+macro_rules! meanings {
+    ($($name:literal $shape:literal $meaning:literal)*) => {
+        &[$(($name, $shape, $meaning)),*]
+    };
+}
+
 /// Names, dimensions and meanings.
-const MEANINGS: [(&str, &str, &str); 32] = [
-    (
-        "snapshot",
-        "(bytes)",
-        "The environment at the start of the episode, for a replay with the same bits.",
-    ),
-    ("qpos0", "(nq)", "Positions at the start: m, rad, quaternions."),
-    ("qvel0", "(nv)", "Velocities at the start: m/s, rad/s."),
-    ("activity0", "(na)", "Activities of the muscles at the start."),
-    (
-        "drawn",
-        "(T)",
-        "Numbers that the generator of random choices had drawn before each step.",
-    ),
-    (
-        "time",
-        "(T)",
-        "Simulated time after each step, s, from the start of the episode.",
-    ),
-    ("actions", "(T, actions)", "Actions, as they were given."),
-    (
-        "qpos",
-        "(T, nq)",
-        "Positions after each step: m, rad, quaternions; rounded, exact in a replay.",
-    ),
-    (
-        "qvel",
-        "(T, nv)",
-        "Velocities after each step: m/s, rad/s; rounded, exact in a replay.",
-    ),
-    (
-        "checksum",
-        "(T)",
-        "Checksum of all bits of positions, velocities, observation and reward after each step.",
-    ),
-    (
-        "touch_ptr",
-        "(T + 1)",
-        "Entries of step t are touch_ptr[t]..touch_ptr[t + 1] of touch_idx and touch_val.",
-    ),
-    (
-        "touch_idx",
-        "(N)",
-        "Places in the touch observation whose values are not zero.",
-    ),
-    (
-        "touch_val",
-        "(N)",
-        "Their values, N; rounded to 11 bits, exact in a replay.",
-    ),
-    ("touch_len", "()", "Length of the touch observation."),
-    (
-        "contact_ptr",
-        "(T + 1)",
-        "Contacts of step t are contact_ptr[t]..contact_ptr[t + 1] of the arrays of contacts.",
-    ),
-    (
-        "contact_geom",
-        "(C, 2)",
-        "Geom ids of each contact; names are in the manifest.",
-    ),
-    ("contact_pos", "(C, 3)", "Positions, world, m."),
-    (
-        "contact_dist",
-        "(C)",
-        "Distances of the surfaces, m; negative is penetration.",
-    ),
-    (
-        "contact_force",
-        "(C, 3)",
-        "Forces of the first geom on the second: along the normal and two tangents, N.",
-    ),
-    ("reward", "(T)", "Rewards of the task; 0 for BabyBench's behaviors."),
-    ("terminated", "(T)", "Whether success or failure ended the episode."),
-    ("truncated", "(T)", "Whether the episode was cut off."),
-    (
-        "first_touch_step",
-        "(E)",
-        "Steps, from 0, in which a palm touched a part for the first time in the episode.",
-    ),
-    (
-        "first_touch_hand",
-        "(E)",
-        "The hands of these touches: 0 right, 1 left.",
-    ),
-    ("first_touch_geom", "(E)", "The geoms of these touches."),
-    (
-        "regards",
-        "(T, 4)",
-        "Steps so far with a hand in view: right eye right hand, right eye left hand, left eye right, left eye left.",
-    ),
-    (
-        "gaze_angles",
-        "(T, 4)",
-        "How far each hand is off the axis of each eye, rad, in the same order.",
-    ),
-    ("is_success", "(T)", "Whether the task succeeded in the step."),
-    ("is_failure", "(T)", "Whether the task failed in the step."),
-    ("return", "(T)", "Sum of the rewards so far."),
-    ("eye_steps", "(K)", "Steps, from 0, whose images were recorded."),
-    ("eye_size", "()", "Width and height of the images, pixels."),
-];
+const MEANINGS: &[(&str, &str, &str)] = meanings! {
+    "snapshot" "(bytes)" "The environment at the start of the episode, for a replay with the same bits."
+    "qpos0" "(nq)" "Positions at the start: m, rad, quaternions."
+    "qvel0" "(nv)" "Velocities at the start: m/s, rad/s."
+    "activity0" "(na)" "Activities of the muscles at the start."
+    "drawn" "(T)" "Numbers that the generator of random choices had drawn before each step."
+    "time" "(T)" "Simulated time after each step, s, from the start of the episode."
+    "actions" "(T, actions)" "Actions, as they were given."
+    "qpos" "(T, nq)" "Positions after each step: m, rad, quaternions; rounded, exact in a replay."
+    "qvel" "(T, nv)" "Velocities after each step: m/s, rad/s; rounded, exact in a replay."
+    "checksum" "(T)" "Checksum of all bits of positions, velocities, observation and reward after each step."
+    "touch_ptr" "(T + 1)" "Entries of step t are touch_ptr[t]..touch_ptr[t + 1] of touch_idx and touch_val."
+    "touch_idx" "(N)" "Places in the touch observation whose values are not zero."
+    "touch_val" "(N)" "Their values, N; rounded to 11 bits, exact in a replay."
+    "touch_len" "()" "Length of the touch observation."
+    "contact_ptr" "(T + 1)" "Contacts of step t are contact_ptr[t]..contact_ptr[t + 1] of the arrays of contacts."
+    "contact_geom" "(C, 2)" "Geom ids of each contact; names are in the manifest."
+    "contact_pos" "(C, 3)" "Positions, world, m."
+    "contact_dist" "(C)" "Distances of the surfaces, m; negative is penetration."
+    "contact_force" "(C, 3)" "Forces of the first geom on the second: along the normal and two tangents, N."
+    "reward" "(T)" "Rewards of the task; 0 for BabyBench's behaviors."
+    "terminated" "(T)" "Whether success or failure ended the episode."
+    "truncated" "(T)" "Whether the episode was cut off."
+    "first_touch_step" "(E)" "Steps, from 0, in which a palm touched a part for the first time in the episode."
+    "first_touch_hand" "(E)" "The hands of these touches: 0 right, 1 left."
+    "first_touch_geom" "(E)" "The geoms of these touches."
+    "regards" "(T, 4)" "Steps so far with a hand in view: right eye right hand, right eye left hand, left eye right, left eye left."
+    "gaze_angles" "(T, 4)" "How far each hand is off the axis of each eye, rad, in the same order."
+    "is_success" "(T)" "Whether the task succeeded in the step."
+    "is_failure" "(T)" "Whether the task failed in the step."
+    "return" "(T)" "Sum of the rewards so far."
+    "eye_steps" "(K)" "Steps, from 0, whose images were recorded."
+    "eye_size" "()" "Width and height of the images, pixels."
+};

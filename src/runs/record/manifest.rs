@@ -9,12 +9,12 @@ use super::describe::{geoms, limb_joints, meaning};
 use crate::config::Config;
 use crate::env::Env;
 
-/// What a description begins with.
+/// Name of the format, with which a description begins.
 pub(super) const FORMAT: &str = "babybench record";
 /// The version of what this library writes.
 pub(super) const VERSION: u32 = 1;
 
-/// What is in a record, and where it comes from: `manifest.json`.
+/// The contents of a record, and their origin: `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Manifest {
@@ -28,7 +28,7 @@ pub struct Manifest {
     pub commit: Option<String>,
     /// The processor and the system on which it ran.
     pub platform: String,
-    /// What acted, in words.
+    /// Name of the policy.
     pub policy: String,
     /// The configuration, the seed among its keys.
     pub configuration: Config,
@@ -81,7 +81,7 @@ pub struct ArrayDescription {
     pub dtype: String,
     /// Its dimensions, in words: T steps, C contacts, N touched sensors.
     pub shape: String,
-    /// What it is, with units.
+    /// Its meaning, with units.
     pub meaning: String,
 }
 

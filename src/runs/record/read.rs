@@ -18,7 +18,7 @@ pub struct Record {
     manifest: Manifest,
 }
 
-/// What came of repeating an episode.
+/// The result of repeating an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Replayed {
     /// Number of steps.

@@ -29,7 +29,7 @@ struct Contacts {
     force: Vec<f32>,
 }
 
-/// What the behavior tells of each step.
+/// The counters of the behavior in each step.
 #[derive(Debug, Default)]
 struct Told {
     first_touch_step: Vec<i32>,

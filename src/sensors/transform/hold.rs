@@ -1,4 +1,4 @@
-//! What a sense that looks less often than the environment steps shows in between.
+//! The values between two looks of a sense that looks less often than the environment steps.
 
 use super::{Signal, Waiting};
 use crate::sensors::{EyeImages, SkinValues};

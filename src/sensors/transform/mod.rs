@@ -48,7 +48,7 @@ pub use crate::sensors::sense::Sense;
 use crate::sensors::{EyeImages, SkinValues};
 use crate::spaces::NumpyRng;
 
-/// What a sense reports in one step, to be changed in place.
+/// The values of a sense in one step, to be changed in place.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Signal<'a> {

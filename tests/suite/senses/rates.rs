@@ -15,7 +15,7 @@ fn rated() -> Config {
     }
 }
 
-/// What is seen in a reset and some steps, and how old the pictures are, s.
+/// The images of a reset and some steps, and how old they are, s.
 fn watch(config: Config, seed: u64, steps: usize) -> (Vec<Vec<String>>, Vec<Option<f64>>) {
     let mut env = env(config);
     env.reset(Some(seed)).expect("no divergence");

@@ -16,7 +16,7 @@ fn row(batch: &Batch<'_>, row: usize, info: &Info) -> String {
     line(&observed(batch, row), flags, info)
 }
 
-/// What `steps` steps of an environment alone return, by the rules of a mode: for each the result and, with
+/// The results of `steps` steps of an environment alone, by the rules of a mode: for each the result and, with
 /// [`AutoresetMode::SameStep`], the end of the episode.
 fn alone(env: &mut Env, mode: AutoresetMode, steps: usize) -> Vec<[String; 2]> {
     let mut action = Vec::new();

@@ -26,7 +26,7 @@ pub fn config_keys() -> JsValue {
     keys::keys()
 }
 
-/// What all environments of one configuration share.
+/// The part that all environments of one configuration share.
 #[wasm_bindgen]
 pub struct Blueprint(babybench::Blueprint);
 

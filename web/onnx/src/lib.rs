@@ -13,7 +13,7 @@ use wasm_bindgen::prelude::*;
 pub struct Model {
     policy: OnnxPolicy,
     space: BoxSpace,
-    /// What is observed, and what it was last.
+    /// The observation, this and the last one.
     senses: Vec<(ObservationSpace, Array)>,
     action: Vec<f32>,
 }

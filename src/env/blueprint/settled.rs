@@ -1,0 +1,86 @@
+//! A scene compiled for its task, with its skin, and come to rest.
+
+use crate::actuation;
+use crate::assets::AssetSource;
+use crate::config::{Compat, Config, Part};
+use crate::env::engines::{EngineSource, Engines};
+use crate::env::task::TaskScene;
+use crate::env::{EnvError, Task};
+use crate::mimo::{build_scene, lock};
+use crate::model::Model;
+use crate::physics::Params;
+use crate::sensors::SkinLayout;
+use crate::spaces::NumpyRng;
+
+/// Compiles the scene of a task.
+pub fn task_model(config: &Config, task: &dyn Task, assets: &dyn AssetSource) -> Result<Model, EnvError> {
+    let document = task.document(config);
+    Ok(build_scene(&document.xml, document.version, config, assets)?)
+}
+
+/// Places the sensors of the skin.
+pub fn make_skin(
+    model: &Model,
+    config: &Config,
+    task: &dyn Task,
+    assets: &dyn AssetSource,
+) -> Result<SkinLayout, EnvError> {
+    let layout = |model: &Model| match task.document(config).touch_spacing {
+        [] => SkinLayout::new(model, config),
+        own => SkinLayout::with_spacing(model, |body| {
+            let found = own.iter().find(|(name, _)| *name == body);
+            found.map(|(_, distance)| distance * config.touch_scale)
+        }),
+    };
+    if !config.touch_grows {
+        return Ok(layout(model)?);
+    }
+    let mut original = config.clone();
+    original.age = None;
+    let original_model = task_model(&original, task, assets)?;
+    Ok(layout(&original_model)?.scaled(&original_model, model))
+}
+
+/// A scene after it came to rest.
+pub struct Settled {
+    pub qpos: Vec<f64>,
+    pub qvel: Vec<f64>,
+    pub params: Params,
+}
+
+impl Settled {
+    /// Lets a task settle the scene, with the locks of the configuration; under `compat: reference` they hold from the first
+    /// reset on.
+    pub fn new(config: &Config, task: &dyn Task, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
+        let actuation = actuation::build(model, config)?;
+        let mut state = engines.reader().new_state();
+        actuation.prepare(model, &mut state);
+        let mut params = state.params.clone();
+        for part in Part::ALL {
+            if config.lock.get(part) {
+                lock(model, &mut params, part.into(), 0.0)?;
+            }
+        }
+        if config.compat == Compat::Api {
+            state.params.clone_from(&params);
+        }
+        let still = vec![0.0; model.nv];
+        task.settle(&mut TaskScene {
+            config,
+            model,
+            state: &mut state,
+            rng: &mut NumpyRng::seed(config.seed),
+            engine: EngineSource::Shared(engines),
+            base: &mut params,
+            actuation: &*actuation,
+            delay: None,
+            start: [&model.qpos0, &still],
+            action: &mut Vec::new(),
+        })?;
+        Ok(Self {
+            qpos: state.qpos,
+            qvel: state.qvel,
+            params,
+        })
+    }
+}

@@ -1,0 +1,82 @@
+//! The bodies of a scene as they are felt and seen, which its environments share.
+
+use std::sync::{Arc, OnceLock};
+
+use super::Blueprint;
+use crate::assets::AssetSource;
+use crate::config::RendererKind;
+use crate::env::EnvError;
+use crate::render::{Renderer, Scenery, SharedGpu, SharedMemory, open_gpu};
+use crate::sensors::SkinLayout;
+
+/// The skin and the look of a scene's bodies, whatever moves them.
+#[derive(Clone)]
+pub(super) struct Surface {
+    /// The caller's assets.
+    pub(super) given: Arc<dyn AssetSource>,
+    /// The same with the files of a scene of one's own.
+    pub(super) assets: Arc<dyn AssetSource>,
+    pub(super) skin: Option<Arc<SkinLayout>>,
+    /// Meshes and textures, made when they are first needed.
+    pub(super) scenery: Arc<OnceLock<Arc<Scenery>>>,
+    /// The memory in which the eyes of environments are drawn on the CPU.
+    pub(super) painting: SharedMemory,
+    /// The renderer on a GPU, opened when it is first needed.
+    pub(super) gpu: Arc<OnceLock<SharedGpu>>,
+}
+
+impl std::fmt::Debug for Surface {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Surface")
+            .field("skin", &self.skin)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Blueprint {
+    /// Returns the look of the scene, which its environments share.
+    ///
+    /// # Errors
+    /// Textures that cannot be read.
+    pub fn scenery(&self) -> Result<Arc<Scenery>, EnvError> {
+        let shared = &self.surface.scenery;
+        if let Some(scenery) = shared.get() {
+            return Ok(scenery.clone());
+        }
+        let made = Arc::new(Scenery::new(&self.model, self.assets())?);
+        Ok(shared.get_or_init(|| made).clone())
+    }
+
+    /// Creates the renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
+    ///
+    /// # Errors
+    /// Textures that cannot be read; for `renderer: wgpu` no graphics adapter, a build without it, a browser.
+    pub fn renderer(&self) -> Result<Renderer, EnvError> {
+        match self.config.renderer {
+            RendererKind::Cpu => Ok(Renderer::cpu(self.scenery()?)),
+            RendererKind::Wgpu => Ok(Renderer::gpu(self.gpu()?)),
+        }
+    }
+
+    /// Creates the renderer of an environment's eyes, which draw in memory that the environments of the blueprint share.
+    pub(in crate::env) fn eyes_renderer(&self) -> Result<Renderer, EnvError> {
+        match self.config.renderer {
+            RendererKind::Cpu => Ok(Renderer::sharing(self.scenery()?, self.surface.painting.clone())),
+            RendererKind::Wgpu => self.renderer(),
+        }
+    }
+
+    /// Returns the renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
+    /// whatever renderer the configuration asks for.
+    ///
+    /// # Errors
+    /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
+        if let Some(gpu) = self.surface.gpu.get() {
+            return Ok(gpu.clone());
+        }
+        let opened = open_gpu(self.scenery()?)?;
+        Ok(self.surface.gpu.get_or_init(|| opened).clone())
+    }
+}

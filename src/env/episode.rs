@@ -1,0 +1,132 @@
+//! The life of an episode: its start, its counters, its end.
+
+use crate::config::Compat;
+use crate::env::outcome::clear;
+use crate::env::task::Goals;
+use crate::env::{Env, EnvError, Observation, Task, TaskScene};
+
+/// The scene of an environment and its task, to be used together.
+pub(super) struct Play<'a> {
+    pub scene: TaskScene<'a>,
+    pub task: &'a mut dyn Task,
+    pub goals: &'a mut Goals,
+    pub applied: &'a mut Vec<f32>,
+}
+
+/// The progress of an episode.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Episode {
+    /// Number of steps done.
+    pub steps: u64,
+    /// Whether a step may follow: there was a reset, and nothing diverged since.
+    pub ready: bool,
+    /// Whether information goes on from episode to episode.
+    pub accumulate: bool,
+    /// Reward of the last step.
+    pub reward: f64,
+    /// Whether the last step ended the episode in success or failure.
+    pub terminated: bool,
+}
+
+impl Env {
+    /// Starts an episode as the task says: for `self_touch` and `hand_regard` the settled state, then ten physics steps with random
+    /// actions. The information of a reset is empty.
+    ///
+    /// Under `compat: api` a seed reseeds every random choice. Under `compat: reference` it is ignored, as the start
+    /// actions come from the generator of the action space: see [`Env::seed_action_space`].
+    ///
+    /// # Errors
+    /// The simulation diverged.
+    pub fn reset(&mut self, seed: Option<u64>) -> Result<Observation<'_>, EnvError> {
+        if let (Some(seed), Compat::Api) = (seed, self.config().compat) {
+            self.seed_action_space(seed);
+        }
+        self.end_episode();
+        let Play { mut scene, task, .. } = self.play();
+        task.reset(&mut scene)?;
+        self.begin_episode()?;
+        Ok(self.observation())
+    }
+
+    /// Returns the scene and the task that plays in it.
+    pub(super) fn play(&mut self) -> Play<'_> {
+        let (engine, state, base) = self.physics.parts();
+        let scene = TaskScene {
+            config: self.blueprint.config(),
+            model: self.blueprint.model(),
+            state,
+            rng: &mut self.rng,
+            engine,
+            base,
+            actuation: &*self.actuation,
+            delay: Some(&mut self.action_delay),
+            start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
+            action: &mut self.action,
+        };
+        Play {
+            scene,
+            task: &mut *self.task,
+            goals: &mut self.goals,
+            applied: &mut self.applied,
+        }
+    }
+
+    /// Starts an episode from given positions (nq) and velocities (nv) instead of the settled state, without start actions. The task
+    /// chooses a goal.
+    ///
+    /// # Errors
+    /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges; the episode is then over.
+    pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
+        self.end_episode();
+        self.play().scene.place(qpos, qvel)?;
+        self.begin_episode()?;
+        Ok(self.observation())
+    }
+
+    /// Returns whether a step may follow: there was a reset, and nothing diverged since.
+    pub fn ready(&self) -> bool {
+        self.episode.ready
+    }
+
+    /// Returns whether the episode has reached `max_episode_steps`.
+    pub fn truncated(&self) -> bool {
+        self.episode.steps >= self.blueprint.config().max_episode_steps
+    }
+
+    pub(super) fn end_episode(&mut self) -> u64 {
+        self.episode.ready = false;
+        std::mem::take(&mut self.episode.steps)
+    }
+
+    /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
+    pub fn accumulate_info(&mut self, on: bool) {
+        self.episode.accumulate = on;
+    }
+
+    pub(super) fn begin_episode(&mut self) -> Result<(), EnvError> {
+        self.episode.steps = 0;
+        self.info.steps = 0;
+        if !self.episode.accumulate || self.info.behavior.task().is_some() {
+            self.task.forget();
+            clear(&*self.task, &mut self.info);
+        }
+        let Play {
+            mut scene, task, goals, ..
+        } = self.play();
+        task.begin(&mut scene, &mut goals.desired);
+        self.action_delay.rest();
+        self.senses.reset(self.phase());
+        self.episode.ready = true;
+        self.sense()?;
+        self.judge();
+        (self.episode.reward, self.episode.terminated) = (0.0, false);
+        Ok(())
+    }
+
+    /// Returns where in their periods the senses begin an episode that do not look in every step: a number from 0 to 1 that follows
+    /// from the generator without drawing from it, so that environments with other seeds look in other steps.
+    pub(super) fn phase(&self) -> f64 {
+        let word = self.rng.clone().word();
+        (word >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

@@ -1,0 +1,89 @@
+//! States that a program chooses.
+
+use crate::env::{Env, EnvError, Observation};
+use crate::physics::EngineError;
+
+impl Env {
+    /// Puts the scene at positions (nq) and velocities (nv) in the middle of an episode, with everything computed there.
+    /// Time, counters, information, locks, muscle activations and the start of the solver stay.
+    ///
+    /// # Errors
+    /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
+    pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
+        self.set_position(qpos, qvel)?;
+        if let Err(e) = self.physics.forward() {
+            self.episode.ready = false;
+            return Err(e.into());
+        }
+        self.sense()?;
+        self.judge();
+        Ok(self.observation())
+    }
+
+    /// Computes poses, contacts, forces and senses anew from the present state, after [`Env::restore`] or changes to
+    /// [`Env::state_mut`], and returns the observation.
+    ///
+    /// The next step has the same bits as without it: time, the start of the solver, the random generator and what delays, pain and
+    /// other transforms remember are left as they were. So are counters, reward and the end of the episode. After a step, poses and
+    /// forces are those at the start of its last physics step; here they belong to the present positions. Noise is that of the next
+    /// draw, and a delayed sense shows the moment that it would show one step later.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let snapshot = env.snapshot();
+    /// let mut other = env.blueprint().env()?;
+    /// other.restore(&snapshot)?;
+    /// assert!(other.observation().touch.is_none()); // a snapshot does not hold it
+    /// assert_eq!(other.refresh()?, env.refresh()?);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which
+    /// [`Env::reset`] is needed; as the renderer.
+    pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
+        // the solver leaves its solution in the state as the start of the next one: the state gets its own back
+        let before = self.physics.state.clone();
+        let posed = self.physics.forward();
+        self.physics.state.copy_dynamic_from(&before);
+        if let Err(e) = posed {
+            self.episode.ready = false;
+            return Err(e.into());
+        }
+        let (rng, mut memory) = (self.rng.clone(), Vec::new());
+        self.save_memory(&mut memory);
+        let sensed = self.sense();
+        self.load_memory(&memory)?;
+        self.rng = rng;
+        sensed?;
+        let last = self.episode;
+        self.judge();
+        self.episode = last;
+        Ok(self.observation())
+    }
+
+    /// Sets positions (nq) and velocities (nv), of which nothing is computed yet.
+    pub(super) fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        let model = self.blueprint.model();
+        check_vector("qpos", qpos, model.nq)?;
+        check_vector("qvel", qvel, model.nv)?;
+        self.physics.check_shape()?;
+        self.physics.state.qpos.copy_from_slice(qpos);
+        self.physics.state.qvel.copy_from_slice(qvel);
+        Ok(())
+    }
+}
+
+pub(super) fn check_vector(what: &'static str, values: &[f64], expected: usize) -> Result<(), EnvError> {
+    let found = values.len();
+    if found != expected {
+        return Err(EnvError::StateLength { what, found, expected });
+    }
+    match values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+        Some((index, &value)) => Err(EngineError::NotFinite { what, index, value }.into()),
+        None => Ok(()),
+    }
+}
