@@ -39,6 +39,7 @@ _HOMES = {
     "ActionNoise": "babybench_core.noise",
     "Env": "babybench_core.env",
     "data": "babybench.data",
+    "figures": "babybench.figures",
     "VectorEnv": "babybench_core.vector",
     "make": "babybench_core.env",
     "read_config": "babybench_core.scenes",
@@ -53,7 +54,7 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module
 
     home = import_module(_HOMES[name])
-    return home if name in ("data", "sb3") else getattr(home, name)
+    return home if name in ("data", "figures", "sb3") else getattr(home, name)
 
 
 def __dir__() -> list[str]:

@@ -191,6 +191,8 @@ class Env:
         """Key, shape, number type, lower and upper bound of each observation."""
     def seed_action_space(self, seed: int) -> None:
         """Seeds the generator of :meth:`sample_action` and of start actions, as ``action_space.seed`` does."""
+    def draw_from(self, drawn: int) -> None:
+        """Puts the generator of random choices to where it has drawn so many numbers since it was seeded."""
     def sample_action(self) -> npt.NDArray[np.float32]:
         """Returns a random action, the same that ``action_space.sample()`` draws from the same seed."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import runpy
 import signal
@@ -14,6 +15,8 @@ from babybench_core import _native, swap
 
 _SCRIPTS = """
 view [CONFIG] shows MIMo in a window: turn, pull, pause, step.
+figures RESULTS ... --out DIR draws figures for papers of runs, records and benchmarks.
+export RECORD --to FORMATS --out DIR writes a record as Parquet, HDF5, NWB, for Rerun, TensorBoard or Minari.
 run [-m] SCRIPT [ARGUMENT ...] runs a Python script that was written for the starter kit on the engine of this package,
 wherever MIMo is installed; processes that the script starts inherit that."""
 
@@ -67,6 +70,10 @@ def main(arguments: Optional[Sequence[str]] = None) -> None:
         from babybench_core import view
 
         view.main(given[1:], program)
+        return
+    if given[:1] in (["export"], ["figures"]):
+        command = importlib.import_module(f"babybench_core.{given[0]}.command")
+        command.main(given[1:], program)
         return
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # commands save what they have when they are interrupted

@@ -13,13 +13,16 @@ With it::
     record[0]["qpos"]           # (T, nq)
     record[0].touch(17)         # what the skin felt in step 17, all of it
     record[0].to_pandas()       # a row for each step, if pandas is installed
+    record.to_parquet("record.parquet")     # to_hdf5, to_nwb, to_rerun, to_tensorboard, to_minari: each behind an extra
 """
 
 from __future__ import annotations
 
 import builtins
+import datetime
 import json
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Optional, Union
 
@@ -38,11 +41,12 @@ class Episode(Mapping[str, np.ndarray]):
     sparse: :meth:`touch` and :meth:`contacts` have those of a step.
     """
 
-    def __init__(self, path: Path, description: Mapping[str, Any], manifest: Mapping[str, Any]) -> None:
+    def __init__(self, record: Record, path: Path, description: Mapping[str, Any]) -> None:
         """Reads the names of the arrays; :func:`open` and ``record[number]`` do that."""
+        self.record = record
         self.path = path
         self.description = description
-        self.manifest = manifest
+        self.manifest: Mapping[str, Any] = record.manifest
         with np.load(path, allow_pickle=False) as archive:
             self._names: list[str] = archive.files
         self._read: dict[str, np.ndarray] = {}
@@ -106,15 +110,12 @@ class Episode(Mapping[str, np.ndarray]):
         }
 
     def _columns(self) -> dict[str, np.ndarray]:
-        """Returns the numbers of each step by name: time, joint angles and velocities, actions, reward."""
-        joints, columns = self.manifest["joints"], {"time": self["time"]}
-        columns.update({f"angle {j['name']}": self["qpos"][:, j["qpos"]] for j in joints})
-        columns.update({f"velocity {j['name']}": self["qvel"][:, j["dof"]] for j in joints})
-        columns.update({f"action {name}": self["actions"][:, k] for k, name in enumerate(self.manifest["actions"])})
-        columns["reward"] = self["reward"]
-        if "touch_ptr" in self:
-            columns["touched sensors"] = np.diff(self["touch_ptr"])
-        columns["contacts"] = np.diff(self["contact_ptr"])
+        """Returns the numbers of each step by name: time, angles, velocities, actions, reward, touch by region."""
+        from babybench_core.export.signals import signals
+
+        columns = {"time": self["time"]}
+        for signal in signals(self):
+            columns.update(signal.columns())
         return columns
 
     def to_pandas(self) -> Any:
@@ -180,7 +181,7 @@ class Record(Mapping[int, Episode]):
         name = description["file"]
         if Path(name).name != name:
             raise ValueError(f"{self.folder}: {name!r} is no name of a file in this folder")
-        return Episode(self.folder / name, description, self.manifest)
+        return Episode(self, self.folder / name, description)
 
     def __iter__(self) -> Iterator[int]:
         return iter(self._descriptions)
@@ -192,6 +193,47 @@ class Record(Mapping[int, Episode]):
         """Returns where the touch sensors are: ``body`` (N), ids, and ``position`` (N, 3) in the frames of the bodies, m."""
         with np.load(self.folder / "skin.npz", allow_pickle=False) as archive:
             return {name: archive[name] for name in archive.files}
+
+    @property
+    def has_skin(self) -> bool:
+        """Whether there are touch sensors."""
+        return (self.folder / "skin.npz").is_file()
+
+    @cached_property
+    def bodies(self) -> list[str]:
+        """The names of the bodies of the scene, by id."""
+        names = self.manifest.get("bodies")
+        if names is None:
+            # a record of before manifests had them
+            names = self.environment(touch_active=False)._core.blueprint.model_names["body"]
+        return list(names)
+
+    def environment(self, **keys: Any) -> Any:
+        """Makes an environment of the record's configuration; keywords replace its keys.
+
+        Raises:
+            ValueError: A key that there is not, or a value that is not allowed.
+        """
+        from babybench_core.env import Env
+
+        return Env(self.manifest["configuration"], **keys)
+
+    def repeat(self, episode: int) -> Iterator[tuple[Any, float, bool, bool, dict[str, Any]]]:
+        """Repeats an episode, and hands over everything that was observed, whatever of it was recorded.
+
+        Yields:
+            First the observation at the start with reward 0, then what each step returned, with the same bits; the arrays
+            are fresh. Of a record that is not repeated with the same bits (``record.replay(episode)``) they differ.
+        """
+        recorded = self[episode]
+        env = self.environment()
+        core = env._core
+        observation = core.resume(recorded["snapshot"].tobytes())
+        yield observation, 0.0, False, False, core.info()
+        for drawn, action in zip(recorded["drawn"], recorded["actions"]):
+            # what a policy drew is not drawn again
+            core.draw_from(int(drawn))
+            yield (*core.step(action), core.info())
 
     def measure(self, episode: int | None = None) -> dict[str, Any]:
         """Returns the measures of an episode, or the means of all: touches, smoothness, symmetry, as the guide defines them."""
@@ -205,6 +247,105 @@ class Record(Mapping[int, Episode]):
         from babybench_core import _native
 
         return _native.replay_record(self.folder, episode)
+
+    def to_parquet(self, path: Union[str, Path]) -> None:
+        """Writes a Parquet file (``pip install 'babybench[parquet]'``): a row for each step of every episode.
+
+        Angles, velocities, actions, rewards and touch by region are columns; touch and contacts are columns of lists. The
+        metadata of a column has its ``unit`` and ``meaning``, that of the table the manifest (``babybench``, JSON).
+
+        Raises:
+            ModuleNotFoundError: pyarrow is not installed.
+            ValueError: The record has no episodes.
+        """
+        from babybench_core.export import parquet
+
+        parquet.write(self, Path(path))
+
+    def to_hdf5(self, path: Union[str, Path]) -> None:
+        """Writes an HDF5 file (``pip install 'babybench[hdf5]'``): every array of the record.
+
+        Groups are ``episode_N``, ``skin`` and ``names``; each array has the attributes ``unit`` and ``meaning``, the file
+        has ``manifest`` (JSON).
+
+        Raises:
+            ModuleNotFoundError: h5py is not installed.
+            ValueError: The record has no episodes.
+        """
+        from babybench_core.export import hdf5
+
+        hdf5.write(self, Path(path))
+
+    def to_nwb(self, path: Union[str, Path], session_start_time: Optional[datetime.datetime] = None) -> None:
+        """Writes a file of Neurodata Without Borders (``pip install 'babybench[nwb]'``).
+
+        The record is a session, its episodes are trials with a second between them; angles, velocities, actions, rewards
+        and touch by region are time series, the skin is a table with lists, recorded eyes are image series.
+
+        Args:
+            path: The file, ``.nwb``.
+            session_start_time: When it began, with a time zone; by default when the manifest was last written.
+
+        Raises:
+            ModuleNotFoundError: pynwb is not installed.
+            ValueError: The record has no episodes.
+        """
+        from babybench_core.export import nwb
+
+        nwb.write(self, Path(path), session_start_time)
+
+    def to_rerun(self, path: Union[str, Path], *, every: int = 1, eyes_every: int = 10) -> None:
+        """Writes a recording for the viewer of Rerun (``pip install 'babybench[rerun]'``): ``rerun record.rrd`` shows it.
+
+        MIMo and the scene move in 3D, sensors that feel something are points on the skin, coloured by force; eyes are
+        images, angles, touch by region and rewards curves over the time of the simulation. Each episode is under a path of
+        its own.
+
+        Args:
+            path: The file, ``.rrd``.
+            every: Every how many steps there is a pose.
+            eyes_every: Every how many steps there is a pair of images where the record has none: these are drawn anew from
+                the recorded positions, as sharp as the resolution allows; 0 for none. Recorded images are taken as they are.
+
+        Raises:
+            ModuleNotFoundError: rerun-sdk is not installed.
+            ValueError: The record has no episodes, or a number of steps is not positive.
+        """
+        from babybench_core.export import rerun
+
+        rerun.write(self, Path(path), every, eyes_every)
+
+    def to_tensorboard(self, path: Union[str, Path], *, every: int = 1) -> None:
+        """Writes a folder for TensorBoard (``pip install 'babybench[tensorboard]'``): scalars by step, measures by episode.
+
+        Args:
+            path: The folder.
+            every: Every how many steps there is a point.
+
+        Raises:
+            ModuleNotFoundError: tensorboard is not installed.
+            ValueError: The record has no episodes, or ``every`` is not positive.
+        """
+        from babybench_core.export import tensorboard
+
+        tensorboard.write(self, Path(path), every)
+
+    def to_minari(self, dataset_id: str = "babybench/record-v0", path: Optional[Union[str, Path]] = None) -> Any:
+        """Makes a data set of Minari (``pip install 'babybench[minari]'``) for offline learning, and returns it.
+
+        Its observations are those of the environment, all of them: what was not recorded is repeated with the same bits.
+
+        Args:
+            dataset_id: Its name: ``namespace/name-vN``.
+            path: The folder of data sets; by default Minari's (``MINARI_DATASETS_PATH``).
+
+        Raises:
+            ModuleNotFoundError: minari is not installed.
+            ValueError: The record has no episodes, an episode cannot be repeated, or there is such a data set.
+        """
+        from babybench_core.export import minari
+
+        return minari.write(self, dataset_id, None if path is None else Path(path))
 
 
 class Recorder:

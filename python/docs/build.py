@@ -20,7 +20,9 @@ HERE = Path(__file__).parent
 MODULES = (
     "babybench",
     "babybench.build_xml",
+    "babybench.data",
     "babybench.eval",
+    "babybench.figures",
     "babybench.mujoco",
     "babybench.utils",
     "babybench_core.env",

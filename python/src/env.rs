@@ -249,6 +249,11 @@ impl Env {
         Ok(())
     }
 
+    fn draw_from(&self, drawn: u64) -> PyResult<()> {
+        self.guard()?.open()?.env.draw_from(drawn);
+        Ok(())
+    }
+
     fn sample_action<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let mut guard = self.guard()?;
         let Inner { env, action, .. } = guard.open()?;

@@ -140,7 +140,8 @@ impl Env {
 
     /// Puts the generator of random choices to where it has drawn so many numbers.
     #[cfg(all(feature = "eval", feature = "npz"))]
-    pub(crate) fn draw_from(&mut self, drawn: u64) {
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn draw_from(&mut self, drawn: u64) {
         self.rng = NumpyRng::at(self.rng.seed_value(), drawn);
     }
 

@@ -51,6 +51,7 @@ fn a_record_is_repeated_with_the_same_bits() {
             [40, 40]
         );
         assert_eq!(record.manifest().configuration, *env.config());
+        assert_eq!(record.manifest().bodies, env.model().body_name[..]);
         // in another environment, and the later episode first
         let mut other = blueprint.env().expect("an environment");
         for episode in [1, 0] {

@@ -40,6 +40,9 @@ pub struct Manifest {
     pub joints: Vec<JointDescription>,
     /// The names of the actions.
     pub actions: Vec<String>,
+    /// The names of the bodies of the scene, by id; none in records of before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<String>,
     /// The geoms of the scene, by id.
     pub geoms: Vec<GeomDescription>,
     /// The arrays of the archives of episodes, by name.
@@ -118,6 +121,7 @@ impl Manifest {
             fovy: model.camera("eye_left").map(|camera| model.cam_fovy[camera]),
             joints: limb_joints(env),
             actions: env.actuation().action_names(model),
+            bodies: model.body_name.clone(),
             geoms: geoms(model),
             arrays: BTreeMap::new(),
             episodes: Vec::new(),
