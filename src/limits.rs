@@ -121,6 +121,12 @@ limits! {
         /// Pickles: dimensions of an array.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pickle_dimensions: usize = 8,
+        /// Motions: numbers in the rows of a motion.
+        motion_numbers: usize = 33_554_432,
+        /// Motions: bytes of a file that is text.
+        motion_text_bytes: u64 = 512 * MIB,
+        /// Motions: seconds that one may last.
+        motion_seconds: f64 = 86_400.0,
         /// Logs: records of a log.
         records: usize = 2_000_000,
         /// Logs: touched parts in one list of a record.

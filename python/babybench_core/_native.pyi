@@ -35,6 +35,7 @@ __all__ = [
     "embedded_files",
     "measure_record",
     "model_extras",
+    "play_senses",
     "replay_record",
     "scene_file",
     "write_video",
@@ -73,6 +74,19 @@ def config_from_yaml(text: str, file: str = "configuration", folder: str | os.Pa
 
 def measure_record(folder: str | os.PathLike[str], episode: int | None = None) -> str:
     """Returns the measures of an episode of a record, or the means of all, as JSON."""
+
+def play_senses(
+    env: Env,
+    recorder: Recorder,
+    motion: str | os.PathLike[str],
+    degrees: bool,
+    track: bool,
+    episode: int,
+) -> tuple[int, float, tuple[str, float] | None, list[str]]:
+    """Plays a motion in an environment that was reset, and records it as an episode.
+
+    Returns steps, error (rad), the joint with the largest error and that error, and joints whose range the motion leaves.
+    """
 
 def replay_record(folder: str | os.PathLike[str], episode: int) -> int | None:
     """Repeats an episode of a record; returns the first step whose bits differ."""

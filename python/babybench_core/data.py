@@ -235,6 +235,16 @@ class Record(Mapping[int, Episode]):
             core.draw_from(int(drawn))
             yield (*core.step(action), core.info())
 
+    def motion(self, episode: int) -> dict[str, Any]:
+        """Returns the motion of an episode, which :func:`babybench.data.play_motion` plays.
+
+        It has ``names`` of joints, ``angles`` (T, joints), rad, ``rate``, Hz, and, where MIMo is free to move, ``root_pos``
+        (T, 3), m, and ``root_quat`` (T, 4).
+        """
+        from babybench_core import motion
+
+        return motion.of_episode(self, episode)
+
     def measure(self, episode: int | None = None) -> dict[str, Any]:
         """Returns the measures of an episode, or the means of all: touches, smoothness, symmetry, as the guide defines them."""
         from babybench_core import _native

@@ -3,8 +3,12 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use babybench::Limits;
 use babybench::eval::Measures;
-use babybench::runs::{Record, RecordError, RecordOptions, Recorder as Inside};
+use babybench::formats::npz::NpzError;
+use babybench::runs::{
+    Motion, MotionError, Playing, Record, RecordError, RecordOptions, Recorder as Inside, play_motion,
+};
 use pyo3::exceptions::{PyFileExistsError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -116,4 +120,55 @@ pub fn replay_record(py: Python<'_>, folder: PathBuf, episode: u64) -> PyResult<
             babybench::Env::new(record.manifest().configuration.clone()).map_err(IntoException::into_exception)?;
         Ok(record.replay(episode, &mut env).map_err(exception)?.first_difference)
     })
+}
+
+/// Turns an error of a motion into Python's exception.
+fn motion_exception(error: MotionError) -> PyErr {
+    match error {
+        MotionError::Io { ref source, .. } => {
+            let text = error.to_string();
+            std::io::Error::new(source.kind(), text).into()
+        }
+        MotionError::Npz(NpzError::Io { ref source, .. }) => {
+            let text = error.to_string();
+            std::io::Error::new(source.kind(), text).into()
+        }
+        MotionError::Env(source) => source.into_exception(),
+        MotionError::Record(source) => exception(source),
+        other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+/// Plays a motion in an environment that was reset, and records it: returns steps, error, rad, the worst joint with its error, and the
+/// joints whose range it leaves.
+#[pyfunction]
+pub fn play_senses(
+    py: Python<'_>,
+    env: &Env,
+    recorder: &Recorder,
+    motion: PathBuf,
+    degrees: bool,
+    track: bool,
+    episode: u64,
+) -> PyResult<(u64, f64, Option<(String, f64)>, Vec<String>)> {
+    let mut guard = env.guard()?;
+    let env = &mut guard.open()?.env;
+    let playing = if track { Playing::Tracking } else { Playing::Kinematic };
+    let mut interrupted = Ok(());
+    let played = py.detach(|| {
+        let motion = Motion::read_with(&motion, degrees, &Limits::DEFAULT)?;
+        let mut steps = 0_u32;
+        recorder.with(|recorder| {
+            play_motion(env, &motion, playing, Some((recorder, episode)), |_| {
+                steps = steps.wrapping_add(1);
+                if steps.is_multiple_of(64) {
+                    interrupted = Python::attach(|py| py.check_signals());
+                }
+                interrupted.is_ok()
+            })
+        })
+    });
+    interrupted?;
+    let played = played.map_err(motion_exception)?;
+    Ok((played.steps, played.error, played.worst, played.beyond_limits))
 }

@@ -19,6 +19,7 @@ COMMANDS = (
     "scene",
     "simulate",
     "replay",
+    "senses",
     "test-installation",
     "train",
     "score",

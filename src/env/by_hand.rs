@@ -200,6 +200,20 @@ impl<'a> Parts<'a> {
         self.env.track();
     }
 
+    /// Shows the scene at positions (nq) and velocities (nv) as a step of its own: poses, contacts and forces there, what is sensed,
+    /// [`Parts::track`], outcome and reward, and a step more in the information. Nothing moves by itself: neither action nor
+    /// time act on positions, and accelerations are those with which the scene would go on from there.
+    ///
+    /// # Errors
+    /// As [`Parts::forward`] and [`Parts::observe`].
+    pub fn show(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
+        self.env.senses.prepare();
+        self.forward(qpos, qvel)?;
+        self.observe()?;
+        self.env.finish_step();
+        Ok(())
+    }
+
     /// Clears what the behavior has counted.
     pub fn clear_info(&mut self) {
         let env = &mut *self.env;

@@ -243,18 +243,7 @@ impl Env {
         self.mark(Some(EnvStage::Senses));
         self.senses.advance();
         self.sense()?;
-        self.judge();
-        if let BehaviorInfo::Task(info) = &mut self.info.behavior {
-            info.episode_return += self.episode.reward;
-        }
-        self.track();
-        self.date_pictures();
-        let steps = &mut self.episode.steps;
-        self.info.steps = match self.blueprint.config().compat {
-            Compat::Api => *steps + 1,
-            Compat::Reference => *steps,
-        };
-        *steps += 1;
+        self.finish_step();
         let truncated = self.truncated();
         self.mark(None);
         Ok(Step {

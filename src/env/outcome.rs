@@ -2,6 +2,7 @@
 
 use super::task::{Goals, Task, TaskEvent, TaskView};
 use super::{BehaviorInfo, Env, Info, Outcome, TaskInfo};
+use crate::config::Compat;
 
 impl Env {
     /// Returns the reward of the last step.
@@ -34,6 +35,22 @@ impl Env {
         } = &mut self.goals;
         self.task.achieve(&view, desired, achieved, terms);
         self.conclude();
+    }
+
+    /// Ends a step once everything is sensed: outcome, what is counted, information, number of steps.
+    pub(super) fn finish_step(&mut self) {
+        self.judge();
+        if let BehaviorInfo::Task(info) = &mut self.info.behavior {
+            info.episode_return += self.episode.reward;
+        }
+        self.track();
+        self.date_pictures();
+        let steps = &mut self.episode.steps;
+        self.info.steps = match self.blueprint.config().compat {
+            Compat::Api => *steps + 1,
+            Compat::Reference => *steps,
+        };
+        *steps += 1;
     }
 
     /// Computes outcome, reward and end of the last step from its goals.

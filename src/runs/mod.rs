@@ -49,6 +49,8 @@ pub mod logs;
 pub(crate) mod logs;
 mod many;
 #[cfg(feature = "npz")]
+mod motion;
+#[cfg(feature = "npz")]
 mod record;
 #[cfg(feature = "npz")]
 mod replay;
@@ -58,6 +60,8 @@ mod training;
 pub use logs::{LogError, TrainingLog};
 internals!(use logs::{EvaluationLog, TrainingTotals, read_training});
 pub use many::RunVector;
+#[cfg(feature = "npz")]
+pub use motion::{Motion, MotionError, Played, Playing, play_motion};
 #[cfg(feature = "npz")]
 pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed};
 #[cfg(feature = "npz")]

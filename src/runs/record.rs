@@ -236,6 +236,18 @@ impl Recorder {
         Ok(())
     }
 
+    /// Records the present moment of an environment as a step, with the action that is said to have led to it: for steps that a program
+    /// puts together itself ([`Env::by_hand`]). A replay, which knows actions alone, finds other bits there.
+    ///
+    /// # Errors
+    /// No episode was begun; an action of wrong length or with numbers that are not finite.
+    pub fn note(&mut self, env: &Env, action: &[f32]) -> Result<(), RecordError> {
+        let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
+        env.check_action(action)?;
+        rows.push(env, action, env.drawn(), &self.shared.options);
+        Ok(())
+    }
+
     /// Ends the episode, before the next reset: writes its archive and brings the description up to date. Without steps nothing is
     /// written.
     ///

@@ -18,6 +18,8 @@ mod json;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod logs;
 mod model_change;
+#[cfg(all(feature = "eval", feature = "npz"))]
+mod motion;
 mod own_tasks;
 mod parts;
 mod plain_models;

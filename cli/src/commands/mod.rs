@@ -15,6 +15,7 @@ mod report;
 mod run;
 mod scene;
 mod score;
+mod senses;
 mod simulate;
 mod test_installation;
 mod train;
@@ -63,6 +64,8 @@ pub enum Command {
     Benchmark(benchmark::BenchmarkArgs),
     /// Measure what the hands touched, and how MIMo moved, in a record
     Measure(measure::MeasureArgs),
+    /// Write what MIMo would feel and see in a motion: joint angles over time, from a video or a capture
+    Senses(senses::Senses),
     /// Check that everything works here, and write a scene, a log and a short video
     TestInstallation(test_installation::TestInstallation),
     /// Train with the random policy: log episodes with random actions in the configuration's save_dir
@@ -206,6 +209,7 @@ impl Command {
             Self::Replay(c) => c.run(),
             Self::Benchmark(c) => c.run(),
             Self::Measure(c) => c.run(),
+            Self::Senses(c) => c.run(),
             Self::TestInstallation(c) => c.run(),
             Self::Train(c) => c.run(),
             Self::Score(c) => c.run(),

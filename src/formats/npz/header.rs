@@ -63,6 +63,16 @@ pub(super) fn decoder(dtype: &str) -> Option<(usize, ReadNumber)> {
     }
 }
 
+/// Returns how many bytes a text takes, and how many a character of it, for NumPy's texts of characters and of bytes.
+pub(super) fn text(dtype: &str) -> Option<(usize, usize)> {
+    let (of, digits) = dtype
+        .strip_prefix("<U")
+        .map(|digits| (4, digits))
+        .or_else(|| dtype.strip_prefix("|S").map(|digits| (1, digits)))?;
+    let length: usize = digits.parse().ok()?;
+    Some((length.checked_mul(of)?, of))
+}
+
 pub(super) struct Header {
     pub dtype: String,
     pub fortran_order: bool,

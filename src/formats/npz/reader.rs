@@ -165,6 +165,47 @@ impl Npz {
         })
     }
 
+    /// Reads an array's texts: those of NumPy's types `<U...` and `|S...`.
+    ///
+    /// # Errors
+    /// As [`Npz::get_f64`]; an array of another type, texts that are not Unicode.
+    pub fn get_text(&self, name: &str) -> Result<Array<String>, NpzError> {
+        let file = || self.file.clone();
+        let Some(entry) = self.entries.iter().find(|entry| entry.info.name == name) else {
+            return Err(NpzError::Missing {
+                file: file(),
+                array: name.to_string(),
+            });
+        };
+        let ArrayInfo { shape, dtype, .. } = &entry.info;
+        let wanted = || NpzError::Type {
+            file: file(),
+            array: name.to_string(),
+            dtype: dtype.clone(),
+            wanted: "text",
+        };
+        let (width, of) = header::text(dtype).ok_or_else(wanted)?;
+        // a text of no characters takes room, too
+        let bytes = self.bytes(entry, width, width + size_of::<String>());
+        let bytes = bytes.map_err(|reason| NpzError::Array {
+            file: file(),
+            array: name.to_string(),
+            reason,
+        })?;
+        let count = shape.iter().product::<usize>();
+        let texts = (0..count).map(|k| text(&bytes[k * width..(k + 1) * width], of));
+        let data: Option<Vec<String>> = texts.collect();
+        let data = data.ok_or_else(wanted)?;
+        Ok(Array {
+            data: if entry.fortran_order {
+                row_major(&data, shape)
+            } else {
+                data
+            },
+            shape: shape.clone(),
+        })
+    }
+
     fn get<T: Copy>(
         &self,
         name: &str,
@@ -231,6 +272,20 @@ impl Npz {
     }
 }
 
+/// Decodes a text of NumPy's, which ends where nothing but zeros follows.
+fn text(bytes: &[u8], of: usize) -> Option<String> {
+    if of == 1 {
+        let end = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+        return String::from_utf8(bytes[..end].to_vec()).ok();
+    }
+    let (codes, _) = bytes.as_chunks::<4>();
+    let decoded: Option<String> = codes
+        .iter()
+        .map(|code| char::from_u32(u32::from_le_bytes(*code)))
+        .collect();
+    decoded.map(|text| text.trim_end_matches('\0').to_string())
+}
+
 /// Checks that an array of this shape and number of bytes per value is within a limit; each dimension counts, also where
 /// another is 0.
 fn check_shape(shape: &[usize], width: usize, limit: usize) -> Result<(), String> {
@@ -252,7 +307,7 @@ fn inflate(data: &[u8], deflated: bool) -> Box<dyn Read + '_> {
 }
 
 /// Converts column-major data to row-major order.
-fn row_major<T: Copy>(data: &[T], shape: &[usize]) -> Vec<T> {
+fn row_major<T: Clone>(data: &[T], shape: &[usize]) -> Vec<T> {
     let mut strides = vec![1; shape.len()];
     for i in 1..shape.len() {
         strides[i] = strides[i - 1] * shape[i - 1];
@@ -260,7 +315,7 @@ fn row_major<T: Copy>(data: &[T], shape: &[usize]) -> Vec<T> {
     let mut index = vec![0; shape.len()];
     let mut out = Vec::with_capacity(data.len());
     for _ in 0..data.len() {
-        out.push(data[index.iter().zip(&strides).map(|(i, stride)| i * stride).sum::<usize>()]);
+        out.push(data[index.iter().zip(&strides).map(|(i, stride)| i * stride).sum::<usize>()].clone());
         for (i, length) in index.iter_mut().zip(shape).rev() {
             *i += 1;
             if *i < *length {

@@ -114,11 +114,6 @@ impl NpzWriter {
             array: name.to_string(),
             reason,
         };
-        if name.is_empty() || name.len() > 1000 || name.contains(|c: char| c.is_control() || "/\\".contains(c)) {
-            return Err(refused(
-                "a name must have 1 to 1000 bytes, without slashes or control characters".to_string(),
-            ));
-        }
         let count = shape
             .iter()
             .try_fold(1_usize, |count, length| count.checked_mul(*length));
@@ -128,11 +123,47 @@ impl NpzWriter {
                 data.len()
             )));
         }
-        if !self.names.insert(name.to_string()) {
-            return Err(refused("this name is already used".to_string()));
-        }
+        self.name(name)?;
         self.pack(name, &header::write(T::DTYPE, shape), data, packing)
             .map_err(|error| refused(error.to_string()))
+    }
+
+    /// Adds an array of texts, shape (texts), as NumPy's `<U...`.
+    ///
+    /// # Errors
+    /// As [`NpzWriter::add`].
+    pub fn add_text(&mut self, name: &str, texts: &[String]) -> Result<(), NpzError> {
+        let length = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0).max(1);
+        let mut codes = Vec::with_capacity(length * texts.len());
+        for text in texts {
+            let end = codes.len() + length;
+            codes.extend(text.chars().map(|c| u32::from(c) as i32));
+            codes.resize(end, 0);
+        }
+        self.name(name)?;
+        let header = header::write(&format!("<U{length}"), &[texts.len()]);
+        self.pack(name, &header, &codes, Packing::Small)
+            .map_err(|error| NpzError::Write {
+                array: name.to_string(),
+                reason: error.to_string(),
+            })
+    }
+
+    /// Takes a name that was not used before.
+    fn name(&mut self, name: &str) -> Result<(), NpzError> {
+        let refused = |reason: &str| NpzError::Write {
+            array: name.to_string(),
+            reason: reason.to_string(),
+        };
+        if name.is_empty() || name.len() > 1000 || name.contains(|c: char| c.is_control() || "/\\".contains(c)) {
+            return Err(refused(
+                "a name must have 1 to 1000 bytes, without slashes or control characters",
+            ));
+        }
+        if !self.names.insert(name.to_string()) {
+            return Err(refused("this name is already used"));
+        }
+        Ok(())
     }
 
     fn pack<T: Element>(

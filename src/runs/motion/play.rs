@@ -1,0 +1,250 @@
+//! MIMo in motion: what he senses.
+
+use super::track::Tracker;
+use super::{Motion, MotionError};
+use crate::env::Env;
+use crate::math::{Quat, Vec3, add_scaled, quat_normalize, rotation_between, scale, sub};
+use crate::model::{JointType, Model};
+use crate::runs::Recorder;
+use crate::text::quoted;
+
+/// How a motion is played.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Playing {
+    /// MIMo is put into each pose, with the velocities that lead from one to the next; nothing acts on him. All else stays where it was,
+    /// at rest.
+    #[default]
+    Kinematic,
+    /// MIMo's motors follow the angles; everything moves by the physics, and the root is left to it.
+    Tracking,
+}
+
+/// What came of playing a motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Played {
+    /// Number of steps of the environment.
+    pub steps: u64,
+    /// How far the joints were from the motion, rad: root of the mean square over steps and joints. 0 when played kinematically.
+    pub error: f64,
+    /// The joint that was farthest, and how far, rad.
+    pub worst: Option<(String, f64)>,
+    /// Joints whose range the motion leaves.
+    pub beyond_limits: Vec<String>,
+}
+
+/// Plays a motion in an environment that was reset, and records what MIMo would feel and see as an episode of a record, if there is one:
+/// the recorder and the number of the episode.
+///
+/// MIMo begins in the first frame. Step k, from 0, shows the motion `k dt` after it, between frames by straight lines; tracking reaches for
+/// what comes `dt` later. Joints that the motion does not name stay as the reset left them, or are held there. Played
+/// kinematically, actions are 0. After each step `each` is asked whether to go on.
+///
+/// # Errors
+/// Joints that MIMo does not have, a root that he does not have; muscles that are to follow angles; a simulation that diverged;
+/// errors of the record.
+pub fn play_motion(
+    env: &mut Env,
+    motion: &Motion,
+    playing: Playing,
+    recorder: Option<(&mut Recorder, u64)>,
+    mut each: impl FnMut(&Env) -> bool,
+) -> Result<Played, MotionError> {
+    let course = Course::new(env, motion)?;
+    let dt = env.blueprint().dt();
+    // times that a division leaves just below a whole number of steps reach it
+    let steps = (motion.seconds() / dt + 1e-6).floor() as u64 + 1;
+    let mut played = Played {
+        beyond_limits: course.beyond_limits(env.model()),
+        ..Played::default()
+    };
+    let mut errors = vec![0.0; course.joints.len()];
+    let (mut qpos, mut qvel) = (env.state().qpos.clone(), vec![0.0; env.state().qvel.len()]);
+    let mut tracker = match playing {
+        Playing::Kinematic => None,
+        Playing::Tracking => Some(Tracker::new(env)?),
+    };
+    course.at(0.0, dt, &mut qpos, &mut qvel);
+    env.set_state(&qpos, &qvel)?;
+    let mut recorder = recorder.map(|(recorder, episode)| {
+        recorder.begin(env, episode);
+        recorder
+    });
+    let still = vec![0.0; env.action_space().len()];
+    for step in 0..steps {
+        let time = if tracker.is_some() { step + 1 } else { step } as f64 * dt;
+        course.at(time.min(motion.seconds()), dt, &mut qpos, &mut qvel);
+        match &mut tracker {
+            None => {
+                env.by_hand().show(&qpos, &qvel)?;
+                if let Some(recorder) = &mut recorder {
+                    recorder.note(env, &still)?;
+                }
+            }
+            Some(tracker) => {
+                let action = tracker.action(env, &qpos, &qvel);
+                match &mut recorder {
+                    Some(recorder) => recorder.step(env, action)?,
+                    None => drop(env.step(action)?),
+                }
+                let found = &env.state().qpos;
+                for (error, joint) in errors.iter_mut().zip(&course.joints) {
+                    let off = found[joint.qpos] - qpos[joint.qpos];
+                    *error += off * off;
+                }
+            }
+        }
+        played.steps += 1;
+        if !each(env) {
+            break;
+        }
+    }
+    if let Some(recorder) = recorder {
+        recorder.end(env)?;
+    }
+    played.conclude(&errors, motion);
+    Ok(played)
+}
+
+impl Played {
+    /// Computes how far the joints were, from the sums of squares.
+    fn conclude(&mut self, squares: &[f64], motion: &Motion) {
+        let steps = self.steps.max(1) as f64;
+        let total: f64 = squares.iter().sum();
+        self.error = (total / (steps * squares.len().max(1) as f64)).sqrt();
+        let worst = squares.iter().zip(motion.names()).max_by(|a, b| a.0.total_cmp(b.0));
+        self.worst = worst
+            .filter(|(square, _)| **square > 0.0)
+            .map(|(square, name)| (name.clone(), (square / steps).sqrt()));
+    }
+}
+
+/// A joint that a motion moves.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    joint: usize,
+    qpos: usize,
+    dof: usize,
+}
+
+/// A motion as positions and velocities of a scene.
+struct Course<'m> {
+    motion: &'m Motion,
+    joints: Vec<Place>,
+    /// Where the root stands in positions and velocities.
+    root: Option<(usize, usize)>,
+}
+
+impl<'m> Course<'m> {
+    fn new(env: &Env, motion: &'m Motion) -> Result<Self, MotionError> {
+        let model = env.model();
+        let own = env.senses().proprioception().joints();
+        let find = |name: &String| {
+            let found = own.joint.iter().position(|&joint| model.jnt_name[joint] == *name);
+            found.ok_or_else(|| MotionError::Joint {
+                hint: hint(name, own.joint.iter().map(|&joint| &*model.jnt_name[joint])),
+                name: quoted(name),
+            })
+        };
+        let place = |k: usize| Place {
+            joint: own.joint[k],
+            qpos: own.qpos[k],
+            dof: own.dof[k],
+        };
+        let joints = motion.names().iter().map(|name| find(name).map(place));
+        let root = motion.root().map(|_| free_root(model).ok_or(MotionError::Root));
+        Ok(Self {
+            motion,
+            joints: joints.collect::<Result<_, _>>()?,
+            root: root.transpose()?,
+        })
+    }
+
+    /// Returns the names of the joints whose range the motion leaves.
+    fn beyond_limits(&self, model: &Model) -> Vec<String> {
+        let (n, mut beyond) = (self.joints.len(), Vec::new());
+        for (k, place) in self.joints.iter().enumerate() {
+            let [low, high] = model.jnt_range[place.joint];
+            let mut angles = self.motion.angles().iter().skip(k).step_by(n.max(1));
+            if model.jnt_limited[place.joint] && angles.any(|&angle| angle < low - 1e-3 || angle > high + 1e-3) {
+                beyond.push(model.jnt_name[place.joint].clone());
+            }
+        }
+        beyond
+    }
+
+    /// Writes positions at a time, s, and the velocities that lead through them: differences over the step before and the one after.
+    fn at(&self, time: f64, dt: f64, qpos: &mut [f64], qvel: &mut [f64]) {
+        let end = self.motion.seconds();
+        let (before, after) = ((time - dt).max(0.0), (time + dt).min(end));
+        let span = after - before;
+        let per_second = if span > 0.0 { 1.0 / span } else { 0.0 };
+        for (k, place) in self.joints.iter().enumerate() {
+            qpos[place.qpos] = self.angle(k, time);
+            qvel[place.dof] = (self.angle(k, after) - self.angle(k, before)) * per_second;
+        }
+        let (Some((at, dof)), Some(poses)) = (self.root, self.motion.root()) else {
+            return;
+        };
+        let (pos, quat) = self.pose(poses, time);
+        let (first, last) = (self.pose(poses, before), self.pose(poses, after));
+        qpos[at..at + 3].copy_from_slice(&pos);
+        qpos[at + 3..at + 7].copy_from_slice(&quat);
+        qvel[dof..dof + 3].copy_from_slice(&scale(sub(last.0, first.0), per_second));
+        qvel[dof + 3..dof + 6].copy_from_slice(&scale(rotation_between(first.1, last.1), per_second));
+    }
+
+    /// Returns the frames around a time, and how far it is from the first to the second.
+    fn frames(&self, time: f64) -> (usize, usize, f64) {
+        let last = self.motion.frames() - 1;
+        let at = (time * self.motion.rate()).clamp(0.0, last as f64);
+        // what a division leaves beside a frame is that frame
+        let near = at.round();
+        if (at - near).abs() < 1e-6 {
+            return (near as usize, near as usize, 0.0);
+        }
+        let first = at.floor() as usize;
+        (first, (first + 1).min(last), at - first as f64)
+    }
+
+    fn angle(&self, joint: usize, time: f64) -> f64 {
+        let (first, second, share) = self.frames(time);
+        let (angles, n) = (self.motion.angles(), self.joints.len());
+        let (a, b) = (angles[first * n + joint], angles[second * n + joint]);
+        a + share * (b - a)
+    }
+
+    fn pose(&self, poses: &[(Vec3, Quat)], time: f64) -> (Vec3, Quat) {
+        let (first, second, share) = self.frames(time);
+        let ((p, q), (r, s)) = (poses[first], poses[second]);
+        let along: f64 = q.iter().zip(&s).map(|(a, b)| a * b).sum();
+        // both signs of a quaternion are the same turn; the near one is on the way
+        let sign = if along < 0.0 { -1.0 } else { 1.0 };
+        let turned = std::array::from_fn(|i| q[i] + share * (sign * s[i] - q[i]));
+        (add_scaled(p, sub(r, p), share), quat_normalize(turned))
+    }
+}
+
+/// Says which joint may be meant.
+fn hint<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> String {
+    const LONGEST: usize = 64; // the distance costs the product of the lengths
+    if name.len() > LONGEST {
+        return String::new();
+    }
+    let nearest = known.min_by_key(|known| strsim::damerau_levenshtein(name, known));
+    nearest.map_or_else(String::new, |nearest| format!("; did you mean {nearest:?}?"))
+}
+
+/// Returns where MIMo's free joint stands in positions and velocities, if he has one.
+fn free_root(model: &Model) -> Option<(usize, usize)> {
+    let mut body = model.body("hip")?;
+    while body > 0 {
+        let first = model.body_jntadr[body];
+        if model.body_jntnum[body] > 0 && model.jnt_type[first] == JointType::Free {
+            return Some((model.jnt_qposadr[first], model.jnt_dofadr[first]));
+        }
+        body = model.body_parentid[body];
+    }
+    None
+}
