@@ -2,6 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::svg::download;
 use crate::eval::{Benchmark, Interval, Row};
 use crate::text::quoted;
 
@@ -58,7 +59,10 @@ fn section(first: &Row, group: &[Row], columns: &[(String, String, usize)]) -> M
         section {
             h2 { (quoted(&first.behavior.replace('_', " "))) " (" (quoted(&first.config)) ")" }
             @for (name, heading, decimals) in shown() {
-                figure.chart { (chart(group, name, *decimals)) figcaption { b { (heading) } } }
+                @let drawing = chart(group, name, *decimals);
+                @let size = [ROW[0], height(group)];
+                @let file = format!("{}-{name}", first.config);
+                figure.chart { (drawing) figcaption { b { (heading) } " " (download(&drawing, size, &[], &file)) } }
             }
             div.scroll { table {
                 thead { tr { th { "policy" } @for (_, heading, _) in shown() { th.number { (heading) } } } }
@@ -81,6 +85,11 @@ fn label(row: &Row) -> String {
     }
 }
 
+/// Returns the height of a chart.
+fn height(group: &[Row]) -> f64 {
+    ROW[1] * group.len() as f64 + 6.0
+}
+
 /// Draws means with their intervals, a line for each row.
 fn chart(group: &[Row], name: &str, decimals: usize) -> Markup {
     let [width, height, left] = ROW;
@@ -89,7 +98,7 @@ fn chart(group: &[Row], name: &str, decimals: usize) -> Markup {
     let high = found().fold(0.0_f64, |high, i| high.max(i.high));
     let span = if high > low { high - low } else { 1.0 };
     let at = |value: f64| left + (value - low) / span * (width - left - 70.0);
-    let total = height * group.len() as f64 + 6.0;
+    let total = self::height(group);
     html! {
         svg viewBox=(format!("0 0 {width} {total}")) role="img" aria-label=(name) {
             line.grid x1=(format!("{:.1}", at(0.0))) x2=(format!("{:.1}", at(0.0))) y1="0" y2=(format!("{total}")) {}

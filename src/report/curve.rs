@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 use super::run::Baseline;
+use super::svg::download;
 use crate::env::Info;
 use crate::eval::Score;
 
@@ -243,7 +244,7 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
         d
     };
     let whole = |v: &f64| *v >= 1.0 && v.fract() == 0.0;
-    html! {
+    let drawing = html! {
         svg viewBox=(format!("0 0 {} {}", SIZE[0], SIZE[1])) role="img" aria-label="learning curve over episodes" {
             @for v in marks_between(chart.bottom, chart.top) {
                 line class="grid" x1=(left) x2=(SIZE[0] - right) y1=(format!("{:.1}", y(v))) y2=(format!("{:.1}", y(v))) {}
@@ -268,9 +269,15 @@ fn draw(chart: &Chart, episodes: usize) -> Markup {
                 path class=(format!("line {}", line.class)) d=(path(line)) {}
             }
         }
+    };
+    let mut legend: Vec<(&str, &str)> = chart.lines.iter().map(|line| (line.class, &*line.label)).collect();
+    legend.push(("dots", chart.dot));
+    html! {
+        (drawing)
         p.legend {
             @for line in &chart.lines { span.key.(line.class) { (line.label) } }
             span.key.dots { (chart.dot) }
+            (download(&drawing, SIZE, &legend, "learning-curve"))
         }
     }
 }

@@ -43,6 +43,9 @@ fn direction(to: Vec3) -> [f64; 2] {
 }
 
 impl Gaze {
+    /// Width and height of a map.
+    pub const SIZE: [f64; 2] = [SIZE, SIZE];
+
     /// Counts directions over evaluation logs; returns `None` if the model has no eyes or hands, or does not fit the
     /// logs.
     pub fn new(model: &Model, evaluations: &[Evaluated], compat: Compat) -> Option<Self> {

@@ -17,6 +17,7 @@ pub mod skin;
 #[cfg(not(feature = "internals"))]
 mod skin;
 mod strip;
+mod svg;
 
 use std::io;
 use std::path::{Path, PathBuf};

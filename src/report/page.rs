@@ -12,6 +12,7 @@ use self::touch::touch_section;
 use super::curve::curve;
 use super::gaze::Gaze;
 use super::run::Run;
+use super::svg::download;
 use crate::config::{Behavior, Compat, Config, Scene};
 use crate::env::{EYE_HAND_PAIRS, Info, Outcome, TaskInfo};
 use crate::eval::{Score, ScoreParts};
@@ -309,8 +310,9 @@ fn gaze_section(run: &mut Run) -> Markup {
                 @if compat == Compat::Reference { " (under compat: reference, it lies below the gaze)" }
                 ". Thin line: the border of the eye's image." }
             div.maps {
-                @for (eye, name) in [(1, "left eye"), (0, "right eye")] {
-                    figure { (gaze.map(eye)) figcaption { b { (name) } } }
+                @for (eye, name, file) in [(1, "left eye", "gaze-left-eye"), (0, "right eye", "gaze-right-eye")] {
+                    @let map = gaze.map(eye);
+                    figure { (map) figcaption { b { (name) } " " (download(&map, Gaze::SIZE, &HANDS.map(|(name, class, _)| (class, name)), file)) } }
                 }
             }
             p.legend { @for (name, class, _) in HANDS { span.key.(class) { (name) } } }
