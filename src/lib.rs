@@ -110,8 +110,13 @@
     allow(dead_code, unused_imports, rustdoc::private_intra_doc_links)
 )]
 
-/// Re-exports what only the other packages of the project use: for all with the feature `internals`, for this crate alone without.
+/// Re-exports what only the other packages of the project use: for all with the feature `internals`, for this crate alone without. What
+/// public values are made of, too, can be named by all (`hidden`), but has its page with that feature only: it changes in any release.
 macro_rules! internals {
+    (hidden use $($path:tt)+) => {
+        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        pub use $($path)+;
+    };
     (use $($path:tt)+) => {
         #[cfg(feature = "internals")]
         pub use $($path)+;

@@ -158,6 +158,50 @@ fn benchmarks_resume_and_do_not_depend_on_jobs() {
     assert!(error.contains("bad.yml:3: `steps` is \"none\""), "{error}");
 }
 
+/// Goal babbling learns from one episode for the next, in a training and in a benchmark, and then does what it has learned.
+#[test]
+fn a_policy_that_learns_is_trained_and_then_settles() {
+    let folder = Folder::new("cli_babbling");
+    let save_dir = folder.path().join("run").display().to_string();
+    let keys = format!(
+        "behavior: self_touch\nscene: crib\nvision_active: false\ntouch_scale: 3\nmax_episode_steps: 400\nsave_dir: {save_dir}\n"
+    );
+    let config = folder.file("config.yml", keys).display().to_string();
+    let train = ["train", "--config", &config, "--train-for", "2000", "--quiet"];
+    let score = |policy: &[&str]| {
+        succeed(&[&train[..], policy].concat());
+        succeed(&["score", &save_dir])
+    };
+    assert_ne!(score(&["--policy", "babbling"]), score(&["--policy", "held"]));
+    let error = fail(&[&train[..], &["--policy", "babbling", "--envs", "2"]].concat());
+    assert!(error.contains("--envs"), "{error}");
+
+    let plan = folder.path().join("plan.yml");
+    let text = "configs: [config.yml]\npolicies: [babbling]\nseeds: 2\nsteps: 2000\nrecord: 0\nevaluate: 2\n";
+    std::fs::write(&plan, text).expect("a file");
+    let (plan, out) = (
+        plan.display().to_string(),
+        folder.path().join("out").display().to_string(),
+    );
+    let printed = succeed(&["benchmark", &plan, "--out", &out, "--jobs", "2", "--quiet"]);
+    assert!(
+        printed.contains("parts per episode, evaluated") && printed.contains("evaluate: 2"),
+        "{printed}"
+    );
+    let json = std::fs::read_to_string(folder.path().join("out/benchmark.json")).expect("JSON");
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    for run in json["runs"].as_array().expect("runs") {
+        assert!(
+            run["evaluated_parts"].as_f64().is_some_and(|parts| parts > 0.0),
+            "{run}"
+        );
+        assert_eq!(
+            run["episodes"], 5,
+            "episodes of the evaluation are not those of the training"
+        );
+    }
+}
+
 #[test]
 fn submissions_are_checked_and_packed() {
     let folder = Folder::new("cli_pack");

@@ -67,7 +67,7 @@ pub use viewer::{ViewFrom, Viewer};
 use std::sync::Arc;
 
 use crate::actuation::{self, Actuation};
-use crate::config::{Compat, Config};
+use crate::config::Config;
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::NumpyRng;
 use action_delay::ActionDelay;

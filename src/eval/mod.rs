@@ -53,16 +53,16 @@ mod pack;
 mod scores;
 
 #[cfg(feature = "npz")]
-internals!(use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult});
+internals!(hidden use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult});
 pub use episodes::{EpisodeError, Plan, run_episodes};
 internals!(use episodes::{Observer, run_episodes_watched});
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
 pub use film::{Film, FilmError};
 internals!(use film::RoomFilm);
 #[cfg(feature = "npz")]
-internals!(use measures::{HandMeasures, Measures, RegionMeasures});
+pub use measures::{HandMeasures, Measures, RegionMeasures};
 #[cfg(feature = "npz")]
-internals!(use pack::{PackError, PackOptions, Packed, pack});
+internals!(hidden use pack::{PackError, PackOptions, Packed, pack});
 pub use scores::{Score, ScoreError, ScoreParts, Touchables};
 internals!(use scores::{MAX_EPISODES, steps});
 

@@ -18,15 +18,15 @@ mod sensor;
 pub use arrays::Arrays;
 pub use complete::Model;
 pub(crate) use complete::{CameraPose, Constants, LightPose, WeldPose};
-internals!(use actuator::{BiasType, DynType, GainType, TrnType});
+internals!(hidden use actuator::{BiasType, DynType, GainType, TrnType});
 pub use elements::{GeomType, JointType, Keyframe};
-internals!(use elements::{EqualityKind, SameFrame, Wrap});
-internals!(use hfield::HField);
-internals!(use look::{Builtin, CamLight, Light, Mark, Material, Texture, TextureType, Visual});
-internals!(use mesh::{Mesh, MeshHull});
+internals!(hidden use elements::{EqualityKind, SameFrame, Wrap});
+internals!(hidden use hfield::HField);
+internals!(hidden use look::{Builtin, CamLight, Light, Mark, Material, Texture, TextureType, Visual});
+internals!(hidden use mesh::{Mesh, MeshHull});
 pub use options::{IntegratorType, Options};
-internals!(use options::{ConeType, Flags, JacobianFormat, SolverType, Statistic});
-internals!(use sensor::{DataType, ObjType, SensorType});
+internals!(hidden use options::{ConeType, Flags, JacobianFormat, SolverType, Statistic});
+internals!(hidden use sensor::{DataType, ObjType, SensorType});
 
 macro_rules! lookup {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {

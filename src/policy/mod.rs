@@ -1,5 +1,6 @@
 //! Policies, which choose the actions of an evaluation.
 
+mod babbling;
 mod command;
 #[cfg(feature = "onnx")]
 mod onnx;
@@ -8,6 +9,7 @@ mod protocol;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+pub use babbling::Babbling;
 pub use command::CommandPolicy;
 #[cfg(fuzzing)]
 pub use command::answers;
@@ -25,8 +27,8 @@ use crate::spaces::{ActionNoise, Noise};
 pub enum PolicyError {
     /// The command cannot be started.
     #[error(
-        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, oscillators, an .onnx file, or a \
-         command with its arguments"
+        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, oscillators, babbling, an .onnx file, \
+         or a command with its arguments"
     )]
     Start {
         /// The command.
@@ -136,6 +138,9 @@ pub trait Policy: Send {
     /// # Errors
     /// The policy cannot go on.
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError>;
+
+    /// Ends learning: from here on the policy does what it has learned, without exploring. Most policies have nothing to learn.
+    fn settle(&mut self) {}
 }
 
 /// A policy of random actions, drawn from the environment's generator.
@@ -209,6 +214,8 @@ pub enum PolicySource {
     Zero,
     /// A noise that lasts: `held`, `ou`, `pink` or `oscillators`.
     Noise(Noise),
+    /// `babbling`: learns while it acts.
+    Babbling,
     /// A file that ends in `.onnx`.
     Onnx(PathBuf),
     /// Anything else.
@@ -231,12 +238,18 @@ impl PolicySource {
         match text {
             "random" => Self::Random,
             "zero" => Self::Zero,
+            "babbling" => Self::Babbling,
             file if model(file) && Path::new(file).is_file() => Self::Onnx(file.into()),
             _ => match command::words(text).as_deref() {
                 Some([word]) if model(word) => Self::Onnx(word.into()),
                 _ => Self::Command(text.to_string()),
             },
         }
+    }
+
+    /// Tells whether the policy learns while it acts: its episodes belong together, one after another.
+    pub fn learns(&self) -> bool {
+        *self == Self::Babbling
     }
 
     /// Opens the policy. `limit` is the time limit of a command for an action.
@@ -248,6 +261,7 @@ impl PolicySource {
             Self::Random => Box::new(RandomPolicy),
             Self::Zero => Box::new(ZeroPolicy),
             Self::Noise(noise) => Box::new(NoisePolicy::new(*noise)),
+            Self::Babbling => Box::new(Babbling::new()),
             #[cfg(feature = "onnx")]
             Self::Onnx(path) => Box::new(OnnxPolicy::open(path)?),
             #[cfg(not(feature = "onnx"))]

@@ -57,8 +57,8 @@ mod replay;
 mod scene_file;
 mod training;
 
-pub use logs::{LogError, TrainingLog};
-internals!(use logs::{EvaluationLog, TrainingTotals, read_training});
+pub use logs::{LogError, TrainingLog, read_training};
+internals!(use logs::{EvaluationLog, TrainingTotals});
 pub use many::RunVector;
 #[cfg(feature = "npz")]
 pub use motion::{Motion, MotionError, Played, Playing, play_motion};

@@ -31,8 +31,8 @@ pub struct Evaluate {
     /// Maximum number of steps of an episode
     #[arg(long, value_name = "STEPS", default_value_t = 1000, allow_negative_numbers = true, value_parser = count::<u64>)]
     duration: u64,
-    /// Policy: random, zero, a model (FILE.onnx, if this program is built with the feature onnx), or a command with
-    /// its arguments that reads observations (a line of JSON each) from its standard input and writes actions (a JSON
+    /// Policy: random, zero, a noise (held, ou, pink, oscillators), babbling (which learns while it acts, one episode after another), a
+    /// model (FILE.onnx, if this program is built with the feature onnx), or a command with its arguments that reads observations (a line of JSON each) from its standard input and writes actions (a JSON
     /// list each) to its standard output; quotes keep words with spaces together
     #[arg(long, default_value = "random")]
     policy: String,
@@ -84,21 +84,29 @@ impl Evaluate {
             }
         }
         self.keep_scene(&blueprint)?;
+        let (source, limit) = (
+            PolicySource::new(&self.policy),
+            Duration::from_secs_f64(self.policy_timeout),
+        );
+        // episodes of a policy that learns belong together
+        let jobs = if source.learns() { 1 } else { self.jobs };
         let plan = Plan {
             episodes: self.episodes,
             duration: self.duration,
             render: !self.no_render,
             fps: self.fps,
-            jobs: self.jobs,
+            jobs,
         };
+        if jobs < self.jobs {
+            note!(
+                "note: one job instead of {}: this policy learns from one episode for the next",
+                self.jobs
+            );
+        }
         if plan.parallel() < plan.jobs {
             let (given, wanted) = (plan.parallel(), plan.jobs);
             note!("note: {given} instead of {wanted} jobs: that is all that these episodes and this machine can use");
         }
-        let (source, limit) = (
-            PolicySource::new(&self.policy),
-            Duration::from_secs_f64(self.policy_timeout),
-        );
         let policy = || source.open(limit);
         let length = self.duration.min(blueprint.config().max_episode_steps);
         let bar = progress_bar(self.episodes.saturating_mul(length), self.quiet)?;

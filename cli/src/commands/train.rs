@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use babybench::config::Compat;
 use babybench::eval::Score;
+use babybench::policy::{DEFAULT_LIMIT, Policy, PolicyError, PolicySource};
 use babybench::runs::logs::{TrainingTotals, read_recent, training_path};
 use babybench::runs::{RunVector, TrainingLog, start_training};
 use babybench::{AutoresetMode, Config};
@@ -20,7 +21,7 @@ use crate::print::{note, say};
 /// Training logs are saved at least this often, under `compat: api`.
 const SAVE_EVERY: Duration = Duration::from_secs(5);
 
-/// Arguments of `train`: the kit's random policies for both behaviors.
+/// Arguments of `train`: the kit's random policies for both behaviors, and policies that learn.
 #[derive(Args)]
 pub struct Train {
     #[command(flatten)]
@@ -34,6 +35,9 @@ pub struct Train {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
+    /// Policy instead of random actions, as evaluate takes it: babbling learns to touch itself while it acts
+    #[arg(long, conflicts_with_all = ["noise", "envs"])]
+    policy: Option<String>,
     #[command(flatten)]
     babbling: Babbling,
     #[command(flatten)]
@@ -60,7 +64,7 @@ impl Train {
         let (seed, done, bar) = self.begin(env.log(), config)?;
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
-        let (mut policy, mut action) = (self.babbling.policy(), Vec::new());
+        let (mut policy, mut action) = (self.policy()?, Vec::new());
         while steps < self.train_for && !interrupt.wanted() {
             if over {
                 env.reset(None)?;
@@ -85,6 +89,13 @@ impl Train {
         }
         env.finish_training()?;
         self.print_result(env.log(), config, steps)
+    }
+
+    fn policy(&self) -> Result<Box<dyn Policy>, PolicyError> {
+        match &self.policy {
+            Some(name) => PolicySource::new(name).open(DEFAULT_LIMIT),
+            None => Ok(self.babbling.policy()),
+        }
     }
 
     /// Trains in many environments at once; that number i has the seed plus i.

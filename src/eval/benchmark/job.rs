@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use super::{BenchmarkError, env_error, policy_error};
+use super::{BenchmarkError, BenchmarkPlan, env_error, policy_error};
 use crate::config::Config;
-use crate::env::{Blueprint, Info};
+use crate::env::{Blueprint, Env, Info};
 use crate::eval::{EpisodeError, Measures, Score};
 use crate::files::{self, replace_file};
 use crate::json;
 use crate::limits::Limits;
-use crate::policy::PolicySource;
+use crate::policy::{Policy, PolicySource};
 use crate::runs::{Record, RecordOptions, Recorder};
 
 /// Numbers of steps after which a run is scored.
@@ -31,6 +31,7 @@ pub struct Job {
     seed: u64,
     steps: u64,
     record: u64,
+    evaluate: u64,
 }
 
 /// The result of a run.
@@ -65,6 +66,12 @@ pub struct RunResult {
     pub mean_return: Option<f64>,
     /// Share of the episodes of a task that end in success.
     pub successes: Option<f64>,
+    /// The score of the evaluation that follows, in which policies that learn do what they have learned.
+    #[serde(default)]
+    pub evaluated_score: Option<f64>,
+    /// Parts that both hands touch in an episode of the evaluation, mean.
+    #[serde(default)]
+    pub evaluated_parts: Option<f64>,
     /// The measures of the recorded episodes.
     pub measures: Option<Measures>,
     /// Steps per second of this run, one thread, with whatever else the machine did.
@@ -72,7 +79,7 @@ pub struct RunResult {
 }
 
 impl Job {
-    pub(super) fn new(stem: &str, config: &Config, policy: &str, seed: u64, steps: u64, record: u64) -> Self {
+    pub(super) fn new(stem: &str, config: &Config, policy: &str, seed: u64, plan: &BenchmarkPlan) -> Self {
         let plain = |text: &str| -> String {
             let short = text.chars().take(40);
             short
@@ -93,20 +100,22 @@ impl Job {
             config: Config { seed, ..config.clone() },
             policy: policy.to_string(),
             seed,
-            steps,
-            record,
+            steps: plan.steps,
+            record: plan.record,
+            evaluate: plan.evaluate,
         }
     }
 
     /// Returns a number that tells whether a result is of this run.
     fn identity(&self) -> u32 {
         let about = format!(
-            "{}\n{}\n{}\n{}\n{}",
+            "{}\n{}\n{}\n{}\n{}\n{}",
             env!("CARGO_PKG_VERSION"),
             self.config.to_yaml(),
             self.policy,
             self.steps,
-            self.record
+            self.record,
+            self.evaluate
         );
         crc32fast::hash(about.as_bytes())
     }
@@ -151,51 +160,36 @@ impl Job {
         let mut env = blueprint.env().map_err(env_error(0))?;
         let mut policy = PolicySource::new(&self.policy).open(limit).map_err(policy_error)?;
         let mut recorder = self.recorder(&env, record_dir)?;
-        let (mut records, mut action) = (Vec::<Info>::new(), Vec::new());
-        let (mut steps, mut episode) = (0, 0);
+        let (mut records, mut steps) = (Vec::<Info>::new(), 0);
         let started = Instant::now();
         while steps < self.steps {
+            let episode = records.len() as u64;
             // one seed for the whole run
             env.reset((episode == 0).then_some(self.seed))
                 .map_err(env_error(episode))?;
-            policy.begin(&mut env, episode).map_err(policy_error)?;
-            let mut recording = recorder.as_mut().filter(|_| episode < self.record);
-            if let Some(recorder) = &mut recording {
-                recorder.begin(&env, episode);
-            }
-            while steps < self.steps {
-                policy.act(&mut env, &mut action).map_err(policy_error)?;
-                match &mut recording {
-                    Some(recorder) => recorder.step(&mut env, &action)?,
-                    None => {
-                        env.step(&action).map_err(env_error(episode))?;
-                    }
-                }
-                steps += 1;
-                if progress().is_break() {
-                    let (done, planned) = (0, 0);
-                    return Err(EpisodeError::Stopped { done, planned });
-                }
-                if env.over() {
-                    break;
-                }
-            }
-            if let Some(recorder) = &mut recording {
-                recorder.end(&env)?;
-            }
+            let recorder = recorder.as_mut().filter(|_| episode < self.record);
+            steps += run_episode(
+                &mut env,
+                policy.as_mut(),
+                episode,
+                self.steps - steps,
+                recorder,
+                progress,
+            )?;
             records.push(env.info().clone());
-            episode += 1;
         }
-        let seconds = started.elapsed().as_secs_f64();
-        self.result(
-            &records,
-            steps,
-            steps as f64 / seconds.max(f64::MIN_POSITIVE),
-            record_dir,
-        )
+        let seconds = started.elapsed().as_secs_f64().max(f64::MIN_POSITIVE);
+        policy.settle();
+        let mut evaluated = Vec::<Info>::new();
+        for episode in records.len() as u64..records.len() as u64 + self.evaluate {
+            env.reset(None).map_err(env_error(episode))?;
+            run_episode(&mut env, policy.as_mut(), episode, u64::MAX, None, progress)?;
+            evaluated.push(env.info().clone());
+        }
+        self.result(&records, &evaluated, steps, steps as f64 / seconds, record_dir)
     }
 
-    fn recorder(&self, env: &crate::env::Env, dir: &Path) -> Result<Option<Recorder>, EpisodeError> {
+    fn recorder(&self, env: &Env, dir: &Path) -> Result<Option<Recorder>, EpisodeError> {
         if self.record == 0 {
             return Ok(None);
         }
@@ -213,13 +207,14 @@ impl Job {
     fn result(
         &self,
         records: &[Info],
+        evaluated: &[Info],
         steps: u64,
         steps_per_second: f64,
         record_dir: &Path,
     ) -> Result<RunResult, EpisodeError> {
         let compat = self.config.compat;
         let score = |records: &[Info]| Score::new(records, compat).ok();
-        let all = score(records);
+        let (all, evaluated) = (score(records), score(evaluated));
         let mut score_at = BTreeMap::new();
         for mark in MARKS.into_iter().filter(|mark| *mark <= steps) {
             if let Ok(score) = Score::after(records, mark, compat) {
@@ -247,8 +242,44 @@ impl Job {
             parts_per_episode: all.and_then(|score| score.parts_per_episode),
             mean_return: mean(tasks.iter().map(|task| task.episode_return).sum()),
             successes: mean(tasks.iter().filter(|task| task.outcome.is_success).count() as f64),
+            evaluated_score: evaluated.as_ref().map(|score| score.value),
+            evaluated_parts: evaluated.and_then(|score| score.parts_per_episode),
             measures,
             steps_per_second,
         })
     }
+}
+
+/// Runs an episode of an environment that has been reset, of at most `most` steps. Returns their number.
+fn run_episode(
+    env: &mut Env,
+    policy: &mut dyn Policy,
+    episode: u64,
+    most: u64,
+    mut recorder: Option<&mut Recorder>,
+    progress: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> Result<u64, EpisodeError> {
+    policy.begin(env, episode).map_err(policy_error)?;
+    if let Some(recorder) = &mut recorder {
+        recorder.begin(env, episode);
+    }
+    let (mut steps, mut action) = (0, Vec::new());
+    while steps < most && !env.over() {
+        policy.act(env, &mut action).map_err(policy_error)?;
+        match &mut recorder {
+            Some(recorder) => recorder.step(env, &action)?,
+            None => {
+                env.step(&action).map_err(env_error(episode))?;
+            }
+        }
+        steps += 1;
+        if progress().is_break() {
+            let (done, planned) = (0, 0);
+            return Err(EpisodeError::Stopped { done, planned });
+        }
+    }
+    if let Some(recorder) = recorder {
+        recorder.end(env)?;
+    }
+    Ok(steps)
 }

@@ -28,6 +28,7 @@ const MAX_STEPS: u64 = 1_000_000_000;
 /// seeds: 5                                        # 0, 1, ...
 /// steps: 100000                                   # of each run
 /// record: 1                                       # episodes of each run that are recorded and measured
+/// evaluate: 5                                     # episodes after them, without learning and exploring; none by default
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -46,13 +47,19 @@ pub struct BenchmarkPlan {
     pub steps: u64,
     /// Number of episodes of each run that are recorded and measured, the first ones.
     pub record: u64,
+    /// Number of episodes of each run after these steps, in which policies that learn do what they have learned
+    /// ([`Policy::settle`](crate::policy::Policy::settle)).
+    #[serde(default)]
+    pub evaluate: u64,
     /// The folder of the plan, from which the files of configurations are looked for.
     #[serde(skip)]
     pub dir: PathBuf,
 }
 
 /// The keys of a plan.
-const KEYS: [&str; 7] = ["name", "configs", "ages", "policies", "seeds", "steps", "record"];
+const KEYS: [&str; 8] = [
+    "name", "configs", "ages", "policies", "seeds", "steps", "record", "evaluate",
+];
 
 impl BenchmarkPlan {
     /// Reads a plan.
@@ -84,6 +91,7 @@ impl BenchmarkPlan {
             seeds: 5,
             steps: 100_000,
             record: 1,
+            evaluate: 0,
             dir,
         };
         for Entry { key, values, line } in entries(text)? {
@@ -102,6 +110,7 @@ impl BenchmarkPlan {
                 "seeds" => plan.seeds = whole(&key, &values, 1, MAX_SEEDS).map_err(at)?,
                 "steps" => plan.steps = whole(&key, &values, 1, MAX_STEPS).map_err(at)?,
                 "record" => plan.record = whole(&key, &values, 0, MAX_SEEDS).map_err(at)?,
+                "evaluate" => plan.evaluate = whole(&key, &values, 0, MAX_SEEDS).map_err(at)?,
                 _ => {
                     let known = KEYS.join(", ");
                     return Err(at(format!(
@@ -126,10 +135,11 @@ impl BenchmarkPlan {
         Ok(plan)
     }
 
-    /// Returns the number of steps of all runs.
+    /// Returns the number of steps of all runs, if episodes of evaluations have 1,000.
     pub fn total_steps(&self) -> u64 {
         let runs = (self.configs.len() * self.ages.len() * self.policies.len()) as u64;
-        runs.saturating_mul(self.seeds).saturating_mul(self.steps)
+        let steps = self.steps.saturating_add(self.evaluate.saturating_mul(1000));
+        runs.saturating_mul(self.seeds).saturating_mul(steps)
     }
 
     /// Returns the runs, in order: by configuration, age, policy, seed.
@@ -152,7 +162,7 @@ impl BenchmarkPlan {
                 };
                 for policy in &self.policies {
                     for seed in 0..self.seeds {
-                        out.push(Job::new(&stem, &config, policy, seed, self.steps, self.record));
+                        out.push(Job::new(&stem, &config, policy, seed, self));
                     }
                 }
             }

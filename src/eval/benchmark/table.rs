@@ -45,9 +45,11 @@ const fn metric(name: &'static str, heading: &'static str, decimals: usize) -> M
 
 impl Metric {
     /// Every metric but the scores after numbers of steps, in the order of tables.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         metric("score", "score", 3),
         metric("parts_per_episode", "parts per episode", 1),
+        metric("evaluated_score", "score, evaluated", 3),
+        metric("evaluated_parts", "parts per episode, evaluated", 1),
         metric("mean_return", "return", 2),
         metric("successes", "successes", 2),
         metric("touches_per_minute", "touches per minute", 1),
@@ -68,6 +70,8 @@ impl Metric {
         match self.name {
             "score" => run.score,
             "parts_per_episode" => run.parts_per_episode,
+            "evaluated_score" => run.evaluated_score,
+            "evaluated_parts" => run.evaluated_parts,
             "mean_return" => run.mean_return,
             "successes" => run.successes,
             "touches_per_minute" => measures.map(number),
@@ -166,13 +170,17 @@ impl Benchmark {
         let _ = writeln!(
             out,
             "Made by `babybench benchmark` from this plan:\n\n```yaml\nname: {}\nconfigs: [{}]\nages: [{ages}]\npolicies: [{}]\nseeds: {}\n\
-             steps: {}\nrecord: {}\n```",
+             steps: {}\nrecord: {}\n{}```",
             plan.name,
             names(&plan.configs),
             names(&plan.policies),
             plan.seeds,
             plan.steps,
-            plan.record
+            plan.record,
+            match plan.evaluate {
+                0 => String::new(),
+                episodes => format!("evaluate: {episodes}\n"),
+            }
         );
         out
     }
