@@ -440,7 +440,8 @@ class VectorEnv:
         """Returns fresh arrays, a row for each of the last rows.
 
         ``steps`` (N); ``touches`` (N, 2, geoms), which geoms the right and the left palm have touched, 1 or 0;
-        ``regards`` (N, 4), how often hands were in view; for tasks ``is_success`` and ``is_failure`` (N) and
+        ``regards`` (N, 4), how often hands were in view, and ``page_regards`` and ``kit_regards``, counted either way;
+        for tasks ``is_success`` and ``is_failure`` (N) and
         ``reward_terms`` (N, terms).
         """
     def failures(self) -> list[tuple[int, str]]:

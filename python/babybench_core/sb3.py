@@ -26,7 +26,7 @@ Indices = Union[None, int, Iterable[int]]
 
 _OUTCOME = ("is_success", "is_failure", "reward_terms")
 """What a task tells of a step."""
-_KEYS = ("steps", "touches", "regards", *_OUTCOME)
+_KEYS = ("steps", "touches", "regards", "page_regards", "kit_regards", *_OUTCOME)
 
 
 class VecEnv(BaseVecEnv):

@@ -69,7 +69,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
     Information comes as arrays over environments: ``steps`` (N), and by behavior ``touches`` (N, 2, geoms), which geoms
     the right and the left palm have touched in this episode, 1 or 0; or ``regards`` (N, 4), how many steps the right hand,
-    then the left, was in the view of the right eye, then of the left. ``envs.info(i)`` has the lists and names of one
+    then the left, was in the view of the right eye, then of the left, with ``page_regards`` and ``kit_regards``, counted as
+    BabyBench's page describes it and as the kit does. ``envs.info(i)`` has the lists and names of one
     environment. An environment whose simulation diverges is truncated and starts anew; ``infos["failure"]`` says why.
 
     Example:

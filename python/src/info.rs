@@ -93,9 +93,15 @@ pub fn infos_dict<'py>(py: Python<'py>, infos: Infos<'_>) -> PyResult<Bound<'py,
         let geoms = touches.len() / (2 * n).max(1);
         dict.set_item(intern!(py, "touches"), shaped(py, touches, &[n, 2, geoms])?)?;
     }
-    if let Some(regards) = infos.regards {
-        let counts: Vec<i64> = regards.iter().map(|&r| r as i64).collect();
-        dict.set_item(intern!(py, "regards"), shaped(py, &counts, &[n, 4])?)?;
+    for (key, regards) in [
+        (intern!(py, "regards"), infos.regards),
+        (intern!(py, "page_regards"), infos.page_regards),
+        (intern!(py, "kit_regards"), infos.kit_regards),
+    ] {
+        if let Some(regards) = regards {
+            let counts: Vec<i64> = regards.iter().map(|&r| r as i64).collect();
+            dict.set_item(key, shaped(py, &counts, &[n, 4])?)?;
+        }
     }
     if let Some(ages) = infos.vision_age {
         dict.set_item(intern!(py, "vision_age"), PyArray1::from_slice(py, ages))?;

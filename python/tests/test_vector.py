@@ -350,3 +350,19 @@ def test_each_environment_has_its_own_changes_of_the_model():
         envs.reset(options={"model": [None, None]})
     with pytest.raises(TypeError, match="expected a mapping or a list"):
         envs.reset(options={"model": 3})
+
+
+@pytest.mark.parametrize("compat", ["api", "reference"])
+def test_hands_in_view_are_counted_in_both_ways(compat):
+    keys = {"behavior": "hand_regard", "scene": "base", "touch_active": False, "vision_active": False}
+    envs = babybench.VectorEnv(keys, 2, threads=1, compat=compat)
+    envs.reset(seed=3)
+    for actions in actions_of(envs, 20):
+        infos = envs.step(actions)[-1]
+    own = {"api": "page_regards", "reference": "kit_regards"}[compat]
+    np.testing.assert_array_equal(infos["regards"], infos[own])
+    assert infos["page_regards"].shape == infos["kit_regards"].shape == (2, 4)
+    for k in range(2):
+        info = envs.info(k)
+        assert list(info["page_regards"].values()) == infos["page_regards"][k].tolist()
+        assert list(info["kit_regards"].values()) == infos["kit_regards"][k].tolist()

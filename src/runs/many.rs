@@ -131,7 +131,7 @@ impl RunVector {
         let steps = env.by_hand().end_episode();
         if steps > 0 || first {
             // the empty record that the kit's first reset adds stands there once
-            self.log.end_episode(steps, &env.info().behavior)?;
+            self.log.end_episode_of(steps, env.info())?;
         }
         Ok(())
     }

@@ -106,7 +106,7 @@ impl RunEnv {
     fn log_episode(&mut self) -> Result<(), LogError> {
         let steps = self.env.by_hand().end_episode();
         match &mut self.log {
-            Some(log) => log.end_episode(steps, &self.env.info().behavior),
+            Some(log) => log.end_episode_of(steps, self.env.info()),
             None => Ok(()),
         }
     }

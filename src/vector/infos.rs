@@ -14,6 +14,10 @@ pub struct Infos<'a> {
     /// How often hands were in view, (N, 4), in the order of [`EYE_HAND_PAIRS`](crate::env::EYE_HAND_PAIRS), if the
     /// behavior is `hand_regard`.
     pub regards: Option<&'a [u64]>,
+    /// The same, counted as BabyBench's page describes it: [`Regards::page`](crate::env::Regards::page).
+    pub page_regards: Option<&'a [u64]>,
+    /// The same, counted as the kit computes it: [`Regards::kit`](crate::env::Regards::kit).
+    pub kit_regards: Option<&'a [u64]>,
     /// How old the pictures are that the eyes show (N), s, if there is a [`vision_rate`](crate::Config::vision_rate).
     pub vision_age: Option<&'a [f64]>,
     /// Success and failure (N) of tasks that report them.
@@ -28,7 +32,8 @@ pub(super) struct InfoRows {
     layout: Layout,
     steps: Vec<u64>,
     touches: Vec<u8>,
-    regards: Vec<u64>,
+    /// By compat, the page's, the kit's.
+    regards: [Vec<u64>; 3],
     ages: Vec<f64>,
     outcomes: Vec<Outcome>,
     terms: Vec<f64>,
@@ -40,7 +45,7 @@ impl InfoRows {
             layout,
             steps: vec![0; n],
             touches: vec![0; 2 * n * layout.geoms.unwrap_or_default()],
-            regards: vec![0; 4 * n * usize::from(layout.regards)],
+            regards: std::array::from_fn(|_| vec![0; 4 * n * usize::from(layout.regards)]),
             ages: vec![0.0; n * usize::from(layout.ages)],
             outcomes: vec![Outcome::default(); n * usize::from(layout.terms.is_some())],
             terms: vec![0.0; n * layout.terms.unwrap_or_default()],
@@ -67,8 +72,15 @@ impl InfoRows {
             self.ages[row] = info.details.vision_age.unwrap_or_default();
         }
         if self.layout.regards {
+            let both = info.details.regards.unwrap_or_default();
             let counts = info.behavior.regards().unwrap_or_default();
-            self.regards[4 * row..4 * (row + 1)].copy_from_slice(&counts);
+            for (out, counts) in self
+                .regards
+                .iter_mut()
+                .zip([counts, both.page.to_array(), both.kit.to_array()])
+            {
+                out[4 * row..4 * (row + 1)].copy_from_slice(&counts);
+            }
         }
     }
 
@@ -77,7 +89,9 @@ impl InfoRows {
         Infos {
             steps: &self.steps[..n],
             touches: self.layout.geoms.map(|geoms| &self.touches[..2 * geoms * n]),
-            regards: self.layout.regards.then(|| &self.regards[..4 * n]),
+            regards: self.layout.regards.then(|| &self.regards[0][..4 * n]),
+            page_regards: self.layout.regards.then(|| &self.regards[1][..4 * n]),
+            kit_regards: self.layout.regards.then(|| &self.regards[2][..4 * n]),
             vision_age: self.layout.ages.then(|| &self.ages[..n]),
             outcomes: self.layout.terms.map(|_| &self.outcomes[..n]),
             reward_terms: self.layout.terms.map(|len| &self.terms[..n * len]),

@@ -29,6 +29,8 @@ mod policies;
 mod rapier_engine;
 #[cfg(all(feature = "eval", feature = "npz"))]
 mod record;
+#[cfg(all(feature = "eval", feature = "npz"))]
+mod regards;
 mod render;
 #[cfg(feature = "report")]
 mod report;

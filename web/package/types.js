@@ -62,6 +62,8 @@
  * @property {PerHand<number[]> | null} touches geoms that each palm has touched
  * @property {PerHand<string[]> | null} touched_parts their names
  * @property {number[] | null} regards steps in which each eye saw each hand: right eye with right and left hand, left eye
+ * @property {number[] | null} page_regards the same, within 15 degrees of the axis of the eye's camera, as BabyBench's page describes it
+ * @property {number[] | null} kit_regards the same, within 15 degrees of the -z axis of the eye's body, as the Python kit computes it
  * @property {number[] | null} gaze_angles between the axis of each eye and each hand, rad
  * @property {number | null} score that the episode would have alone
  * @property {boolean | null} is_success whether a task's goal is reached

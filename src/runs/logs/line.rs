@@ -3,7 +3,7 @@
 
 use std::io;
 
-use crate::env::{Info, InfoValue, PARTS, PartNames, STEPS};
+use crate::env::{Info, InfoValue, PARTS, PartNames, Regards, STEPS};
 use crate::json;
 
 /// Makes lines.
@@ -46,6 +46,13 @@ impl<'n> LineMaker<'n> {
             for (key, geoms) in PARTS.into_iter().zip(touches) {
                 begin(out, key);
                 list(out, geoms, |out, geom| self.name(out, geom, names));
+            }
+        }
+        if let Some(Regards { page, kit }) = info.details.regards {
+            for (key, counts) in [("page_regards", page), ("kit_regards", kit)] {
+                begin(out, key);
+                json::line(out, &counts)?;
+                out.pop();
             }
         }
         begin(out, STEPS);
@@ -138,19 +145,25 @@ mod tests {
         for names in [None, Some(&names)] {
             let mut maker = LineMaker::new(names);
             for (steps, behavior) in [0, 1, 100, 12_345, u64::MAX, 7].into_iter().zip(behaviors.clone()) {
-                let details = names.map(|names| {
-                    let mut details = InfoDetails::default();
-                    details.name_parts(&behavior, names);
-                    details
+                let regards = behavior.regards().map(|counts| Regards {
+                    page: counts.into(),
+                    kit: [1, 2, 3, 4].into(),
                 });
+                let mut details = InfoDetails {
+                    regards,
+                    ..InfoDetails::default()
+                };
                 let info = Info {
                     steps,
                     behavior,
-                    ..Info::default()
+                    details: details.clone(),
                 };
+                if let Some(names) = names {
+                    details.name_parts(&info.behavior, names);
+                }
                 let (mut line, mut expected) = (Vec::new(), Vec::new());
                 maker.line(&mut line, &info).expect("a line");
-                let details = details.as_ref();
+                let details = Some(&details);
                 json::line(&mut expected, &Detailed { info: &info, details }).expect("a line");
                 assert_eq!(String::from_utf8(line), String::from_utf8(expected));
             }

@@ -1,6 +1,6 @@
 //! The log of a training run.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -8,8 +8,8 @@ use super::lines::Lines;
 use super::read::{RecentRecords, visit, visit_bytes};
 use super::{LogError, check_inside, own_folder, record, training_path, whole, write};
 use crate::config::{Behavior, Compat, Config};
-use crate::env::{BehaviorInfo, Info, InfoValue, PartNames};
-use crate::files::Owner;
+use crate::env::{BehaviorInfo, Info, InfoValue, PartNames, PerEyeAndHand, Regards};
+use crate::files::{self, Owner};
 use crate::formats::pickle::{DictWriter, ListWriter};
 use crate::limits::Limits;
 
@@ -65,6 +65,8 @@ pub struct TrainingLog {
     records: OnceLock<Vec<Info>>,
     resumed: bool,
     lines: Lines,
+    /// Both counters of `hand_regard` by record: lines have them, pickles, which are the kit's, have one.
+    regards: BTreeMap<usize, Regards>,
     /// Refuses the folder to other processes that would train into it.
     _owner: Arc<Owner>,
 }
@@ -98,6 +100,7 @@ impl TrainingLog {
             records: OnceLock::new(),
             resumed: false,
             lines: Lines::default(),
+            regards: BTreeMap::new(),
             _owner: owner,
         }
     }
@@ -162,7 +165,12 @@ impl TrainingLog {
         first: &mut Option<Info>,
         each: &mut dyn FnMut(&Info),
     ) -> Result<(), LogError> {
-        visit(path, &Limits::DEFAULT, |info| {
+        let known = match config.behavior {
+            Behavior::HandRegard => regards_of(&path.with_extension("jsonl")),
+            _ => BTreeMap::new(),
+        };
+        visit(path, &Limits::DEFAULT, |mut info| {
+            info.details.regards = known.get(&self.totals.records).copied();
             first.get_or_insert_with(|| info.clone());
             each(&info);
             self.push(info);
@@ -202,6 +210,8 @@ impl TrainingLog {
     }
 
     fn push(&mut self, info: Info) {
+        self.regards
+            .extend(info.details.regards.map(|both| (self.totals.records, both)));
         self.totals.add(&info);
         self.pickle.push(|dict| fill(dict, &info));
         if let Some(records) = self.records.get_mut() {
@@ -225,7 +235,7 @@ impl TrainingLog {
     }
 
     /// Hands out the records so far, one at a time.
-    fn visit(&self, each: impl FnMut(Info)) -> Result<(), LogError> {
+    fn visit(&self, mut each: impl FnMut(Info)) -> Result<(), LogError> {
         // whatever is in memory already
         let limits = Limits {
             pickle_bytes: usize::MAX,
@@ -236,7 +246,17 @@ impl TrainingLog {
             geoms: usize::MAX,
             ..Limits::DEFAULT
         };
-        visit_bytes(self.pickle.as_bytes(), &training_path(&self.save_dir), &limits, each)
+        let mut number = 0;
+        visit_bytes(
+            self.pickle.as_bytes(),
+            &training_path(&self.save_dir),
+            &limits,
+            |mut info| {
+                info.details.regards = self.regards.get(&number).copied();
+                number += 1;
+                each(info);
+            },
+        )
     }
 
     /// Returns the last records, at most [`TrainingLog::RECENT`], and the number of all.
@@ -265,11 +285,26 @@ impl TrainingLog {
     /// # Errors
     /// Errors of the file system.
     pub fn end_episode(&mut self, steps: u64, behavior: &BehaviorInfo) -> Result<(), LogError> {
+        self.end(record(steps, behavior.clone()))
+    }
+
+    /// Records an episode as [`TrainingLog::end_episode`] does, with what its last information has beyond the keys of the kit: both counters
+    /// of `hand_regard`, as `page_regards` and `kit_regards` in `training.jsonl`.
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub fn end_episode_of(&mut self, steps: u64, last: &Info) -> Result<(), LogError> {
+        let mut info = record(steps, last.behavior.clone());
+        info.details.regards = last.details.regards;
+        self.end(info)
+    }
+
+    fn end(&mut self, info: Info) -> Result<(), LogError> {
+        let steps = info.steps;
         let first = std::mem::take(&mut self.resumed);
         if steps == 0 && (first || self.compat == Compat::Api) {
             return Ok(());
         }
-        let info = record(steps, behavior.clone());
         self.push(info);
         let count = match self.compat {
             Compat::Api => self.totals.records as u64,
@@ -282,7 +317,7 @@ impl TrainingLog {
     }
 
     /// Writes `training.pkl` and `training.jsonl`, in which touched parts also have names (`right_hand_parts`,
-    /// `left_hand_parts`).
+    /// `left_hand_parts`), and `hand_regard` has both counters (`page_regards`, `kit_regards`).
     ///
     /// # Errors
     /// Errors of the file system.
@@ -293,6 +328,25 @@ impl TrainingLog {
             .save(&path.with_extension("jsonl"), self.totals.records, &self.recent, all)?;
         write(path, self.pickle.as_bytes())
     }
+}
+
+/// Reads both counters of `hand_regard` from the lines of a log, by record; without lines that have them there are none.
+fn regards_of(path: &Path) -> BTreeMap<usize, Regards> {
+    #[derive(serde::Deserialize)]
+    struct Line {
+        page_regards: PerEyeAndHand<u64>,
+        kit_regards: PerEyeAndHand<u64>,
+    }
+    let Ok(bytes) = files::read(path, Limits::DEFAULT.pickle_bytes as u64) else {
+        return BTreeMap::new();
+    };
+    let lines = bytes.split(|byte| *byte == b'\n').enumerate();
+    let both = lines.filter_map(|(record, line)| {
+        let line: Line = serde_json::from_slice(line).ok()?;
+        let (page, kit) = (line.page_regards, line.kit_regards);
+        Some((record, Regards { page, kit }))
+    });
+    both.take(Limits::DEFAULT.records).collect()
 }
 
 /// Writes a record with the keys of the kit, in its order.

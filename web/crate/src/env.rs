@@ -229,6 +229,18 @@ impl Core {
                 "regards",
                 optional(info.behavior.regards(), |counts| js::numbers(&counts.map(|c| c as f64))),
             ),
+            (
+                "page_regards",
+                optional(info.details.regards, |both| {
+                    js::numbers(&both.page.to_array().map(|c| c as f64))
+                }),
+            ),
+            (
+                "kit_regards",
+                optional(info.details.regards, |both| {
+                    js::numbers(&both.kit.to_array().map(|c| c as f64))
+                }),
+            ),
             ("score", optional(info.behavior.score(info.steps), JsValue::from)),
             ("is_success", optional(task, |t| t.outcome.is_success.into())),
             ("is_failure", optional(task, |t| t.outcome.is_failure.into())),

@@ -113,6 +113,8 @@ export interface Score {
   earned: number | null;
   hands: { right: string[]; left: string[]; reachable: number } | null;
   regards: [number, number, number, number] | null;
+  /** The same, counted as the kit does. */
+  kit: [number, number, number, number] | null;
 }
 
 /** What the eyes notice: left and right picture, RGBA, and how many seconds ago it was before them. */

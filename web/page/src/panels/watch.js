@@ -89,10 +89,10 @@ function score(app) {
     bar.setAttribute("aria-valuenow", percent.toFixed(0));
     bar.hidden = s.value === null;
     say(unit, caption(s, moment.truncated));
-    const key = JSON.stringify([s.hands, s.regards]);
+    const key = JSON.stringify([s.hands, s.regards, s.kit]);
     if (key !== drawn) {
       drawn = key;
-      detail.replaceChildren(...(s.hands ? [hands(s.hands)] : s.regards ? [regards(s.regards, s.steps)] : []));
+      detail.replaceChildren(...(s.hands ? [hands(s.hands)] : s.regards ? [regards("by the camera's axis", s.regards, s.steps), ...(s.kit ? [regards("by the kit", s.kit, s.steps)] : [])] : []));
     }
   });
   return section;
@@ -118,12 +118,13 @@ function hands(h) {
 }
 
 /**
+ * @param {string} how the hands are counted
  * @param {NonNullable<Score["regards"]>} counts
  * @param {number} steps
  */
-function regards(counts, steps) {
+function regards(how, counts, steps) {
   const share = (/** @type {number} */ i) => el("td", {}, steps ? `${((100 * counts[i]) / steps).toFixed(1)} %` : "–");
-  const head = el("tr", {}, el("th", { scope: "col" }, "In view of"), el("th", { scope: "col" }, "right hand"), el("th", { scope: "col" }, "left hand"));
+  const head = el("tr", {}, el("th", { scope: "col" }, `In view, ${how}`), el("th", { scope: "col" }, "right hand"), el("th", { scope: "col" }, "left hand"));
   const row = (/** @type {string} */ eye, /** @type {number} */ i) => el("tr", {}, el("th", { scope: "row" }, eye), share(i), share(i + 1));
   return el("table", { className: "matrix" }, el("thead", {}, head), el("tbody", {}, row("Right eye", 0), row("Left eye", 2)));
 }

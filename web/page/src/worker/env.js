@@ -142,7 +142,7 @@ export class PageEnv {
 
   /** @returns {import("../types").Score} */
   score() {
-    const { behavior, score, touched_parts, regards, is_success, is_failure, return: earned } = this.env.info;
+    const { behavior, score, touched_parts, page_regards, kit_regards, is_success, is_failure, return: earned } = this.env.info;
     return {
       behavior,
       value: score,
@@ -151,7 +151,8 @@ export class PageEnv {
       failure: is_failure,
       earned,
       hands: touched_parts && { right: touched_parts.right_hand, left: touched_parts.left_hand, reachable: PARTS },
-      regards: /** @type {import("../types").Score["regards"]} */ (regards),
+      regards: /** @type {import("../types").Score["regards"]} */ (page_regards),
+      kit: /** @type {import("../types").Score["kit"]} */ (kit_regards),
     };
   }
 
