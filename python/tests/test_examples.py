@@ -68,6 +68,33 @@ def test_ray_on_two_workers(tmp_path):
     assert re.findall(r"^ +(\d+) steps", said, re.MULTILINE) == ["160", "320"]
 
 
+@pytest.mark.parametrize("vector", [[], ["--vector"]], ids=["environments", "vector"])
+def test_rllib(tmp_path, vector):
+    pytest.importorskip("torch", reason="PyTorch is not installed: RLlib needs it")
+    pytest.importorskip("ray.rllib", reason="RLlib is not installed", exc_type=ImportError)
+    arguments = ("--iterations", 1, "--batch", 200, "--envs", 2, "--episode", 50, *vector)
+    said = run("rllib_selftouch.py", *arguments, cwd=tmp_path)
+    assert re.search(r"1 +200 steps, .* return [0-9]", said)
+
+
+def test_cleanrl_scripts_get_an_environment(tmp_path):
+    # what CleanRL's scripts for continuous actions do with a name
+    script = """
+import argparse, gymnasium
+parser = argparse.ArgumentParser()
+parser.add_argument("--env-id")
+parser.add_argument("--steps", type=int)
+args = parser.parse_args()
+envs = gymnasium.vector.SyncVectorEnv([lambda: gymnasium.wrappers.FlattenObservation(gymnasium.make(args.env_id))] * 2)
+envs.reset(seed=1)
+total = sum(envs.step(envs.action_space.sample())[1].sum() for _ in range(args.steps))
+print(envs.single_observation_space.shape, envs.single_action_space.shape, total > 0)
+"""
+    (tmp_path / "script.py").write_text(script)
+    said = run("cleanrl_selftouch.py", "script.py", "--steps", 20, cwd=tmp_path)
+    assert re.fullmatch(r"\(\d+,\) \(\d+,\) True\n", said)
+
+
 def test_ppo_in_one_file(tmp_path):
     pytest.importorskip(
         "torch", reason="PyTorch is not installed: Linux wheels of the registry come with gigabytes of CUDA"
