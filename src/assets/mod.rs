@@ -50,7 +50,7 @@ pub enum AssetError {
         /// The folder.
         folder: String,
     },
-    /// A file of one's own has the name of one of the library's, so that the name means both.
+    /// A custom file has the name of one of the library's, so that the name means both.
     #[error("file \"{}\" has the name of a file of the library; rename yours", quoted(.0))]
     Shadowed(String),
     /// The file system failed.

@@ -107,7 +107,7 @@ choices! {
 }
 
 choices! {
-    /// Which of two infants in a scene of one's own learns (`learner`).
+    /// Which of two infants in a custom scene learns (`learner`).
     Learner {
         /// The one in `mimo_location`.
         #[default]

@@ -1,4 +1,4 @@
-//! The surroundings of MIMo: those of the library by name, or a document of one's own by its path.
+//! The surroundings of MIMo: those of the library by name, or a custom document by its path.
 
 use std::fmt;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub enum Scene {
     Mobile,
     /// Furniture and toys, with MIMo sitting among them.
     Playroom,
-    /// An MJCF document of one's own, in which MIMo is included: a path that ends in `.xml`, which starts at the working directory
+    /// A custom MJCF document, in which MIMo is included: a path that ends in `.xml`, which starts at the working directory
     /// unless it is absolute. Where a [`Blueprint`](crate::Blueprint) is given assets, the document may be one of them.
     File(String),
 }

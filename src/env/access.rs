@@ -138,7 +138,7 @@ impl Env {
         self.rng.drawn()
     }
 
-    /// Puts the generator of random choices to where it has drawn so many numbers.
+    /// Puts the generator of random choices to where it is after `drawn` numbers.
     #[cfg(all(feature = "eval", feature = "npz"))]
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn draw_from(&mut self, drawn: u64) {

@@ -202,7 +202,7 @@ impl Blueprint {
             Arc::new(task_model(&config, &*self.task, &*self.surface.given)?)
         };
         let surface = Surface {
-            // the actuators of a scene of one's own are among them
+            // the actuators of a custom scene are among them
             assets: scene_assets(&config, self.surface.given.clone())?,
             ..self.surface.clone()
         };

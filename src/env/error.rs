@@ -24,7 +24,7 @@ pub enum EnvError {
     /// The assets cannot be loaded.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
-    /// A scene of one's own is not as it must be.
+    /// A custom scene is not as it must be.
     #[error(transparent)]
     Room(#[from] RoomError),
     /// MIMo cannot grow to the age of the configuration.

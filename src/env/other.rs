@@ -87,7 +87,7 @@ impl OtherInfant {
 }
 
 impl Env {
-    /// Lists the other infants in the scene: one, if a document of one's own includes `other_mimo.xml`. With muscles there are none to move, as
+    /// Lists the other infants in the scene: one, if a custom document includes `other_mimo.xml`. With muscles there are none to move, as
     /// only the learner's are muscles.
     ///
     /// A second policy moves it step by step: [`Env::act_other`] before each step of the learner.

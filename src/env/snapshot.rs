@@ -17,7 +17,7 @@ use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
 use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
 
-/// Room for so many vectors of numbers.
+/// Number of vectors for which a snapshot makes room.
 const VECTORS: usize = 40;
 /// Whole numbers that stand for the values of the information.
 const COUNTS: usize = 4;

@@ -115,7 +115,7 @@ impl Score {
         })
     }
 
-    /// Computes the score of the episodes of a training that had ended after so many steps; logs of different length compare by it.
+    /// Computes the score of the episodes of a training that had ended after `steps` steps; logs of different length compare by it.
     ///
     /// # Errors
     /// As [`Score::new`].

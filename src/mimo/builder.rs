@@ -1,11 +1,11 @@
-//! A scene of the library with bodies of one's own.
+//! A scene of the library with custom bodies.
 
 use quick_xml::escape::escape;
 
 use crate::config::{Config, Scene};
 use crate::math::Vec3;
 
-/// Adds bodies of one's own to a scene of the library, without writing files.
+/// Adds custom bodies to a scene of the library, without writing files.
 ///
 /// Additions are [MJCF](https://mujoco.readthedocs.io/en/3.3.0/XMLreference.html): elements of the world (bodies, geoms, sites, cameras, lights, frames) and whole sections (assets, defaults, contacts, equalities, actuators, sensors,
 /// keyframes). It becomes [`Config::scene_extra`], so that whatever takes a configuration takes it.
@@ -34,7 +34,7 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
-    /// Starts with a scene of the library. A document of one's own is not for adding to: [`Config::validate`] refuses it.
+    /// Starts with a scene of the library. A custom document is not for adding to: [`Config::validate`] refuses it.
     pub fn new(scene: Scene) -> Self {
         Self {
             scene,

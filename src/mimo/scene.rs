@@ -16,7 +16,7 @@ use crate::physics::{EngineError, compile};
 /// Gives the path of the top document in the assets; includes and textures are found relative to it.
 pub const DOCUMENT: &str = "babybench/scene.xml";
 
-/// The path of the top document around a scene of one's own, which may be called `scene.xml` itself.
+/// The path of the top document around a custom scene, which may be called `scene.xml` itself.
 const AROUND: &str = "babybench/*";
 
 /// Name of the body that places MIMo in the world, and of its free joint.
@@ -163,7 +163,7 @@ pub enum SceneError {
     /// The assets cannot be read or compiled.
     #[error(transparent)]
     Load(#[from] LoadError),
-    /// A scene of one's own is not as it must be.
+    /// A custom scene is not as it must be.
     #[error(transparent)]
     Room(#[from] RoomError),
     /// MIMo cannot grow to the age of the configuration.
@@ -177,11 +177,11 @@ pub enum SceneError {
 /// Loads and compiles the scene of a configuration from `assets`, with MIMo at his age.
 ///
 /// A MIMo of another size than the original's is moved up or down until his lowest point is where the original's is, both in
-/// the posture in which the scene holds them. A scene of one's own is one of the assets, or else a file of the system; see
+/// the posture in which the scene holds them. A custom scene is one of the assets, or else a file of the system; see
 /// [`scene_assets`](crate::mimo::scene_assets).
 ///
 /// # Errors
-/// Fails if the assets cannot be read or compiled, and then names file, line and element; if a scene of one's own lacks MIMo or changes
+/// Fails if the assets cannot be read or compiled, and then names file, line and element; if a custom scene lacks MIMo or changes
 /// him; if MIMo cannot grow to the age, or measurements make a body whose parts vanish or are in each other, and then names the keys.
 pub fn build_model(config: &Config, assets: &dyn AssetSource) -> Result<Model, SceneError> {
     build_scene(&scene_xml(config), Version::of(config.behavior), config, assets)

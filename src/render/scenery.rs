@@ -186,17 +186,13 @@ impl Scenery {
             drawable.place_texture(model, &textures);
         }
         let vis = &model.vis;
-        let headlight = vis
-            .headlight_active
-            .then(|| [vis.headlight_ambient, vis.headlight_diffuse, vis.headlight_specular].map(single));
-        // the headlight takes one of OpenGL's lights
-        let room = MAX_LIGHTS - usize::from(headlight.is_some());
+        let (headlight, lights) = lights(model);
         Ok(Self {
             drawables,
             meshes,
             textures,
             sky,
-            lights: model.lights.iter().take(room).map(LightSource::new).collect(),
+            lights,
             headlight,
             fovy: vis.fovy,
             cameras: model.cam_fovy.iter().map(|&fovy| Camera { fovy }).collect(),
@@ -318,6 +314,20 @@ impl LightSource {
             exponent: if all_round { 0.0 } else { light.exponent as f32 },
         }
     }
+}
+
+/// Returns the colours of the headlight, if it is on, and the lights of a scene.
+fn lights(model: &Model) -> (Option<[[f32; 3]; 3]>, Vec<LightSource>) {
+    let vis = &model.vis;
+    let headlight = vis
+        .headlight_active
+        .then(|| [vis.headlight_ambient, vis.headlight_diffuse, vis.headlight_specular].map(single));
+    // the headlight takes one of OpenGL's lights
+    let room = MAX_LIGHTS - usize::from(headlight.is_some());
+    (
+        headlight,
+        model.lights.iter().take(room).map(LightSource::new).collect(),
+    )
 }
 
 /// The textures that something shows: others are not decoded.

@@ -35,7 +35,7 @@ pub(super) struct Baseline {
 pub(super) struct Run {
     pub dir: PathBuf,
     pub behavior: Behavior,
-    /// The name of a task of a program's own.
+    /// The name of a user-defined task.
     pub task: Option<String>,
     pub config: Option<Config>,
     /// The scene of the run, or, if that does not load here, one with the same MIMo.

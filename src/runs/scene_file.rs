@@ -56,7 +56,7 @@ pub enum SceneFileError {
     /// A scene that does not load.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
-    /// A scene of one's own that cannot be read.
+    /// A custom scene that cannot be read.
     #[error(transparent)]
     Room(#[from] RoomError),
     /// The folder's scene is another one.

@@ -53,7 +53,7 @@ impl EyeImages {
         segmentation: Vec::new(),
     };
 
-    /// Makes room for images of so many pixels.
+    /// Makes room for images of `pixels` pixels each.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
         let len = |output| if outputs.contains(output) { pixels } else { 0 };

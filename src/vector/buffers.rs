@@ -1,4 +1,4 @@
-//! Memory of the caller's for what a step of a vector returns.
+//! Caller-owned memory for what a step of a vector returns.
 
 use crate::env::{Env, Observation};
 use crate::sensors::transform::Sense;
@@ -12,7 +12,7 @@ macro_rules! buffers {
         { $(#[$first_doc:meta])* $first:ident: $first_type:ty, $first_bounds:expr, $first_source:expr; }
         $($(#[$doc:meta])* $field:ident: $type:ty, $bounds:expr, $source:expr;)*
     ) => {
-        /// Memory of the caller's for what a step returns: arrays of N rows each, environment after environment.
+        /// Caller-owned memory for what a step returns: arrays of N rows each, environment after environment.
         ///
         /// Entries that are `None` are left out.
         #[derive(Debug, Default)]

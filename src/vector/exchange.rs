@@ -62,7 +62,9 @@ impl VectorEnv {
         if let Seeds::Each(list) = seeds {
             check_length("seeds", list.len(), [n, 1])?;
         }
+        // checked above, so that the mask has a place for every environment
         let marked = |env: usize| mask.is_none_or(|mask| mask[env]);
+        // lazily: the pool takes each slot as it hands it on, with no list in between
         let slots = self.slots.iter_mut().enumerate().filter(|(env, _)| marked(*env));
         let slots = slots.filter_map(|(env, place)| {
             let mut slot = place.take()?;
@@ -124,6 +126,7 @@ impl VectorEnv {
     }
 
     fn submit_all(&mut self, actions: &[f32]) -> Result<(), VectorError> {
+        // all checks are made before anything is sent: an error leaves every environment where it was
         self.check_home()?;
         self.set_actions(actions, None)?;
         self.in_flight = self.slots.len();
@@ -299,6 +302,7 @@ impl VectorEnv {
     }
 
     fn collect_into_rows(&mut self) -> Result<(), VectorError> {
+        // the rows are filled from the slots, which `self` owns as well: taking them is the way around two borrows
         let mut rows = std::mem::take(&mut self.rows);
         let collected = self.collect(&mut rows.buffers());
         self.rows = rows;
@@ -344,6 +348,7 @@ impl VectorEnv {
         }
         let ids = &self.ids;
         let slots = self.slots.iter_mut().flatten();
+        // one that diverged has no picture to draw
         let envs = slots.filter(|slot| slot.env.ready() && ids.contains(&slot.index));
         let first = ids.first().copied().unwrap_or_default();
         draw_eyes(envs.map(|slot| &mut slot.env)).map_err(of(first))
@@ -357,6 +362,7 @@ impl VectorEnv {
         self.infos.write(row, slot.env.info(), slot.env.goal().terms);
         if let (Some(ends), Some(last)) = (&mut self.finals, &slot.last) {
             ends.ended[row] = slot.ended;
+            // the rows of the others keep what they had: nobody reads them
             if slot.ended {
                 ends.rows.buffers().write_whole(row, &last.observation());
                 ends.infos.write(row, &last.info, &last.terms);

@@ -54,7 +54,7 @@ pub enum Command {
     Inspect(inspect::Inspect),
     /// Draw the scene, or the view of an eye
     Render(render::Render),
-    /// Write a scene of one's own to start from, or check one
+    /// Write a custom scene to start from, or check one
     Scene(scene::Scene),
     /// Simulate any MJCF model, with or without an infant, and write what it does as arrays or a video
     Simulate(simulate::Simulate),

@@ -15,7 +15,7 @@ use crate::mimo::embedded;
 /// use babybench::mimo::embedded;
 /// use babybench::{Blueprint, Config};
 ///
-/// // files of one's own over the embedded ones
+/// // custom files over the embedded ones
 /// let mut own = MemoryAssets::new();
 /// let wall = "<geom name='wall' type='box' size='.05 1 .5' pos='2 0 .5'/>";
 /// own.insert("babybench/crib.xml", format!("<mujocoinclude><worldbody>{wall}</worldbody></mujocoinclude>"))?;
@@ -29,7 +29,7 @@ use crate::mimo::embedded;
 pub struct BlueprintOptions {
     /// The task; `None` for that of the key `behavior`, which is not used otherwise.
     pub task: Option<Box<dyn Task>>,
-    /// Where documents and textures come from, laid out like the embedded ones, which are the default. A scene of one's own
+    /// Where documents and textures come from, laid out like the embedded ones, which are the default. A custom scene
     /// ([`Scene::File`](crate::config::Scene::File)) is looked for here first; this may then hold its files alone.
     pub assets: Arc<dyn AssetSource>,
 }

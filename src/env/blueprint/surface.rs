@@ -14,7 +14,7 @@ use crate::sensors::SkinLayout;
 pub(super) struct Surface {
     /// The caller's assets.
     pub(super) given: Arc<dyn AssetSource>,
-    /// The same with the files of a scene of one's own.
+    /// The same with the files of a custom scene.
     pub(super) assets: Arc<dyn AssetSource>,
     pub(super) skin: Option<Arc<SkinLayout>>,
     /// Meshes and textures, made when they are first needed.

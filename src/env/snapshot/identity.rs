@@ -112,7 +112,7 @@ const EARLY: [&str; 5] = [
     "vision_active",
 ];
 
-/// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, all of a scene of one's own, and
+/// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, all of a custom scene, and
 /// the keys that shape an environment's memory.
 fn fingerprint(model: &Model, config: &Config) -> u64 {
     let mut bytes = Vec::new();

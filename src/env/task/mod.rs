@@ -235,7 +235,7 @@ pub(super) fn of_config(config: &Config) -> Box<dyn Task> {
     }
 }
 
-/// Returns the names of what a task of the library measures; none for those that measure nothing, and for tasks of one's own.
+/// Returns the names of what a task of the library measures; none for those that measure nothing, and for custom tasks.
 pub(super) fn measures_of(task: &str) -> &'static [&'static str] {
     match Behavior::from_name(task) {
         Some(Behavior::Mobile) => mobile::NAMES,

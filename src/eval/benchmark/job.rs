@@ -58,7 +58,7 @@ pub struct RunResult {
     pub episodes: u64,
     /// The score of all episodes; none for tasks.
     pub score: Option<f64>,
-    /// The score after so many steps, of the episodes that had ended by then.
+    /// The scores after given numbers of steps, by that number: of the episodes that had ended by then.
     pub score_at: BTreeMap<u64, f64>,
     /// Parts that both hands touch in an episode, mean.
     pub parts_per_episode: Option<f64>,

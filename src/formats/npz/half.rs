@@ -44,7 +44,7 @@ impl Half {
     }
 }
 
-/// Drops so many bits, rounding to the nearest, ties to even.
+/// Drops the lowest bits, rounding to the nearest, ties to even.
 fn rounded(bits: u32, dropped: u32) -> u16 {
     let (kept, rest, half) = (bits >> dropped, bits & ((1 << dropped) - 1), 1 << (dropped - 1));
     let up = rest > half || rest == half && kept & 1 == 1;

@@ -99,7 +99,7 @@ impl NpzWriter {
         self.add_packed(name, shape, data, Packing::Small)
     }
 
-    /// Adds an array as [`NpzWriter::add`] does, kept in a way of one's own choice.
+    /// Adds an array as [`NpzWriter::add`] does, packed as the caller chooses.
     ///
     /// # Errors
     /// As [`NpzWriter::add`].

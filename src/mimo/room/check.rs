@@ -95,7 +95,7 @@ impl<A: AssetSource> Room<A> {
     }
 }
 
-/// Says what is wrong with an element of one's own.
+/// Says what is wrong with an added element.
 fn fault(tree: &Tree, at: usize) -> Option<String> {
     let node = &tree.nodes[at];
     match node.name.as_str() {

@@ -1,4 +1,4 @@
-//! Faults of a scene of one's own.
+//! Faults of a custom scene.
 
 use thiserror::Error;
 
@@ -6,7 +6,7 @@ use crate::config::Scene;
 use crate::mjcf_loader::Place;
 use crate::text::quoted;
 
-/// A fault of a scene of one's own, with its remedy.
+/// A fault of a custom scene, with its remedy.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RoomError {
@@ -42,7 +42,7 @@ pub enum RoomError {
         /// The contents of that file.
         what: &'static str,
     },
-    /// An element that no scene of one's own may have, or not like this.
+    /// An element that no custom scene may have, or not like this.
     #[error("{place}: {reason}")]
     At {
         /// Place of the element.

@@ -1,4 +1,4 @@
-//! A scene of one's own: an MJCF document in which MIMo is included.
+//! A custom scene: an MJCF document in which MIMo is included.
 //!
 //! The document is read as if it lay among the documents of the library, so that it can include them by name, beside its own files. The
 //! library adds three that depend on the configuration: MIMo, his settings and his actuators ([`PARTS`]).
@@ -27,7 +27,7 @@ use crate::mimo::scene::{SceneError, Version, actuators, include};
 use crate::mjcf_loader::{ErrorKind, LoadError, Place};
 use extra::Extra;
 
-/// Folder of the library's documents, in which a scene of one's own is read.
+/// Folder of the library's documents, in which a custom scene is read.
 const FOLDER: &str = "babybench/";
 /// Folder of the library's textures.
 const TEXTURES: &str = "tex/";
@@ -57,7 +57,7 @@ enum Own {
     Added(Extra),
 }
 
-/// The assets of a scene of one's own: its files over the library's, which keep their names.
+/// The assets of a custom scene: its files over the library's, which keep their names.
 pub(super) struct Room<A> {
     given: A,
     own: Own,
@@ -71,7 +71,7 @@ pub(super) struct Room<A> {
     second: bool,
 }
 
-/// Returns what the scene of a configuration is built from: `assets`, or for a scene of one's own ([`Scene::File`]) its files over them,
+/// Returns what the scene of a configuration is built from: `assets`, or for a custom scene ([`Scene::File`]) its files over them,
 /// likewise what is added to a scene of the library ([`Config::scene_extra`]).
 ///
 /// The document is one of `assets`, if they have its path; otherwise it is a file of the system, whose folder then has its textures and
@@ -86,7 +86,7 @@ pub fn scene_assets(config: &Config, assets: Arc<dyn AssetSource>) -> Result<Arc
     })
 }
 
-/// Returns the assets of a scene of one's own over some that are borrowed; `None` if the scene is one of the library.
+/// Returns the assets of a custom scene over some that are borrowed; `None` if the scene is one of the library.
 #[cfg(feature = "eval")]
 pub(crate) fn open_room<'a>(
     config: &Config,

@@ -1,4 +1,4 @@
-//! A second infant in a scene of one's own: the library's documents with other names.
+//! A second infant in a custom scene: the library's documents with other names.
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesStart, Event};

@@ -1,4 +1,4 @@
-//! Whether the MIMo of a scene of one's own is the library's.
+//! Whether the MIMo of a custom scene is the library's.
 
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -13,7 +13,7 @@ use crate::model::{Material, Model};
 /// The first difference: part, array, what was found, what was expected.
 type Difference = (String, &'static str, String, String);
 
-/// The library's files, without those of a scene of one's own.
+/// The library's files, without those of a custom scene.
 struct Library<'a, A>(&'a Room<A>);
 
 impl<A: AssetSource> AssetSource for Library<'_, A> {

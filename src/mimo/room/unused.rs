@@ -7,7 +7,7 @@ use crate::limits::Limits;
 use crate::mimo::scene::{SceneError, document_path, scene_xml};
 use crate::mjcf_loader::{Place, Tree, elements};
 
-/// An attribute of a scene of one's own that changes nothing here.
+/// An attribute of a custom scene that changes nothing here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unused {
     /// Place of the element.
@@ -18,7 +18,7 @@ pub struct Unused {
     pub meaning: &'static str,
 }
 
-/// Lists the attributes in the files of a scene of one's own that change nothing here; none for a scene of the library.
+/// Lists the attributes in the files of a custom scene that change nothing here; none for a scene of the library.
 ///
 /// Everything else that a document says has its effect, as what is not understood is an error.
 ///

@@ -13,6 +13,7 @@ use crate::physics::tiles::Lanes;
 pub fn contact(rows: &mut Rows, s: &mut State, i: usize) {
     s.contact[i].efc_address = None;
     let c = &s.contact[i];
+    // within its gap a contact is listed, for programs to see, but gives no force
     if c.dist >= c.includemargin {
         return;
     }
@@ -68,6 +69,7 @@ fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
             damping = impedance(c.solreffriction, c.solimp, 0.0, model.opt.least_timeconst()).b;
         }
         let normal = rows.efc.r[first];
+        // `impratio` says how many times as stiff friction is as the normal
         let sliding = normal / model.opt.impratio.max(MINVAL);
         for f in c.friction.iter().take(c.dim - 1) {
             let r = (sliding * c.friction[0] * c.friction[0] / (f * f)).max(MINVAL);

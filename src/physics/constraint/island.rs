@@ -93,6 +93,8 @@ impl Island {
     pub(super) fn load(&mut self, topology: &Topology, trees: &[usize], blocks: &[u32], efc: &Efc, s: &State) {
         self.load_trees(topology, trees, s);
         let lanes = self.tiles();
+        // cleared, not only resized: lanes beyond the last degree of freedom of a tree must be zero, as sums run over
+        // whole tiles
         for v in [
             &mut self.acc,
             &mut self.ma,
@@ -196,6 +198,7 @@ impl Island {
     fn load_jacobian(&mut self, topology: &Topology, b: &Block, efc: &Efc) -> Jacobian {
         let col = self.cols.len();
         for &tile in &efc.cols[b.col..b.col + b.ncol] {
+            // a constraint between two trees has columns of both, which moved by different amounts
             let shift = self.shift[topology.tile_tree(tile as usize)];
             self.cols.push((4 * tile as usize).wrapping_add(shift) as u32 / 4);
         }
@@ -299,6 +302,7 @@ impl Island {
                 cost[k] += c[k];
             }
         }
+        // cones are few and differ in size: they are added one by one, always in the same order
         let mut cost = total(&cost);
         for (c, _) in &mut self.cones {
             cost += c.evaluate();
@@ -336,6 +340,7 @@ impl Island {
                 add_transposed_product(&self.cols, &efc.jac, j, &c.force, out);
             }
         }
+        // the gradient's length is MuJoCo's second criterion of convergence
         let mut length2 = [0.0; 4];
         for (((g, ma), f), c) in self.gradient.iter_mut().zip(&self.ma).zip(&self.force_smooth).zip(out) {
             for k in 0..4 {
@@ -359,6 +364,8 @@ impl Island {
             .zip(&self.gradient)
         {
             for k in 0..4 {
+                // the inertial part of the cost is a parabola along the line: its slope and curvature are all that
+                // the line search needs of M
                 sums[0][k] += s[k] * (ma[k] - f[k]);
                 sums[1][k] += s[k] * ms[k];
                 sums[2][k] += s[k] * g[k];

@@ -19,6 +19,7 @@ pub fn joint_limits(rows: &mut Rows, s: &State) {
             continue;
         }
         let (value, margin, d) = (s.qpos[model.jnt_qposadr[j]], model.jnt_margin[j], model.jnt_dofadr[j]);
+        // both sides: in a wide margin a joint may be near both of its limits
         for (side, limit) in [(-1.0, model.jnt_range[j][0]), (1.0, model.jnt_range[j][1])] {
             let dist = side * (limit - value);
             if dist < margin {

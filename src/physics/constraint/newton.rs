@@ -150,18 +150,10 @@ impl Newton {
         }
     }
 
+    /// Loads an island and chooses where to start; returns the cost there and the length of its gradient.
     #[inline(always)]
-    fn solve_island(
-        &mut self,
-        model: &Model,
-        topology: &Topology,
-        bodies: &mut Articulated,
-        blocks: Range<usize>,
-        efc: &mut Efc,
-        s: &mut State,
-    ) {
-        let (island, hessian) = (&mut self.island, &mut self.hessian);
-        let newton = model.opt.solver != SolverType::Cg;
+    fn begin(&mut self, model: &Model, topology: &Topology, blocks: Range<usize>, efc: &Efc, s: &State) -> (f64, f64) {
+        let island = &mut self.island;
         let (trees, blocks) = (&self.trees[..], &self.blocks[blocks]);
         vectorize(
             #[inline(always)]
@@ -172,7 +164,22 @@ impl Newton {
         } else {
             &s.qacc_smooth
         };
-        let (mut cost, length) = island.start(topology, warm, efc);
+        island.start(topology, warm, efc)
+    }
+
+    #[inline(always)]
+    fn solve_island(
+        &mut self,
+        model: &Model,
+        topology: &Topology,
+        bodies: &mut Articulated,
+        blocks: Range<usize>,
+        efc: &mut Efc,
+        s: &mut State,
+    ) {
+        let (mut cost, length) = self.begin(model, topology, blocks, efc, s);
+        let (island, hessian) = (&mut self.island, &mut self.hessian);
+        let newton = model.opt.solver != SolverType::Cg;
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
         // what rests needs no step: the Hessian exceeds the inertia, so its steps are bounded by the inertia's inverse
         let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(&s.params, t)).sum();

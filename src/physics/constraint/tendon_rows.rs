@@ -23,6 +23,7 @@ pub fn tendons(rows: &mut Rows, s: &State, (kind, id): (ConstraintType, usize), 
         if d == u32::MAX {
             break;
         }
+        // a degree of freedom that moves both tendons gets two entries, which add up
         if next_a == d {
             rows.entry(d as usize, a * arms_a[i]);
             i += 1;

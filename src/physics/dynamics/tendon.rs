@@ -116,8 +116,13 @@ fn spatial(model: &Arrays, topology: &Topology, s: &mut State, t: usize, points:
         }
     }
     s.ten_length[t] = length;
-    let entries = topology.tendons.row(t).iter().zip(&s.ten_j[row]);
-    s.ten_velocity[t] = entries.map(|(&d, v)| v * s.qvel[d as usize]).sum();
+    s.ten_velocity[t] = rate(topology, s, t);
+}
+
+/// Returns the rate of the length of a tendon.
+fn rate(topology: &Topology, s: &State, t: usize) -> f64 {
+    let entries = topology.tendons.row(t).iter().zip(&s.ten_j[topology.tendons.range(t)]);
+    entries.map(|(&d, v)| v * s.qvel[d as usize]).sum()
 }
 
 /// Marks in `wrap_obj` of a tendon's points that are not on a geom.

@@ -114,7 +114,7 @@ pub(super) fn check(model: &[u8]) -> Result<usize, String> {
     Ok(most)
 }
 
-/// Checks a graph of at most so many operators, and those in its operators; how deep they are was checked before.
+/// Checks a graph within a limit of operators, and those in its operators; how deep they are was checked before.
 fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut Constants<'m>) -> Result<(), String> {
     let nodes = parts(graph, 1);
     if nodes.len() > most {

@@ -63,14 +63,20 @@ impl Eye {
     pub fn new(scenery: &Scenery, poses: &Poses, view: &View) -> Self {
         let (place, mat) = poses.camera(view.camera).unwrap_or(([0.0; 3], MAT3_ID));
         let mat = &mat;
+        // MuJoCo places two eyes in single precision, even where it draws one picture, and averages them: the camera
+        // comes out up to a rounding beside where it was put
         let aside = column(mat, 0);
         let side = |sign: f64| [0, 1, 2].map(|i| (place[i] + sign * EYE_DISTANCE * 0.5 * aside[i]) as f32);
         let (left, right) = (side(-1.0), side(1.0));
         let pos = [0, 1, 2].map(|i| ((f64::from(left[i]) + f64::from(right[i])) * 0.5) as f32);
         let doubled = |v: Vec3| single(v).map(|x| f64::from(x) + f64::from(x));
+        // the directions of both eyes added, as MuJoCo does before it makes them unit vectors: equal ones double
+        // without rounding
         let ahead = crate::math::unit(doubled(column(mat, 2).map(|v| -v))).0;
         let upward = doubled(column(mat, 1));
         let along = crate::math::dot(upward, ahead);
+        // made perpendicular to the direction of view by Gram and Schmidt, in double precision, from where it is
+        // single again
         let upward = crate::math::unit([0, 1, 2].map(|i| upward[i] - along * ahead[i])).0;
 
         let forward = unit(single(ahead));
@@ -79,6 +85,7 @@ impl Eye {
         let (near, far) = (scenery.near as f32, scenery.far as f32);
         let tangent = pxfm::f_tan(scenery.fovy_of(view.camera) * std::f64::consts::PI / 360.0);
         let top = (f64::from(near) * tangent) as f32;
+        // the width follows from the height, as `glFrustum` wants it: the field of view of a camera is vertical
         let half_width = 0.5 * view.width as f32 / view.height as f32 * (top + top);
         let back = forward.map(|v| -v);
         Self {
@@ -88,12 +95,16 @@ impl Eye {
             forward,
             tan: [half_width / near, top / near],
             near,
+            // the product of a rotation and a translation: the last column is the camera's position in its own frame,
+            // negated
             view: [
                 [right[0], right[1], right[2], -dot(right, pos)],
                 [up[0], up[1], up[2], -dot(up, pos)],
                 [back[0], back[1], back[2], dot(forward, pos)],
             ],
             focal: [2.0 * near / (half_width + half_width), 2.0 * near / (top + top)],
+            // the depth is reversed, 1 near and 0 far: floating-point numbers are densest around 0, where perspective
+            // crowds what is far away
             depth: [
                 -0.5 * (-(far + near) / (far - near)) - 0.5,
                 -0.5 * (-(2.0 * far * near) / (far - near)),
@@ -116,6 +127,7 @@ impl Eye {
     pub fn model(&self, pos: Vec3, mat: &Mat3, size: V3) -> [Row; 3] {
         let (pos, mat) = (single(pos), mat.map(|v| v as f32));
         self.view.map(|[x, y, z, c]| {
+            // the product of view and pose is made once for a shape, so a vertex costs one transform instead of two
             let turned = |k: usize| x * mat[k] + y * mat[3 + k] + z * mat[6 + k];
             let constant = x * pos[0] + y * pos[1] + z * pos[2] + c;
             [turned(0) * size[0], turned(1) * size[1], turned(2) * size[2], constant]
@@ -125,6 +137,7 @@ impl Eye {
     /// Turns a transform into the camera frame into a projection: rows that give x and y (in half images) and the
     /// depth, all times w, and w.
     pub fn project(&self, [x, y, z]: [Row; 3]) -> [Row; 4] {
+        // divided by w, which is -z, this is a constant and a term in 1 / w
         let mut depth = z.map(|v| self.depth[0] * v);
         depth[3] += self.depth[1];
         [
@@ -138,6 +151,8 @@ impl Eye {
 
 /// Returns the transform for one part of a shape: the caps of a capsule are not stretched with its length.
 pub fn part_rows(part: MeshPart, rows: [Row; 3], size: V3) -> [Row; 3] {
+    // a scaled capsule has caps that stay half balls: they are scaled by the radius in all directions and moved to
+    // its ends
     let cap = 0.5 * (size[0] + size[1]);
     let length = size[2];
     let upper = |[x, y, z, c]: Row| {

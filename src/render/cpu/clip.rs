@@ -67,6 +67,7 @@ pub enum Place {
 
 /// Returns the place of a box that is projected by `rows`.
 pub fn place(rows: &[Row; 4], low: V3, high: V3) -> Place {
+    // far above what rounding does to a sum of four products, relative to the sum of their magnitudes
     const SAFE: f32 = 1e-5;
     let [x, y, z, w] = rows;
     // positive beyond the plane: a row with its sign, and whether w is subtracted
@@ -147,6 +148,8 @@ impl Polygon {
     }
 
     fn cut_at(&mut self, plane: usize) {
+        // Sutherland and Hodgman's algorithm: the polygon is cut by one plane after the other, each time walking
+        // around its edges
         let mut source = [self.corners[0]; MAX_CORNERS];
         let kept = self.count;
         source[..kept].copy_from_slice(&self.corners[..kept]);
@@ -159,6 +162,7 @@ impl Polygon {
                 self.count = 0;
                 return;
             }
+            // a corner on the plane is kept, so that an edge in it is not cut away
             if a >= 0.0 {
                 self.push(p);
             }
@@ -184,6 +188,7 @@ impl Polygon {
 
 /// Returns whether a triangle certainly faces away from the camera, so that nothing of it can be seen.
 pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
+    // far above single precision: what is nearly edge-on is left to the rasteriser, whose integers decide exactly
     const CLEAR: f32 = 1e-3;
     // the triple product of (x, y, w) tells which side is in front without a division, also where a corner is behind
     // the camera (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics Hardware 1997)
@@ -197,6 +202,8 @@ pub fn faces_away(&[a, b, c]: &[Clip; 3]) -> bool {
 
 /// Returns the point where an edge crosses a plane, interpolated from the end that is nearer to the plane.
 fn crossing((p, a): (Corner, f32), (q, b): (Corner, f32)) -> EdgePoint {
+    // from the nearer end, as Mesa does it: two triangles that share the edge walk it in opposite directions, and
+    // must find the same point
     let difference = b - a;
     // distances have different signs
     let ((from, to), share) = if b.abs() < a.abs() {
@@ -225,6 +232,8 @@ pub fn lerp<const N: usize>(from: [f32; N], to: [f32; N], share: f32) -> [f32; N
 pub fn project([x, y, z, w]: Clip, half: [f32; 2]) -> Vertex {
     let iw = 1.0 / w;
     Vertex {
+        // from -1..1 to pixels in the order of Mesa's viewport transform, since another order falls on another 1/256
+        // of a pixel
         x: (x * iw) * half[0] + half[0],
         y: (y * iw) * half[1] + half[1],
         z: z * iw,

@@ -30,6 +30,8 @@ impl CubePoints {
     /// Locates pixels of a block across several faces: each as if the whole block were on its face.
     #[cold]
     fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
+        // the differences of a face's own coordinates within the block choose the mip level: between coordinates of
+        // two faces they would be as large as the face, and the blurriest level would be taken along every edge
         let own = side.map(|side| Self::on(faces, side, at));
         let each = |value: &dyn Fn(&Self) -> [f32; 4]| {
             let mut out = [0.0; 4];
@@ -61,6 +63,8 @@ impl CubePoints {
         // a zero direction has no side; any colour will do
         let least = f32x4::splat(f32::MIN_POSITIVE);
         let inverse = f32x4::ONE / ma.simd_gt(least).select(ma, least);
+        // OpenGL's coordinates on a face are (sc / ma + 1) / 2: the half is in both, the 1/2 is added where they are
+        // used
         let half = 0.5 * inverse;
         let scale = half * f32x4::splat(faces[0][0].width as f32);
         let length = |change: fn(f32x4) -> f32x4| {
@@ -86,6 +90,7 @@ impl CubePoints {
         if !self.detail.same {
             return self.mixed(faces, wanted);
         }
+        // one level for the block means one face, too: blocks across faces are never the same
         let side = usize::from(self.side[0]);
         let level = self.detail.level[0];
         let image = &faces[side][level];
@@ -182,6 +187,8 @@ impl Spots {
         let (left, top) = (floor(x), floor(y));
         let (across, down) = (x - left, y - top);
         let last = size - 1.0;
+        // bounded before it becomes an integer: coordinates that are not numbers or far away would be undefined
+        // indices
         let within = |v: f32x4| at_least(v, f32x4::splat(-1.0)).fast_min(last);
         let (left, top) = (within(left), within(top));
         let least = left.fast_min(top).simd_ge(f32x4::ZERO);
@@ -217,6 +224,7 @@ impl Spots {
 /// Returns the components of directions on a side of the cube: right, down, outward.
 #[inline(always)]
 fn components<T: Neg<Output = T>>(side: u8, [x, y, z]: [T; 3]) -> (T, T, T) {
+    // the table of cube map faces in OpenGL's specification
     match side {
         0 => (-z, -y, x),
         1 => (z, -y, -x),
@@ -256,6 +264,8 @@ impl Axes {
         let longer = along_x.simd_gt(along_y);
         Self {
             longer: longer.to_bitmask(),
+            // at equal lengths z wins over x and y, and y over x, as in llvmpipe, so that what lies on an edge of the
+            // cube is on the same face there
             upright: z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask(),
             negative: [x, y, z].map(|v| v.is_sign_negative().to_bitmask()),
         }
@@ -312,8 +322,10 @@ fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u
     let inside = |i: i32| (0..n as i32).contains(&i);
     match (inside(x), inside(y)) {
         (true, true) => Some(image(side).pixels[y as usize * n + x as usize]),
+        // beyond a corner there is no face: three texels meet, and their mean takes the place of the fourth
         (false, false) => None,
         _ => {
+            // the centres of texels on a face that reaches from -1 to 1
             let place = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;
             let at = direction(side, place(x), place(y));
             // the direction of the texel's centre, beyond the edge, points through the adjoining face

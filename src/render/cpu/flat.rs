@@ -19,13 +19,16 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
     let (width, height) = (face[0].width as f32, face[0].height as f32);
     let length = |change: fn(f32x4) -> f32x4| {
         let (s, t) = (change(*s) * width, change(*t) * height);
+        // llvmpipe takes the differences of the first pixel for the whole block
         (s * s + t * t).to_array()[0]
     };
     let squared = length(across).max(length(upward));
     let detail = MipLevels::new(f32x4::splat(squared), face.len());
+    // all lanes are the same here
     let (level, share) = (detail.level[0], detail.blend[0]);
     let spots = Spots::new(&face[level], *s, *t);
     let first = gather(spots.level, spots.places(spots.y.before, spots.x.before));
+    // a texel around which there is one colour, here and in the next level, needs neither neighbours nor blending
     if face[level].has_one_colour() || are_settled(first) {
         return channels(first);
     }
@@ -52,6 +55,7 @@ fn spread(texels: u32x4) -> Channels {
 /// Lerps between bytes with weights of 0..256.
 #[inline(always)]
 fn lerp(a: Channels, b: Channels, weight: u16x8) -> Channels {
+    // the sum of both products is at most 255 * 256, which 16 bits hold without a sign
     let rest = u16x8::splat(ONE) - weight;
     let one = |k: usize| (a[k] * rest + b[k] * weight + u16x8::splat(ONE / 2)) >> 8;
     [one(0), one(1)]

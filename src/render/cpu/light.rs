@@ -113,6 +113,7 @@ pub fn vertices(
     corners: &Corners,
 ) -> Vectors {
     let size = drawable.size;
+    // as in the projection: the caps of a capsule are scaled by its radius, not by its length
     let cap = 0.5 * (size[0] + size[1]);
     let ends = four(|k| match corners.part[k] {
         MeshPart::Body => (size[2], 0.0),
@@ -132,6 +133,7 @@ pub fn vertices(
         normal[1] * (stretch * size[0]),
         normal[2] * (size[0] * size[1]),
     ]));
+    // only highlights depend on where one looks from
     let to_eye = if drawable.specular > 0.0 {
         units(&three(|k| f32x4::splat(eye[k]) - p[k]))
     } else {
@@ -148,6 +150,7 @@ fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vectors, n: &Vectors, 
     let (mut diffuse, mut highlights) = ([f32x4::splat(glow); 3], [f32x4::ZERO; 3]);
     for light in lights {
         let (to_light, strength) = light.reach(p);
+        // Lambert's law
         let facing = dots(n, &to_light);
         let front = facing.simd_gt(f32x4::ZERO);
         let facing = facing & front;
@@ -155,6 +158,7 @@ fn shade(lights: &[PlacedLight], drawable: &Drawable, p: &Vectors, n: &Vectors, 
             diffuse[k] += strength * (facing * light.diffuse[k] + light.ambient[k]);
         }
         if front.to_bitmask() != 0 && drawable.specular > 0.0 && light.shines {
+            // Blinn's half vector, which OpenGL uses instead of the mirrored ray: one sum instead of a reflection
             let middle = three(|k| to_light[k] + to_eye[k]);
             let exponent = drawable.exponent;
             // a power costs more than the rest of a light, and most highlights are too weak for a byte to show
@@ -239,6 +243,7 @@ impl PlacedLight {
     /// (0..1).
     #[inline(always)]
     fn reach(&self, p: &Vectors) -> (Vectors, f32x4) {
+        // a directional light has no distance to fade with
         let Some(pos) = self.pos else {
             return (splat(self.dir.map(|v| -v)), f32x4::ONE);
         };
@@ -250,6 +255,7 @@ impl PlacedLight {
         if self.cos_cutoff > -1.0 {
             let along = (-dots(&to_light, &splat(self.dir))).to_array();
             strength *= f32x4::new(four(|k| {
+                // the edge of the cone is sharp in OpenGL; what softens a spot light is the power towards its axis
                 if along[k] < self.cos_cutoff {
                     0.0
                 } else {

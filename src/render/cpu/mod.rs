@@ -72,6 +72,8 @@ impl CpuRenderer {
         view: &View,
         images: ImageBuffers<'_>,
     ) -> Result<(), RenderError> {
+        // before anything is drawn, so that a buffer of a wrong length costs nothing and leaves the others as they
+        // are
         images.check(view)?;
         self.passes += 1;
         let ImageBuffers {
@@ -81,6 +83,8 @@ impl CpuRenderer {
             segmentation,
         } = images;
         let frame = &mut self.frame;
+        // depth and segmentation are of the centre of a pixel, colours of four samples around it: one pass over the
+        // geometry fills both
         let targets = Targets {
             colour: rgb.is_some() || gray.is_some(),
             centre: depth.is_some() || segmentation.is_some(),
@@ -99,6 +103,8 @@ impl CpuRenderer {
             });
         }
         if targets.colour {
+            // gray is made of the rounded bytes of the colour, so that it is the same whether both are asked for or
+            // one
             let colours = match rgb {
                 Some(out) => out,
                 None => {
@@ -140,6 +146,7 @@ impl CpuRenderer {
         view: &View,
         out: &mut [u8],
     ) -> Result<(), RenderError> {
+        // the whole image is rasterised: half of it drawn small would have other samples
         let half = View {
             width: view.width.div_ceil(2),
             height: view.height.div_ceil(2),

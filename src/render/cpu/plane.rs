@@ -51,6 +51,8 @@ impl Basis {
     pub fn new([a, b, c]: [&Vertex; 3]) -> Self {
         let (dx01, dy01) = (a.x - b.x, a.y - b.y);
         let (dx20, dy20) = (c.x - a.x, c.y - a.y);
+        // one division for all planes of a triangle, multiplied into the differences as Mesa does: other orders round
+        // the colours of thin triangles to other bytes
         let scale = 1.0 / (dx01 * dy20 - dy01 * dx20);
         Self {
             x: a.x,
@@ -85,6 +87,8 @@ impl Planes {
         let dx = d01 * f32x4::splat(basis.dy20) - d20 * f32x4::splat(basis.dy01);
         let dy = d20 * f32x4::splat(basis.dx01) - d01 * f32x4::splat(basis.dx20);
         let at = a - (dx * f32x4::splat(basis.x) + dy * f32x4::splat(basis.y));
+        // where terms are much larger than their sum, its last bits are decided by rounding; only there llvmpipe's
+        // order has to be followed
         let change = dx.abs() * f32x4::splat(size[0] as f32) + dy.abs() * f32x4::splat(size[1] as f32);
         let gentle = (at.abs() + change).simd_le(f32x4::splat(GENTLE * magnitude.abs()));
         Self {
@@ -99,6 +103,7 @@ impl Planes {
     #[inline(always)]
     pub fn block(&self, x: f32, y: f32) -> [f32x4; 4] {
         if self.gentle {
+            // additions give the other pixels, where the rounding of llvmpipe takes products for each
             let first = self.at + (self.dx * f32x4::splat(x) + self.dy * f32x4::splat(y));
             [first, first + self.dx, first + self.dy, first + (self.dx + self.dy)]
         } else {
@@ -111,6 +116,7 @@ impl Planes {
     fn exact(&self, x: f32, y: f32) -> [f32x4; 4] {
         let [at, dx, dy] = [self.at, self.dx, self.dy].map(double);
         let along = |slope: f64x4, place: f32, from: f64x4| single(slope * f64x4::splat(f64::from(place)) + from);
+        // along a row first, then up, each rounded to single precision once, as two fused instructions round
         let columns = [double(along(dx, x, at)), double(along(dx, x + 1.0, at))];
         let row = |y: f32| columns.map(|from| along(dy, y, from));
         let ([a, b], [c, d]) = (row(y), row(y + 1.0));

@@ -48,6 +48,8 @@ struct Local {
 impl Edge {
     fn new(p: Fixed, q: Fixed) -> Self {
         let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+        // the fill rule: a sample on an edge belongs to the triangle on one side of it, so that neighbours neither
+        // overlap nor leave a seam
         let ours = dy < 0 || (dy == 0 && dx < 0);
         Self {
             dx,
@@ -65,6 +67,7 @@ impl Edge {
 
     /// Evaluates the edge function at the lower left corner of a pixel.
     fn at(&self, x: i32, y: i32) -> i64 {
+        // products of two numbers of 22 bits
         let up = i64::from(self.dx) * i64::from(y * 256 - self.from[1]);
         up - i64::from(self.dy) * i64::from(x * 256 - self.from[0]) + self.bias
     }
@@ -73,6 +76,8 @@ impl Edge {
     /// sign, as all steps are whole grains.
     #[inline(always)]
     fn local<S: Sampling>(&self, at: i64) -> Local {
+        // 32 bits hold the values around a block once the grain is taken out: eight pixels of edges that are at most
+        // 2^22 long
         let at = (at >> GRAIN_BITS) as i32;
         Local {
             samples: S::steps(self.dx, self.dy) + i32x4::splat(at),
@@ -113,6 +118,8 @@ impl Depth {
     #[inline(always)]
     pub fn at<S: Sampling>(&self, x: i32, y: i32) -> f32x4 {
         let (x, y) = (x as f32, y as f32);
+        // the sum of two parts would round steep planes otherwise than llvmpipe, which evaluates at each sample's own
+        // place
         let z = if self.gentle {
             f32x4::splat(self.plane.quick(x, y)) + self.spread
         } else {

@@ -24,6 +24,8 @@ impl MipLevels {
     /// as in llvmpipe; magnified textures use the first level.
     #[inline(always)]
     pub fn new(squared: f32x4, levels: usize) -> Self {
+        // the exponent is the whole part of the binary logarithm, and the mantissa minus 1 a straight line between
+        // powers of two: llvmpipe's fast logarithm. Half of it, as lengths are squared.
         let bits: i32x4 = cast(squared);
         let exponent = f32x4::from_i32x4((bits >> 23 & i32x4::splat(255)) - i32x4::splat(127));
         let mantissa: f32x4 = cast(bits & i32x4::splat(0x007f_ffff) | i32x4::splat(0x3f80_0000));
@@ -63,6 +65,7 @@ impl TexturePixels {
 /// Returns the differences between the columns of a block, at each pixel.
 #[inline(always)]
 pub fn across(v: f32x4) -> f32x4 {
+    // both pixels of a row have the difference between them, as `dFdx` of a quad has
     let v = v.to_array();
     f32x4::new([v[1], v[1], v[3], v[3]]) - f32x4::new([v[0], v[0], v[2], v[2]])
 }
@@ -83,6 +86,7 @@ pub fn gather(level: &Level, places: [i32; 4]) -> u32x4 {
 /// Returns whether all of these texels are [`SETTLED`].
 #[inline(always)]
 pub fn are_settled(texels: u32x4) -> bool {
+    // the mark travels in the byte of opacity, which textures here do not use: it costs no memory access
     let marks = texels & u32x4::splat(0xff00_0000);
     marks.simd_eq(u32x4::splat(u32::from(SETTLED) << 24)).to_bitmask() == 15
 }

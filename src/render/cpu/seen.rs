@@ -88,6 +88,7 @@ impl Seen {
 
     /// Finds the triangles that some pixels of a frame show, and numbers them; lights their vertices.
     pub fn find(&mut self, frame: &mut Frame, scenery: &Scenery, poses: &Poses, eye: &Eye, pixels: Pixels) {
+        // once an image, not once a drawable: no light depends on what it shines on
         light::place(scenery, poses, eye, &mut self.lights);
         // what is seen grows with what is drawn, not later; a sample shows one triangle
         let samples = 4 * frame.colour.ids.len() + frame.colour.fragments.capacity();
@@ -102,6 +103,7 @@ impl Seen {
         match pixels {
             Pixels::All => self.number(&mut frame.colour, |_, _| true),
             Pixels::Second => {
+                // rows here count from the bottom, wanted ones from the top
                 let first = (frame.size[1] + 1) % 2;
                 self.number(&mut frame.colour, |x, y| x % 2 == 0 && y % 2 == first);
             }
@@ -122,6 +124,7 @@ impl Seen {
             ..
         } = target;
         let mut see = |id: u32| {
+            // the background has no record: its index is beyond all
             if let Some(record) = records.get_mut(id as usize)
                 && record.setup == NONE
             {
@@ -210,6 +213,7 @@ impl Seen {
                     let vertex = first + rest.trailing_zeros() as usize / 8;
                     rest &= rest - 1;
                     self.lit_of[vertex] = (self.lit.len() + count) as u32;
+                    // four seen vertices side by side, however far apart they are in the mesh: most are not seen
                     batch[count] = vertex - draw.base;
                     count += 1;
                     if count == batch.len() {

@@ -111,6 +111,7 @@ impl Shader {
         // blocks of 2 x 2 pixels, since the differences within a block choose the mip level
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
+                // inside a triangle all samples have its colour: one shading, no mean
                 let colours = if let Some(id) = frame.colour.only(x, y) {
                     bytes(&self.colours(frame, &inputs, [x, y], id, [true; 4]))
                 } else {
@@ -233,6 +234,8 @@ fn bytes(colours: &Vectors) -> Vectors {
 fn rounded(colour: f32x4) -> f32x4 {
     // adding 2^23 rounds to the nearest integer
     const SHIFT: f32 = 8_388_608.0;
+    // from 2^23 on there is no room for fractions, and adding rounds them as the hardware rounds sums: to the
+    // nearest, halves to even
     (at_least(colour, f32x4::ZERO).fast_min(f32x4::ONE) * 255.0 + SHIFT) - SHIFT
 }
 
@@ -262,6 +265,7 @@ impl Setup {
         let basis = Basis::new(vertices);
         // Over the image, not the values but the values over w are linear. The fourth lane is 1, so it becomes 1 / w,
         // by which the others are divided at each pixel.
+        // one reciprocal a vertex, from the projection
         let iw = three(|k| f32x4::splat(vertices[k].iw));
         let over = |of: [f32x4; 3]| Planes::new(&basis, three(|k| of[k] * iw[k]), vertices[0].iw, frame.size);
         let mut setup = Self {
@@ -290,6 +294,7 @@ impl Setup {
     #[inline(always)]
     fn colours(&self, scenery: &Scenery, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
         let [r, g, b, w] = f32x4::transpose(self.colour.block(x, y));
+        // the perspective division: one for each pixel instead of one for each channel
         let w = f32x4::ONE / w;
         let colours = [r * w, g * w, b * w];
         if self.image == NONE {
@@ -310,9 +315,11 @@ impl Inputs<'_> {
         };
         let Eye { forward, right, up, .. } = self.eye;
         let ray = |at: [f32; 4], k: usize| (f32x4::new(at) * self.step[k] - 1.0) * self.eye.tan[k];
+        // all four pixels even where one is wanted: their differences choose the mip level
         let across = ray([x, x + 1.0, x, x + 1.0], 0);
         let upward = ray([y, y, y + 1.0, y + 1.0], 1);
         let along = |k: usize| forward[k] + right[k] * across + up[k] * upward;
+        // MuJoCo's cube has its top along +y, the world along +z
         self.scenery.textures[sky].sample(&[along(0), along(2), -along(1)], wanted)
     }
 }

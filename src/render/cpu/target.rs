@@ -63,6 +63,8 @@ impl Target {
 
     /// Returns whether every sample in a range of pixels is nearer than the depth `z`.
     pub fn hides(&self, x: std::ops::Range<usize>, y: std::ops::Range<usize>, z: f32) -> bool {
+        // every sample, not the farthest of a coarser grid: what is hidden by a hair is still not drawn, and nothing
+        // that shows is left out
         y.into_iter().all(|row| {
             let row = &self.depth[row * self.width..][x.clone()];
             row.iter()
@@ -206,6 +208,7 @@ impl Sink for Writer<'_, Opaque> {
 
 impl Sink for Writer<'_, Transparent> {
     fn pixel(&mut self, at: usize, inside: f32x4, z: f32x4) {
+        // all opaque triangles are in the target by then, so what they hide is dropped here and never shaded
         let samples = (inside & z.simd_ge(f32x4::new(self.target.depth[at]))).to_bitmask();
         if samples == 0 {
             return;

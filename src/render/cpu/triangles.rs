@@ -25,6 +25,7 @@ impl Frame {
         for &[a, b, c] in &mesh.triangles[range] {
             let t = if draw.flip { [a, c, b] } else { [a, b, c] };
             let own = three(|k| draw.base + usize::from(t[k]));
+            // one bit for each plane that the corner is beyond
             let [p, q, r] = three(|k| self.sides[own[k]]);
             // all corners are beyond the same plane
             if p & q & r != 0 {
@@ -69,6 +70,7 @@ impl Frame {
                 continue;
             }
             let at = four(|i| first[i] + step[i] * STRIP_LANES * k);
+            // the same corner of four quadrilaterals lies side by side in memory, or is one vertex for all of them
             let quads = Quads(four(|k| {
                 [lanes(&self.x, at[k], step[k]), lanes(&self.y, at[k], step[k])]
             }));
@@ -102,6 +104,8 @@ impl Frame {
     /// Puts a triangle, whose vertices are given, among those to be rasterised.
     #[inline(always)]
     fn wait(&mut self, index: usize, vertices: [usize; 3]) {
+        // four triangles of any strips wait for each other: a group that is full costs as much as one with a single
+        // triangle
         if self.waiting.add(vertices, &self.vertices, &self.x, &self.y) {
             self.flush(index);
         }
@@ -115,6 +119,7 @@ impl Frame {
             x: &self.x,
             y: &self.y,
         };
+        // the kind of the drawable is decided here, outside the loops over pixels, which are compiled for each
         if self.targets.colour && self.draws[index].transparent {
             geometry.raster::<FourSamples, Transparent>(&self.waiting, index, &mut self.colour);
         } else if self.targets.colour {

@@ -1,4 +1,4 @@
-//! Logs of tasks of one's own.
+//! Logs of custom tasks.
 
 use super::*;
 

@@ -19,6 +19,7 @@ impl Island {
         self.start_at(topology, qacc_warmstart, efc);
         let warm = self.evaluate();
         let length = self.differentiate(efc);
+        // convexity spares the other start: both are evaluated only where it proves nothing
         if self.beats_smooth(warm) {
             return (warm, length);
         }
@@ -62,6 +63,7 @@ impl Island {
     #[inline(always)]
     fn reset_rows(&mut self, efc: &Efc) {
         let x = std::mem::take(&mut self.acc);
+        // the product with J is the same for an acceleration and for a search direction, and lands in `jv`
         self.rates(&x, efc);
         self.acc = x;
         for q in &mut self.scalar_rows {
