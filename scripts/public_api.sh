@@ -20,13 +20,14 @@ if [ "$("$tool" --version 2>/dev/null)" != "cargo-public-api $version" ]; then
   cargo install --quiet --locked --debug --version "$version" --root target/tools cargo-public-api # as it runs for a moment
 fi
 
-# JSON is not a stable output of rustdoc. It alone is told that it may write it, so that nothing is compiled anew.
+# JSON is not a stable output of rustdoc. It alone is told that it may write it, so that nothing is compiled anew: dependencies are those
+# of the release profile, which .ci/run has checked by then.
 wrapper=$PWD/target/tools/bin/rustdoc-json
 if ! [ -x "$wrapper" ]; then # a newer one would compile anew
   printf '#!/bin/sh\nRUSTC_BOOTSTRAP=1 exec rustdoc "$@"\n' >"$wrapper"
   chmod +x "$wrapper"
 fi
-RUSTDOC=$wrapper cargo rustdoc --quiet --locked -p babybench --lib --features "$features" --target-dir "$target" -- \
+RUSTDOC=$wrapper cargo rustdoc --quiet --locked --release -p babybench --lib --features "$features" --target-dir "$target" -- \
   -Z unstable-options --output-format json --cap-lints allow
 
 found=$target/public-api.txt
