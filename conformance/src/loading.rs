@@ -16,6 +16,9 @@ const TOLERANCE: f64 = 1e-10;
 /// The same where masses are sums in single precision over triangles in another order.
 const OF_HULLS: f64 = 1e-5;
 
+/// The same for angles of lenses, which MuJoCo takes from the system's arctangent in single precision.
+const OF_LENSES: f64 = 1e-7;
+
 /// The same for inverse weights, which magnify rounding by the condition of the inertia.
 const DERIVED: f64 = 1e-8;
 
@@ -67,6 +70,13 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::Invalid(message) if message.starts_with("MuJoCo 3.3.0 multiplies it") => {
             Some("sensors of no object and keyframes beside copies")
         }
+        ErrorKind::Invalid(message) if message.contains("has no distance from itself") => {
+            Some("distances of boxes and meshes from themselves")
+        }
+        ErrorKind::Invalid(message) if message.starts_with("the muscle moves nothing") => {
+            Some("muscles that move nothing, whose force is a quotient of rounding errors")
+        }
+        ErrorKind::Twin { .. } => Some("references that MuJoCo multiplies beside copies"),
         ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
         ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),
         _ => None,
@@ -113,7 +123,15 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
         .chain(looks(model))
         .chain(options(model));
     let of_hulls = model.meshes.iter().any(|mesh| mesh.of_hull);
-    let compiled = compiled.map(|(name, values)| (name, values, if of_hulls { OF_HULLS } else { TOLERANCE }));
+    let lenses = model.cam_sensorsize.iter().any(|size| *size != [0.0; 2]);
+    let compiled = compiled.map(|(name, values)| {
+        let limit = match name {
+            _ if of_hulls => OF_HULLS,
+            "cam_fovy" if lenses => OF_LENSES,
+            _ => TOLERANCE,
+        };
+        (name, values, limit)
+    });
     let derived = derived(model).into_iter().chain(derived_unrecorded(model));
     let derived = derived.map(|(name, values)| (name, values, if of_hulls { OF_HULLS } else { DERIVED }));
     let mut all = Vec::new();

@@ -109,7 +109,7 @@ table! {
     /// Attributes of `<position>` and `<intvelocity>`.
     group Servo {
         "kp" kp: Option<f64> = None, real(NonNegative), "Gain of the position error; 1 if no default gives another.";
-        "kv" kv: Option<f64> = None, real(NonNegative), "Damping; 0 if no default gives another.";
+        "kv" kv: Option<f64> = None, real(NonNegative), "Damping; 0 for that of a default, or none.";
         "dampratio" dampratio: Option<f64> = None, real(NonNegative), "Damping in place of `kv`, as the damping ratio at `qpos0` of what it acts on alone.";
         "inheritrange" inheritrange: Option<f64> = None, real(Any), "Width of the range of the position that is asked for, relative to that of the joint or the tendon, where positive.";
     }
@@ -161,6 +161,7 @@ const TWO_ACT_RANGES: &str = "actrange and inheritrange are two ways to say the 
 const NEGATIVE_SMOOTHING: &str =
     "a muscle's tausmooth, which it may have from dynprm of a default class, must be 0 or more";
 const NEGATIVE_ADHESION: &str = "the ctrlrange of adhesion must not be negative";
+const REPULSION: &str = "the gain of adhesion, which it may have from gainprm of a default class, must not be negative";
 const NO_CRANK: &str = "slidersite and cranklength are for slider-cranks: give cranksite, too";
 const NO_SITE: &str = "refsite needs the attribute site";
 const NEGATIVE_DAMPING: &str = "the ctrlrange of a damper must not be negative";
@@ -214,6 +215,9 @@ impl Actuator {
                 self.law.gainprm[0] = Adhesion::read(e).gain.unwrap_or(self.law.gainprm[0]);
                 (self.law.gaintype, self.law.biastype) = (GainType::Fixed, BiasType::None);
                 self.control.limited = Tri::Yes;
+                if self.law.gainprm[0] < 0.0 {
+                    return Err(REPULSION);
+                }
                 if self.ctrlrange.iter().any(|&end| end < 0.0) {
                     return Err(NEGATIVE_ADHESION);
                 }
@@ -240,10 +244,11 @@ impl Actuator {
         self.law.biasprm[1] = -kp;
         match (servo.kv, servo.dampratio) {
             (Some(_), Some(_)) => return Err(TWO_DAMPINGS),
-            (Some(kv), None) => self.law.biasprm[2] = -kv,
+            // zeros leave what a default gives, as in MuJoCo 3.3.0
+            (Some(kv), None) if kv != 0.0 => self.law.biasprm[2] = -kv,
             // a positive number stands for the ratio until the inertia is known
-            (None, Some(ratio)) => self.law.biasprm[2] = ratio,
-            (None, None) => {}
+            (None, Some(ratio)) if ratio != 0.0 => self.law.biasprm[2] = ratio,
+            _ => {}
         }
         if let Some(timeconst) = Filter::read(e).timeconst {
             self.law.dynprm[0] = timeconst;

@@ -1,11 +1,13 @@
 //! The typed document: every element with its defaults applied, references still by name, angles still as written. Here
 //! are the tables of bodies and what hangs on them, and the document as a whole.
 
+use std::collections::BTreeSet;
+
 use crate::math::Vec3;
 use crate::model::{self, CamLight, GeomType, JointType, Options, Statistic};
 
 use super::actuator::Actuator;
-use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
+use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text};
 use super::mesh::{HField, Mesh};
@@ -31,6 +33,7 @@ table! {
         "range" range: [f64; 2] = [0.0; 2], reals(2, Any), "Lower and upper limit, angle or m.";
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
         "actuatorfrclimited" actuatorfrclimited: Tri = Tri::Auto, TRI, "Whether `actuatorfrcrange` is enforced.";
+        "actuatorgravcomp" actuatorgravcomp: bool = false, FLAG, "Whether its actuators hold up the weight that `gravcomp` compensates.";
         "actuatorfrcrange" actuatorfrcrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force of all actuators on the joint, N m or N.";
         "springdamper" springdamper: [f64; 2] = [0.0; 2], reals(2, NonNegative), "Time constant, s, and damping ratio of the joint alone, from which stiffness and damping follow in place of those given.";
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring, N m/rad or N/m.";
@@ -52,6 +55,7 @@ table! {
     element FreeJoint {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
+        check "align", Kind::Word(&["false", "auto"]), "Whether MuJoCo moves the frame of the body into its centre of mass: it stays as it is written.";
     }
 }
 
@@ -78,7 +82,7 @@ table! {
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
         "fluidshape" ellipsoid: bool = false, FLUID, "Whether a medium acts on it as on an ellipsoid; without such geoms it acts on the body as on a box.";
         "fluidcoef" fluidcoef: [f64; 5] = [0.5, 0.25, 1.5, 1.0, 1.0], some(1, 5, Any), "Coefficients of blunt, slender and angular drag, of Kutta's lift and of Magnus's.";
-        "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
+        "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
         "mesh" mesh: Option<String> = None, TEXT, "Mesh; a primitive shape is fitted to it.";
         "hfield" hfield: Option<String> = None, TEXT, "Height field.";
@@ -97,7 +101,7 @@ table! {
         "size" size: Vec3 = [0.005; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
-        "rgba" rgba: [f64; 4] = GREY, reals(4, Unit), "Colour and opacity.";
+        "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";
         "material" material: Option<String> = None, TEXT, "Material.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         with frame: Frame;
@@ -112,7 +116,12 @@ table! {
         "mode" mode: CamLight = CamLight::Fixed, CAM_LIGHT, "How it is placed and aimed.";
         "target" target: Option<String> = None, TEXT, own, "Body that it looks at in modes `targetbody` and `targetbodycom`.";
         "resolution" resolution: [f64; 2] = [1.0; 2], INTS, "Width and height of the picture, pixels, for `camprojection` alone: pictures have the size that the caller asks for.";
-        "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view, degrees.";
+        "fovy" fovy: f64 = 45.0, real(Positive), "Vertical field of view, degrees; else by sensor and focal length.";
+        "sensorsize" sensorsize: [f64; 2] = [0.0; 2], reals(2, Any), "Width and height of the sensor, m, with `resolution` and a focal length, in place of `fovy`.";
+        "focal" focal: [f64; 2] = [0.0; 2], reals(2, Any), "Focal lengths along both sides of the sensor, m.";
+        "focalpixel" focalpixel: [f64; 2] = [0.0; 2], reals(2, Any), "Focal lengths in pixels, in place of `focal`.";
+        "principal" principal: [f64; 2] = [0.0; 2], reals(2, Any), "Where the axis of the lens meets the sensor, from its centre, m.";
+        "principalpixel" principalpixel: [f64; 2] = [0.0; 2], reals(2, Any), "The same in pixels, in place of `principal`.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         check "ipd", real(Any), "Distance of a person's eyes for stereoscopic pictures, m. Ignored: pictures are not stereoscopic.";
         with frame: Frame;
@@ -130,9 +139,9 @@ table! {
         "castshadow" castshadow: bool = true, FLAG, "Whether it casts shadows, which are not drawn.";
         "pos" pos: Vec3 = [0.0; 3], reals(3, Any), "Position in the body, m.";
         "dir" dir: Vec3 = [0.0, 0.0, -1.0], reals(3, Any), "Direction in the body.";
-        "ambient" ambient: [f64; 3] = [0.0; 3], reals(3, Unit), "Ambient colour.";
-        "diffuse" diffuse: [f64; 3] = [0.7; 3], reals(3, Unit), "Diffuse colour.";
-        "specular" specular: [f64; 3] = [0.3; 3], reals(3, Unit), "Colour of highlights.";
+        "ambient" ambient: [f64; 3] = [0.0; 3], reals(3, Any), "Ambient colour.";
+        "diffuse" diffuse: [f64; 3] = [0.7; 3], reals(3, Any), "Diffuse colour.";
+        "specular" specular: [f64; 3] = [0.3; 3], reals(3, Any), "Colour of highlights.";
         "attenuation" attenuation: [f64; 3] = [1.0, 0.0, 0.0], reals(3, NonNegative), "Constant, linear and quadratic attenuation.";
         "cutoff" cutoff: f64 = 45.0, real(NonNegative), "Cutoff angle of a spot light, degrees.";
         "exponent" exponent: f64 = 10.0, real(NonNegative), "Softness of a spot light.";
@@ -219,6 +228,8 @@ pub(super) struct Document {
     pub bodies: Vec<Body>,
     /// Frames in the bodies, which elements name by their place here.
     pub frames: Vec<BodyFrame>,
+    /// What each `<replicate>` adds to the names of its copies.
+    pub suffixes: BTreeSet<String>,
     pub pairs: Vec<Pair>,
     pub excludes: Vec<Exclude>,
     pub equalities: Vec<Equality>,

@@ -214,6 +214,18 @@ pub enum ErrorKind {
         /// The name.
         name: String,
     },
+    /// A name that is referred to, and that a `<replicate>` could make another element's name of: MuJoCo 3.3.0 multiplies what refers to it.
+    #[error(
+        "MuJoCo 3.3.0 multiplies what refers to the {kind} \"{}\" with every copy that a <replicate> makes, because this name with what is added \
+         to copies is that of another {kind}: rename one of them",
+        quoted(.name)
+    )]
+    Twin {
+        /// Kind of element.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
     /// Valid syntax that makes no valid model.
     #[error("{0}")]
     Invalid(&'static str),

@@ -2,7 +2,7 @@
 
 mod content;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::model::{Options, Statistic};
 
@@ -43,7 +43,7 @@ impl Class {
             "joint" => self.joint.apply(e),
             "geom" => self.geom.apply(e),
             "site" => self.site.apply(e),
-            "camera" => self.camera.apply(e),
+            "camera" => return self.camera.look(e),
             "light" => self.light.apply(e),
             "pair" => self.pair.apply(e),
             "equality" => self.equality.apply(e),
@@ -145,6 +145,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         mesh_density: Geom::initial().density,
         bodies: vec![world],
         frames: Vec::new(),
+        suffixes: BTreeSet::new(),
         pairs: Vec::new(),
         excludes: Vec::new(),
         equalities: Vec::new(),
@@ -205,6 +206,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
     Ok(document)
 }
 
+/// Why what MuJoCo copies with what a `<replicate>` holds, though it is not in there, is refused.
 const MULTIPLIED: &str =
     "MuJoCo 3.3.0 multiplies it with every copy that a <replicate> makes: write the copies out, or leave it out";
 

@@ -2,7 +2,7 @@
 
 use crate::math::Vec3;
 
-use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
+use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, Kind, Store, TEXT, Value, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
@@ -216,7 +216,7 @@ table! {
     /// Attributes that only spatial tendons have, beside those of all.
     group TendonLooks {
         "width" width: f64 = 0.003, real(Any), "Width in MuJoCo's viewer, m, which must be positive. Otherwise ignored: tendons are not drawn.";
-        check "rgba", reals(4, Unit), "Colour in MuJoCo's viewer. Ignored: tendons are not drawn.";
+        check "rgba", reals(4, Any), "Colour in MuJoCo's viewer. Ignored: tendons are not drawn.";
         check "material", TEXT, "Material in MuJoCo's viewer. Ignored: tendons are not drawn.";
     }
 }

@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 use crate::model::{self, ConeType, Flags, IntegratorType, JacobianFormat, Options, SolverType, Statistic};
 
-use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
+use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, TEXT, Words, int, real, reals, some, words};
 use super::schema::Element;
 use super::table::{Table, table};
@@ -206,9 +206,9 @@ table! {
     /// `<visual><headlight>`.
     group Headlight {
         "active" active: usize = 1, int(0, 1), "Whether the light at the camera is on.";
-        "ambient" ambient: [f64; 3] = [0.1; 3], reals(3, Unit), "Ambient colour.";
-        "diffuse" diffuse: [f64; 3] = [0.4; 3], reals(3, Unit), "Diffuse colour.";
-        "specular" specular: [f64; 3] = [0.5; 3], reals(3, Unit), "Colour of highlights.";
+        "ambient" ambient: [f64; 3] = [0.1; 3], reals(3, Any), "Ambient colour.";
+        "diffuse" diffuse: [f64; 3] = [0.4; 3], reals(3, Any), "Diffuse colour.";
+        "specular" specular: [f64; 3] = [0.5; 3], reals(3, Any), "Colour of highlights.";
     }
 }
 

@@ -21,9 +21,9 @@ table! {
         "type" kind: TextureType = TextureType::Cube, TEXTURES, "Kind.";
         "builtin" builtin: Builtin = Builtin::None, BUILTINS, "Pattern.";
         "mark" mark: Mark = Mark::None, MARKS, "Marks on the pattern.";
-        "rgb1" rgb1: [f64; 3] = [0.8; 3], reals(3, Unit), "First colour of the pattern.";
-        "rgb2" rgb2: [f64; 3] = [0.5; 3], reals(3, Unit), "Second colour of the pattern.";
-        "markrgb" markrgb: [f64; 3] = [0.0; 3], reals(3, Unit), "Colour of the marks.";
+        "rgb1" rgb1: [f64; 3] = [0.8; 3], reals(3, Any), "First colour of the pattern.";
+        "rgb2" rgb2: [f64; 3] = [0.5; 3], reals(3, Any), "Second colour of the pattern.";
+        "markrgb" markrgb: [f64; 3] = [0.0; 3], reals(3, Any), "Colour of the marks.";
         "random" random: f64 = 0.01, real(Unit), "Probability of a random mark, per pixel.";
         "width" width: usize = 0, int(0, MAX_PIXELS), "Width, pixels.";
         "height" height: usize = 0, int(0, MAX_PIXELS), "Height, pixels.";
@@ -40,7 +40,7 @@ table! {
     element Material {
         "name" name: String = String::new(), TEXT, required, "Name.";
         "texture" texture: Option<String> = None, TEXT, "Texture.";
-        "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Unit), "Colour and opacity.";
+        "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";
         "specular" specular: f64 = 0.5, real(Unit), "Strength of highlights.";
         "shininess" shininess: f64 = 0.5, real(Unit), "Sharpness of highlights.";
         "reflectance" reflectance: f64 = 0.0, real(Unit), "Strength of reflections, which are not drawn.";

@@ -113,6 +113,8 @@ arrays! {
     ["internals"] jnt_margin: Vec<f64>,
     /// Spring stiffness, N m/rad or N/m.
     jnt_stiffness: Vec<f64>,
+    /// Whether the compensation of gravity is a force of its actuators, and not a passive one.
+    ["internals"] jnt_actgravcomp: Vec<bool>,
     /// Whether `jnt_actfrcrange` applies.
     ["internals"] jnt_actfrclimited: Vec<bool>,
     /// Limits of the force of all actuators on the joint, N m or N.
@@ -252,6 +254,11 @@ arrays! {
     ["internals"] cam_resolution: Vec<[usize; 2]>,
     /// Vertical field of view, degrees.
     cam_fovy: Vec<f64>,
+    /// Width and height of its sensor, m; zeros where it has `fovy` alone.
+    ["internals"] cam_sensorsize: Vec<[f64; 2]>,
+    /// Focal lengths along both sides of its sensor, and where the axis of the lens meets that, from its centre, m; they mean something where it
+    /// has a sensor.
+    ["internals"] cam_intrinsic: Vec<[f64; 4]>,
     /// Numbers for programs, `nuser_cam` for each camera. They mean nothing to physics and pictures.
     cam_user: Vec<Vec<f64>>,
 

@@ -1,7 +1,7 @@
 //! The last step from a document to a model: the constants that need dynamics.
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
-use crate::model::{Arrays, Constants, JointType, Model, SameFrame};
+use crate::model::{Arrays, BiasType, Constants, GainType, JointType, Model, SameFrame};
 use crate::physics::contact::needs_convex;
 use crate::physics::dynamics::{MAX_WEIGHT, constants};
 use crate::physics::length_range;
@@ -10,12 +10,16 @@ use crate::physics::world::ContactRules;
 const NO_ACCELERATION: &str =
     "the inertia at qpos0 is singular or ill-conditioned: redundant joints, or masses of extreme size or ratio";
 const NO_DAMPING: &str = "a damping ratio needs a gain that is not negative: give kv instead";
+const IDLE_MUSCLE: &str = "the muscle moves nothing at qpos0, so that scale gives no force: give force, or let its ends move against each other";
 const REDUNDANT: &str = "two joints of one kind along one axis of a body that stands alone, of which MuJoCo lets each move the whole inertia: make them one";
 const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder or \
     a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
 const SEVERAL_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder \
     or a box), which gives one contact only: remove multiccd=\"enable\"";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
+
+/// Acceleration per unit force below which a muscle moves nothing.
+const MIN_ACCELERATION: f64 = 1e-10;
 
 /// Compiles a document into a model, as MuJoCo's `mj_compile` does: the only way to a [`Model`].
 ///
@@ -111,6 +115,14 @@ fn check(arrays: &Arrays, constants: &Constants, places: &Places) -> Result<(), 
     for (i, bias) in constants.actuator_biasprm.iter().enumerate() {
         if !bias.iter().all(|value| value.is_finite()) {
             return Err(places.actuator_error(i, NO_DAMPING));
+        }
+    }
+    for (i, acc0) in constants.actuator_acc0.iter().enumerate() {
+        let gain = arrays.actuator_gaintype[i] == GainType::Muscle && arrays.actuator_gainprm[i][2] < 0.0;
+        let bias = arrays.actuator_biastype[i] == BiasType::Muscle && arrays.actuator_biasprm[i][2] < 0.0;
+        // MuJoCo divides by what rounding errors leave
+        if (gain || bias) && *acc0 < MIN_ACCELERATION {
+            return Err(places.actuator_error(i, IDLE_MUSCLE));
         }
     }
     let stat = &constants.stat;

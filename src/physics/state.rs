@@ -191,6 +191,8 @@ table! {
         pub qfrc_bias: [f64; model.nv] = 0.0;
         /// Spring and damper force (nv).
         pub qfrc_passive: [f64; model.nv] = 0.0;
+        /// What compensates gravity: a part of `qfrc_passive`, or of `qfrc_actuator` where `jnt_actgravcomp` says so.
+        pub qfrc_gravcomp: [f64; model.nv] = 0.0;
 
         // acceleration stage
         /// Rates of the activations (na), 1/s. MIMo's muscles have none.

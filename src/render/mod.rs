@@ -98,6 +98,14 @@ pub enum RenderError {
         /// Number of cameras.
         count: usize,
     },
+    /// The axis of the camera's lens does not meet the middle of its sensor.
+    #[error(
+        "pictures have their camera's axis in the middle: camera {camera} has a principal point off it; leave out principal and principalpixel"
+    )]
+    OffCentre {
+        /// Camera asked for, by id.
+        camera: usize,
+    },
     /// The free camera has no pose.
     #[error("the free camera has no finite pose: give Poses::free finite numbers")]
     FreeCamera,

@@ -80,6 +80,22 @@ pub enum Aim {
 pub struct Camera {
     /// Vertical field of view, degrees.
     pub fovy: f64,
+    /// Half the width of its sensor by the focal length along it, where it has a sensor; else the width of a picture follows from its height.
+    pub half_width: Option<f64>,
+    /// Whether the axis of its lens meets the middle of its sensor: others are not drawn.
+    pub centred: bool,
+}
+
+impl Camera {
+    fn new(model: &Model, camera: usize) -> Self {
+        let ([wide, high], [focal, _, x, y]) = (model.cam_sensorsize[camera], model.cam_intrinsic[camera]);
+        let sensor = wide != 0.0 && high != 0.0;
+        Self {
+            fovy: model.cam_fovy[camera],
+            half_width: sensor.then(|| 0.5 * wide / focal),
+            centred: !sensor || x == 0.0 && y == 0.0,
+        }
+    }
 }
 
 /// The look of a model: immutable, and shared by the environments of one blueprint in an [`std::sync::Arc`].
@@ -195,7 +211,9 @@ impl Scenery {
             lights,
             headlight,
             fovy: vis.fovy,
-            cameras: model.cam_fovy.iter().map(|&fovy| Camera { fovy }).collect(),
+            cameras: (0..model.cam_fovy.len())
+                .map(|camera| Camera::new(model, camera))
+                .collect(),
             near: vis.znear * model.stat.extent,
             far,
             sizes: [model.ngeom(), model.nsite(), model.nbody()],
@@ -205,6 +223,11 @@ impl Scenery {
     /// Returns the vertical field of view of a camera, degrees.
     pub(super) fn fovy_of(&self, camera: usize) -> f64 {
         self.cameras.get(camera).map_or(self.fovy, |c| c.fovy)
+    }
+
+    /// Returns half the width of what a camera with a sensor sees at a distance of 1 m, m.
+    pub(super) fn half_width_of(&self, camera: usize) -> Option<f64> {
+        self.cameras.get(camera).and_then(|c| c.half_width)
     }
 
     /// Returns the memory used by all textures, bytes.
@@ -234,6 +257,8 @@ impl Scenery {
                 camera,
                 count: self.cameras.len(),
             });
+        } else if !self.cameras[camera].centred {
+            return Err(RenderError::OffCentre { camera });
         }
         view.check()?;
         let [geoms, sites, bodies] = self.sizes;

@@ -25,6 +25,7 @@ mod parts;
 mod plain_models;
 #[cfg(feature = "eval")]
 mod policies;
+mod public_models;
 #[cfg(feature = "rapier")]
 mod rapier_engine;
 #[cfg(all(feature = "eval", feature = "npz"))]

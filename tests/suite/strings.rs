@@ -277,4 +277,21 @@ fn what_mujoco_multiplies_with_copies_is_refused() {
         let error = outcome(&format!("<mujoco>{copies}{beside}</mujoco>")).expect_err(beside);
         assert!(error.contains("MuJoCo 3.3.0 multiplies it with every copy"), "{error}");
     }
+    let slides = "<body><joint name='x'/><geom size='.1'/></body><body><joint name='x0'/><geom size='.1'/></body>";
+    let copies = "<replicate count='2'><body><joint name='y'/><geom size='.1'/></body></replicate>";
+    let with = |joint: &str| {
+        let motor = format!("<actuator><motor joint='{joint}'/></actuator>");
+        outcome(&format!(
+            "<mujoco><worldbody>{slides}{copies}</worldbody>{motor}</mujoco>"
+        ))
+    };
+    let error = with("x").expect_err("multiplied");
+    assert!(
+        error.contains(r#"multiplies what refers to the joint "x" with every copy"#),
+        "{error}"
+    );
+    assert!(error.contains("rename one of them"), "{error}");
+    for joint in ["x0", "y0", "y1"] {
+        with(joint).unwrap_or_else(|e| panic!("{joint}: {e}"));
+    }
 }

@@ -68,7 +68,7 @@ const COMPILER: &[Rule] = &[
     ("autolimits", Placed(&[])),
     (
         "inertiagrouprange",
-        Drawn(0.15, |d| d.pick(&["0 5", "0 2", "1 3", "2 2", "3 0"]).to_owned()),
+        Drawn(0.06, |d| d.pick(&["0 5", "0 2", "0 4", "-1 3", "2 2"]).to_owned()),
     ),
     ("balanceinertia", Word(0.2)),
     ("boundmass", Drawn(0.1, |d| d.log(0.05, 20.0))),
@@ -141,9 +141,9 @@ const FLAG: &[Rule] = &[
     ("energy", Nothing),
     ("fwdinv", Nothing),
     ("invdiscrete", Nothing),
-    ("nativeccd", Word(0.1)),
+    ("nativeccd", Word(0.02)),
     ("override", Nothing),
-    ("multiccd", Word(0.1)),
+    ("multiccd", Word(0.02)),
     ("island", Nothing),
 ];
 
@@ -165,6 +165,7 @@ const JOINT: &[Rule] = &[
     ("range", Drawn(0.4, Dice::limits)),
     ("margin", Drawn(0.2, |d| d.log(0.001, 0.3))),
     ("actuatorfrclimited", Placed(&[])),
+    ("actuatorgravcomp", Word(0.05)),
     ("actuatorfrcrange", Drawn(0.15, |d| d.range(2.0))),
     (
         "springdamper",
@@ -610,7 +611,7 @@ pub const RULES: &[(&str, &[&[Rule]])] = &[
     ("worldbody/body/joint", &[CLASS, JOINT]),
     (
         "worldbody/body/freejoint",
-        &[&[("name", Placed(&[])), ("group", Nothing)]],
+        &[&[("name", Placed(&[])), ("group", Nothing), ("align", Nothing)]],
     ),
     ("worldbody/body/geom", &[CLASS, GEOM, FRAME, LOOKS]),
     ("worldbody/body/site", &[CLASS, SITE, FRAME, LOOKS]),

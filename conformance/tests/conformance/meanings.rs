@@ -127,6 +127,44 @@ const DOCUMENTS: &[(&str, &str)] = &[
         <geom type='capsule' size='.05' fromto='0 0 0 .1 0 .2'/></body></body></worldbody>",
     ),
     (
+        "cameras with a sensor, a lens and a principal point",
+        "<visual><map znear='.02'/></visual><default><camera sensorsize='.02 .03' resolution='640 480' focal='.01 .012'/>\
+        </default><worldbody><camera name='a' pos='0 0 2'/>\
+        <camera name='b' pos='.1 0 2' focalpixel='0 0' focal='1 1' resolution='1000 333' sensorsize='.01 .02'/>\
+        <camera name='c' pos='0 .1 2' principal='.001 .002' sensorsize='.02 .03' resolution='64 48'/>\
+        <body><freejoint align='false'/><geom size='.1'/><site name='s'/></body></worldbody>\
+        <sensor><camprojection site='s' camera='a'/><camprojection site='s' camera='b'/><camprojection site='s' camera='c'/></sensor>",
+    ),
+    (
+        "a servo without damping has that of its default",
+        "<default><position kp='50' kv='3'/><default class='a'><position kp='20' kv='0'/></default>\
+        <default class='b'><position dampratio='0'/></default></default><worldbody><body><joint name='j' axis='0 1 0'/><geom size='.1' pos='.2 0 0'/>\
+        </body></worldbody><actuator><position class='a' joint='j'/><position class='b' joint='j'/><position joint='j' kv='0'/></actuator>",
+    ),
+    (
+        "actuators hold up what is compensated of the weight",
+        "<worldbody><body gravcomp='1'><joint name='a' axis='0 1 0' actuatorgravcomp='true' actuatorfrcrange='-5 5'/><geom size='.1' pos='.3 0 0'/>\
+        <body gravcomp='.5' pos='.5 0 0'><joint axis='0 1 0' actuatorgravcomp='true'/><geom size='.1' pos='.2 0 0'/>\
+        <body gravcomp='.7' pos='.2 .1 0'><joint axis='0 1 0'/><geom size='.1' pos='.2 0 0'/></body></body></body></worldbody>\
+        <actuator><motor joint='a'/></actuator><sensor><jointactuatorfrc joint='a'/></sensor>",
+    ),
+    (
+        "the energy of the spring of a free joint",
+        "<worldbody><body pos='.1 .2 .3' euler='20 30 40'><joint type='free' stiffness='10'/>\
+        <geom type='box' size='.1 .2 .3'/></body></worldbody><sensor><e_potential/></sensor>",
+    ),
+    (
+        "without actuators nothing holds it up",
+        "<worldbody><body gravcomp='1'><joint name='a' axis='0 1 0' actuatorgravcomp='true'/><geom size='.1' pos='.3 0 0'/></body></worldbody>",
+    ),
+    (
+        "distances from one's own body, and of boxes around one point",
+        "<worldbody><geom name='a' type='box' size='.1 .12 .14'/><geom name='b' type='box' size='.2 .11 .12'/><body name='x'><freejoint/>\
+        <geom name='c' size='.1'/><geom name='d' type='capsule' size='.05 .1' pos='.1 0 0'/></body></worldbody>\
+        <sensor><distance geom1='a' geom2='b' cutoff='1'/><normal geom1='a' geom2='b' cutoff='1'/><distance geom1='c' body2='x' cutoff='1'/>\
+        <fromto geom1='d' body2='x' cutoff='1'/></sensor>",
+    ),
+    (
         "a line search of one point, pyramids",
         "<option ls_iterations='1'/><worldbody><geom type='plane' size='1 1 1'/>\
         <body pos='0 0 .1'><freejoint/><geom type='box' size='.1 .12 .08'/></body></worldbody>",

@@ -9,6 +9,8 @@ const SHOWN: usize = 60;
 
 /// Corners of a polygon at least.
 const CORNERS: usize = 3;
+/// Corners of a polygon at most: MuJoCo 3.3.0 leaves out those that have more.
+const MOST_CORNERS: usize = 100;
 /// The sum of the cubes of the numbers of corners: a thousand polygons of a hundred corners are far below.
 const WORK: u64 = 1 << 32;
 
@@ -69,7 +71,7 @@ impl Reader {
                 }
                 let length = self.polygons.len() - first;
                 // points and lines that call themselves polygons
-                if length < 3 {
+                if !(CORNERS..=MOST_CORNERS).contains(&length) {
                     self.polygons.truncate(first);
                 } else {
                     self.lengths.push(length);

@@ -20,6 +20,20 @@ fn polygons_become_triangles() {
     assert_eq!(arrow.face, [[1, 2, 3], [0, 1, 3]]);
 }
 
+/// A ring of so many corners, as one polygon.
+fn ring(corners: usize) -> String {
+    let angle = |k: usize| k as f64 / corners as f64 * std::f64::consts::TAU;
+    let vertices = (0..corners).map(|k| format!("v {:.6} {:.6} 0\n", angle(k).cos(), angle(k).sin()));
+    let polygon = (1..=corners).map(|k| format!(" {k}"));
+    vertices.chain(["f".to_owned()]).chain(polygon).collect::<String>() + "\nf 1 2 3\n"
+}
+
+#[test]
+fn polygons_of_more_than_a_hundred_corners_are_left_out_as_in_the_reference() {
+    assert_eq!(obj(&ring(100)).expect("valid").face.len(), 99);
+    assert_eq!(obj(&ring(101)).expect("valid").face, [[0, 1, 2]]);
+}
+
 #[test]
 fn the_first_object_counts_and_all_vertices() {
     let text = format!("o a\n{SQUARE}f 1 2 3\nusemtl x\nf 1 3 4\ng b\nv 0 0 1\nf 1 2 5\n");
@@ -67,13 +81,10 @@ fn broken_text_is_an_error_with_its_line() {
         read(b"v \xff\n", MeshFormat::Obj),
         Err("line 1 is not UTF-8 text".to_owned())
     );
-    let mut long = "v 0 0 0\nf".to_owned();
-    long.push_str(&" 1".repeat(3000));
-    assert!(
-        obj(&long)
-            .expect_err("a polygon of 3000 corners")
-            .contains("too many corners")
-    );
+    let mut many = "v 0 0 0\n".to_owned();
+    many.push_str(&format!("f{}\n", " 1".repeat(100)).repeat(5000));
+    let error = obj(&many).expect_err("5000 polygons of 100 corners");
+    assert!(error.contains("too many corners"), "{error}");
     let limits = Limits {
         mesh_elements: 4,
         ..Limits::DEFAULT

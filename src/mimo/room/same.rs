@@ -110,7 +110,7 @@ fn in_order(model: &Model, usual: &Model) -> Option<Difference> {
         let part = || format!("the joint {:?}", usual.jnt_name[j]);
         compare!(part(), model[i], usual[j]:
             jnt_name jnt_type jnt_pos jnt_axis jnt_limited jnt_range jnt_margin jnt_stiffness jnt_solref jnt_solimp
-            jnt_actfrclimited jnt_actfrcrange);
+            jnt_actfrclimited jnt_actfrcrange jnt_actgravcomp);
         compare!(part(), model[model.jnt_dofadr[i]], usual[usual.jnt_dofadr[j]]:
             dof_armature dof_damping dof_frictionloss dof_solref dof_solimp);
         compare!(part(), model[model.jnt_qposadr[i]], usual[usual.jnt_qposadr[j]]: qpos0 qpos_spring);

@@ -2,16 +2,15 @@
 
 use std::f64::consts::PI;
 
-use super::context::{Context, Ids, User};
+use super::camera::{compile_camera, compile_light};
+use super::context::{Context, Ids, User, named};
 use super::geom::{check_size, compile_geom, place};
 use super::geometry::{EPS, Solid, merge, normalize, orientation, principal};
 use crate::math::{MINVAL, QUAT_ID, Quat, Vec3, add, quat_rotate};
-use crate::mjcf_loader::document::{
-    Body, BodyFrame, Camera, Copied, Document, Frame, Joint, Light, Orientation, Site, Tri,
-};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::document::{Body, BodyFrame, Copied, Document, Frame, Joint, Orientation, Site, Tri};
+use crate::mjcf_loader::error::LoadError;
 use crate::mjcf_loader::settings::single;
-use crate::model::{self, Arrays, CamLight, JointType};
+use crate::model::{Arrays, JointType};
 
 /// Compiles all bodies in order, so that ids are grouped by body.
 pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
@@ -205,6 +204,7 @@ fn compile_joint(
             joint.actuatorfrcrange,
         )?;
     arrays.jnt_actfrclimited.push(actfrclimited);
+    arrays.jnt_actgravcomp.push(joint.actuatorgravcomp);
     arrays.jnt_actfrcrange.push(joint.actuatorfrcrange);
     let spring = joint.springdamper;
     if spring != [0.0; 2] && spring.contains(&0.0) {
@@ -321,78 +321,8 @@ fn compile_site(context: &Context, site: &Site, body: usize, ids: &Ids, arrays: 
     arrays.site_quat.push(quat);
     arrays.site_group.push(site.group);
     arrays.site_rgba.push(site.rgba.map(single));
-    arrays.site_matid.push(site.material.as_ref().map(find).transpose()?);
+    arrays.site_matid.push(named(&site.material).map(find).transpose()?);
     Ok(())
-}
-
-fn compile_camera(
-    context: &Context,
-    camera: &Camera,
-    body: usize,
-    ids: &Ids,
-    arrays: &mut Arrays,
-) -> Result<(), LoadError> {
-    if camera.fovy >= 180.0 {
-        let want = "below 180 degrees";
-        return Err(context.error(
-            camera.at,
-            ErrorKind::OutOfRange {
-                attribute: "fovy",
-                value: camera.fovy,
-                want,
-            },
-        ));
-    }
-    let aims = matches!(camera.mode, CamLight::TargetBody | CamLight::TargetBodyCom);
-    if aims && camera.target.is_none() {
-        // MuJoCo leaves such a camera at the origin of the world
-        return Err(context.error(camera.at, ErrorKind::MissingAttribute("target")));
-    }
-    let find = |name: &String| ids.body.find(context.tree, camera.at, "target", name);
-    arrays.cam_name.push(camera.name.clone());
-    arrays.cam_mode.push(camera.mode);
-    // kept whatever the mode: the distance that `trackcom` keeps is measured from it
-    arrays
-        .cam_targetbodyid
-        .push(camera.target.as_ref().map(find).transpose()?);
-    arrays.cam_bodyid.push(body);
-    let quat = quat_of(context, camera.at, &camera.frame)?;
-    let (pos, quat) = context.placed(camera.within, camera.frame.pos, quat);
-    arrays.cam_pos.push(pos);
-    arrays.cam_quat.push(quat);
-    arrays.cam_fovy.push(camera.fovy);
-    if camera.resolution.iter().any(|v| *v < 0.0) {
-        return Err(context.invalid(camera.at, "a camera cannot have a negative resolution"));
-    }
-    arrays.cam_resolution.push(camera.resolution.map(|v| v as usize));
-    Ok(())
-}
-
-fn compile_light(context: &Context, light: &Light, body: usize, ids: &Ids) -> Result<model::Light, LoadError> {
-    let mut dir = light.dir;
-    if normalize(&mut dir) < EPS {
-        return Err(context.invalid(light.at, "the direction is too short"));
-    }
-    let find = |name: &String| ids.body.find(context.tree, light.at, "target", name);
-    Ok(model::Light {
-        name: light.name.clone(),
-        bodyid: body,
-        directional: light.directional,
-        castshadow: light.castshadow,
-        pos: context.point(light.within, light.pos),
-        dir: context.direction(light.within, dir),
-        mode: light.mode,
-        targetbodyid: light.target.as_ref().map(find).transpose()?,
-        pos0: [0.0; 3],
-        poscom0: [0.0; 3],
-        dir0: [0.0; 3],
-        ambient: light.ambient.map(single),
-        diffuse: light.diffuse.map(single),
-        specular: light.specular.map(single),
-        attenuation: light.attenuation.map(single),
-        cutoff: single(light.cutoff),
-        exponent: single(light.exponent),
-    })
 }
 
 /// Scales all masses and inertias so that the bodies weigh `settotalmass` together, if it is given.

@@ -1,6 +1,6 @@
 //! Shared by the stages of compilation: names, their ids, errors with places.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate};
 use crate::mjcf_loader::compile::hfield::hfield_name;
@@ -15,6 +15,8 @@ use crate::model::{Arrays, JointType};
 pub(super) struct Names {
     kind: &'static str,
     ids: BTreeMap<String, usize>,
+    /// Names to which a `<replicate>` could add to make others of these.
+    twins: BTreeSet<String>,
 }
 
 impl Names {
@@ -36,21 +38,39 @@ impl Names {
                 ));
             }
         }
-        Ok(Names { kind, ids })
+        let twins = BTreeSet::new();
+        Ok(Names { kind, ids, twins })
+    }
+
+    /// Looks for names that are others of these with one of `suffixes` behind.
+    fn apart(mut self, suffixes: &BTreeSet<String>) -> Names {
+        let lengths: BTreeSet<usize> = suffixes.iter().map(String::len).collect();
+        for name in self.ids.keys() {
+            for length in lengths.iter().take_while(|length| **length < name.len()) {
+                let parts = name.split_at_checked(name.len() - length);
+                if let Some((front, _)) =
+                    parts.filter(|(front, end)| suffixes.contains(*end) && self.ids.contains_key(*front))
+                {
+                    self.twins.insert(front.to_owned());
+                }
+            }
+        }
+        self
     }
 
     /// Returns the id of the element that a reference names.
     pub fn find(&self, tree: &Tree, at: usize, attribute: &'static str, name: &str) -> Result<usize, LoadError> {
-        self.ids.get(name).copied().ok_or_else(|| {
-            tree.error(
-                at,
-                ErrorKind::UnknownName {
-                    attribute,
-                    kind: self.kind,
-                    name: name.to_owned(),
-                },
-            )
-        })
+        let wrong = |kind| Err(tree.error(at, kind));
+        let (kind, owned) = (self.kind, || name.to_owned());
+        match self.ids.get(name) {
+            Some(_) if self.twins.contains(name) => wrong(ErrorKind::Twin { kind, name: owned() }),
+            Some(id) => Ok(*id),
+            None => wrong(ErrorKind::UnknownName {
+                attribute,
+                kind,
+                name: owned(),
+            }),
+        }
     }
 }
 
@@ -171,6 +191,11 @@ impl Context<'_> {
     }
 }
 
+/// Returns a reference, where it names something: an empty one is none.
+pub(super) fn named(reference: &Option<String>) -> Option<&String> {
+    reference.as_ref().filter(|name| !name.is_empty())
+}
+
 /// The names, by kind, that other elements refer to.
 pub(super) struct Ids {
     pub body: Names,
@@ -208,15 +233,24 @@ impl Ids {
             .collect::<Result<Vec<_>, _>>()?;
         let meshes = document.meshes.iter().zip(&mesh_names).map(|(m, name)| (m.at, name));
         let textures = textures.iter().zip(&arrays.textures).map(|(t, m)| (t.at, &m.name));
+        let apart = |names: Result<Names, LoadError>| names.map(|names| names.apart(&document.suffixes));
         Ok(Ids {
-            body: Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name)))?,
-            joint: Names::new(tree, "joint", joints)?,
-            geom: Names::new(tree, "geom", geoms)?,
-            site: Names::new(tree, "site", sites)?,
+            body: apart(Names::new(tree, "body", bodies.iter().map(|b| (b.at, &b.name))))?,
+            joint: apart(Names::new(tree, "joint", joints))?,
+            geom: apart(Names::new(tree, "geom", geoms))?,
+            site: apart(Names::new(tree, "site", sites))?,
             texture: Names::new(tree, "texture", textures)?,
-            camera: Names::new(tree, "camera", cameras)?,
-            tendon: Names::new(tree, "tendon", document.tendons.iter().map(|t| (t.at, &t.name)))?,
-            actuator: Names::new(tree, "actuator", document.actuators.iter().map(|a| (a.at, &a.name)))?,
+            camera: apart(Names::new(tree, "camera", cameras))?,
+            tendon: apart(Names::new(
+                tree,
+                "tendon",
+                document.tendons.iter().map(|t| (t.at, &t.name)),
+            ))?,
+            actuator: apart(Names::new(
+                tree,
+                "actuator",
+                document.actuators.iter().map(|a| (a.at, &a.name)),
+            ))?,
             hfield: Names::new(tree, "hfield", hfields)?,
             mesh: Names::new(tree, "mesh", meshes)?,
             material: Names::new(tree, "material", document.materials.iter().map(|m| (m.at, &m.name)))?,

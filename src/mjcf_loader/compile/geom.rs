@@ -1,7 +1,7 @@
 //! Compiles geoms: shapes, and what they fill.
 
 use super::body::quat_of;
-use super::context::{Context, Ids};
+use super::context::{Context, Ids, named};
 use super::fluid::fluid;
 use super::geometry::{EPS, Solid, bounding_box, bounding_radius, inertia, segment, size_count, volume};
 use super::mesh::fit;
@@ -113,7 +113,7 @@ pub(super) fn compile_geom(
         .push(extent.radius.unwrap_or_else(|| bounding_radius(geom.kind, &size)));
     arrays.geom_group.push(geom.group);
     arrays.geom_rgba.push(geom.rgba.map(single));
-    arrays.geom_matid.push(geom.material.as_ref().map(find).transpose()?);
+    arrays.geom_matid.push(named(&geom.material).map(find).transpose()?);
     let mass = match geom.mass {
         Some(mass) if extent.volume > EPS => mass,
         Some(_) => 0.0,

@@ -2,6 +2,7 @@
 
 mod actuator;
 mod body;
+mod camera;
 mod constraint;
 mod context;
 mod custom;

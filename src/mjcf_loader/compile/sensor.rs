@@ -178,6 +178,12 @@ fn two(
         ObjType::Body => Some(arrays.geom_bodyid[g]) == id,
         _ => Some(g) == id,
     };
+    let corners = |g: usize| matches!(arrays.geom_type[g], GeomType::Box | GeomType::Mesh);
+    if (0..arrays.ngeom()).any(|g| corners(g) && measured(first, g) && measured(second, g)) {
+        // in which direction it is out of itself, MuJoCo finds by rounding errors
+        let message = "a box or a mesh has no distance from itself: measure between two geoms, or from a body that is another one";
+        return Err(context.invalid(at, message));
+    }
     let terrain = |g: usize| arrays.geom_type[g] == GeomType::HField;
     if (0..arrays.ngeom()).any(|g| terrain(g) && (measured(first, g) || measured(second, g))) {
         let message = "distances from height fields are not measured: use a rangefinder, or measure from another geom";

@@ -4,6 +4,7 @@ use super::super::document::{Body, BodyFrame, Camera, Copied, Document, FreeJoin
 use super::super::document::{Light, Orientation, Replicate, Site};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::schema::Element;
+use super::super::table::Table;
 use super::{Classes, with};
 use crate::model::JointType;
 
@@ -88,7 +89,9 @@ fn copy(
     document.frames.push(frame);
     // inner copies are told apart before outer ones
     let digits = count.to_string().len();
-    let suffix = format!("{sep}{number:0digits$}{}", spot.suffix);
+    let own = format!("{sep}{number:0digits$}");
+    let suffix = format!("{own}{}", spot.suffix);
+    document.suffixes.insert(own);
     Ok(Some((document.frames.len() - 1, suffix)))
 }
 
@@ -176,7 +179,10 @@ fn attach(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut
             body.sites.push(Site { within, ..site });
         }
         "camera" => {
-            let mut camera = with(&classes.of(e, around)?.camera, e, Camera::apply);
+            let mut camera: Camera = classes.of(e, around)?.camera.clone();
+            camera
+                .look(e)
+                .map_err(|what| classes.error(e, ErrorKind::Invalid(what)))?;
             rename(&mut camera.name, spot);
             // MuJoCo looks for the body that it aims at among the copies
             camera.target.iter_mut().for_each(|target| rename(target, spot));

@@ -104,7 +104,13 @@ impl Search {
         simplex: &mut Simplex,
     ) -> Enclosure {
         let mut may_test_tetrahedron = !limits.wants_distance();
-        let tolerance2 = limits.tolerance * limits.tolerance;
+        // the search among finitely many points ends by itself
+        let finite = shape.a.discrete() && shape.b.discrete();
+        let tolerance2 = if finite {
+            0.0
+        } else {
+            limits.tolerance * limits.tolerance
+        };
         let mut iteration = 0;
         while iteration < limits.iterations {
             let (at_origin, dir) = towards_origin(self.nearest);

@@ -89,6 +89,10 @@ impl Support for MeshShape<'_> {
         };
         self.pose.place(self.mesh.vert[vertex].map(f64::from), dir)
     }
+
+    fn discrete(&self) -> bool {
+        self.pose.sharp()
+    }
 }
 
 /// The farthest vertex in a direction of the mesh's frame, by the search that MuJoCo uses outside of its convex routine: the

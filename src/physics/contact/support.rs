@@ -7,12 +7,21 @@ use crate::math::{Mat3, Vec3, add, mat_t_vec, mat_vec, norm, scale};
 pub(super) trait Support {
     /// Returns the farthest point in the unit direction `dir`.
     fn support(&self, dir: Vec3) -> Vec3;
+
+    /// Tells whether it is the hull of some points: between two such shapes MuJoCo looks for the distance to the last bit.
+    fn discrete(&self) -> bool {
+        false
+    }
 }
 
 /// Any shape: pairs with meshes share one copy of the routines, as what they do with a shape is little against what the shape does.
 impl Support for &dyn Support {
     fn support(&self, dir: Vec3) -> Vec3 {
         (**self).support(dir)
+    }
+
+    fn discrete(&self) -> bool {
+        (**self).discrete()
     }
 }
 
@@ -32,6 +41,11 @@ impl<'a> Pose<'a> {
             mat: geom.mat,
             grown: 0.5 * margin,
         }
+    }
+
+    /// Tells whether it is not grown, which rounds its corners.
+    pub(super) fn sharp(&self) -> bool {
+        self.grown == 0.0
     }
 
     #[inline(always)]
@@ -170,6 +184,10 @@ impl Support for Cuboid<'_> {
             along(local[2], self.size[2]),
         ];
         self.pose.place(point, dir)
+    }
+
+    fn discrete(&self) -> bool {
+        self.pose.sharp()
     }
 }
 

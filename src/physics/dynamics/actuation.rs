@@ -52,6 +52,13 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
         }
     }
     s.qfrc_actuator = forces;
+    if acting > 0 {
+        for d in 0..model.nv {
+            if model.jnt_actgravcomp[model.dof_jntid[d]] {
+                s.qfrc_actuator[d] += s.qfrc_gravcomp[d];
+            }
+        }
+    }
     for (j, &[low, high]) in model.jnt_actfrcrange.iter().enumerate() {
         // as in MuJoCo, without actuators there is no force that is too small, either
         if acting > 0 && model.jnt_actfrclimited[j] {

@@ -96,8 +96,13 @@ fn resistance(size: Vec3, turning: Vec3, moving: Vec3, density: f64, viscosity: 
     (torque, force)
 }
 
-/// Adds to `qfrc_passive` what holds up the part of the weight of each body that is compensated.
+/// Computes `qfrc_gravcomp`, which holds up the part of the weight of each body that is compensated, and adds it to `qfrc_passive`, but
+/// for joints whose actuators do it.
 pub(super) fn gravity_compensation(model: &Model, s: &mut State) {
+    if model.body_gravcomp.iter().all(|part| *part == 0.0) {
+        return;
+    }
+    s.qfrc_gravcomp.fill(0.0);
     for b in 1..model.nbody() {
         let part = model.body_gravcomp[b];
         if part == 0.0 {
@@ -106,11 +111,16 @@ pub(super) fn gravity_compensation(model: &Model, s: &mut State) {
         let force = scale(s.params.gravity, -s.params.body_mass[b] * part);
         let point = s.xipos[b];
         let State {
-            qfrc_passive,
+            qfrc_gravcomp,
             cdof,
             subtree_com,
             ..
         } = s;
-        add_force(model, cdof, subtree_com, (b, force, [0.0; 3], point), qfrc_passive);
+        add_force(model, cdof, subtree_com, (b, force, [0.0; 3], point), qfrc_gravcomp);
+    }
+    for d in 0..model.nv {
+        if !model.jnt_actgravcomp[model.dof_jntid[d]] {
+            s.qfrc_passive[d] += s.qfrc_gravcomp[d];
+        }
     }
 }

@@ -102,6 +102,7 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
         passive(model, topology, s);
     } else {
         s.qfrc_passive.fill(0.0);
+        s.qfrc_gravcomp.fill(0.0);
     }
 }
 

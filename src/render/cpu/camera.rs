@@ -85,8 +85,11 @@ impl Eye {
         let (near, far) = (scenery.near as f32, scenery.far as f32);
         let tangent = pxfm::f_tan(scenery.fovy_of(view.camera) * std::f64::consts::PI / 360.0);
         let top = (f64::from(near) * tangent) as f32;
-        // the width follows from the height, as `glFrustum` wants it: the field of view of a camera is vertical
-        let half_width = 0.5 * view.width as f32 / view.height as f32 * (top + top);
+        // the width follows from the height, as `glFrustum` wants it: the field of view of a camera is vertical, but where it has a lens
+        let half_width = match scenery.half_width_of(view.camera) {
+            Some(half) => (f64::from(near) * half) as f32,
+            None => 0.5 * view.width as f32 / view.height as f32 * (top + top),
+        };
         let back = forward.map(|v| -v);
         Self {
             pos,

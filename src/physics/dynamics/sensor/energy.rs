@@ -19,7 +19,14 @@ pub(super) fn potential(model: &Model, s: &State) -> f64 {
             JointType::Ball => 0,
             JointType::Slide | JointType::Hinge => 1,
         };
-        let squares = (q..q + scalars).map(|i| (s.qpos[i] - model.qpos_spring[i]) * (s.qpos[i] - model.qpos_spring[i]));
+        let mut place = [0.0; 3];
+        place[..scalars].copy_from_slice(&s.qpos[q..q + scalars]);
+        if model.jnt_type[j] == JointType::Free && k != 0.0 {
+            // MuJoCo 3.3.0 takes the first four coordinates for the quaternion that it normalises
+            place.copy_from_slice(&quat_normalize(quat_at(&s.qpos, q))[..3]);
+        }
+        let squares =
+            (0..scalars).map(|i| (place[i] - model.qpos_spring[q + i]) * (place[i] - model.qpos_spring[q + i]));
         energy += 0.5 * k * squares.sum::<f64>();
         if let Some(at) = model.jnt_type[j].quat(q) {
             let turn = rotation_between(quat_at(&model.qpos_spring, at), quat_normalize(quat_at(&s.qpos, at)));

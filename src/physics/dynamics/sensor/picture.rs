@@ -10,7 +10,16 @@ use crate::physics::state::State;
 pub(super) fn projection(model: &Model, s: &State, site: usize, camera: usize) -> [f64; 4] {
     let [x, y, z] = mat_t_vec(&s.cam_xmat[camera], sub(s.site_xpos[site], s.cam_xpos[camera]));
     let [width, height] = model.cam_resolution[camera].map(|pixels| pixels as f64);
-    let focal = 0.5 / pxfm::f_tan(model.cam_fovy[camera] * PI / 360.0) * height;
+    let ([wide, high], [fx, fy, ..]) = (model.cam_sensorsize[camera], model.cam_intrinsic[camera]);
+    // as in MuJoCo the principal point does not count
+    let [across, down] = if wide != 0.0 && high != 0.0 {
+        [
+            f64::from((fx / wide) as f32) * width,
+            f64::from((fy / high) as f32) * height,
+        ]
+    } else {
+        [0.5 / pxfm::f_tan(model.cam_fovy[camera] * PI / 360.0) * height; 2]
+    };
     // never a division by what is next to nothing; the camera looks along -z
     let depth = match z {
         z if z.abs() >= MINVAL => z,
@@ -18,8 +27,8 @@ pub(super) fn projection(model: &Model, s: &State, site: usize, camera: usize) -
         _ => MINVAL,
     };
     [
-        (0.5 * width * z - focal * x) / depth,
-        (0.5 * height * z + focal * y) / depth,
+        (0.5 * width * z - across * x) / depth,
+        (0.5 * height * z + down * y) / depth,
         0.0,
         0.0,
     ]
