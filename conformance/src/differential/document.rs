@@ -51,6 +51,8 @@ struct Writer<'a> {
     hfield: Option<Node>,
     /// Meshes, with the elements that define them.
     meshes: Vec<Node>,
+    /// Whether there are copies, beside which MuJoCo multiplies sensors of nothing.
+    copies: bool,
     tendons: Vec<String>,
     limited_tendons: Vec<String>,
     actuators: Vec<String>,
@@ -77,6 +79,7 @@ pub fn document(language: &Language, seed: u64) -> Node {
         plane: false,
         hfield: None,
         meshes: Vec::new(),
+        copies: false,
         tendons: Vec::new(),
         limited_tendons: Vec::new(),
         actuators: Vec::new(),
@@ -265,6 +268,10 @@ impl Writer<'_> {
             ("actrange", "actlimited"),
         ];
         for (range, limited) in RANGES {
+            // that of a muscle is no limit
+            if range == "range" && node.name == "muscle" {
+                continue;
+            }
             // the others are limited by their kind
             let always = match limited {
                 "ctrllimited" => ["damper", "adhesion"].contains(&node.name.as_str()),
@@ -389,6 +396,7 @@ impl Writer<'_> {
         if self.dice.chance(0.95) {
             return;
         }
+        self.copies = true;
         let mut copies = Node::new("replicate");
         self.class(&mut copies, "childclass");
         self.language
@@ -399,6 +407,7 @@ impl Writer<'_> {
             self.geoms.len(),
             self.sites.len(),
             self.rounds.len(),
+            self.cameras.len(),
         );
         let held = if self.dice.chance(0.5) {
             self.geom()
@@ -411,6 +420,7 @@ impl Writer<'_> {
         self.geoms.truncate(known.2);
         self.sites.truncate(known.3);
         self.rounds.truncate(known.4);
+        self.cameras.truncate(known.5);
         let mut frame = Node::new("frame");
         frame.children.push(copies);
         parent.children.push(frame);
@@ -457,21 +467,29 @@ impl Writer<'_> {
             return true;
         }
         let n = self.dice.pick(&[0, 1, 1, 1, 1, 2, 2, 3, 4, 6]);
+        // more of a kind would move the body as others do already, and so would hinges beside a ball
+        let mut left = [3, 3];
         for k in 0..n {
-            // no rotation follows one about all axes, and a body has at most six degrees of freedom
-            let last = k + 1 == n && n <= 4;
-            let kinds: &[&str] = if last {
-                &["hinge", "slide", "ball"]
-            } else {
-                &["hinge", "hinge", "slide"]
-            };
-            let (name, kind) = (self.name("j"), self.dice.pick(kinds));
+            let ball = k + 1 == n && left[0] == 3 && self.dice.chance(0.33);
+            let hinge = left[1] == 0 || left[0] > 0 && self.dice.chance(0.66);
+            let (name, kind) = (
+                self.name("j"),
+                if ball {
+                    "ball"
+                } else {
+                    ["slide", "hinge"][usize::from(hinge)]
+                },
+            );
+            left[usize::from(!hinge)] -= 1;
             let mut joint = Node::new("joint").with("name", name.as_str()).with("type", kind);
             self.class(&mut joint, "class");
             self.dice.angle = if kind == "slide" { 1.0 } else { self.radian };
             self.language
                 .dress(&mut joint, "worldbody/body/joint", false, &mut self.dice);
             self.dice.angle = self.radian;
+            if k > 0 && kind != "ball" {
+                joint.set("axis", numbers(&self.dice.vector(3, 1.0)));
+            }
             if kind == "ball" && (self.defaults || joint.get("range").is_some()) {
                 let most = self.dice.uniform(0.1, 3.3) * self.radian;
                 joint.set("range", numbers(&[0.0, most]));
@@ -531,7 +549,7 @@ impl Writer<'_> {
             _ => 3,
         };
         if shape != "sphere" && !self.defaults && self.dice.chance(0.3) {
-            geom.set("fromto", self.dice.reals(6, 0.2));
+            geom.set("fromto", numbers(&self.dice.vector(6, 0.2)));
             geom.set("size", numbers(&size[..entries - 1]));
         } else {
             geom.set("size", numbers(&size[..entries]));
@@ -604,7 +622,7 @@ impl Writer<'_> {
         let mut site = Node::new("site").with("name", name.as_str());
         if !self.defaults && self.dice.chance(0.2) {
             site.set("type", "capsule");
-            site.set("fromto", self.dice.reals(6, 0.1));
+            site.set("fromto", numbers(&self.dice.vector(6, 0.1)));
         }
         self.class(&mut site, "class");
         self.language

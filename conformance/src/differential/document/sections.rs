@@ -200,6 +200,12 @@ impl Writer<'_> {
             self.class(&mut node, "class");
             self.language
                 .dress(&mut node, &format!("actuator/{kind}"), false, &mut self.dice);
+            if ["joint", "jointinparent", "tendon"]
+                .iter()
+                .all(|target| node.get(target).is_none())
+            {
+                node.unset("inheritrange");
+            }
             self.fit_actuator(&mut node, false);
             self.decide_limits(&mut node);
             section.children.push(node);
@@ -248,6 +254,10 @@ impl Writer<'_> {
             }
             // MuJoCo hangs where it looks for the lengths of muscles and the simulation diverges
             "muscle" if !in_default => {
+                // a default of another kind may have anything there
+                if self.defaults && node.get("range").is_none() {
+                    node.set("range", "0.7 1.1");
+                }
                 let ends = [self.dice.uniform(-1.0, 0.2), self.dice.uniform(0.3, 1.0)];
                 node.set("lengthrange", numbers(&ends));
             }
@@ -270,6 +280,7 @@ impl Writer<'_> {
                 let stateful = node.get("dyntype").is_some_and(|kind| kind != "none");
                 if !stateful && self.dice.chance(0.95) {
                     node.unset("actrange");
+                    node.set("actlimited", "false");
                 }
                 if self.dice.chance(0.1) {
                     node.set("actdim", if stateful { "1" } else { "0" });
@@ -313,6 +324,7 @@ impl Writer<'_> {
                 _ => self.sites.clone(),
             };
             match attribute {
+                None if self.copies => continue,
                 None if kind == "user" => node.set("dim", self.dice.pick(&["0", "1", "3"])),
                 None => {}
                 Some("geom1") if self.between(&mut node) => {}
