@@ -7,6 +7,8 @@
 //! - `crowd`: a step in a vector of many environments against the same steps in one environment alone, one thread, by processor time:
 //!   what it costs that environments take turns in the caches.
 //! - `rates`: an environment whose eyes see 30 pictures a second against one that draws in every step, by processor time.
+//! - `nodes`: 64 nodes of a search, each a state that goes on from the same one for a step, in a `physics::Batch` of one thread against one engine
+//!   and a state that is copied, stepped and copied again, by processor time.
 //! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
 //! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps; how long it takes to make one.
 
@@ -16,6 +18,8 @@ mod allocations;
 use std::hint::black_box;
 use std::time::Instant;
 
+use babybench::physics::{Batch, Engine, SoftEngine, SoftOptions, State};
+use babybench::spaces::NumpyRng;
 use babybench::{AutoresetMode, Blueprint, Config, Env, Observation, VectorEnv, VectorOptions};
 
 const EXAMPLES: [(&str, &str); 3] = [
@@ -307,6 +311,41 @@ fn eyes(name: &str, blueprint: &Blueprint) {
     );
 }
 
+/// The controls of both are the same.
+fn nodes(name: &str, blueprint: &Blueprint) {
+    let mut env = blueprint.env().expect("available");
+    env.reset(Some(0)).expect("no divergence");
+    let (model, from) = (blueprint.model().clone(), env.state().clone());
+    let mut batch = Batch::new(model.clone(), SoftOptions::default(), ENVS);
+    let mut engine = SoftEngine::new(model.clone(), SoftOptions::default());
+    let mut kept: Vec<_> = (0..ENVS).map(|_| engine.new_state()).collect();
+    let mut state = engine.new_state();
+    let mut random = NumpyRng::seed(0);
+    let controls = |_| (0..model.nu() * ENVS).map(|_| random.uniform() as f32 - 0.5).collect();
+    let controls: Vec<Vec<f32>> = (0..PAIRS * STEPS).map(controls).collect();
+    let nu = model.nu();
+    let set = |ctrl: &mut [f64], of: &[f32]| ctrl.iter_mut().zip(of).for_each(|(c, &v)| *c = f64::from(v));
+    pair(
+        &format!("nodes/{name}, a batch of {ENVS} over one by one"),
+        [STEPS, ENVS],
+        cpu_time,
+        &controls,
+        |controls| {
+            for (kept, controls) in kept.iter_mut().zip(controls.chunks_exact(nu)) {
+                state.copy_dynamic_from(&from);
+                set(&mut state.ctrl, controls);
+                engine.step(&mut state).expect("no divergence");
+                kept.copy_dynamic_from(&state);
+            }
+        },
+        |controls| {
+            batch.fork(&from);
+            let control = |k: usize, _, state: &mut State| set(&mut state.ctrl, &controls[k * nu..][..nu]);
+            batch.rollout(1, control).expect("no divergence");
+        },
+    );
+}
+
 /// Both make the same steps; the actions do not depend on what is seen.
 fn rates(name: &str, config: &Config) {
     let rated = Config {
@@ -414,6 +453,9 @@ fn main() {
         let blueprint = Blueprint::new(config).expect("available");
         if wants(&format!("eyes/{name}")) && blueprint.config().vision_active {
             self::eyes(name, &blueprint);
+        }
+        if wants(&format!("nodes/{name}")) {
+            nodes(name, &blueprint);
         }
         if wants(&format!("crowd/{name}")) {
             crowd(&format!("{name}, {eyes}"), &blueprint);

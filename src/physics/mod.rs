@@ -3,6 +3,7 @@
 //! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space. With the feature `rapier`, `RapierEngine` lets
 //! Rapier's own pipeline solve the same model, as multibodies, and `RapierScene` mirrors a state for its queries.
 
+mod batch;
 mod compile;
 mod constraint;
 #[cfg(feature = "internals")]
@@ -30,6 +31,7 @@ pub mod world;
 #[cfg(not(feature = "internals"))]
 pub(crate) mod world;
 
+pub use batch::{Batch, BatchError, BatchPart};
 pub use compile::compile;
 pub use contact::Quirks;
 internals!(use constraint::{ConstraintType, EfcRow});

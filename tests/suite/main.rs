@@ -9,6 +9,7 @@ mod common;
 
 mod actuation;
 mod additions;
+mod batch;
 mod configurations;
 mod eyes_at_once;
 #[cfg(feature = "eval")]
