@@ -126,9 +126,10 @@ fn values_are_checked() {
     check_world("<geom size=''/>", "geom: size: 0 values, expected 1 to 3");
     check_world("<geom size='1 1 1 1'/>", "geom: size: 4 values, expected 1 to 3");
     check_world("<geom size='1' pos='1 2'/>", "geom: pos: 2 values, expected 3 to 3");
-    check_world(
-        "<geom size='1' rgba='1 1 1 2'/>",
-        "geom: rgba: 2 must be between 0 and 1",
+    check_world("<geom size='1' rgba='1 1 1 2'/>", "");
+    check(
+        "<asset><material name='m' shininess='2'/></asset>",
+        "mujoco/asset/material: shininess: 2 must be between 0 and 1",
     );
     check_world(
         "<geom size='1' contype='-1'/>",
