@@ -18,8 +18,8 @@ pub(super) fn convex(
     options: &ContactOptions,
     polytope: &mut Polytope,
 ) -> Option<BareContact> {
-    use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Sphere};
-    let (rod, egg) = (|g| Cylinder::new(g, margin), |g| Ellipsoid::new(g, margin));
+    use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh};
+    let rod = |g| Cylinder::new(g, margin);
     let mut find = Search {
         a,
         b,
@@ -28,15 +28,10 @@ pub(super) fn convex(
         polytope,
     };
     match (a.kind, b.kind) {
-        (Sphere, Egg) => find.rounded(Point::new(a), Ball::new(a, margin), egg(b)),
-        (Pill, Egg) => find.rounded(Segment::new(a), Capsule::new(a, margin), egg(b)),
         (Pill, Rod) => find.rounded(Segment::new(a), Capsule::new(a, margin), rod(b)),
-        (Egg, Egg) => find.deep(egg(a), egg(b)),
-        (Egg, Rod) => find.deep(egg(a), rod(b)),
-        (Egg, Box) => find.deep(egg(a), Cuboid::new(b, margin)),
         (Rod, Rod) => find.deep(rod(a), rod(b)),
         (Rod, Box) => find.deep(rod(a), Cuboid::new(b, margin)),
-        (_, GeomType::Mesh) => find.mesh(),
+        (_, Egg | Mesh) | (Egg, _) => find.any(),
         _ => None,
     }
 }
@@ -62,25 +57,31 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Finds the contact of a mesh, which comes second, with anything but a plane.
-    fn mesh(&mut self) -> Option<BareContact> {
-        use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Sphere};
-        let (a, margin) = (self.a, self.margin);
-        let mesh = MeshShape::new(self.b, self.b.mesh?, margin);
-        let mesh: &dyn Support = &mesh;
+    /// Finds the contact of a pair with a mesh or an ellipsoid, anything but a plane: one copy of the routines for all, since MIMo has
+    /// neither.
+    fn any(&mut self) -> Option<BareContact> {
+        use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh, Sphere};
+        let (a, b, margin) = (self.a, self.b, self.margin);
+        let other: &dyn Support = match b.kind {
+            Egg => &Ellipsoid::new(b, margin),
+            Rod => &Cylinder::new(b, margin),
+            Box => &Cuboid::new(b, margin),
+            Mesh => &MeshShape::new(b, b.mesh?, margin),
+            _ => return None,
+        };
         match a.kind {
             Sphere => {
                 let (core, whole) = (Point::new(a), Ball::new(a, margin));
-                self.rounded(&core as &dyn Support, &whole as &dyn Support, mesh)
+                self.rounded(&core as &dyn Support, &whole as &dyn Support, other)
             }
             Pill => {
                 let (core, whole) = (Segment::new(a), Capsule::new(a, margin));
-                self.rounded(&core as &dyn Support, &whole as &dyn Support, mesh)
+                self.rounded(&core as &dyn Support, &whole as &dyn Support, other)
             }
-            Egg => self.deep(&Ellipsoid::new(a, margin) as &dyn Support, mesh),
-            Rod => self.deep(&Cylinder::new(a, margin) as &dyn Support, mesh),
-            Box => self.deep(&Cuboid::new(a, margin) as &dyn Support, mesh),
-            GeomType::Mesh => self.deep(&MeshShape::new(a, a.mesh?, margin) as &dyn Support, mesh),
+            Egg => self.deep(&Ellipsoid::new(a, margin) as &dyn Support, other),
+            Rod => self.deep(&Cylinder::new(a, margin) as &dyn Support, other),
+            Box => self.deep(&Cuboid::new(a, margin) as &dyn Support, other),
+            Mesh => self.deep(&MeshShape::new(a, a.mesh?, margin) as &dyn Support, other),
             GeomType::Plane | GeomType::HField => None,
         }
     }

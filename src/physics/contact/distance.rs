@@ -46,22 +46,23 @@ pub fn distance(
         options,
         polytope: &mut scratch.polytope,
     };
+    // one copy of the routines for all shapes: only sensors ask for distances, and modules of the page hold each copy
     let span = match (a.kind, b.kind) {
-        (Sphere, Egg) => find.rounded(Point::new(a), Ball::new(a, 0.0), egg(b)),
-        (Pill, Egg) => find.rounded(Segment::new(a), Capsule::new(a, 0.0), egg(b)),
-        (Pill, Rod) => find.rounded(Segment::new(a), Capsule::new(a, 0.0), rod(b)),
-        (Egg, Egg) => find.whole(egg(a), egg(b)),
-        (Egg, Rod) => find.whole(egg(a), rod(b)),
-        (Egg, Box) => find.whole(egg(a), cuboid(b)),
-        (Rod, Rod) => find.whole(rod(a), rod(b)),
-        (Rod, Box) => find.whole(rod(a), cuboid(b)),
-        (Box, Box) => find.whole(cuboid(a), cuboid(b)),
-        (Sphere, Mesh) => find.rounded(Point::new(a), Ball::new(a, 0.0), mesh(b)?),
-        (Pill, Mesh) => find.rounded(Segment::new(a), Capsule::new(a, 0.0), mesh(b)?),
-        (Egg, Mesh) => find.whole(egg(a), mesh(b)?),
-        (Rod, Mesh) => find.whole(rod(a), mesh(b)?),
-        (Box, Mesh) => find.whole(cuboid(a), mesh(b)?),
-        (Mesh, Mesh) => find.whole(mesh(a)?, mesh(b)?),
+        (Sphere, Egg) => find.rounded(&Point::new(a), &Ball::new(a, 0.0), &egg(b)),
+        (Pill, Egg) => find.rounded(&Segment::new(a), &Capsule::new(a, 0.0), &egg(b)),
+        (Pill, Rod) => find.rounded(&Segment::new(a), &Capsule::new(a, 0.0), &rod(b)),
+        (Egg, Egg) => find.whole(&egg(a), &egg(b)),
+        (Egg, Rod) => find.whole(&egg(a), &rod(b)),
+        (Egg, Box) => find.whole(&egg(a), &cuboid(b)),
+        (Rod, Rod) => find.whole(&rod(a), &rod(b)),
+        (Rod, Box) => find.whole(&rod(a), &cuboid(b)),
+        (Box, Box) => find.whole(&cuboid(a), &cuboid(b)),
+        (Sphere, Mesh) => find.rounded(&Point::new(a), &Ball::new(a, 0.0), &mesh(b)?),
+        (Pill, Mesh) => find.rounded(&Segment::new(a), &Capsule::new(a, 0.0), &mesh(b)?),
+        (Egg, Mesh) => find.whole(&egg(a), &mesh(b)?),
+        (Rod, Mesh) => find.whole(&rod(a), &mesh(b)?),
+        (Box, Mesh) => find.whole(&cuboid(a), &mesh(b)?),
+        (Mesh, Mesh) => find.whole(&mesh(a)?, &mesh(b)?),
         _ => {
             points.clear();
             collide(a, b, most, options, scratch, points);
@@ -111,12 +112,12 @@ impl Search<'_, '_> {
     }
 
     /// Measures from a sphere or capsule, which is all that is near its `core`.
-    fn rounded<O: Support>(&mut self, core: impl Support, whole: impl Support, other: O) -> Span {
+    fn rounded(&mut self, core: &dyn Support, whole: &dyn Support, other: &dyn Support) -> Span {
         let (core, radius) = (Difference { a: core, b: other }, self.a.size[0]);
         let limits = self.limits(radius);
         let closest = gjk(&core, self.a.pos, self.b.pos, &limits, &mut Simplex::default());
         if closest.distance <= limits.tolerance {
-            return self.whole(whole, core.b);
+            return self.whole(whole, other);
         }
         let (towards, _) = unit(sub(closest.b, closest.a));
         let dist = closest.distance - radius;
@@ -127,7 +128,8 @@ impl Search<'_, '_> {
         }
     }
 
-    fn whole(&mut self, a: impl Support, b: impl Support) -> Span {
+    /// Measures between whole shapes, apart or in each other.
+    fn whole(&mut self, a: &dyn Support, b: &dyn Support) -> Span {
         let (shape, limits, mut simplex) = (Difference { a, b }, self.limits(0.0), Simplex::default());
         let closest = gjk(&shape, self.a.pos, self.b.pos, &limits, &mut simplex);
         if closest.distance > limits.tolerance || simplex.len < 2 {

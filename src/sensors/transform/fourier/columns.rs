@@ -63,7 +63,9 @@ impl Halved {
         }
     }
 
-    #[inline(always)]
+    // elsewhere `vectorize` has one version, and each of a filter's calls would be a copy
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn transform(&self, re: &mut [f64], im: &mut [f64]) {
         let (n, w) = (self.length, self.width);
         let bits = n.trailing_zeros();
@@ -142,7 +144,9 @@ impl Chirped {
         }
     }
 
-    #[inline(always)]
+    // elsewhere `vectorize` has one version, and each of a filter's calls would be a copy
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn transform(&mut self, re: &mut [f64], im: &mut [f64]) {
         let w = self.width;
         let Plane {

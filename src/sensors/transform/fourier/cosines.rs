@@ -31,7 +31,8 @@ impl Transform for Cosines {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn forward(&mut self, plane: &mut Plane) {
         let (n, w) = (self.length, self.width);
         for place in 0..n {
@@ -54,7 +55,8 @@ impl Transform for Cosines {
     }
 
     /// The inverse, n times as large.
-    #[inline(always)]
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn backward(&mut self, plane: &mut Plane) {
         let (n, w) = (self.length, self.width);
         self.pairs(
