@@ -133,8 +133,8 @@ fn motion_exception(error: MotionError) -> PyErr {
             let text = error.to_string();
             std::io::Error::new(source.kind(), text).into()
         }
-        MotionError::Env(source) => source.into_exception(),
-        MotionError::Record(source) => exception(source),
+        MotionError::Env(source) => (*source).into_exception(),
+        MotionError::Record(source) => exception(*source),
         other => PyValueError::new_err(other.to_string()),
     }
 }

@@ -83,10 +83,22 @@ pub enum MotionError {
     Muscles,
     /// The environment fails.
     #[error(transparent)]
-    Env(#[from] EnvError),
+    Env(Box<EnvError>),
     /// The record cannot be written.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Record(Box<RecordError>),
+}
+
+impl From<EnvError> for MotionError {
+    fn from(source: EnvError) -> Self {
+        Self::Env(Box::new(source))
+    }
+}
+
+impl From<RecordError> for MotionError {
+    fn from(source: RecordError) -> Self {
+        Self::Record(Box::new(source))
+    }
 }
 
 /// Angles of some of MIMo's joints over time, and where his root is, if that is known.

@@ -18,8 +18,7 @@ impl Motion {
         self.check_sizes(limits)?;
         let joints = self.names.len();
         for (k, &value) in self.angles.iter().enumerate() {
-            // negated, so that NaN is an error too
-            if !(value.abs() <= LARGEST) {
+            if !value.is_finite() || value.abs() > LARGEST {
                 return Err(MotionError::Number {
                     frame: k / joints.max(1),
                     name: quoted(&self.names[k % joints.max(1)]),
@@ -35,7 +34,7 @@ impl Motion {
                 value,
                 expected,
             };
-            if let Some(&value) = pos.iter().find(|x| !(x.abs() <= FAR)) {
+            if let Some(&value) = pos.iter().find(|x| !x.is_finite() || x.abs() > FAR) {
                 return Err(number("root_pos", value, "expected a position in m, within 1000 m"));
             }
             let squares: f64 = quat.iter().map(|x| x * x).sum();

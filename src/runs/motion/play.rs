@@ -84,10 +84,7 @@ pub fn play_motion(
             }
             Some(tracker) => {
                 let action = tracker.action(env, &qpos, &qvel);
-                match &mut recorder {
-                    Some(recorder) => recorder.step(env, action)?,
-                    None => drop(env.step(action)?),
-                }
+                follow(env, action, recorder.as_deref_mut())?;
                 let found = &env.state().qpos;
                 for (error, joint) in errors.iter_mut().zip(&course.joints) {
                     let off = found[joint.qpos] - qpos[joint.qpos];
@@ -105,6 +102,15 @@ pub fn play_motion(
     }
     played.conclude(&errors, motion);
     Ok(played)
+}
+
+/// Makes a step with an action, and records it, if there is a recorder.
+fn follow(env: &mut Env, action: &[f32], recorder: Option<&mut Recorder>) -> Result<(), MotionError> {
+    match recorder {
+        Some(recorder) => recorder.step(env, action)?,
+        None => drop(env.step(action)?),
+    }
+    Ok(())
 }
 
 impl Played {

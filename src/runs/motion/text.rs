@@ -121,7 +121,7 @@ fn rate(times: &[f64]) -> Result<f64, String> {
     if !(each > 0.0 && each.is_finite()) {
         return Err(format!("times go from {first} to {last} s; expected ascending ones"));
     }
-    let off = |(k, &t): (usize, &f64)| !((t - (first + k as f64 * each)).abs() <= UNEVEN * each);
+    let off = |(k, &t): (usize, &f64)| t.is_nan() || (t - (first + k as f64 * each)).abs() > UNEVEN * each;
     if let Some((frame, t)) = times.iter().enumerate().find(|&(k, t)| off((k, t))) {
         return Err(format!(
             "frame {frame} is at {t} s, where equal distances of {each} s put it at {} s: resample the motion",
