@@ -123,7 +123,7 @@ fn ranges(context: &Context, actuator: &Actuator, range: Option<[f64; 2]>) -> Re
     }
     let [low, high] = range.unwrap_or_default();
     let wrong = match law.dyntype {
-        DynType::Filter => Some(FILTERED),
+        DynType::Filter | DynType::Muscle => Some(FILTERED),
         _ if range.is_none() || actuator.target.jointinparent.is_some() => Some(IN_PARENT),
         _ if low == high => Some(WITHOUT_RANGE),
         _ => None,
