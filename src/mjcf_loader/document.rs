@@ -13,6 +13,7 @@ use super::custom::{Key, Numeric, Text};
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
+use super::skin::Skin;
 use super::surface::{Material, Texture};
 use super::table::table;
 use super::words::{CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
@@ -223,6 +224,7 @@ pub(super) struct Document {
     pub materials: Vec<Material>,
     pub meshes: Vec<Mesh>,
     pub hfields: Vec<HField>,
+    pub skins: Vec<Skin>,
     /// Density by which the inertia of meshes is scaled while their axes are sought, kg/m^3.
     pub mesh_density: f64,
     pub bodies: Vec<Body>,

@@ -19,6 +19,7 @@ use super::relation::{
 use super::schema::{self, Rule};
 use super::sensor;
 use super::settings::{Global, Headlight, LengthRange, Map, Quality, Rgba, Root, Scale};
+use super::skin::{Bone, Skin};
 use super::surface::{Material, Texture};
 use super::table::Table;
 
@@ -86,7 +87,10 @@ static TEXTURE: Rule = rule("texture", &[Texture::ATTRIBUTES], &[]);
 static MATERIAL: Rule = rule("material", &[CLASS, Material::ATTRIBUTES], &[]);
 static MESH: Rule = rule("mesh", &[CLASS, Mesh::ATTRIBUTES], &[]);
 static HFIELD: Rule = rule("hfield", &[HField::ATTRIBUTES], &[]);
-static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH, &HFIELD]);
+static BONE: Rule = rule("bone", &[Bone::ATTRIBUTES], &[]);
+static SKIN: Rule = rule("skin", &[Skin::ATTRIBUTES], &[&BONE]);
+static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH, &HFIELD, &SKIN]);
+static DEFORMABLE: Rule = rule("deformable", &[], &[&SKIN]);
 
 static INERTIAL: Rule = rule("inertial", &[Inertial::ATTRIBUTES], &[]);
 static JOINT: Rule = rule("joint", &[CLASS, Joint::ATTRIBUTES], &[]);
@@ -322,7 +326,21 @@ pub(super) static MUJOCO: Rule = rule(
     "mujoco",
     &[Root::ATTRIBUTES],
     &[
-        &COMPILER, &OPTION, &SIZE, &VISUAL, &STATISTIC, &DEFAULT, &ASSET, &WORLDBODY, &CONTACT, &EQUALITY, &TENDON,
-        &ACTUATOR, &SENSOR, &CUSTOM, &KEYFRAME,
+        &COMPILER,
+        &OPTION,
+        &SIZE,
+        &VISUAL,
+        &STATISTIC,
+        &DEFAULT,
+        &ASSET,
+        &WORLDBODY,
+        &CONTACT,
+        &EQUALITY,
+        &TENDON,
+        &ACTUATOR,
+        &SENSOR,
+        &CUSTOM,
+        &KEYFRAME,
+        &DEFORMABLE,
     ],
 );

@@ -5,9 +5,9 @@
 //! physics: what needs dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) comes with the last step.
 //!
 //! What is understood is what the models of this project and the original BabyBench files use, and of the rest of the language
-//! whatever needs no skins and no deformable bodies, with few exceptions; the elements and
+//! whatever needs no deformable bodies, with few exceptions; the elements and
 //! attributes are listed by `babybench inspect --mjcf`. Everything else is an error that names the place. Ignored are only the
-//! memory reservations in `size`, the matrix format `jacobian`, and the colours in `visual/rgba` of what only MuJoCo's
+//! memory reservations in `size`, the matrix format `jacobian`, skins, which are not drawn, and the colours in `visual/rgba` of what only MuJoCo's
 //! viewer draws: none changes a compiled array of physics. User data (`user` of actuators and cameras, `nuser_*`) are kept
 //! and mean nothing.
 //!
@@ -45,6 +45,7 @@ mod relation;
 mod schema;
 mod sensor;
 mod settings;
+mod skin;
 mod spec;
 mod surface;
 mod table;

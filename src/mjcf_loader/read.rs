@@ -15,6 +15,7 @@ use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{DEFAULT, Element};
 use super::sensor::{Object, Sensor};
 use super::settings::{Root, Visual};
+use super::skin::{Bone, Skin};
 use super::surface::{Material, Texture};
 use super::table::Table;
 use super::xml::Tree;
@@ -142,6 +143,7 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
         materials: Vec::new(),
         meshes: Vec::new(),
         hfields: Vec::new(),
+        skins: Vec::new(),
         mesh_density: Geom::initial().density,
         bodies: vec![world],
         frames: Vec::new(),
@@ -232,6 +234,10 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
     let class = || classes.of(e, MAIN);
     match (section, e.name) {
         ("asset", "texture") => document.textures.push(Texture::read(e)),
+        ("asset" | "deformable", "skin") => {
+            let bones = e.children.iter().map(Bone::read).collect();
+            document.skins.push(Skin { bones, ..Skin::read(e) });
+        }
         ("asset", "hfield") => document.hfields.push(HField::read(e)),
         ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
         ("asset", _) => document.materials.push(with(&class()?.material, e, Material::apply)),

@@ -91,3 +91,35 @@ fn pictures_are_as_wide_as_the_sensor_sees() {
     assert!(wide.abs_diff(2 * row) <= 2 && high == column, "{wide} {high}");
     assert!(matches!(sides(3), Err(RenderError::OffCentre { camera: 3 })));
 }
+
+#[test]
+fn skins_are_looked_through_and_not_drawn() {
+    let data = r#"vertex="0 0 0 1 0 0 0 1 0" face="0 1 2""#;
+    let bone = r#"<bone body="b" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2" vertweight="1 1 1"/>"#;
+    let load = |section: &str, skin: &str| {
+        let body = r#"<worldbody><body name="b"><geom size=".1"/></body></worldbody>"#;
+        let text = format!("<mujoco><{section}>{skin}</{section}>{body}</mujoco>");
+        let model = load_str(&text, "m.xml", &MemoryAssets::new()).and_then(compile);
+        model.map(|model| model.nbody()).map_err(|e| e.to_string())
+    };
+    for section in ["asset", "deformable"] {
+        let skin = format!(r#"<skin name="s" {data} rgba="1 0 0 1" inflate=".1" group="2">{bone}</skin>"#);
+        assert_eq!(load(section, &skin), Ok(2));
+        for (skin, part) in [
+            (
+                format!(r#"<skin {data} material="x">{bone}</skin>"#),
+                r#"there is no material "x""#,
+            ),
+            (
+                format!("<skin {data}>{}</skin>", bone.replace(r#""b""#, r#""z""#)),
+                r#"there is no body "z""#,
+            ),
+            (format!("<skin {data}/>"), "a skin needs a file"),
+            (r#"<skin file="a.skn"/>"#.to_owned(), "a.skn"),
+            (format!(r#"<skin file="a.skn" {data}/>"#), "not both"),
+        ] {
+            let error = load(section, &skin).expect_err(&skin);
+            assert!(error.contains(part), "{skin}: {error}");
+        }
+    }
+}

@@ -285,6 +285,7 @@ fn check_unreferenced(tree: &Tree, document: &Document) -> Result<(), LoadError>
     Names::new(tree, "sensor", document.sensors.iter().map(|s| (s.at, &s.name)))?;
     Names::new(tree, "pair", document.pairs.iter().map(|p| (p.at, &p.name)))?;
     Names::new(tree, "exclude", document.excludes.iter().map(|e| (e.at, &e.name)))?;
+    Names::new(tree, "skin", document.skins.iter().map(|s| (s.at, &s.name)))?;
     Names::new(tree, "numeric", document.numerics.iter().map(|n| (n.at, &n.name)))?;
     Names::new(tree, "text", document.texts.iter().map(|t| (t.at, &t.name)))?;
     Names::new(tree, "frame", document.frames.iter().map(|f| (f.at, &f.name)))?;

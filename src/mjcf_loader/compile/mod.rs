@@ -12,6 +12,7 @@ mod geometry;
 mod hfield;
 mod mesh;
 mod sensor;
+mod skin;
 mod surface;
 mod tendon;
 
@@ -77,6 +78,7 @@ pub(super) fn compile(
     }
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
     sensor::compile_sensors(&context, document, &ids, &mut arrays)?;
+    skin::check_skins(&context, document, &ids, (source, dir))?;
     custom::compile_custom(&context, document, &mut arrays)?;
     custom::compile_keys(&context, document, &mut arrays)?;
     Ok(arrays)
