@@ -139,8 +139,10 @@ fn motion_exception(error: MotionError) -> PyErr {
     }
 }
 
-/// Plays a motion in an environment that was reset, and records it: returns steps, error, rad, the worst joint with its error, and the
-/// joints whose range it leaves.
+/// What playing a motion came to: steps, error, rad, the worst joint with its error, and the joints whose range it leaves.
+type PlayedSenses = (u64, f64, Option<(String, f64)>, Vec<String>);
+
+/// Plays a motion in an environment that was reset, and records it.
 #[pyfunction]
 pub fn play_senses(
     py: Python<'_>,
@@ -150,7 +152,7 @@ pub fn play_senses(
     degrees: bool,
     track: bool,
     episode: u64,
-) -> PyResult<(u64, f64, Option<(String, f64)>, Vec<String>)> {
+) -> PyResult<PlayedSenses> {
     let mut guard = env.guard()?;
     let env = &mut guard.open()?.env;
     let playing = if track { Playing::Tracking } else { Playing::Kinematic };

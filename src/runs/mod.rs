@@ -61,7 +61,7 @@ pub use logs::{LogError, TrainingLog, read_training};
 internals!(use logs::{EvaluationLog, TrainingTotals});
 pub use many::RunVector;
 #[cfg(feature = "npz")]
-pub use motion::{Motion, MotionError, Played, Playing, play_motion};
+internals!(hidden use motion::{Motion, MotionError, Played, Playing, play_motion});
 #[cfg(feature = "npz")]
 pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed};
 #[cfg(feature = "npz")]

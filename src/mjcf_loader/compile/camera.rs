@@ -86,9 +86,10 @@ fn optics(context: &Context, camera: &Camera, znear: f64) -> Result<(f64, [f64; 
     if camera.sensorsize == [0.0; 2] {
         // what MuJoCo writes where nothing is given
         let near = single(znear);
-        return match value < 180.0 {
-            true => Ok((value, [near, near, 0.0, 0.0])),
-            false => Err(context.error(at, ErrorKind::OutOfRange { attribute, value, want })),
+        return if value < 180.0 {
+            Ok((value, [near, near, 0.0, 0.0]))
+        } else {
+            Err(context.error(at, ErrorKind::OutOfRange { attribute, value, want }))
         };
     }
     if camera.sensorsize.iter().any(|v| *v <= 0.0) || camera.resolution.contains(&0.0) {
