@@ -64,6 +64,8 @@ def main() -> None:
     if importlib.util.find_spec("stable_baselines3") is not None:
         modules.append("babybench_core.sb3")
     warnings.simplefilter("error")
+    # of what matplotlib uses of pyparsing, where that is newer
+    warnings.filterwarnings("ignore", category=DeprecationWarning, module="matplotlib")
     for name in babybench.__all__:
         setattr(babybench, name, getattr(babybench, name))  # pdoc does not see what is imported when it is asked for
     pdoc.render.configure(docformat="google", template_directory=HERE / "template")
