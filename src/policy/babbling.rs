@@ -229,13 +229,16 @@ impl Learner {
     }
 
     fn best(&self, posture: &[f32], settled: bool) -> Choice {
-        let worth = |pair: u32| match () {
-            () if self.touched[pair as usize] => 0.0,
+        let worth = self.shares.iter().zip(&self.touched).map(|(share, touched)| match () {
+            () if *touched => 0.0,
             () if settled => 1.0,
             // a touch that no episode has had counts 25 times as much as one that all have
-            () => pxfm::f_pow(self.shares[pair as usize] + 0.01, -0.7),
-        };
-        self.memory.best(posture, |pair| (self.arms.hand_of(pair), worth(pair)))
+            () => pxfm::f_pow(share + 0.01, -0.7),
+        });
+        // once for all experiences, of which a million steps leave ten thousands
+        let worth: Vec<f64> = worth.collect();
+        self.memory
+            .best(posture, |pair| (self.arms.hand_of(pair), worth[pair as usize]))
     }
 
     fn random(&mut self) -> Movement {

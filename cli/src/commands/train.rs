@@ -60,15 +60,18 @@ impl Train {
             let envs = RunVector::start(&blueprint, n, options, self.resume)?;
             return self.many_envs(envs, config, &interrupt);
         }
+        // before the log that is there is replaced: a policy that cannot be opened costs nothing
+        let mut policy = self.policy()?;
         let mut env = start_training(&blueprint, self.resume)?;
         let (seed, done, bar) = self.begin(env.log(), config)?;
         env.seed_action_space(seed);
         let (mut steps, mut over, mut saved) = (done, true, Instant::now());
-        let (mut policy, mut action) = (self.policy()?, Vec::new());
+        let (mut action, mut episode) = (Vec::new(), 0);
         while steps < self.train_for && !interrupt.wanted() {
             if over {
                 env.reset(None)?;
-                policy.begin(env.env_mut(), 0)?;
+                policy.begin(env.env_mut(), episode)?;
+                episode += 1;
             }
             policy.act(env.env_mut(), &mut action)?;
             env.step(&action)?;

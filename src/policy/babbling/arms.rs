@@ -45,8 +45,9 @@ impl Arms {
                 let above = model.in_subtree(own, body) && !model.in_subtree(other, body);
                 above || model.in_subtree(body, own)
             };
-            // muscles have a block of numbers after another
-            let all = (0..space.len()).filter(|d| actuators.get(d % actuators.len().max(1)).is_some_and(|&a| moves(a)));
+            // muscles have a block of numbers after another; what moves other bodies stands at the end
+            let own_numbers = space.len() - env.actuation().others().len().min(space.len());
+            let all = (0..own_numbers).filter(|d| actuators.get(d % actuators.len().max(1)).is_some_and(|&a| moves(a)));
             all.collect()
         };
         Ok(Self {
@@ -102,7 +103,7 @@ impl Arms {
     }
 
     pub(super) fn clamp(&self, d: usize, value: f64) -> f32 {
-        (value as f32).clamp(self.space.low()[d], self.space.high()[d])
+        self.space.clip(d, value as f32)
     }
 
     /// Spreads numbers in 0..1 over the bounds of an action.
