@@ -202,7 +202,7 @@ impl Env {
     }
 
     fn accumulate_info(&self, on: bool) -> PyResult<()> {
-        self.guard()?.open()?.env.accumulate_info(on);
+        self.guard()?.open()?.env.by_hand().accumulate_info(on);
         Ok(())
     }
 
@@ -218,7 +218,7 @@ impl Env {
 
     #[getter]
     fn ready(&self) -> PyResult<bool> {
-        Ok(self.guard()?.open()?.env.ready())
+        Ok(self.guard()?.open()?.env.by_hand().ready())
     }
 
     #[getter]

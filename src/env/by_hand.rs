@@ -214,6 +214,16 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
+    /// Returns whether a step may follow: there was a reset, and nothing diverged since.
+    pub fn ready(&self) -> bool {
+        self.env.ready()
+    }
+
+    /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
+    pub fn accumulate_info(&mut self, on: bool) {
+        self.env.episode.accumulate = on;
+    }
+
     /// Clears what the behavior has counted.
     pub fn clear_info(&mut self) {
         let env = &mut *self.env;

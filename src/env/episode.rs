@@ -84,7 +84,7 @@ impl Env {
     }
 
     /// Returns whether a step may follow: there was a reset, and nothing diverged since.
-    pub fn ready(&self) -> bool {
+    pub(crate) fn ready(&self) -> bool {
         self.episode.ready
     }
 
@@ -96,11 +96,6 @@ impl Env {
     pub(super) fn end_episode(&mut self) -> u64 {
         self.episode.ready = false;
         std::mem::take(&mut self.episode.steps)
-    }
-
-    /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
-    pub fn accumulate_info(&mut self, on: bool) {
-        self.episode.accumulate = on;
     }
 
     pub(super) fn begin_episode(&mut self) -> Result<(), EnvError> {

@@ -74,6 +74,30 @@ impl OtherInfant {
         2 * self.joints.len() + 3 * self.sensors.len()
     }
 
+    /// Gives it an action, clipped to its space, in the environment whose [`Env::others`] it is one of. It holds until the next one, or a reset.
+    ///
+    /// # Errors
+    /// An action of wrong length or with numbers that are not finite, which changes nothing.
+    pub fn act(&self, env: &mut Env, action: &[f32]) -> Result<(), EnvError> {
+        let expected = self.actuators.len();
+        if action.len() != expected {
+            let found = action.len();
+            return Err(EnvError::ActionLength { found, expected });
+        }
+        if let Some((index, &value)) = action.iter().enumerate().find(|(_, a)| !a.is_finite()) {
+            let name = env.model().actuator_name.get(self.actuators[index]);
+            let actuator = name.cloned().unwrap_or_default();
+            return Err(EnvError::ActionNotFinite { index, actuator, value });
+        }
+        env.physics.check_shape()?;
+        for (k, (&i, &value)) in self.actuators.iter().zip(action).enumerate() {
+            if let Some(ctrl) = env.physics.state.ctrl.get_mut(i) {
+                *ctrl = f64::from(self.space.clip(k, value));
+            }
+        }
+        Ok(())
+    }
+
     /// Writes its observation in a state of the scene, in the place of what `out` has.
     pub fn observe(&self, model: &Model, state: &State, out: &mut Vec<f64>) {
         out.clear();
@@ -90,7 +114,7 @@ impl Env {
     /// Lists the other infants in the scene: one, if a custom document includes `other_mimo.xml`. With muscles there are none to move, as
     /// only the learner's are muscles.
     ///
-    /// A second policy moves it step by step: [`Env::act_other`] before each step of the learner.
+    /// A second policy moves it step by step: [`OtherInfant::act`] before each step of the learner.
     pub fn others(&self) -> Vec<OtherInfant> {
         let model = self.config().actuation_model;
         if model == ActuationModel::Muscle {
@@ -98,29 +122,5 @@ impl Env {
         }
         let other = OtherInfant::of(self.model(), model == ActuationModel::Positional);
         other.into_iter().collect()
-    }
-
-    /// Gives an action, clipped to its space, to another infant. It holds until the next one, or a reset.
-    ///
-    /// # Errors
-    /// An action of wrong length or with numbers that are not finite, which changes nothing.
-    pub fn act_other(&mut self, other: &OtherInfant, action: &[f32]) -> Result<(), EnvError> {
-        let expected = other.actuators.len();
-        if action.len() != expected {
-            let found = action.len();
-            return Err(EnvError::ActionLength { found, expected });
-        }
-        if let Some((index, &value)) = action.iter().enumerate().find(|(_, a)| !a.is_finite()) {
-            let name = self.model().actuator_name.get(other.actuators[index]);
-            let actuator = name.cloned().unwrap_or_default();
-            return Err(EnvError::ActionNotFinite { index, actuator, value });
-        }
-        self.physics.check_shape()?;
-        for (k, (&i, &value)) in other.actuators.iter().zip(action).enumerate() {
-            if let Some(ctrl) = self.physics.state.ctrl.get_mut(i) {
-                *ctrl = f64::from(other.space.clip(k, value));
-            }
-        }
-        Ok(())
     }
 }

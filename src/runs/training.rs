@@ -201,6 +201,7 @@ pub(super) fn open_training_log(blueprint: &Blueprint, resume: bool) -> Result<T
 /// As [`Blueprint::env`].
 pub fn for_evaluation(blueprint: &Blueprint) -> Result<Env, EnvError> {
     let mut env = blueprint.env()?;
-    env.accumulate_info(blueprint.config().compat == Compat::Reference);
+    env.by_hand()
+        .accumulate_info(blueprint.config().compat == Compat::Reference);
     Ok(env)
 }

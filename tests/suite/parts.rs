@@ -77,7 +77,7 @@ fn parts_refuse_what_does_not_fit_and_change_nothing() {
     ));
     assert!(env.by_hand().set_action(&[0.0]).is_err());
     assert_eq!(env.state().qpos, before);
-    assert!(env.ready());
+    assert!(env.by_hand().ready());
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn a_second_policy_moves_the_second_infant() {
         env.restore(&before).expect("its own");
         for step in 0..30 {
             let bent = vec![-0.5 - 0.01 * step as f32; other.action_space().len()];
-            env.act_other(&other, &bent).expect("an action");
+            other.act(&mut env, &bent).expect("an action");
             env.step(&still).expect("no divergence");
         }
         let moved = [elbow(&env, "robot:right_elbow"), elbow(&env, "other:robot:right_elbow")];
@@ -81,7 +81,7 @@ fn a_second_policy_moves_the_second_infant() {
             other.actuators().iter().all(|&i| env.state().ctrl[i] == 0.0),
             "a reset lets him rest"
         );
-        assert!(env.act_other(&other, &[0.0]).is_err() && env.act_other(&other, &vec![f32::NAN; still.len()]).is_err());
+        assert!(other.act(&mut env, &[0.0]).is_err() && other.act(&mut env, &vec![f32::NAN; still.len()]).is_err());
     }
 }
 

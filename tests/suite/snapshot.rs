@@ -266,7 +266,7 @@ fn the_observation_is_of_one_moment() {
     let now = env.refresh().expect("no divergence").proprioception[range.start];
     assert_eq!(now, qpos[joint]);
     env.state_mut().qpos[joint] = f64::NAN;
-    assert!(env.refresh().is_err() && !env.ready());
+    assert!(env.refresh().is_err() && !env.by_hand().ready());
 }
 
 #[test]
@@ -283,7 +283,10 @@ fn a_clone_goes_on_with_the_same_bits() {
         random_steps(&mut env, 4);
         let mut twin = env.clone();
         assert_eq!((env.observation(), env.info()), (twin.observation(), twin.info()));
-        assert_eq!((env.reward(), env.ready()), (twin.reward(), twin.ready()));
+        assert_eq!(
+            (env.reward(), env.by_hand().ready()),
+            (twin.reward(), twin.by_hand().ready())
+        );
         let expect = course(&mut env, 6);
         assert!(course(&mut twin, 6) == expect);
         let mut third = twin.clone();
