@@ -42,13 +42,13 @@ limits! {
     Limits {
         /// MJCF: bytes of XML in a document and its includes.
         document_bytes: usize = 4 * MIB,
-        /// MJCF: elements in a document and its includes.
+        /// MJCF: elements in a document, its includes and the models that it names; so many are looked at, too, where bodies of models are attached.
         elements: usize = 100_000,
         /// MJCF: attributes of an element.
         attributes: usize = 64,
         /// MJCF: levels of nested elements, across includes. A level takes up to 3 KiB of stack without optimisation.
         depth: usize = 100,
-        /// MJCF: levels of nested includes. A level takes up to 2 KiB of stack without optimisation.
+        /// MJCF: levels of nested includes, and of models within models. A level takes up to 2 KiB of stack without optimisation.
         include_depth: usize = 16,
         /// MJCF: bytes of a name or any other attribute that is text. Default classes copy them.
         text_bytes: usize = 256,

@@ -168,6 +168,7 @@ impl Rivals {
 }
 
 /// An attribute: one line of a table.
+#[derive(Clone, Copy)]
 pub(super) struct Attr {
     pub name: &'static str,
     pub kind: Kind,

@@ -1,12 +1,13 @@
 //! The typed document: every element with its defaults applied, references still by name, angles still as written. Here
 //! are the tables of bodies and what hangs on them, and the document as a whole.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::math::Vec3;
 use crate::model::{self, CamLight, GeomType, JointType, Options, Statistic};
 
 use super::actuator::Actuator;
+use super::attached::{Absent, Attachable, AttachedKey};
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text};
@@ -15,9 +16,10 @@ use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
 use super::skin::Skin;
 use super::surface::{Material, Texture};
-use super::table::table;
+use super::table::{Table, table};
 use super::words::{CAM_LIGHT, FLUID, GREY, JOINTS, MAX_BITS, MAX_GROUP, SHAPES, SITE_SHAPES, SOLIMP, SOLREF, TRI};
 
+use super::settings::Visual;
 pub(super) use super::settings::{Compiler, LengthRange, Size};
 pub(super) use super::words::{Frame, Orientation, Tri};
 
@@ -25,6 +27,7 @@ table! {
     /// `<joint>`.
     element Joint {
         also within: Option<usize> = None;
+        also align: Tri = Tri::Auto;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: JointType = JointType::Hinge, JOINTS, "Kind of motion.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
@@ -56,7 +59,7 @@ table! {
     element FreeJoint {
         "name" name: String = String::new(), TEXT, own, "Name.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
-        check "align", Kind::Word(&["false", "auto"]), "Whether MuJoCo moves the frame of the body into its centre of mass: it stays as it is written.";
+        "align" align: Tri = Tri::Auto, TRI, "Whether the frame of the body is moved into its centre of mass and along its principal axes, where no other bodies are in it; `auto`: as `alignfree` of the compiler.";
     }
 }
 
@@ -79,6 +82,7 @@ table! {
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance at which contacts are found, m.";
         "gap" gap: f64 = 0.0, real(NonNegative), "Part of the margin in which contacts exert no force, m.";
         "mass" mass: Option<f64> = None, real(NonNegative), "Mass, kg; else by density.";
+        "shellinertia" shell: bool = false, FLAG, "Whether only the surface has mass; `density` is then in kg/m^2.";
         "density" density: f64 = 1000.0, real(NonNegative), "Density, kg/m^3.";
         "fromto" fromto: Option<[f64; 6]> = None, reals(6, Any), "Both ends of an elongated shape, m, in place of pose and length.";
         "fluidshape" ellipsoid: bool = false, FLUID, "Whether a medium acts on it as on an ellipsoid; without such geoms it acts on the body as on a box.";
@@ -211,10 +215,29 @@ table! {
     }
 }
 
+table! {
+    /// `<asset><model>`: another document, of which `<attach>` takes bodies.
+    element ModelAsset {
+        "name" name: String = String::new(), TEXT, "Name; else that which the model has itself.";
+        check "file", TEXT, "File of the model, an MJCF document.";
+        check "content_type", TEXT, "Format of the file, whatever its ending: `text/xml`.";
+    }
+}
+
+table! {
+    /// `<attach>` in a body: a body of another model, with all below it and all that refers to nothing else.
+    element Attach {
+        "model" model: String = String::new(), TEXT, required, "Model of which the body is.";
+        "body" body: String = String::new(), TEXT, required, "Body of that model.";
+        "prefix" prefix: String = String::new(), TEXT, required, "What the names of all that comes with it begin with.";
+    }
+}
+
 /// Everything a document says.
 pub(super) struct Document {
     pub model: String,
-    pub compiler: Compiler,
+    /// Settings of the document and of the models that it names, as the tree lists them; none in a model.
+    pub compilers: Vec<Compiler>,
     pub lengthrange: LengthRange,
     pub option: Options,
     pub visual: model::Visual,
@@ -232,6 +255,15 @@ pub(super) struct Document {
     pub frames: Vec<BodyFrame>,
     /// What each `<replicate>` adds to the names of its copies.
     pub suffixes: BTreeSet<String>,
+    /// Whether a `<replicate>` stands in this document itself.
+    pub replicates: bool,
+    /// What did not come along with bodies of other models.
+    pub absent: Vec<Absent>,
+    /// Elements of other models that were looked at, and what keyframes say of them.
+    pub looked_at: usize,
+    pub said: usize,
+    /// Other models, by name.
+    pub models: BTreeMap<String, Attachable>,
     pub pairs: Vec<Pair>,
     pub excludes: Vec<Exclude>,
     pub equalities: Vec<Equality>,
@@ -241,4 +273,50 @@ pub(super) struct Document {
     pub numerics: Vec<Numeric>,
     pub texts: Vec<Text>,
     pub keys: Vec<Key>,
+    /// Keyframes of other models, which follow the document's own.
+    pub attached_keys: Vec<AttachedKey>,
+}
+
+impl Document {
+    /// Returns a document that says nothing but its name; `at` is its root.
+    pub fn new(at: usize, model: String) -> Self {
+        let world = Body {
+            at,
+            name: "world".to_owned(),
+            ..Body::initial()
+        };
+        Self {
+            model,
+            compilers: Vec::new(),
+            lengthrange: LengthRange::initial(),
+            option: Options::initial(),
+            visual: Visual::default().compiled(),
+            statistic: Statistic::initial(),
+            size: Size::initial(),
+            textures: Vec::new(),
+            materials: Vec::new(),
+            meshes: Vec::new(),
+            hfields: Vec::new(),
+            skins: Vec::new(),
+            mesh_density: Geom::initial().density,
+            bodies: vec![world],
+            frames: Vec::new(),
+            suffixes: BTreeSet::new(),
+            replicates: false,
+            absent: Vec::new(),
+            looked_at: 0,
+            said: 0,
+            models: BTreeMap::new(),
+            pairs: Vec::new(),
+            excludes: Vec::new(),
+            equalities: Vec::new(),
+            tendons: Vec::new(),
+            actuators: Vec::new(),
+            sensors: Vec::new(),
+            numerics: Vec::new(),
+            texts: Vec::new(),
+            keys: Vec::new(),
+            attached_keys: Vec::new(),
+        }
+    }
 }

@@ -1,16 +1,16 @@
 //! An MJCF document that a program may still change.
 
-use crate::assets::{AssetSource, directory, resolve};
+use crate::assets::{AssetSource, resolve};
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::GeomType;
 
 use super::document::{Body, Document};
-use super::error::{ErrorKind, LoadError};
+use super::error::LoadError;
 use super::geom_volume;
 use super::spec::{Places, Spec};
 use super::xml::Tree;
-use super::{compile, elements, read, schema};
+use super::{compile, read};
 
 /// An MJCF document that was read and checked, with its default classes applied, and not yet compiled: sizes, positions,
 /// masses and strengths can be changed, as in MuJoCo's `mjSpec` before `mj_compile`. Names and ids stay.
@@ -32,7 +32,6 @@ use super::{compile, elements, read, schema};
 pub struct Draft {
     tree: Tree,
     document: Document,
-    path: String,
     /// What names begin with.
     prefix: String,
 }
@@ -73,7 +72,7 @@ pub struct DraftActuator<'a> {
 impl std::fmt::Debug for Draft {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Draft")
-            .field("path", &self.path)
+            .field("path", &self.tree.file(0))
             .finish_non_exhaustive()
     }
 }
@@ -98,17 +97,11 @@ impl Draft {
         limits: &Limits,
     ) -> Result<Self, LoadError> {
         let path = resolve("", virtual_path).map_err(|e| LoadError::in_file(virtual_path, e))?;
-        let (tree, root) = Tree::read(xml, &path, source, limits)?;
-        let name = &tree.nodes[root].name;
-        if name != "mujoco" {
-            return Err(tree.error(root, ErrorKind::WrongRoot(name.clone())));
-        }
-        let checked = schema::check(&tree, root, &elements::MUJOCO)?;
-        let document = read::read(&tree, &checked)?;
+        let (tree, _) = Tree::read(xml, &path, source, limits)?;
+        let document = read::read(&tree)?;
         Ok(Self {
             tree,
             document,
-            path,
             prefix: String::new(),
         })
     }
@@ -118,10 +111,8 @@ impl Draft {
     /// # Errors
     /// As [`super::load`]; an element at fault is named with its place in the text.
     pub fn compile(self, source: &dyn AssetSource) -> Result<Spec, LoadError> {
-        let Self {
-            tree, document, path, ..
-        } = self;
-        let arrays = compile::compile(&tree, &document, source, directory(&path))?;
+        let Self { tree, document, .. } = self;
+        let arrays = compile::compile(&tree, &document, source)?;
         let places = Places {
             bodies: document.bodies.iter().map(|body| body.at).collect(),
             tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),

@@ -7,9 +7,11 @@ use super::actuator::{
     Activation, Actuator, Adhesion, AtSite, Control, Cylinder, Filter, Law, Muscle, OnBody, Servo, Speed, Target,
 };
 use super::attribute::{Attr, TEXT};
+use super::composite::{self, Composite, CompositeJoint, CompositeSkin};
 use super::custom::{Key, Numeric, Text};
 use super::document::{
-    Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, Replicate, Site, Size,
+    Attach, Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, ModelAsset, Replicate, Site,
+    Size,
 };
 use super::mesh::{HField, Mesh};
 use super::relation::{
@@ -89,7 +91,8 @@ static MESH: Rule = rule("mesh", &[CLASS, Mesh::ATTRIBUTES], &[]);
 static HFIELD: Rule = rule("hfield", &[HField::ATTRIBUTES], &[]);
 static BONE: Rule = rule("bone", &[Bone::ATTRIBUTES], &[]);
 static SKIN: Rule = rule("skin", &[Skin::ATTRIBUTES], &[&BONE]);
-static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH, &HFIELD, &SKIN]);
+static MODEL: Rule = rule("model", &[ModelAsset::ATTRIBUTES], &[]);
+static ASSET: Rule = rule("asset", &[], &[&TEXTURE, &MATERIAL, &MESH, &HFIELD, &SKIN, &MODEL]);
 static DEFORMABLE: Rule = rule("deformable", &[], &[&SKIN]);
 
 static INERTIAL: Rule = rule("inertial", &[Inertial::ATTRIBUTES], &[]);
@@ -103,7 +106,7 @@ static BODY: Rule = rule(
     "body",
     &[Body::ATTRIBUTES],
     &[
-        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE,
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
     ],
 );
 /// In the world it can hold what the world can, which the reader checks.
@@ -111,20 +114,32 @@ static FRAME: Rule = rule(
     "frame",
     &[BodyFrame::ATTRIBUTES],
     &[
-        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE,
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
     ],
 );
 static REPLICATE: Rule = rule(
     "replicate",
     &[Replicate::ATTRIBUTES],
     &[
-        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE,
+        &BODY, &INERTIAL, &JOINT, &FREEJOINT, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
     ],
 );
+static COMPOSITE_JOINT: Rule = rule("joint", &[CompositeJoint::ATTRIBUTES, &[&composite::JOINT]], &[]);
+static COMPOSITE_GEOM: Rule = rule("geom", &[&[&composite::GEOM]], &[]);
+static COMPOSITE_SITE: Rule = rule("site", &[&[&composite::SITE]], &[]);
+static COMPOSITE_SKIN: Rule = rule("skin", &[CompositeSkin::ATTRIBUTES], &[]);
+static COMPOSITE: Rule = rule(
+    "composite",
+    &[Composite::ATTRIBUTES],
+    &[&COMPOSITE_JOINT, &COMPOSITE_GEOM, &COMPOSITE_SITE, &COMPOSITE_SKIN],
+);
+static ATTACH: Rule = rule("attach", &[Attach::ATTRIBUTES], &[]);
 static WORLDBODY: Rule = rule(
     "worldbody",
     &[],
-    &[&BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE],
+    &[
+        &BODY, &GEOM, &SITE, &CAMERA, &LIGHT, &FRAME, &REPLICATE, &ATTACH, &COMPOSITE,
+    ],
 );
 
 static PAIR: Rule = rule("pair", &[CLASS, Pair::ATTRIBUTES], &[]);

@@ -86,6 +86,9 @@ pub enum ErrorKind {
     /// A file is included twice, or includes itself.
     #[error("file \"{}\" is already included", quoted(.0))]
     RepeatedInclude(String),
+    /// A model that names itself among the models that it is made of.
+    #[error("the model of file \"{}\" cannot be a part of itself", quoted(.0))]
+    ModelInItself(String),
     /// An element that is unknown, unsupported or in the wrong place.
     #[error("unknown element \"{}\"", quoted(.0))]
     UnknownElement(String),

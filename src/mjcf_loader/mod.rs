@@ -27,8 +27,10 @@
 //! ```
 
 mod actuator;
+mod attached;
 mod attribute;
 mod compile;
+mod composite;
 mod custom;
 mod document;
 mod draft;

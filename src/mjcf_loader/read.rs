@@ -1,24 +1,27 @@
 //! Checked elements -> typed document: sections in MuJoCo's order, default classes applied.
 
+mod attach;
+mod attach_keys;
+mod cable;
 mod content;
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use crate::model::{Options, Statistic};
+use std::collections::BTreeMap;
 
 use super::actuator::Actuator;
+use super::attached::Attachable;
 use super::custom::{Key, Numeric, Text};
-use super::document::{Body, Camera, Compiler, Document, Geom, Joint, LengthRange, Light, Site, Size};
+use super::document::{Camera, Compiler, Document, Geom, Joint, Light, ModelAsset, Site};
+use super::elements;
 use super::error::{ErrorKind, LoadError};
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
-use super::schema::{DEFAULT, Element};
+use super::schema::{self, DEFAULT, Element};
 use super::sensor::{Object, Sensor};
 use super::settings::{Root, Visual};
 use super::skin::{Bone, Skin};
 use super::surface::{Material, Texture};
 use super::table::Table;
-use super::xml::Tree;
+use super::xml::{ModelFile, Tree};
 use content::{Spot, content};
 
 /// The defaults of a class: one prototype per kind of element.
@@ -124,47 +127,54 @@ impl<'t> Classes<'t> {
     }
 }
 
+/// The document and the models that it names, with their elements.
+struct Parts<'t> {
+    tree: &'t Tree,
+    roots: Vec<Element>,
+    /// The place in the tree's list of models of that which an element names.
+    named: BTreeMap<usize, usize>,
+}
+
 /// Reads the whole document.
-pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
-    let world = Body {
-        at: root.at,
-        name: "world".to_owned(),
-        ..Body::initial()
+pub(super) fn read(tree: &Tree) -> Result<Document, LoadError> {
+    let root = |model: &ModelFile| {
+        let name = &tree.nodes[model.root].name;
+        if name != "mujoco" {
+            return Err(tree.error(model.root, ErrorKind::WrongRoot(name.clone())));
+        }
+        schema::check(tree, model.root, &elements::MUJOCO)
     };
-    let mut document = Document {
-        model: Root::read(root).model,
-        compiler: Compiler::initial(),
-        lengthrange: LengthRange::initial(),
-        option: Options::initial(),
-        visual: Visual::default().compiled(),
-        statistic: Statistic::initial(),
-        size: Size::initial(),
-        textures: Vec::new(),
-        materials: Vec::new(),
-        meshes: Vec::new(),
-        hfields: Vec::new(),
-        skins: Vec::new(),
-        mesh_density: Geom::initial().density,
-        bodies: vec![world],
-        frames: Vec::new(),
-        suffixes: BTreeSet::new(),
-        pairs: Vec::new(),
-        excludes: Vec::new(),
-        equalities: Vec::new(),
-        tendons: Vec::new(),
-        actuators: Vec::new(),
-        sensors: Vec::new(),
-        numerics: Vec::new(),
-        texts: Vec::new(),
-        keys: Vec::new(),
+    let models = tree.models();
+    let parts = Parts {
+        tree,
+        roots: models.iter().map(root).collect::<Result<_, _>>()?,
+        named: models
+            .iter()
+            .enumerate()
+            .map(|(index, model)| (model.of, index))
+            .collect(),
     };
+    let compiler = |root: &Element| {
+        let mut compiler = Compiler::initial();
+        let sections = root.children.iter().filter(|e| e.name == "compiler");
+        sections.for_each(|section| compiler.section(section));
+        compiler
+    };
+    let mut document = read_model(&parts, 0)?;
+    document.compilers = parts.roots.iter().map(compiler).collect();
+    Ok(document)
+}
+
+/// Reads the document, or a model that it names. Recursion is bounded by the limit on models within models.
+fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
+    let (tree, root) = (parts.tree, &parts.roots[index]);
+    let mut document = Document::new(root.at, Root::read(root).model);
     let mut classes = Classes {
         tree,
         by_name: BTreeMap::from([(MAIN.to_owned(), Class::default())]),
     };
     let sections = |name: &'static str| root.children.iter().filter(move |e| e.name == name);
     for section in sections("compiler") {
-        document.compiler.section(section);
         section.children.iter().for_each(|e| document.lengthrange.apply(e));
     }
     for section in sections(DEFAULT) {
@@ -189,23 +199,39 @@ pub(super) fn read(tree: &Tree, root: &Element) -> Result<Document, LoadError> {
             "size" => document.size.apply(section),
             "visual" => section.children.iter().for_each(|e| visual.apply(e)),
             "statistic" => document.statistic.apply(section),
-            "worldbody" => {
-                let spot = Spot {
-                    body: 0,
-                    within: None,
-                    suffix: "",
-                };
-                content(section, spot, MAIN, &classes, &mut document)?;
-            }
+            "worldbody" => {}
             _ => section
                 .children
                 .iter()
                 .try_for_each(|e| add(e, section.name, &classes, &mut document))?,
         }
     }
+    for model in sections("asset").flat_map(|section| &section.children) {
+        if let Some(&index) = parts.named.get(&model.at).filter(|_| model.name == "model") {
+            add_model(parts, index, model, &mut document)?;
+        }
+    }
+    // as in MuJoCo, what comes with bodies of other models follows the document's own
+    for section in sections("worldbody") {
+        content(section, Spot::WORLD, MAIN, &classes, &mut document)?;
+    }
     document.visual = visual.compiled();
     check_copies(tree, &document)?;
+    attach::check_absent(tree, &document)?;
     Ok(document)
+}
+
+/// Adds a model that `<attach>` may take bodies of.
+fn add_model(parts: &Parts, index: usize, e: &Element, document: &mut Document) -> Result<(), LoadError> {
+    let model = read_model(parts, index)?;
+    let given = ModelAsset::read(e).name;
+    let name = if given.is_empty() { model.model.clone() } else { given };
+    let kind = "model";
+    if document.models.contains_key(&name) {
+        return Err(parts.tree.error(e.at, ErrorKind::DuplicateName { kind, name }));
+    }
+    document.models.insert(name, Attachable::new(model));
+    Ok(())
 }
 
 /// Why what MuJoCo copies with what a `<replicate>` holds, though it is not in there, is refused.
@@ -214,7 +240,7 @@ const MULTIPLIED: &str =
 
 /// Refuses what MuJoCo multiplies beside what a `<replicate>` holds: sensors of no object, and keyframes.
 fn check_copies(tree: &Tree, document: &Document) -> Result<(), LoadError> {
-    if document.frames.iter().all(|frame| frame.copy.is_none()) {
+    if !document.replicates {
         return Ok(());
     }
     let of_nothing = |sensor: &&Sensor| match &sensor.object {
@@ -223,7 +249,9 @@ fn check_copies(tree: &Tree, document: &Document) -> Result<(), LoadError> {
         _ => false,
     };
     let sensor = document.sensors.iter().find(of_nothing).map(|sensor| sensor.at);
-    match sensor.or(document.keys.first().map(|key| key.at)) {
+    let key = document.keys.first().map(|key| key.at);
+    let key = key.or(document.attached_keys.first().map(|key| key.at));
+    match sensor.or(key) {
         Some(at) => Err(tree.error(at, ErrorKind::Invalid(MULTIPLIED))),
         None => Ok(()),
     }
@@ -240,6 +268,7 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
         }
         ("asset", "hfield") => document.hfields.push(HField::read(e)),
         ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
+        ("asset", "model") => {} // once the document itself is read
         ("asset", _) => document.materials.push(with(&class()?.material, e, Material::apply)),
         ("contact", "pair") => document.pairs.push(with(&class()?.pair, e, Pair::apply)),
         ("contact", _) => document.excludes.push(Exclude::read(e)),

@@ -71,6 +71,7 @@ fn once(parent: &str, child: &str) -> bool {
         "visual" | "option" | "compiler" => true,
         DEFAULT => child != DEFAULT,
         "body" => child == "inertial",
+        "composite" => child != "joint",
         _ => false,
     }
 }

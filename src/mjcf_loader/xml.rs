@@ -1,14 +1,14 @@
-//! XML text -> one tree, with includes spliced in. Knows nothing of MJCF but `include`.
+//! XML text -> one tree, with includes spliced in, and the trees of the models that it names. Knows nothing of MJCF but `include` and
+//! `<asset><model>`.
+
+mod parser;
 
 use std::collections::BTreeSet;
-
-use quick_xml::XmlVersion;
-use quick_xml::events::{BytesStart, Event};
-use quick_xml::reader::Reader;
 
 use super::error::{ErrorKind, LoadError, Place};
 use crate::assets::{AssetSource, directory, resolve};
 use crate::limits::Limits;
+use parser::Parser;
 
 /// An element. Children may come from other files, the parent is the one in its own file.
 #[derive(Clone, Debug)]
@@ -38,6 +38,23 @@ pub(crate) struct Tree {
     /// Elements that this document may contain.
     pub limits: Limits,
     files: Vec<String>,
+    /// The document and the models that it names; the elements of each follow those of the one before.
+    models: Vec<ModelFile>,
+}
+
+/// The document, or a model that an `<asset><model>` names.
+#[derive(Clone, Debug)]
+pub(crate) struct ModelFile {
+    /// The element that names it; its own root for the document.
+    pub of: usize,
+    /// Its root element.
+    pub root: usize,
+    /// The folder of its file.
+    pub dir: String,
+    /// The place of what names it in the list of models.
+    pub within: Option<usize>,
+    first: usize,
+    path: String,
 }
 
 impl Tree {
@@ -48,15 +65,30 @@ impl Tree {
                 nodes: Vec::new(),
                 limits: limits.clone(),
                 files: Vec::new(),
+                models: Vec::new(),
             },
             source,
-            // MuJoCo resolves every reference against the main document, also those in included files.
-            dir: directory(path).to_owned(),
-            included: BTreeSet::from([path.to_owned()]),
+            dir: String::new(),
+            included: BTreeSet::new(),
             bytes: 0,
         };
-        let root = reading.file(text, path, 0, 0)?;
+        let root = reading.model(text, path, None)?;
+        let mut model = 0;
+        while model < reading.tree.models.len() {
+            reading.models_of(model)?;
+            model += 1;
+        }
         Ok((reading.tree, root))
+    }
+
+    /// Returns the document and the models that it names.
+    pub fn models(&self) -> &[ModelFile] {
+        &self.models
+    }
+
+    /// Returns the place in the list of models of that which an element belongs to; 0 for the document.
+    pub fn model_of(&self, at: usize) -> usize {
+        self.models.partition_point(|model| model.first <= at).saturating_sub(1)
     }
 
     /// Builds an error at an element.
@@ -163,6 +195,69 @@ struct Reading<'s> {
 }
 
 impl Reading<'_> {
+    /// Reads the document, or a model with the element that names it.
+    fn model(&mut self, text: &str, path: &str, of: Option<usize>) -> Result<usize, LoadError> {
+        let first = self.tree.nodes.len();
+        // MuJoCo resolves every reference against the main document of a model, also those in included files.
+        directory(path).clone_into(&mut self.dir);
+        self.included = BTreeSet::from([path.to_owned()]);
+        let root = self.file(text, path, 0, 0)?;
+        self.tree.models.push(ModelFile {
+            of: of.unwrap_or(root),
+            root,
+            dir: self.dir.clone(),
+            within: of.map(|of| self.tree.model_of(of)),
+            first,
+            path: path.to_owned(),
+        });
+        Ok(root)
+    }
+
+    /// Reads the models that a model, or the document, names.
+    fn models_of(&mut self, model: usize) -> Result<(), LoadError> {
+        let nodes = &self.tree.nodes;
+        let root = &nodes[self.tree.models[model].root];
+        let assets = root.children.iter().filter(|&&at| nodes[at].name == "asset");
+        let named: Vec<usize> = assets
+            .flat_map(|&at| &nodes[at].children)
+            .copied()
+            .filter(|&at| nodes[at].name == "model")
+            .collect();
+        named.into_iter().try_for_each(|at| self.model_at(at, model))
+    }
+
+    fn model_at(&mut self, at: usize, within: usize) -> Result<(), LoadError> {
+        let node = &self.tree.nodes[at];
+        let Some(file) = node.attribute("file") else {
+            return Err(self.tree.error(at, ErrorKind::MissingAttribute("file")));
+        };
+        let format = node.attribute("content_type");
+        let xml = match format {
+            Some(format) => format == "text/xml",
+            None => file.ends_with(".xml"),
+        };
+        if !xml {
+            let what = "a model is an MJCF document: its file ends with .xml, or content_type is text/xml";
+            return Err(self.tree.error(at, ErrorKind::Invalid(what)));
+        }
+        let path = resolve(&self.tree.models[within].dir, file).map_err(|e| self.tree.error(at, e))?;
+        let (mut around, mut depth) = (Some(within), 1);
+        while let Some(model) = around {
+            if self.tree.models[model].path == path {
+                return Err(self.tree.error(at, ErrorKind::ModelInItself(path)));
+            }
+            (around, depth) = (self.tree.models[model].within, depth + 1);
+        }
+        let limit = self.tree.limits.include_depth;
+        if depth > limit + 1 {
+            let what = "models within models";
+            return Err(self.tree.error(at, ErrorKind::TooMuch { what, limit }));
+        }
+        let bytes = self.source.read(&path).map_err(|e| self.tree.error(at, e))?;
+        let text = std::str::from_utf8(&bytes).map_err(|_| LoadError::in_file(&path, ErrorKind::NotUtf8))?;
+        self.model(text, &path, Some(at)).map(|_| ())
+    }
+
     /// Parses one file and splices its includes. `depth` is the nesting depth of the element it stands for.
     fn file(&mut self, text: &str, path: &str, depth: usize, level: usize) -> Result<usize, LoadError> {
         self.bytes = self.bytes.saturating_add(text.len());
@@ -242,168 +337,4 @@ impl Reading<'_> {
             None => Ok(root),
         }
     }
-}
-
-/// Turns byte offsets, which only grow, into lines and columns.
-struct Cursor<'t> {
-    text: &'t str,
-    offset: usize,
-    line: usize,
-    column: usize,
-}
-
-impl Cursor<'_> {
-    fn advance(&mut self, offset: u64) {
-        let offset = usize::try_from(offset).unwrap_or(usize::MAX).min(self.text.len());
-        for byte in self.text.as_bytes().get(self.offset..offset).unwrap_or_default() {
-            if *byte == b'\n' {
-                self.line += 1;
-                self.column = 1;
-            } else if byte & 0xC0 != 0x80 {
-                // Continuation bytes belong to the character before.
-                self.column += 1;
-            }
-        }
-        self.offset = offset.max(self.offset);
-    }
-}
-
-/// Parses the text of the last file of the tree. Keeps its own stack, so depth costs no stack.
-struct Parser<'t> {
-    tree: &'t mut Tree,
-    file: usize,
-    /// Nesting depth of the element that the file stands for.
-    base_depth: usize,
-    cursor: Cursor<'t>,
-    open: Vec<usize>,
-    root: Option<usize>,
-}
-
-impl<'t> Parser<'t> {
-    fn new(tree: &'t mut Tree, text: &'t str, base_depth: usize) -> Self {
-        let cursor = Cursor {
-            text: text.strip_prefix('\u{feff}').unwrap_or(text),
-            offset: 0,
-            line: 1,
-            column: 1,
-        };
-        Parser {
-            file: tree.files.len() - 1,
-            tree,
-            base_depth,
-            cursor,
-            open: Vec::new(),
-            root: None,
-        }
-    }
-
-    /// Builds an error at the cursor.
-    fn fail(&self, kind: ErrorKind) -> LoadError {
-        let mut place = self.open.last().map_or_else(Place::default, |&at| self.tree.place(at));
-        place.file.clone_from(&self.tree.files[self.file]);
-        (place.line, place.column) = (self.cursor.line, self.cursor.column);
-        LoadError {
-            place: Box::new(place),
-            kind,
-        }
-    }
-
-    /// Returns the root of the file.
-    fn run(mut self) -> Result<usize, LoadError> {
-        let mut reader = Reader::from_str(self.cursor.text);
-        loop {
-            self.cursor.advance(reader.buffer_position());
-            match reader.read_event() {
-                Ok(Event::Start(start)) => {
-                    let at = self.element(&start)?;
-                    self.open.push(at);
-                }
-                Ok(Event::Empty(start)) => {
-                    self.element(&start)?;
-                }
-                Ok(Event::End(_)) => {
-                    self.open.pop();
-                }
-                Ok(Event::Eof) => return self.end(),
-                Ok(Event::Comment(_) | Event::Decl(_)) => {}
-                Ok(Event::Text(content)) if content.trim().is_empty() => {}
-                // as in MuJoCo, text within elements says nothing
-                Ok(Event::Text(content)) if !self.open.is_empty() && !content.contains('\0') => {}
-                Ok(Event::GeneralRef(_)) if !self.open.is_empty() => {}
-                Ok(Event::Text(_) | Event::GeneralRef(_)) => return Err(self.fail(ErrorKind::Forbidden("text"))),
-                Ok(Event::CData(_)) => return Err(self.fail(ErrorKind::Forbidden("a CDATA section"))),
-                Ok(Event::PI(_)) => return Err(self.fail(ErrorKind::Forbidden("a processing instruction"))),
-                Ok(Event::DocType(_)) => return Err(self.fail(ErrorKind::Forbidden("a document type"))),
-                Err(error) => {
-                    self.cursor.advance(reader.error_position());
-                    return Err(self.fail(ErrorKind::Xml(error.to_string())));
-                }
-            }
-        }
-    }
-
-    fn end(&self) -> Result<usize, LoadError> {
-        let broken = |message: &str| self.fail(ErrorKind::Xml(message.to_owned()));
-        if !self.open.is_empty() {
-            return Err(broken("the file ends inside an element"));
-        }
-        self.root.ok_or_else(|| broken("there is no root element"))
-    }
-
-    /// Adds an element to the tree.
-    fn element(&mut self, start: &BytesStart) -> Result<usize, LoadError> {
-        let limits = &self.tree.limits;
-        let depth = self.base_depth + self.open.len() + 1;
-        let too_much = |what, limit| Err(self.fail(ErrorKind::TooMuch { what, limit }));
-        if depth > limits.depth {
-            return too_much("nested elements", limits.depth);
-        }
-        if self.tree.nodes.len() >= limits.elements {
-            return too_much("elements", limits.elements);
-        }
-        if self.open.is_empty() && self.root.is_some() {
-            return Err(self.fail(ErrorKind::Xml("there is a second root element".into())));
-        }
-        let at = self.tree.nodes.len();
-        let found = attributes(start, limits.attributes);
-        self.tree.nodes.push(Node {
-            name: start.name().as_ref().to_owned(),
-            attributes: Vec::new(),
-            children: Vec::new(),
-            depth,
-            file: self.file,
-            line: self.cursor.line,
-            column: self.cursor.column,
-            parent: self.open.last().copied(),
-        });
-        self.tree.nodes[at].attributes = found.map_err(|kind| self.tree.error(at, kind))?;
-        match self.open.last() {
-            Some(&parent) => self.tree.nodes[parent].children.push(at),
-            None => self.root = Some(at),
-        }
-        Ok(at)
-    }
-}
-
-fn attributes(start: &BytesStart, limit: usize) -> Result<Vec<(String, String)>, ErrorKind> {
-    let mut found: Vec<(String, String)> = Vec::new();
-    // The check for duplicates is ours: with the limit it cannot become quadratic in the size of the file.
-    for attribute in start.attributes().with_checks(false) {
-        let attribute = attribute.map_err(|e| ErrorKind::Xml(e.to_string()))?;
-        let name: &str = attribute.key.as_ref();
-        if found.len() >= limit {
-            return Err(ErrorKind::TooMuch {
-                what: "attributes of an element",
-                limit,
-            });
-        }
-        if found.iter().any(|(other, _)| other == name) {
-            return Err(ErrorKind::DuplicateAttribute(name.to_owned()));
-        }
-        let value = attribute
-            .normalized_value(XmlVersion::Implicit1_0)
-            .map_err(|e| ErrorKind::Xml(e.to_string()))?;
-        found.push((name.to_owned(), value.into_owned()));
-    }
-    Ok(found)
 }

@@ -10,6 +10,7 @@ mod common;
 mod actuation;
 mod additions;
 mod batch;
+mod composed;
 mod configurations;
 mod eyes_at_once;
 #[cfg(feature = "eval")]

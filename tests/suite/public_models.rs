@@ -51,8 +51,6 @@ fn empty_references_colours_beyond_one_and_frames_that_stay_are_taken() {
            <site material=""/></body></worldbody></mujoco>"#,
     );
     assert_eq!(engine.model().geom_matid, [None]);
-    let aligned = r#"<mujoco><worldbody><body><freejoint align="true"/><geom size=".1"/></body></worldbody></mujoco>"#;
-    assert!(load_str(aligned, "m.xml", &MemoryAssets::new()).is_err());
     let itself = r#"<mujoco><worldbody><body name="x"><geom name="a" type="box" size=".1 .1 .1"/></body></worldbody>
                     <sensor><distance geom1="a" body2="x" cutoff="1"/></sensor></mujoco>"#;
     let error = load_str(itself, "m.xml", &MemoryAssets::new())

@@ -4,6 +4,7 @@ mod actuation;
 mod applied_forces;
 mod compiled_model;
 mod complete_models;
+mod composed;
 mod contact_free;
 mod contact_geometry;
 mod differential;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         live_one_step::trials(),
         live_rollout::trials(),
         logs::trials(),
+        composed::trials(),
         meanings::trials(),
         mutations::trials(),
         rapier_engine::trials(),

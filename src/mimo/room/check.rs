@@ -98,7 +98,10 @@ impl<A: AssetSource> Room<A> {
 /// Says what is wrong with an added element.
 fn fault(tree: &Tree, at: usize) -> Option<String> {
     let node = &tree.nodes[at];
+    // settings of a model whose bodies are attached hold for it alone
+    let model = tree.model_of(at) > 0;
     match node.name.as_str() {
+        "compiler" | "option" if model => None,
         "compiler" => COMPILER.iter().find_map(|(name, only, remedy)| {
             let text = node.attribute(name).filter(|text| text != only)?;
             Some(format!(
@@ -110,7 +113,7 @@ fn fault(tree: &Tree, at: usize) -> Option<String> {
             let same = text.trim().parse() == Ok(TIMESTEP);
             (!same).then(|| format!("timestep=\"{text}\": physics steps have {TIMESTEP} s; leave timestep out"))
         }
-        "texture" | "mesh" | "hfield" => {
+        "texture" | "mesh" | "hfield" | "model" => {
             let named = node.attributes.iter().filter(|(name, _)| name.starts_with("file"));
             let mut outside = named.filter(|(_, path)| path.split('/').next() == Some(".."));
             let (name, path) = outside.next()?;

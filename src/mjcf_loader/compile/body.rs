@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::align::align;
 use super::camera::{compile_camera, compile_light};
 use super::context::{Context, Ids, User, named};
 use super::geom::{check_size, compile_geom, place};
@@ -55,7 +56,7 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
             context.within(geom.at, "geoms", limits.geoms, arrays.geom_name.len() + 1)?;
             let solid = compile_geom(context, geom, id, ids, arrays)?;
             // the others are only drawn, or only collide
-            let [lowest, highest] = context.compiler.inertiagrouprange;
+            let [lowest, highest] = context.compiler(body.at).inertiagrouprange;
             if (lowest..=highest).contains(&(geom.group as f64)) {
                 solids.push(solid);
             }
@@ -76,6 +77,7 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         for light in &body.lights {
             arrays.lights.push(compile_light(context, light, id, ids)?);
         }
+        align(context, document, id, arrays);
     }
     scale_masses(context, arrays);
     subtree_masses(arrays);
@@ -136,7 +138,7 @@ fn frame(context: &Context, body: &Body, id: usize, arrays: &mut Arrays) -> Resu
 }
 
 pub(super) fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
-    orientation(&frame.orientation, context.compiler).map_err(|message| context.invalid(at, message))
+    orientation(&frame.orientation, context.compiler(at)).map_err(|message| context.invalid(at, message))
 }
 
 fn compile_joint(
@@ -155,7 +157,7 @@ fn compile_joint(
             "a ball joint cannot be followed by a rotation in the same body",
         ));
     }
-    let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler.degree;
+    let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler(joint.at).degree;
     let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
     let mut axis = joint.axis;
     let mut pos = joint.pos;
@@ -258,7 +260,8 @@ fn push_dofs(joint: &Joint, body: usize, id: usize, last: &mut Option<usize>, ar
 
 /// Fills in mass and inertia of a body: explicit, else from its geoms, else none.
 fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays: &mut Arrays) -> Result<(), LoadError> {
-    let from_geoms = match context.compiler.inertiafromgeom {
+    let compiler = context.compiler(body.at);
+    let from_geoms = match compiler.inertiafromgeom {
         Tri::No => false,
         Tri::Yes => true,
         Tri::Auto => body.inertial.is_none(),
@@ -289,12 +292,12 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays:
         _ => {}
     }
     if id > 0 {
-        solid.mass = solid.mass.max(context.compiler.boundmass);
-        solid.inertia = solid.inertia.map(|moment| moment.max(context.compiler.boundinertia));
+        solid.mass = solid.mass.max(compiler.boundmass);
+        solid.inertia = solid.inertia.map(|moment| moment.max(compiler.boundinertia));
     }
     let [a, b, c] = solid.inertia;
     if a + b < c || a + c < b || b + c < a {
-        if !context.compiler.balanceinertia {
+        if !compiler.balanceinertia {
             return Err(invalid(
                 "the principal moments must satisfy A + B >= C; correct them, or set balanceinertia in <compiler>",
             ));
@@ -327,7 +330,7 @@ fn compile_site(context: &Context, site: &Site, body: usize, ids: &Ids, arrays: 
 
 /// Scales all masses and inertias so that the bodies weigh `settotalmass` together, if it is given.
 fn scale_masses(context: &Context, arrays: &mut Arrays) {
-    let wanted = context.compiler.settotalmass;
+    let wanted = context.settings().settotalmass;
     if wanted <= 0.0 {
         return;
     }

@@ -77,7 +77,8 @@ impl Names {
 /// The names and ids that the stages of compilation share.
 pub(super) struct Context<'a> {
     pub tree: &'a Tree,
-    pub compiler: &'a Compiler,
+    /// Settings of the document, and of the models that it names.
+    pub compilers: &'a [Compiler],
     /// The poses of the frames of the document in their bodies.
     pub frames: Vec<(Vec3, Quat)>,
 }
@@ -133,6 +134,44 @@ impl Context<'_> {
         }
     }
 
+    /// Returns the settings of the document itself.
+    pub fn settings(&self) -> &Compiler {
+        &self.compilers[0]
+    }
+
+    /// Returns the settings that hold for an element: those of the model that it stands in.
+    pub fn compiler(&self, at: usize) -> &Compiler {
+        &self.compilers[self.tree.model_of(at)]
+    }
+
+    /// Returns the folder of the model that an element stands in.
+    pub fn dir(&self, at: usize) -> &str {
+        &self.tree.models()[self.tree.model_of(at)].dir
+    }
+
+    /// Returns the folder of meshes for an element.
+    pub fn meshdir(&self, at: usize) -> &str {
+        self.folder(at, |compiler| &compiler.meshdir)
+    }
+
+    /// Returns the folder of textures for an element.
+    pub fn texturedir(&self, at: usize) -> &str {
+        self.folder(at, |compiler| &compiler.texturedir)
+    }
+
+    /// Returns a folder that the model says in which an element stands, or else, as in MuJoCo, the model that names this one.
+    fn folder(&self, at: usize, folder: fn(&Compiler) -> &String) -> &str {
+        let mut model = Some(self.tree.model_of(at));
+        while let Some(one) = model {
+            let folder = folder(&self.compilers[one]);
+            if !folder.is_empty() {
+                return folder;
+            }
+            model = self.tree.models()[one].within;
+        }
+        ""
+    }
+
     pub fn error(&self, at: usize, kind: impl Into<ErrorKind>) -> LoadError {
         self.tree.error(at, kind)
     }
@@ -173,7 +212,7 @@ impl Context<'_> {
                     },
                 ))
             }
-            Tri::Auto if self.compiler.autolimits => Ok(proper),
+            Tri::Auto if self.compiler(at).autolimits => Ok(proper),
             Tri::Auto if range == [0.0; 2] => Ok(false),
             Tri::Auto => Err(self.invalid(
                 at,

@@ -3,9 +3,11 @@
 use super::context::Context;
 use super::geometry::normalize;
 use crate::math::{Quat, Vec3, quat_at, quat_normalize};
+use crate::mjcf_loader::attached::{AttachedKey, KeyPart, Keyed};
 use crate::mjcf_loader::custom::Key;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::mjcf_loader::table::Table;
 use crate::model::{Arrays, Keyframe};
 
 /// Compiles `<custom>`: numbers and texts for programs.
@@ -38,7 +40,10 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
     let numbers = arrays.nq + arrays.nv + arrays.na + arrays.nu() + 7 * arrays.nmocap;
     let (limit, most) = (
         context.tree.limits.key_numbers,
-        document.size.nkey.max(document.keys.len()),
+        document
+            .size
+            .nkey
+            .max(document.keys.len() + document.attached_keys.len()),
     );
     if most.saturating_mul(numbers) > limit {
         let at = document.keys.last().map_or(0, |key| key.at);
@@ -47,6 +52,10 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
     }
     for key in &document.keys {
         let key = compile_key(context, key, arrays)?;
+        arrays.keys.push(key);
+    }
+    for key in &document.attached_keys {
+        let key = attached_key(context, key, arrays)?;
         arrays.keys.push(key);
     }
     let reference = Keyframe {
@@ -62,6 +71,39 @@ pub(super) fn compile_keys(context: &Context, document: &Document, arrays: &mut 
     let missing = document.size.nkey.saturating_sub(arrays.keys.len());
     arrays.keys.extend(std::iter::repeat_n(reference, missing));
     Ok(())
+}
+
+/// Compiles a keyframe of another model: what it does not say of all that came along is as in `qpos0`.
+fn attached_key(context: &Context, key: &AttachedKey, arrays: &Arrays) -> Result<Keyframe, LoadError> {
+    let mut whole = Key {
+        at: key.at,
+        name: key.name.clone(),
+        time: key.time,
+        qpos: arrays.qpos0.clone(),
+        qvel: vec![0.0; arrays.nv],
+        act: vec![0.0; arrays.na],
+        ctrl: vec![0.0; arrays.nu()],
+        ..Key::initial()
+    };
+    for (pos, quat) in mocap_poses(arrays) {
+        whole.mpos.extend(pos);
+        whole.mquat.extend(quat);
+    }
+    for KeyPart { of, values } in &key.parts {
+        let joint_id = |body: usize, joint: usize| arrays.body_jntadr[body] + joint;
+        let mocap = |body: usize| arrays.body_mocapid[body].unwrap_or(0);
+        let (to, from) = match *of {
+            Keyed::Qpos { body, joint } => (&mut whole.qpos, arrays.jnt_qposadr[joint_id(body, joint)]),
+            Keyed::Qvel { body, joint } => (&mut whole.qvel, arrays.jnt_dofadr[joint_id(body, joint)]),
+            Keyed::Act(actuator) => (&mut whole.act, arrays.actuator_actadr[actuator].unwrap_or(0)),
+            Keyed::Ctrl(actuator) => (&mut whole.ctrl, actuator),
+            Keyed::Mpos(body) => (&mut whole.mpos, 3 * mocap(body)),
+            Keyed::Mquat(body) => (&mut whole.mquat, 4 * mocap(body)),
+        };
+        let places = to.iter_mut().skip(from);
+        places.zip(values).for_each(|(to, value)| *to = *value);
+    }
+    compile_key(context, &whole, arrays)
 }
 
 /// Iterates over the poses of mocap bodies as the document has them.

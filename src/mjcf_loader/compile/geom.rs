@@ -5,6 +5,7 @@ use super::context::{Context, Ids, named};
 use super::fluid::fluid;
 use super::geometry::{EPS, Solid, bounding_box, bounding_radius, inertia, segment, size_count, volume};
 use super::mesh::fit;
+use super::shell;
 use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_to_mat};
 use crate::mjcf_loader::document::{Frame, Geom};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
@@ -56,6 +57,8 @@ pub(super) fn check_size(context: &Context, at: usize, kind: GeomType, size: &Ve
         None => Ok(()),
     }
 }
+
+const SHELL: &str = "a mesh is a shell by inertia=\"shell\" of <mesh>, not by shellinertia of its geoms";
 
 /// Compiles a geom; returns it as a solid.
 pub(super) fn compile_geom(
@@ -114,11 +117,20 @@ pub(super) fn compile_geom(
     arrays.geom_group.push(geom.group);
     arrays.geom_rgba.push(geom.rgba.map(single));
     arrays.geom_matid.push(named(&geom.material).map(find).transpose()?);
-    let mass = match geom.mass {
-        Some(mass) if extent.volume > EPS => mass,
-        Some(_) => 0.0,
-        None => geom.density * extent.volume,
+    if geom.shell && geom.kind == GeomType::Mesh {
+        return Err(context.invalid(geom.at, SHELL));
+    }
+    let volume = if geom.shell {
+        shell::area(geom.kind, &extent.inertia_box)
+    } else {
+        extent.volume
     };
+    let mass = match geom.mass {
+        Some(mass) if volume > EPS => mass,
+        Some(_) => 0.0,
+        None => geom.density * volume,
+    };
+    let inertia = if geom.shell { shell::inertia } else { inertia };
     Ok(Solid {
         pos,
         quat,
@@ -207,7 +219,7 @@ fn place_mesh(
         let [low, high] = mesh.bounds;
         *size = std::array::from_fn(|k| low[k].abs().max(high[k].abs()));
     } else {
-        let fitted = fit(geom.kind, mesh, context.compiler.fitaabb, geom.fitscale)
+        let fitted = fit(geom.kind, mesh, context.compiler(geom.at).fitaabb, geom.fitscale)
             .ok_or_else(|| context.invalid(geom.at, "a plane cannot be fitted to a mesh"))?;
         *size = fitted.size;
         // MuJoCo moves the mesh itself, for all geoms that follow

@@ -15,7 +15,7 @@ const MAXVAL: f64 = 1e10;
 pub(super) const EPS: f64 = 1e-14;
 
 /// Normalises by division; leaves vectors alone that are (nearly) zero or unit. Returns the old length, 0 if tiny.
-pub(super) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
+pub(in crate::mjcf_loader) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
     let mut square = 0.0;
     for value in vector.iter() {
         square += value * value;
@@ -105,7 +105,7 @@ pub(super) fn z_to_quat(direction: Vec3) -> Quat {
 }
 
 /// Converts orthonormal axes to a quaternion, by the best conditioned of four formulas.
-fn frame_to_quat(x: Vec3, y: Vec3, z: Vec3) -> Quat {
+pub(in crate::mjcf_loader) fn frame_to_quat(x: Vec3, y: Vec3, z: Vec3) -> Quat {
     let mut q = if x[0] + y[1] + z[2] > 0.0 {
         let w = 0.5 * (1.0 + x[0] + y[1] + z[2]).sqrt();
         [

@@ -20,17 +20,16 @@ pub(super) fn hfield_name(tree: &Tree, hfield: &HField) -> Result<String, LoadEr
     }
 }
 
-/// Compiles the height fields, whose files are looked up in `source`, relative to `dir`. All together have so many heights as
+/// Compiles the height fields, whose files are looked up in `source`. All together have so many heights as
 /// the limits allow for elements of meshes.
 pub(super) fn compile_hfields(
     context: &Context,
     document: &Document,
     source: &dyn AssetSource,
-    dir: &str,
 ) -> Result<Vec<model::HField>, LoadError> {
     let mut limits = context.tree.limits.clone();
     let compile = |hfield| {
-        let compiled = compile_hfield(context, hfield, (source, dir), &limits)?;
+        let compiled = compile_hfield(context, hfield, source, &limits)?;
         limits.mesh_elements = limits.mesh_elements.saturating_sub(compiled.data.len());
         Ok(compiled)
     };
@@ -40,7 +39,7 @@ pub(super) fn compile_hfields(
 fn compile_hfield(
     context: &Context,
     hfield: &HField,
-    files: (&dyn AssetSource, &str),
+    source: &dyn AssetSource,
     limits: &Limits,
 ) -> Result<model::HField, LoadError> {
     let invalid = |message| Err(context.invalid(hfield.at, message));
@@ -48,7 +47,7 @@ fn compile_hfield(
         return invalid("the four numbers of size must be positive");
     }
     let Heights { nrow, ncol, mut data } = match &hfield.file {
-        Some(file) => from_file(context, hfield, file, files, limits)?,
+        Some(file) => from_file(context, hfield, file, source, limits)?,
         None => from_numbers(hfield, limits)
             .map_err(|message| context.error(hfield.at, ErrorKind::Mesh { file: None, message }))?,
     };
@@ -97,10 +96,10 @@ fn from_file(
     context: &Context,
     hfield: &HField,
     file: &str,
-    (source, dir): (&dyn AssetSource, &str),
+    source: &dyn AssetSource,
     limits: &Limits,
 ) -> Result<Heights, LoadError> {
-    let path = asset_path(context, hfield.at, file, &context.compiler.meshdir, source, dir)?;
+    let path = asset_path(context, hfield.at, file, context.meshdir(hfield.at), source)?;
     let format = match &hfield.content_type {
         Some(content_type) => HeightFormat::of_content(content_type)
             .ok_or_else(|| context.invalid(hfield.at, "content_type must be image/png or image/vnd.mujoco.hfield"))?,

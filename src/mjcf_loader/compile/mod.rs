@@ -1,6 +1,7 @@
 //! Typed document -> [`Arrays`]: names become ids, angles radians, shapes masses.
 
 mod actuator;
+mod align;
 mod body;
 mod camera;
 mod constraint;
@@ -12,13 +13,15 @@ mod geometry;
 mod hfield;
 mod mesh;
 mod sensor;
+mod shell;
 mod skin;
 mod surface;
 mod tendon;
 
 use context::{Context, Ids, User};
 pub(crate) use geometry::bounding_radius;
-pub(super) use geometry::volume;
+pub(super) use geometry::{frame_to_quat, normalize, volume};
+pub(super) use mesh::stem;
 
 use super::document::Document;
 use super::error::LoadError;
@@ -27,20 +30,15 @@ use crate::assets::AssetSource;
 use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
-/// Compiles the document into everything but what needs dynamics. Images, meshes and heights are looked up in `source`, relative to `dir`;
-/// images are not decoded.
-pub(super) fn compile(
-    tree: &Tree,
-    document: &Document,
-    source: &dyn AssetSource,
-    dir: &str,
-) -> Result<Arrays, LoadError> {
+/// Compiles the document into everything but what needs dynamics. Images, meshes and heights are looked up in `source`, relative to the
+/// folders of the models that name them; images are not decoded.
+pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource) -> Result<Arrays, LoadError> {
     let (name, opt) = (document.model.clone(), document.option.clone());
     let (vis, stat) = (document.visual.clone(), document.statistic.clone());
     let mut arrays = Arrays::without_elements(name, opt, vis, stat);
     let mut context = Context {
         tree,
-        compiler: &document.compiler,
+        compilers: &document.compilers,
         frames: Vec::with_capacity(document.frames.len()),
     };
     // poses in what the frames stand in
@@ -55,7 +53,7 @@ pub(super) fn compile(
         context.frames.push(pose);
     }
     for texture in &document.textures {
-        let texture = surface::compile_texture(&context, texture, source, dir)?;
+        let texture = surface::compile_texture(&context, texture, source)?;
         arrays.textures.push(texture);
     }
     let ids = Ids::new(tree, document, &document.textures, &arrays)?;
@@ -63,8 +61,8 @@ pub(super) fn compile(
         let material = surface::compile_material(&context, material, &ids)?;
         arrays.materials.push(material);
     }
-    mesh::compile_meshes(&context, document, &ids, (source, dir), &mut arrays)?;
-    arrays.hfields = hfield::compile_hfields(&context, document, source, dir)?;
+    mesh::compile_meshes(&context, document, &ids, source, &mut arrays)?;
+    arrays.hfields = hfield::compile_hfields(&context, document, source)?;
     body::compile(&context, document, &ids, &mut arrays)?;
     same_frames(&mut arrays);
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;
@@ -78,7 +76,7 @@ pub(super) fn compile(
     }
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
     sensor::compile_sensors(&context, document, &ids, &mut arrays)?;
-    skin::check_skins(&context, document, &ids, (source, dir))?;
+    skin::check_skins(&context, document, &ids, source)?;
     custom::compile_custom(&context, document, &mut arrays)?;
     custom::compile_keys(&context, document, &mut arrays)?;
     Ok(arrays)

@@ -9,12 +9,12 @@ use crate::mjcf_loader::error::LoadError;
 const NO_DATA: &str = "a skin needs a file, or vertices, faces and bones";
 const TWICE: &str = "a skin has a file or vertices, faces and bones, not both";
 
-/// Checks all skins. Their files must be in `source`, relative to `dir`.
+/// Checks all skins. Their files must be in `source`, relative to the folders of the models that name them.
 pub(super) fn check_skins(
     context: &Context,
     document: &Document,
     ids: &Ids,
-    (source, dir): (&dyn AssetSource, &str),
+    source: &dyn AssetSource,
 ) -> Result<(), LoadError> {
     for skin in &document.skins {
         if let Some(material) = named(&skin.material) {
@@ -27,7 +27,7 @@ pub(super) fn check_skins(
         match &skin.file {
             Some(_) if given.contains(&false) => return Err(context.invalid(skin.at, TWICE)),
             Some(file) => {
-                let path = asset_path(context, skin.at, file, &context.compiler.meshdir, source, dir)?;
+                let path = asset_path(context, skin.at, file, context.meshdir(skin.at), source)?;
                 source.read(&path).map_err(|e| context.error(skin.at, e))?;
             }
             None if given.contains(&true) => return Err(context.invalid(skin.at, NO_DATA)),

@@ -7,14 +7,13 @@ use crate::mjcf_loader::settings::single;
 use crate::mjcf_loader::surface;
 use crate::model::{self, Builtin, TextureType};
 
-/// Compiles a texture. Its images are looked up in `source`, relative to `dir`, and not decoded.
+/// Compiles a texture. Its images are looked up in `source`, and not decoded.
 pub(super) fn compile_texture(
     context: &Context,
     texture: &surface::Texture,
     source: &dyn AssetSource,
-    dir: &str,
 ) -> Result<model::Texture, LoadError> {
-    let path = |file: &String| asset_path(context, texture.at, file, &context.compiler.texturedir, source, dir);
+    let path = |file: &String| asset_path(context, texture.at, file, context.texturedir(texture.at), source);
     let mut cube_files = [const { None }; 6];
     for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
         *to = from.as_ref().map(path).transpose()?;
@@ -93,9 +92,8 @@ pub(super) fn asset_path(
     file: &str,
     folder: &str,
     source: &dyn AssetSource,
-    dir: &str,
 ) -> Result<String, LoadError> {
-    let file = if context.compiler.strippath {
+    let file = if context.settings().strippath {
         file.rsplit(['/', '\\']).next().unwrap_or(file)
     } else {
         file
@@ -104,7 +102,7 @@ pub(super) fn asset_path(
         "" => file.to_owned(),
         folder => format!("{folder}/{file}"),
     };
-    let path = resolve(dir, &file).map_err(|e| context.error(at, e))?;
+    let path = resolve(context.dir(at), &file).map_err(|e| context.error(at, e))?;
     if source.contains(&path) {
         Ok(path)
     } else {

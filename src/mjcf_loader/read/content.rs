@@ -5,6 +5,8 @@ use super::super::document::{Light, Orientation, Replicate, Site};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::schema::Element;
 use super::super::table::Table;
+use super::attach::attach_model;
+use super::cable::cable;
 use super::{Classes, with};
 use crate::model::JointType;
 
@@ -14,6 +16,21 @@ pub(super) struct Spot<'a> {
     pub body: usize,
     pub within: Option<usize>,
     pub suffix: &'a str,
+    /// Whether what stands here was read before, for another copy that a `<replicate>` makes.
+    pub again: bool,
+    /// Whether it stands in a `<replicate>`.
+    pub copied: bool,
+}
+
+impl Spot<'_> {
+    /// The world itself.
+    pub const WORLD: Self = Spot {
+        body: 0,
+        within: None,
+        suffix: "",
+        again: false,
+        copied: false,
+    };
 }
 
 /// Reads what hangs on a body, or stands in a frame of it, and its child bodies depth first.
@@ -39,12 +56,20 @@ pub(super) fn content(
             "replicate" => {
                 let (mut number, mut previous) = (0, None);
                 while let Some((id, suffix)) = copy(e, spot, (number, previous), inner, classes, document)? {
-                    let (within, suffix) = (Some(id), suffix.as_str());
-                    content(e, Spot { within, suffix, ..spot }, inner, classes, document)?;
-                    (number, previous) = (number + 1, within);
+                    let spot = Spot {
+                        body: spot.body,
+                        within: Some(id),
+                        suffix: &suffix,
+                        again: spot.again || number > 0,
+                        copied: true,
+                    };
+                    content(e, spot, inner, classes, document)?;
+                    (number, previous) = (number + 1, Some(id));
                 }
             }
-            _ => attach(e, spot, around, classes, &mut document.bodies)?,
+            "composite" => cable(e, spot, classes.tree, document)?,
+            "attach" => attach_model(e, spot, classes.tree, document)?,
+            _ => hang(e, spot, around, classes, &mut document.bodies)?,
         }
     }
     Ok(())
@@ -92,6 +117,7 @@ fn copy(
     let own = format!("{sep}{number:0digits$}");
     let suffix = format!("{own}{}", spot.suffix);
     document.suffixes.insert(own);
+    document.replicates = true;
     Ok(Some((document.frames.len() - 1, suffix)))
 }
 
@@ -140,7 +166,7 @@ fn frame(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut
 
 /// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
-fn attach(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
+fn hang(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
     let (id, within) = (spot.body, spot.within);
     let body = &mut bodies[id];
     match e.name {
@@ -153,13 +179,19 @@ fn attach(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut
         }
         "inertial" => body.inertial = Some(Inertial::read(e)),
         "freejoint" => {
-            let FreeJoint { at, mut name, group } = FreeJoint::read(e);
+            let FreeJoint {
+                at,
+                mut name,
+                group,
+                align,
+            } = FreeJoint::read(e);
             rename(&mut name, spot);
             body.joints.push(Joint {
                 at,
                 name,
                 kind: JointType::Free,
                 group,
+                align,
                 ..Joint::initial()
             });
         }

@@ -24,12 +24,12 @@ use crate::model::{self, Arrays, GeomType, MeshHull};
 use inertia::Solid;
 use source::Surface;
 
-/// Compiles all meshes. Their files are looked up in `source`, relative to `dir`.
+/// Compiles all meshes. Their files are looked up in `source`.
 pub(super) fn compile_meshes(
     context: &Context,
     document: &Document,
     ids: &Ids,
-    (source, dir): (&dyn AssetSource, &str),
+    source: &dyn AssetSource,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
     let touching = touching(context, document, ids)?;
@@ -38,7 +38,7 @@ pub(super) fn compile_meshes(
         let path = mesh
             .file
             .as_ref()
-            .map(|file| asset_path(context, mesh.at, file, &context.compiler.meshdir, source, dir))
+            .map(|file| asset_path(context, mesh.at, file, context.meshdir(mesh.at), source))
             .transpose()?;
         let surface = source::read(context, mesh, path.as_deref(), source, &mut left)?;
         let compiled =
@@ -58,7 +58,7 @@ pub(super) fn mesh_name(tree: &Tree, mesh: &Mesh) -> Result<String, LoadError> {
 }
 
 /// Returns a name, or, where it is empty, the name of a file without directory and extension.
-pub(super) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> &'n str {
+pub(in crate::mjcf_loader) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> &'n str {
     if !name.is_empty() {
         return name;
     }

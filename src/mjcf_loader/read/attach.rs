@@ -1,0 +1,356 @@
+//! `<attach>`: bodies of other models with all that refers to nothing else, as MuJoCo 3.3.0 takes them.
+
+use std::collections::BTreeSet;
+
+use super::super::attached::{Absent, Attachable, Referring, Thing, hanging};
+use super::super::compile::stem;
+use super::super::document::{Attach, Body, Document};
+use super::super::error::{ErrorKind, LoadError};
+use super::super::schema::Element;
+use super::super::table::Table;
+use super::super::xml::Tree;
+use super::attach_keys::{keep_keys, say};
+use super::content::Spot;
+
+const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
+     may take for it: rename that, or attach the body that is meant";
+
+/// Puts a body of another model where the element stands.
+pub(super) fn attach_model(e: &Element, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+    let attach = Attach::read(e);
+    let Some(mut model) = document.models.remove(&attach.model) else {
+        return Err(unknown(tree, &attach, "model", &attach.model));
+    };
+    let taken = take(&attach, &mut model, spot, tree, document);
+    document.models.insert(attach.model, model);
+    taken
+}
+
+fn unknown(tree: &Tree, attach: &Attach, kind: &'static str, name: &str) -> LoadError {
+    let (attribute, name) = (kind, name.to_owned());
+    tree.error(attach.at, ErrorKind::UnknownName { attribute, kind, name })
+}
+
+/// What an `<attach>` takes.
+pub(super) struct Taking<'a> {
+    prefix: &'a str,
+    suffix: &'a str,
+    /// The bodies of the model that come along.
+    pub bodies: std::ops::Range<usize>,
+    /// The names in the model of what comes along.
+    names: BTreeSet<(Thing, String)>,
+    /// Where the first body is put in the document.
+    pub base: usize,
+}
+
+impl Taking<'_> {
+    /// Changes a name to that in the document.
+    fn rename(&self, name: &mut String) {
+        if !name.is_empty() {
+            self.refer(name);
+        }
+    }
+
+    /// Changes a name that something refers to, of an asset or of what a `<replicate>` copies.
+    fn refer(&self, name: &mut String) {
+        *name = format!("{}{name}{}", self.prefix, self.suffix);
+    }
+
+    /// Changes the name of an asset, which a `<replicate>` does not copy; one without is called after its file.
+    fn rename_asset(&self, name: &mut String, file: Option<&str>) {
+        let whole = stem(name, file);
+        if !whole.is_empty() {
+            *name = format!("{}{whole}", self.prefix);
+        }
+    }
+
+    fn refer_asset(&self, name: &mut Option<String>) {
+        if let Some(name) = name.as_mut().filter(|name| !name.is_empty()) {
+            *name = format!("{}{name}", self.prefix);
+        }
+    }
+
+    /// Tells whether something of the model comes along.
+    fn has(&self, thing: Thing, name: &str) -> bool {
+        let world = thing == Thing::Body && name == "world" && self.prefix.is_empty() && self.suffix.is_empty();
+        world || self.names.contains(&(thing, name.to_owned()))
+    }
+
+    /// Changes the names that an element refers to; returns whether it comes along, and otherwise adds to `absent` why not.
+    fn admit<T: Referring>(&self, element: &mut T, absent: &mut Vec<Absent>) -> bool {
+        let at = element.at();
+        let renamed = !(self.prefix.is_empty() && self.suffix.is_empty());
+        if let Some((thing, name)) = element.left().filter(|_| renamed) {
+            absent.push(Absent { at, thing, name });
+            return false;
+        }
+        let mut names = element.names();
+        let some = T::LOOSE && names.iter().any(|(thing, name)| self.has(*thing, name));
+        // MuJoCo looks for the second name as it is where the first one comes along
+        let world = |thing: Thing, name: &str| some && thing == Thing::Body && name == "world";
+        let there = |thing: Thing, name: &str| self.has(thing, name) || world(thing, name);
+        let whole = names.iter().all(|(thing, name)| there(*thing, name));
+        for (thing, name) in &mut names {
+            let (thing, found) = (*thing, self.has(*thing, name));
+            if whole && found {
+                self.refer(name);
+            } else if !whole && !found {
+                let mut add = |name: String| absent.push(Absent { at, thing, name });
+                if some {
+                    add(name.clone());
+                }
+                self.refer(name);
+                add(std::mem::take(name));
+            }
+        }
+        whole
+    }
+
+    /// Copies the elements that come along; returns the places of the copies.
+    fn copy<T: Referring>(&self, from: &[T], to: &mut Vec<T>, absent: &mut Vec<Absent>) -> Vec<Option<usize>> {
+        let copy = |element: &T| {
+            let mut element = element.clone();
+            self.admit(&mut element, absent).then(|| {
+                self.rename(element.name());
+                to.push(element);
+                to.len() - 1
+            })
+        };
+        from.iter().map(copy).collect()
+    }
+}
+
+/// Counts what is looked at, which the limits bound.
+fn count(attach: &Attach, model: &Attachable, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+    let from = &model.document;
+    let hung: usize = from
+        .bodies
+        .iter()
+        .map(|body| hanging(body).count() + body.lights.len())
+        .sum();
+    let referring = from.pairs.len() + from.excludes.len() + from.equalities.len() + from.tendons.len();
+    let pieces: usize = from.tendons.iter().map(|tendon| tendon.path.len()).sum();
+    let measured = from.actuators.len() + from.sensors.len();
+    let assets = from.textures.len() + from.materials.len() + from.meshes.len() + from.hfields.len() + from.skins.len();
+    let rest = from.numerics.len() + from.texts.len() + from.keys.len() + from.frames.len();
+    document.looked_at += 1 + hung + referring + pieces + measured + assets + rest;
+    let (what, limit) = ("elements of attached models", tree.limits.elements);
+    if document.looked_at > limit {
+        return Err(tree.error(attach.at, ErrorKind::TooMuch { what, limit }));
+    }
+    let said = &model.said;
+    document.said += from.keys.len() * (said.joints.len() + said.actuators.len() + said.mocaps.len());
+    let (what, limit) = ("numbers in keyframes", tree.limits.key_numbers);
+    if document.said > limit {
+        return Err(tree.error(attach.at, ErrorKind::TooMuch { what, limit }));
+    }
+    Ok(())
+}
+
+fn take(
+    attach: &Attach,
+    model: &mut Attachable,
+    spot: Spot,
+    tree: &Tree,
+    document: &mut Document,
+) -> Result<(), LoadError> {
+    count(attach, model, tree, document)?;
+    keep_keys(attach, model, spot, tree, document)?;
+    let bodies = &model.document.bodies;
+    let Some(root) = bodies.iter().position(|body| body.name == attach.body) else {
+        return Err(unknown(tree, attach, "body", &attach.body));
+    };
+    // children follow their parents, depth first
+    let below = bodies[root + 1..].iter().take_while(|body| body.parent >= root).count();
+    let mut taking = Taking {
+        prefix: &attach.prefix,
+        suffix: spot.suffix,
+        bodies: root..root + 1 + below,
+        names: BTreeSet::new(),
+        base: document.bodies.len(),
+    };
+    let taken = bodies[taking.bodies.clone()].iter().flat_map(hanging);
+    let named = taken.filter(|(_, name)| !name.is_empty());
+    taking.names = named.map(|(thing, name)| (thing, name.clone())).collect();
+    take_tree(&taking, &model.document, spot, document);
+    if !spot.again {
+        take_assets(&taking, &model.document, document);
+    }
+    let actuators = take_referring(&mut taking, &model.document, document);
+    say(&taking, &model.document, &mut model.said, &actuators, document);
+    Ok(())
+}
+
+/// Copies bodies with what hangs on them, and the frames that they stand in.
+fn take_tree(taking: &Taking, from: &Document, spot: Spot, document: &mut Document) {
+    let bodies = &from.bodies[taking.bodies.clone()];
+    let mut used = vec![false; from.frames.len()];
+    let inner = bodies.iter().skip(1).filter_map(|body| body.within);
+    let mut open: Vec<usize> = inner.chain(bodies.iter().flat_map(withins)).collect();
+    while let Some(id) = open.pop() {
+        let frame = &from.frames[id];
+        if !std::mem::replace(&mut used[id], true) {
+            open.extend(frame.within);
+            open.extend(frame.copy.and_then(|copy| copy.previous));
+        }
+    }
+    let mut places = vec![None; used.len()];
+    for (id, frame) in from.frames.iter().enumerate().filter(|(id, _)| used[*id]) {
+        let mut frame = frame.clone();
+        taking.rename(&mut frame.name);
+        frame.within = frame.within.and_then(|within| places[within]);
+        if let Some(copied) = &mut frame.copy {
+            copied.previous = copied.previous.and_then(|previous| places[previous]);
+        }
+        places[id] = Some(document.frames.len());
+        document.frames.push(frame);
+    }
+    for (index, body) in bodies.iter().enumerate() {
+        let mut body = body.clone();
+        let moved = |within: Option<usize>| within.and_then(|within| places[within]);
+        (body.parent, body.within) = match index {
+            0 => (spot.body, spot.within),
+            _ => (body.parent - taking.bodies.start + taking.base, moved(body.within)),
+        };
+        take_body(taking, &mut body, moved);
+        document.bodies.push(body);
+    }
+    document.suffixes.extend(from.suffixes.iter().cloned());
+}
+
+/// Returns the frames that what hangs on a body stands in.
+fn withins(body: &Body) -> impl Iterator<Item = usize> {
+    let joints = body.joints.iter().map(|joint| joint.within);
+    let geoms = body.geoms.iter().map(|geom| geom.within);
+    let sites = body.sites.iter().map(|site| site.within);
+    let cameras = body.cameras.iter().map(|camera| camera.within);
+    let lights = body.lights.iter().map(|light| light.within);
+    joints.chain(geoms).chain(sites).chain(cameras).chain(lights).flatten()
+}
+
+/// Changes the names of a body and of what hangs on it; `moved` tells where frames are now.
+fn take_body(taking: &Taking, body: &mut Body, moved: impl Fn(Option<usize>) -> Option<usize>) {
+    taking.rename(&mut body.name);
+    for joint in &mut body.joints {
+        taking.rename(&mut joint.name);
+        joint.within = moved(joint.within);
+    }
+    for geom in &mut body.geoms {
+        taking.rename(&mut geom.name);
+        taking.refer_asset(&mut geom.material);
+        taking.refer_asset(&mut geom.mesh);
+        taking.refer_asset(&mut geom.hfield);
+        geom.within = moved(geom.within);
+    }
+    for site in &mut body.sites {
+        taking.rename(&mut site.name);
+        taking.refer_asset(&mut site.material);
+        site.within = moved(site.within);
+    }
+    for camera in &mut body.cameras {
+        taking.rename(&mut camera.name);
+        camera.target.iter_mut().for_each(|target| taking.rename(target));
+        camera.within = moved(camera.within);
+    }
+    for light in &mut body.lights {
+        taking.rename(&mut light.name);
+        light.target.iter_mut().for_each(|target| taking.rename(target));
+        light.within = moved(light.within);
+    }
+}
+
+/// Copies assets, skins and custom data, whether anything refers to them or not.
+fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
+    for texture in &from.textures {
+        let mut texture = texture.clone();
+        taking.rename_asset(&mut texture.name, texture.file.as_deref());
+        document.textures.push(texture);
+    }
+    for material in &from.materials {
+        let mut material = material.clone();
+        taking.rename_asset(&mut material.name, None);
+        taking.refer_asset(&mut material.texture);
+        document.materials.push(material);
+    }
+    for mesh in &from.meshes {
+        let mut mesh = mesh.clone();
+        taking.rename_asset(&mut mesh.name, mesh.file.as_deref());
+        document.meshes.push(mesh);
+    }
+    for hfield in &from.hfields {
+        let mut hfield = hfield.clone();
+        taking.rename_asset(&mut hfield.name, hfield.file.as_deref());
+        document.hfields.push(hfield);
+    }
+    for skin in &from.skins {
+        if skin.bones.iter().all(|bone| taking.has(Thing::Body, &bone.body)) {
+            let mut skin = skin.clone();
+            taking.rename_asset(&mut skin.name, None);
+            taking.refer_asset(&mut skin.material);
+            skin.bones.iter_mut().for_each(|bone| taking.refer(&mut bone.body));
+            document.skins.push(skin);
+        }
+    }
+    for numeric in &from.numerics {
+        let mut numeric = numeric.clone();
+        taking.rename_asset(&mut numeric.name, None);
+        document.numerics.push(numeric);
+    }
+    for text in &from.texts {
+        let mut text = text.clone();
+        taking.rename_asset(&mut text.name, None);
+        document.texts.push(text);
+    }
+}
+
+/// Copies what refers to others, if they come along; returns the places of the actuators.
+fn take_referring(taking: &mut Taking, from: &Document, document: &mut Document) -> Vec<Option<usize>> {
+    let absent = &mut document.absent;
+    taking.copy(&from.pairs, &mut document.pairs, absent);
+    taking.copy(&from.excludes, &mut document.excludes, absent);
+    let tendons = taking.copy(&from.tendons, &mut document.tendons, absent);
+    let names = from
+        .tendons
+        .iter()
+        .zip(&tendons)
+        .filter(|(tendon, place)| place.is_some() && !tendon.name.is_empty());
+    let names = names.map(|(tendon, _)| (Thing::Tendon, tendon.name.clone()));
+    taking.names.extend(names);
+    taking.copy(&from.equalities, &mut document.equalities, absent);
+    let actuators = taking.copy(&from.actuators, &mut document.actuators, absent);
+    let names = from
+        .actuators
+        .iter()
+        .zip(&actuators)
+        .filter(|(one, place)| place.is_some() && !one.name.is_empty());
+    let names = names.map(|(actuator, _)| (Thing::Actuator, actuator.name.clone()));
+    taking.names.extend(names);
+    taking.copy(&from.sensors, &mut document.sensors, absent);
+    actuators
+}
+
+/// Refuses elements that were left out, where MuJoCo may take another element of the document for what they refer to.
+pub(super) fn check_absent(tree: &Tree, document: &Document) -> Result<(), LoadError> {
+    if document.absent.is_empty() {
+        return Ok(());
+    }
+    let tendons = document
+        .tendons
+        .iter()
+        .map(|tendon| (Thing::Tendon, tendon.name.as_str()));
+    let actuators = document
+        .actuators
+        .iter()
+        .map(|actuator| (Thing::Actuator, actuator.name.as_str()));
+    let hung = document.bodies.iter().flat_map(hanging);
+    let hung = hung.map(|(thing, name)| (thing, name.as_str()));
+    let names: BTreeSet<(Thing, &str)> = hung.chain(tendons).chain(actuators).collect();
+    match document
+        .absent
+        .iter()
+        .find(|absent| names.contains(&(absent.thing, absent.name.as_str())))
+    {
+        Some(absent) => Err(tree.error(absent.at, ErrorKind::Invalid(ABSENT))),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,113 @@
+//! `<composite type="cable">`: its bodies, joints, geoms, sites and excludes.
+
+use super::super::composite::{Composite, CompositeType, Prototypes};
+use super::super::custom::Text;
+use super::super::document::{Body, Document, Orientation};
+use super::super::error::{ErrorKind, LoadError};
+use super::super::relation::Exclude;
+use super::super::schema::Element;
+use super::super::table::Table;
+use super::super::xml::Tree;
+use super::content::Spot;
+use crate::model::{GeomType, JointType};
+
+const GONE: &str = "MuJoCo 3.3.0 makes only cables: write particles as <replicate>, ropes as type=\"cable\"; cloth, grids and loops are flexes";
+const LOST: &str = "MuJoCo 3.3.0 loses a composite in a <replicate> that is not in a body there: put a body around it";
+const SHAPE: &str =
+    "the geoms of a cable are capsules, cylinders or boxes: give <geom type=\"capsule\" size=\"0.01\"/>";
+
+/// Adds a cable.
+pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+    let invalid = |what| tree.error(e.at, ErrorKind::Invalid(what));
+    let composite = Composite::read(e);
+    if composite.kind == CompositeType::Gone {
+        return Err(invalid(GONE));
+    }
+    // frames around it count for nothing, as in MuJoCo, but a copy without a body around it would lose it
+    let mut around = spot.within;
+    while let Some(frame) = around.map(|frame| &document.frames[frame]) {
+        if frame.copy.is_some() {
+            return Err(invalid(LOST));
+        }
+        around = frame.within;
+    }
+    let mut like = Prototypes::initial();
+    for part in &e.children {
+        match part.name {
+            "geom" => like.geom.apply(part),
+            "site" => like.site.apply(part),
+            "joint" => like.joint.apply(part),
+            _ => {}
+        }
+    }
+    if e.children.iter().filter(|part| part.name == "joint").count() > 1 {
+        return Err(invalid("a cable has one <joint kind=\"main\">"));
+    }
+    if !matches!(like.geom.kind, GeomType::Capsule | GeomType::Cylinder | GeomType::Box) {
+        return Err(invalid(SHAPE));
+    }
+    let links = composite.links().map_err(invalid)?;
+    (like.geom.at, like.site.at, like.joint.at) = (e.at, e.at, e.at);
+    let prefix = &composite.prefix;
+    if !spot.again {
+        document.texts.push(Text {
+            at: e.at,
+            name: format!("composite_{prefix}"),
+            data: format!("rope_{prefix}"),
+        });
+    }
+    let name = |kind: &str, index: usize| {
+        let suffix = spot.suffix;
+        match index {
+            0 => format!("{prefix}{kind}_first{suffix}"),
+            _ if index + 1 == links.len() => format!("{prefix}{kind}_last{suffix}"),
+            _ => format!("{prefix}{kind}_{index}{suffix}"),
+        }
+    };
+    for (index, link) in links.iter().enumerate() {
+        let (first, last) = (index == 0, index + 1 == links.len());
+        let mut body = Body {
+            at: e.at,
+            name: name("B", index),
+            parent: if first { spot.body } else { document.bodies.len() - 1 },
+            ..Body::initial()
+        };
+        body.frame.pos = link.pos;
+        body.frame.orientation = Orientation::Quat(link.quat);
+        let mut geom = like.geom.clone();
+        geom.name = format!("{prefix}G{index}{}", spot.suffix);
+        if geom.kind == GeomType::Box {
+            geom.frame.pos = [link.length / 2.0, 0.0, 0.0];
+            geom.size[0] = link.length / 2.0;
+        } else {
+            geom.fromto = Some([0.0, 0.0, 0.0, link.length, 0.0, 0.0]);
+        }
+        body.geoms.push(geom);
+        if !first || composite.initial != "none" {
+            let mut joint = like.joint.clone();
+            joint.name = name("J", index);
+            joint.kind = JointType::Ball;
+            if first && composite.initial == "free" {
+                joint.kind = JointType::Free;
+                (joint.damping, joint.armature, joint.frictionloss) = (0.0, 0.0, 0.0);
+            }
+            body.joints.push(joint);
+        }
+        if !last {
+            document.excludes.push(Exclude {
+                at: e.at,
+                name: String::new(),
+                body1: name("B", index),
+                body2: name("B", index + 1),
+            });
+        }
+        if first || last {
+            let mut site = like.site.clone();
+            site.name = name("S", index);
+            site.frame.pos = [if last { link.length } else { 0.0 }, 0.0, 0.0];
+            body.sites.push(site);
+        }
+        document.bodies.push(body);
+    }
+    Ok(())
+}
