@@ -150,6 +150,7 @@ table! {
         "attenuation" attenuation: [f64; 3] = [1.0, 0.0, 0.0], reals(3, NonNegative), "Constant, linear and quadratic attenuation.";
         "cutoff" cutoff: f64 = 45.0, real(NonNegative), "Cutoff angle of a spot light, degrees.";
         "exponent" exponent: f64 = 10.0, real(NonNegative), "Softness of a spot light.";
+        check "bulbradius", real(Any), "Radius of the bulb for soft shadows, m. Ignored: shadows are not drawn.";
     }
 }
 

@@ -32,6 +32,7 @@ table! {
         "gridlayout" gridlayout: Option<String> = None, TEXT, "What each square of the image is, row by row: `R`, `L`, `U`, `D`, `F`, `B` for the right, left, upper, lower, front and back face, `.` for none.";
         "hflip" hflip: bool = false, FLAG, "Whether images are mirrored from left to right.";
         "vflip" vflip: bool = false, FLAG, "Whether images are mirrored from top to bottom.";
+        check "nchannel", int(3, 3), "Number of colours of a pixel: red, green and blue.";
     }
 }
 
@@ -47,5 +48,6 @@ table! {
         "emission" emission: f64 = 0.0, real(NonNegative), "Light that the surface emits, times its colour.";
         "texrepeat" texrepeat: [f64; 2] = [1.0; 2], reals(2, Any), "Repetitions of a 2d texture.";
         "texuniform" texuniform: bool = false, FLAG, "Whether the texture repeats per metre instead of per object.";
+        check "metallic" | "roughness", real(Any), "Looks of the surface for other renderers. Ignored, as in MuJoCo's own.";
     }
 }
