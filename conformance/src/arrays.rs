@@ -262,7 +262,7 @@ pub fn unrecorded(m: &Model) -> Named {
     ]
 }
 
-/// Returns the arrays of meshes. Those without faces have the triangles of their hulls, whose order is not MuJoCo's.
+/// Returns the arrays of meshes. Those without faces have the triangles of their hulls.
 pub fn of_meshes(m: &Model) -> Named {
     let number = |of: fn(&babybench::model::Mesh) -> usize| -> Vec<f64> {
         m.meshes.iter().map(|mesh| of(mesh) as f64).collect()

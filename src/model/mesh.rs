@@ -34,8 +34,8 @@ pub struct Mesh {
     pub bounds: [Vec3; 2],
     /// Volume, m^3; of a shell the area, m^2.
     pub volume: f64,
-    /// Whether volume and inertia are sums over the triangles of the hull. Their order is not MuJoCo's, and sums are in single
-    /// precision, so that the last of its digits may differ.
+    /// Whether volume and inertia are sums over the triangles of the hull. Sums are in single precision, so that their last digits
+    /// differ from MuJoCo's where the order of triangles does.
     pub of_hull: bool,
     /// Half lengths of the homogeneous box with the same inertia, m.
     pub inertia_box: Vec3,
@@ -46,8 +46,8 @@ impl Mesh {
     pub const NONE: u32 = u32::MAX;
 }
 
-/// The convex hull of a mesh as a graph of its corners. Unlike MuJoCo's, which Qhull makes, its order is that of the vertices;
-/// where several corners are equally far, others may therefore be found first.
+/// The convex hull of a mesh as a graph of its corners, in the order of MuJoCo's, which Qhull makes: where several corners are equally
+/// far, it decides which is found first. Where Qhull's steps come to no hull, the order is that of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshHull {
@@ -83,6 +83,38 @@ impl MeshHull {
             vert,
             face,
         }
+    }
+
+    /// Takes corners with their edges and the triangles in the order in which they were found. `None` unless every edge of a
+    /// triangle is one of another in the other direction, and every corner is known.
+    pub(crate) fn ordered(vert: Vec<u32>, edges: &[Vec<u32>], face: Vec<[u32; 3]>) -> Option<Self> {
+        let plain = Self::new(face);
+        let mut corner: Vec<(u32, u32)> = vert.iter().zip(0..).map(|(&vertex, at)| (vertex, at)).collect();
+        corner.sort_unstable();
+        let sorted: Vec<u32> = corner.iter().map(|&(vertex, _)| vertex).collect();
+        if sorted != plain.vert || edges.len() != vert.len() || plain.edge.len() != 3 * plain.face.len() {
+            return None;
+        }
+        let (mut edge_adr, mut edge) = (vec![0], Vec::new());
+        for (&vertex, others) in vert.iter().zip(edges) {
+            let mut known = others.clone();
+            known.sort_unstable();
+            let at = sorted.binary_search(&vertex).ok()?;
+            let same = plain.neighbours(at).iter().map(|&k| plain.vert[k as usize]);
+            if !same.eq(known) {
+                return None;
+            }
+            for other in others {
+                edge.push(corner[sorted.binary_search(other).ok()?].1);
+            }
+            edge_adr.push(edge.len() as u32);
+        }
+        Some(Self {
+            vert,
+            edge_adr,
+            edge,
+            face: plain.face,
+        })
     }
 
     /// Returns the neighbours of a corner.

@@ -21,8 +21,8 @@
 //! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1 |
 //!
 //! Planes and height fields touch neither planes nor height fields. Of meshes the convex hulls touch. The order of
-//! a hull's edges is that of its vertices, not that of Qhull, which MuJoCo has: where several corners are equally far in a direction another one may be
-//! found first, and where more than two neighbours of the deepest corner are below a plane, others of them may touch it.
+//! a hull's edges is that of Qhull, as in MuJoCo: where several corners are equally far in a direction, it decides which is found first, and where more
+//! than two neighbours of the deepest corner are below a plane, which of them touch it.
 //!
 #![cfg_attr(feature = "internals", doc = "```")]
 #![cfg_attr(not(feature = "internals"), doc = "```ignore")]

@@ -14,7 +14,8 @@ use super::context::{Context, Ids};
 use super::surface::asset_path;
 use crate::assets::AssetSource;
 use crate::math::hull::quickhull;
-use crate::math::{Vec3, mat_t_vec, mat_vec, quat_to_mat};
+use crate::math::qhull;
+use crate::math::{Vec3, cross, dot, mat_t_vec, mat_vec, quat_to_mat};
 use crate::mjcf_loader::compile::geometry::normalize;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
@@ -84,6 +85,9 @@ fn touching(context: &Context, document: &Document, ids: &Ids) -> Result<Vec<boo
     }
     Ok(touching)
 }
+
+/// How much of the volume two hulls of the same points may differ in.
+const SAME_VOLUME: f64 = 1e-6;
 
 const NO_HULL: &str = "the mesh has no convex hull: its vertices are on a plane, on a line or at one point";
 const HULL: &str = "the mesh has a convex hull of more corners than maxhullvert; leave maxhullvert out: which corners MuJoCo keeps is not reproduced";
@@ -182,7 +186,24 @@ fn hull(vert: &[[f32; 3]]) -> Option<MeshHull> {
         .iter()
         .find_map(|&tolerance| quickhull(&points, tolerance))?;
     let alive = faces.iter().filter(|face| face.alive);
-    Some(MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect()))
+    let plain = MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect());
+    Some(in_order(vert, &points, &plain).unwrap_or(plain))
+}
+
+/// Builds the hull again in Qhull's order; `None` if it is not closed or encloses another volume, as rounding errors may leave it.
+fn in_order(vert: &[[f32; 3]], points: &[Vec3], plain: &MeshHull) -> Option<MeshHull> {
+    let wide: Vec<Vec3> = vert.iter().map(|v| v.map(f64::from)).collect();
+    let found = qhull::hull(&wide, None)?;
+    let hull = MeshHull::ordered(found.corners, &found.edges, found.triangles)?;
+    let volume = |hull: &MeshHull| -> f64 {
+        let six = hull.face.iter().map(|face| {
+            let [a, b, c] = face.map(|i| points[i as usize]);
+            dot(a, cross(b, c))
+        });
+        six.sum()
+    };
+    let (ours, theirs) = (volume(plain), volume(&hull));
+    ((ours - theirs).abs() <= SAME_VOLUME * ours).then_some(hull)
 }
 
 /// Moves, turns and scales what the document says.
