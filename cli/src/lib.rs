@@ -1,11 +1,13 @@
 //! The command line of BabyBench as a function: what the program `babybench` does, and `python -m babybench`.
 #![forbid(unsafe_code)]
+#![deny(missing_docs)]
 
 mod arguments;
 mod commands;
 mod hint;
 mod interrupt;
 mod print;
+pub mod view;
 
 use std::ffi::OsString;
 use std::io;

@@ -8,7 +8,7 @@ Example:
     >>> env.close()
 
 :func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
-Stable-Baselines3, :class:`ActionNoise` moves them at random.
+Stable-Baselines3, :class:`ActionNoise` moves them at random, :func:`view` shows them in a browser or a notebook.
 Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
 ``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
 ``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0``, ``babybench/RollOver-v0``,
@@ -30,8 +30,20 @@ if TYPE_CHECKING:
     from babybench_core.noise import ActionNoise
     from babybench_core.scenes import read_config
     from babybench_core.vector import VectorEnv
+    from babybench_core.view import View, view
 
-__all__ = ["ActionNoise", "Env", "VectorEnv", "__version__", "config_examples", "config_keys", "make", "read_config"]
+__all__ = [
+    "ActionNoise",
+    "Env",
+    "VectorEnv",
+    "View",
+    "__version__",
+    "config_examples",
+    "config_keys",
+    "make",
+    "read_config",
+    "view",
+]
 
 __path__ = _extended(__path__)
 
@@ -41,9 +53,11 @@ _HOMES = {
     "data": "babybench.data",
     "figures": "babybench.figures",
     "VectorEnv": "babybench_core.vector",
+    "View": "babybench_core.view",
     "make": "babybench_core.env",
     "read_config": "babybench_core.scenes",
     "sb3": "babybench.sb3",
+    "view": "babybench_core.view",
 }
 
 

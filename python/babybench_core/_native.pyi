@@ -25,6 +25,7 @@ __all__ = [
     "PhysicsRenderer",
     "Recorder",
     "VectorEnv",
+    "View",
     "Watch",
     "__version__",
     "command_line",
@@ -290,6 +291,30 @@ class ActionNoise:
         """Returns the next action."""
     def reset(self, seed: int) -> None:
         """Begins anew."""
+
+@final
+class View:
+    """A page on this machine that shows an environment, which a program keeps alive."""
+
+    def __new__(cls, title: str, port: int = 0) -> View:
+        """Opens it at a port, or at any free one for 0; ``OSError`` if it is taken."""
+    @property
+    def url(self) -> str:
+        """The address of the page."""
+    @property
+    def moves(self) -> bool:
+        """Whether the policy may move MIMo; actions are 0 otherwise."""
+    @property
+    def watched(self) -> bool:
+        """Whether somebody has looked within the last two seconds."""
+    def attend(self, env: Env) -> str:
+        """Shows the environment to those who ask and says what is next: ``step``, ``reset``, or ``wait`` after 0.05 s."""
+    def stepped(self, env: Env, seconds: float) -> None:
+        """Says that a step of so many seconds has been taken."""
+    def restarted(self, env: Env) -> None:
+        """Says that an episode has begun."""
+    def close(self) -> None:
+        """Closes the page."""
 
 @final
 class Watch:

@@ -14,7 +14,6 @@ from typing import Optional
 from babybench_core import _native, swap
 
 _SCRIPTS = """
-view [CONFIG] shows MIMo in a window: turn, pull, pause, step.
 figures RESULTS ... --out DIR draws figures for papers of runs, records and benchmarks.
 export RECORD --to FORMATS --out DIR writes a record as Parquet, HDF5, NWB, for Rerun, TensorBoard or Minari.
 run [-m] SCRIPT [ARGUMENT ...] runs a Python script that was written for the starter kit on the engine of this package,
@@ -65,11 +64,6 @@ def main(arguments: Optional[Sequence[str]] = None) -> None:
     if given[:1] == ["run"] and len(given) > 1 and (given[1] == "-m" or not given[1].startswith("-")):
         args = _parser(program).parse_args(given[1:])
         _run(args.script, args.arguments, args.module)
-        return
-    if given[:1] == ["view"]:
-        from babybench_core import view
-
-        view.main(given[1:], program)
         return
     if given[:1] in (["export"], ["figures"]):
         command = importlib.import_module(f"babybench_core.{given[0]}.command")

@@ -1,60 +1,230 @@
-"""``python -m babybench view``: MIMo in a window, to be looked at and pulled."""
+"""Environments in a browser: a page on this machine, or in a notebook, with the live environment behind it."""
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Sequence
-from typing import Optional
+import html
+import threading
+from collections.abc import Mapping
+from types import TracebackType
+from typing import Any, Callable, Optional, Union
 
+import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from babybench_core.env import Env
+from babybench_core import _native
+from babybench_core.env import Env, make
 from babybench_core.noise import ActionNoise
-from babybench_core.window import HELP, Window
+
+__all__ = ["View", "view"]
+
+Action = npt.NDArray[np.float32]
+Policy = Union[None, str, ActionNoise, Callable[[Mapping[str, Any]], npt.ArrayLike]]
+"""What moves MIMo: nothing, a noise or its name, or a function of the observation."""
 
 
-def parser(program: str) -> argparse.ArgumentParser:
-    """Returns the parser of the arguments."""
-    made = argparse.ArgumentParser(
-        prog=f"{program} view",
-        description="Shows MIMo in a window, in real time (needs pygame). " + "; ".join(HELP),
-        allow_abbrev=False,
-    )
-    made.add_argument(
-        "config", nargs="?", default="self_touch", help="a YAML file or the name of an example (self_touch)"
-    )
-    made.add_argument("--seed", type=int, default=None, help="the seed of the first episode")
-    made.add_argument(
-        "--noise", default=None, help="what moves him: white, held, ou, pink or oscillators; without, he keeps still"
-    )
-    made.add_argument("--camera", default=None, help="a camera of the scene to begin with")
-    made.add_argument("--size", type=int, nargs=2, default=(800, 600), metavar=("WIDTH", "HEIGHT"), help="pixels")
-    made.add_argument("--episodes", type=int, default=None, help="how many episodes; by default until it is closed")
-    return made
+class View:
+    """A page on which people see an environment, turn the camera, pull bodies by a spring, stop time and hurry it.
+
+    A program either steps the environment itself and calls :meth:`show` after each step, or lets :meth:`play` or :meth:`start` do
+    both. Pictures are drawn when a browser asks for one; a view at which nobody looks draws nothing. In a notebook a view
+    that ends a cell is an ``<iframe>``.
+
+    Example:
+        >>> import babybench
+        >>> env = babybench.make("self_touch", vision_active=False)
+        >>> observation, info = env.reset(seed=0)
+        >>> with babybench.view(env) as view:
+        ...     view.url.startswith("http://127.0.0.1:")
+        True
+
+    Attributes:
+        url: The address of the page, on this machine alone, with a word that nobody can guess. From another machine, forward
+            its port: ``ssh -L PORT:127.0.0.1:PORT``.
+    """
+
+    def __init__(
+        self, env: gymnasium.Env[Any, Any], *, port: int = 0, title: Optional[str] = None, height: int = 480
+    ) -> None:
+        """Opens a page for an environment.
+
+        Args:
+            env: An environment of this package, or wrappers around one.
+            port: The port of the page; 0 is any that is free.
+            title: What stands above the picture; by default the behavior and the scene.
+            height: Pixels of the frame in a notebook.
+
+        Raises:
+            TypeError: This is no environment of this package.
+            OSError: The port is taken.
+        """
+        inside = env.unwrapped
+        if not isinstance(inside, Env):
+            raise TypeError(f"expected an environment of babybench, got {type(inside).__name__}")
+        self.env = env
+        self._inside = inside
+        self._native = _native.View(title or f"{inside.config['behavior']} in {inside.config['scene']}", port)
+        self.url = self._native.url
+        self._height = height
+        self._thread: Optional[threading.Thread] = None
+        self._stop = threading.Event()
+        self._error: Optional[BaseException] = None
+        self._ready = False
+
+    @property
+    def running(self) -> bool:
+        """Whether :meth:`start` keeps the environment alive."""
+        return self._thread is not None and self._thread.is_alive()
+
+    def show(self) -> bool:
+        """Shows the environment after a step of the program's, and returns when it is time for the next.
+
+        While nobody looks it returns at once: a closed or hidden page does not hold the program, not even one on which time
+        stands.
+
+        Returns:
+            Whether somebody wants a new episode (the button "Start again"); the program may do so.
+        """
+        if not self._native.watched:
+            return False
+        core = self._inside._core
+        if self._ready:
+            self._native.stepped(core, self._inside.dt)
+        self._ready = True
+        while (what := self._native.attend(core)) == "wait":
+            pass
+        if what == "reset":
+            self._ready = False
+        return what == "reset"
+
+    def play(self, policy: Policy = None, *, episodes: Optional[int] = None) -> None:
+        """Keeps the environment alive, one episode after another, until it is interrupted (Ctrl-C, or a notebook's stop button).
+
+        Args:
+            policy: What moves MIMo: a function of the observation, a noise (``"held"``, ``"pink"``, ...), or nothing.
+            episodes: The number of episodes; by default it goes on.
+        """
+        try:
+            self._play(self._chooser(policy), episodes)
+        except KeyboardInterrupt:
+            if episodes is not None:
+                raise
+
+    def start(self, policy: Policy = None) -> View:
+        """Does what :meth:`play` does in a thread of its own, until :meth:`stop`.
+
+        Meanwhile the environment belongs to the view.
+        """
+        self.stop()
+        self._stop.clear()
+        choose = self._chooser(policy)
+        self._thread = threading.Thread(target=self._run, args=(choose,), name="babybench view", daemon=True)
+        self._thread.start()
+        return self
+
+    def stop(self) -> None:
+        """Gives the environment back to the program; the page stands still.
+
+        Raises:
+            Exception: What the policy or the environment has raised meanwhile.
+        """
+        thread, self._thread = self._thread, None
+        self._stop.set()
+        if thread is not None and thread is not threading.current_thread():
+            thread.join()
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+
+    def close(self) -> None:
+        """Stops, and closes the page. The environment stays open."""
+        try:
+            self.stop()
+        finally:
+            self._native.close()
+
+    def _run(self, choose: Callable[[Mapping[str, Any]], npt.ArrayLike]) -> None:
+        try:
+            self._play(choose, None)
+        except Exception as error:  # raised again by stop()
+            self._error = error
+
+    def _play(self, choose: Callable[[Mapping[str, Any]], npt.ArrayLike], episodes: Optional[int]) -> None:
+        core, still = self._inside._core, np.zeros(self._inside.action_space.shape, np.float32)
+        observation, _ = self.env.reset()
+        self._native.restarted(core)
+        done = 0
+        while not self._stop.is_set() and (episodes is None or done < episodes):
+            what = self._native.attend(core)
+            if what == "wait":
+                continue
+            over = what == "reset"
+            if not over:
+                action = choose(observation) if self._native.moves else still
+                observation, _, terminated, truncated, _ = self.env.step(np.asarray(action, np.float32))
+                self._native.stepped(core, self._inside.dt)
+                over = terminated or truncated
+            if over:
+                done += 1
+                observation, _ = self.env.reset()
+                self._native.restarted(core)
+
+    def _chooser(self, policy: Policy) -> Callable[[Mapping[str, Any]], npt.ArrayLike]:
+        if isinstance(policy, str):
+            policy = ActionNoise(policy, self._inside)
+        if isinstance(policy, ActionNoise):
+            noise = policy
+            return lambda _: noise()
+        if policy is None:
+            still = np.zeros(self._inside.action_space.shape, np.float32)
+            return lambda _: still
+        if not callable(policy):
+            raise TypeError(f"expected a function of the observation, a noise or its name, got {type(policy).__name__}")
+        return policy
+
+    def _repr_html_(self) -> str:
+        """Returns the page in a frame, for notebooks."""
+        url = html.escape(self.url, quote=True)
+        style = f"width:100%;height:{int(self._height)}px;border:0;border-radius:8px"
+        return f'<iframe src="{url}" title="BabyBench" style="{style}"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<babybench.View of {self._inside!r} at {self.url}>"
+
+    def __enter__(self) -> View:
+        return self
+
+    def __exit__(
+        self, kind: Optional[type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        self.close()
 
 
-def main(arguments: Sequence[str], program: str = "python -m babybench") -> None:
-    """Shows what the arguments say until the window is closed."""
-    args = parser(program).parse_args(arguments)
-    env = Env(args.config)
-    env.reset(seed=args.seed)
-    noise = None if args.noise is None else ActionNoise(args.noise, env)
-    still = np.zeros(env.action_space.shape, np.float32)
-    window = Window(f"BabyBench: {env.config['behavior']}", env._core, tuple(args.size), args.camera)
-    try:
-        _play(env, window, (lambda: still) if noise is None else noise, args.episodes)
-    finally:
-        window.close()
-        env.close()
+def view(
+    env: Union[gymnasium.Env[Any, Any], str, Mapping[str, Any]] = "self_touch",
+    policy: Policy = None,
+    *,
+    port: int = 0,
+    title: Optional[str] = None,
+    height: int = 480,
+) -> View:
+    """Opens a page that shows an environment, for a browser of this machine or a notebook.
 
+    In a notebook ``babybench.view("self_touch", "held")`` at the end of a cell shows MIMo alive, and ``view.stop()`` gives his
+    environment back.
 
-def _play(env: Env, window: Window, act: Callable[[], npt.NDArray[np.float32]], episodes: Optional[int]) -> None:
-    done = 0
-    window.show(0.0)
-    while window.open and (episodes is None or done < episodes):
-        _, _, terminated, truncated, _ = env.step(act())
-        window.show(env.dt)
-        if terminated or truncated:
-            done += 1
-            env.reset()
+    Args:
+        env: An environment, which the program steps; or what :func:`babybench.make` takes, which then lives by itself
+            (:meth:`View.start`).
+        policy: What moves MIMo, who then lives by himself, too: see :meth:`View.play`.
+        port: As of :class:`View`.
+        title: As of :class:`View`.
+        height: As of :class:`View`.
+
+    Raises:
+        TypeError: This is no environment of this package.
+        OSError: The port is taken.
+    """
+    made = isinstance(env, (str, Mapping))
+    shown = View(make(env) if made else env, port=port, title=title, height=height)  # type: ignore[arg-type]
+    return shown.start(policy) if made or policy is not None else shown

@@ -31,6 +31,7 @@ mod task;
 mod touch;
 mod vector;
 mod video;
+mod view;
 
 use pyo3::prelude::*;
 
@@ -64,6 +65,8 @@ mod _native {
     use super::vector::VectorEnv;
     #[pymodule_export]
     use super::video::write_video;
+    #[pymodule_export]
+    use super::view::View;
 
     use pyo3::prelude::*;
 

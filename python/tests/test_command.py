@@ -19,6 +19,7 @@ COMMANDS = (
     "scene",
     "simulate",
     "replay",
+    "view",
     "senses",
     "test-installation",
     "train",

@@ -137,6 +137,7 @@ def test_recordings_are_compared(tmp_path):
         "babybench_core.noise",
         "babybench_core.senses",
         "babybench_core.vector",
+        "babybench_core.view",
     ],
 )
 def test_the_documentation_tells_the_truth(module):

@@ -10,7 +10,6 @@ import pytest
 from conftest import SMALL
 
 import babybench
-from babybench_core import view
 from babybench_core.orbit import Orbit
 from babybench_core.window import Window
 
@@ -155,11 +154,3 @@ def test_points_of_the_world_are_where_the_picture_shows_them(shown: Any) -> Non
     )
     assert hits >= len(spheres) / 2
     assert orbit.pixels(np.array([[0.0, 0.0, 500.0]]), SIZE).shape[1] == 2
-
-
-def test_the_command_shows_mimo_until_he_has_lived_enough(tmp_path: Any) -> None:
-    config = tmp_path / "c.yml"
-    config.write_text("behavior: none\nscene: base\ntouch_active: false\nvision_active: false\nmax_episode_steps: 5\n")
-    view.main([str(config), "--episodes", "2", "--noise", "held", "--size", "64", "48"])
-    with pytest.raises(SystemExit):
-        view.main(["--size", "3"])

@@ -19,6 +19,7 @@ mod senses;
 mod simulate;
 mod test_installation;
 mod train;
+mod view;
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -58,6 +59,8 @@ pub enum Command {
     Scene(scene::Scene),
     /// Simulate any MJCF model, with or without an infant, and write what it does as arrays or a video
     Simulate(simulate::Simulate),
+    /// Show MIMo in a browser while he lives: turn, pull, stop, go step by step
+    View(view::ViewArgs),
     /// Replay a recording (.npz) from its start with its actions
     Replay(replay::ReplayArgs),
     /// Run a benchmark: configurations, policies and seeds of a plan, on all cores, with means and intervals
@@ -206,6 +209,7 @@ impl Command {
             Self::Render(c) => c.run(),
             Self::Scene(c) => c.run(),
             Self::Simulate(c) => c.run(),
+            Self::View(c) => c.run(),
             Self::Replay(c) => c.run(),
             Self::Benchmark(c) => c.run(),
             Self::Measure(c) => c.run(),

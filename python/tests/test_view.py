@@ -1,0 +1,146 @@
+"""The page that shows an environment, as a browser asks for it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import threading
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from conftest import SMALL
+
+import babybench
+
+
+def ask(view: babybench.View, words: str = "") -> tuple[dict[str, Any], bytes]:
+    """Says what people do; returns what the program says and the picture.
+
+    A program that is busy is asked again, with nothing new to do.
+    """
+    try:
+        with urllib.request.urlopen(f"{view.url}frame", words.encode(), timeout=60) as answer:
+            said, picture = answer.read().split(b"\n", 1)
+    except urllib.error.HTTPError as error:
+        if error.code != 503:
+            raise
+        error.close()
+        return ask(view)
+    return json.loads(said), picture
+
+
+def until(view: babybench.View, fits: Any) -> dict[str, Any]:
+    for _ in range(2000):
+        said, _ = ask(view)
+        if fits(said):
+            return said
+    raise AssertionError("never")
+
+
+def test_an_environment_lives_on_a_page_until_it_is_given_back() -> None:
+    env = babybench.Env({**SMALL, "max_episode_steps": 100_000})
+    with babybench.view(gymnasium.wrappers.OrderEnforcing(env), "held", title="<MIMo>") as view:
+        assert view.running
+        said, picture = ask(view, "size 120 80")
+        assert picture.startswith(b"\xff\xd8")
+        assert picture.endswith(b"\xff\xd9")
+        assert said["title"] == "<MIMo>"
+        assert "page.js" in urllib.request.urlopen(view.url, timeout=60).read().decode()
+        stands = ask(view, "pause 1")[0]["steps"]
+        assert ask(view)[0]["steps"] == stands
+        ask(view, "step")
+        assert until(view, lambda said: said["steps"] > stands)["steps"] == stands + 1
+        view.stop()
+        assert not view.running
+        env.step(env.action_space.sample())
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(view.url, timeout=5)
+    env.close()
+
+
+def test_a_notebook_shows_the_page_in_a_frame() -> None:
+    with babybench.view(SMALL, height=300) as view:
+        frame = view._repr_html_()
+        assert frame.startswith(f'<iframe src="{view.url}"')
+        assert "height:300px" in frame
+        assert view.url in repr(view)
+        view.stop()
+        view.env.close()
+
+
+def test_a_program_shows_its_own_steps_and_is_not_held_while_nobody_looks(env: babybench.Env) -> None:
+    action = np.zeros(env.action_space.shape, np.float32)
+    with babybench.view(env) as view:
+        assert not view.running
+        started = time.perf_counter()
+        for _ in range(200):
+            assert view.show() is False
+        assert time.perf_counter() - started < 200 * env.dt, "nobody looks"
+
+        heard: list[Any] = []
+        person = threading.Thread(target=lambda: heard.extend([ask(view, "pause 1"), ask(view, "pause 0\nreset")]))
+        person.start()
+        resets = 0
+        while person.is_alive():
+            env.step(action)
+            if view.show():
+                env.reset()
+                resets += 1
+        person.join()
+        assert [said["paused"] for said, _ in heard] == [True, False]
+        assert resets == 1 or view.show()
+
+
+def test_what_moves_him_is_a_function_a_noise_or_nothing(env: babybench.Env) -> None:
+    seen: list[Any] = []
+
+    def policy(observation: Any) -> Any:
+        seen.append(observation["observation"].shape)
+        return np.zeros(env.action_space.shape)
+
+    with babybench.view(env) as view:
+        view.play(policy, episodes=2)
+        assert len(seen) == 2 * SMALL["max_episode_steps"]  # type: ignore[operator]
+        view.play(babybench.ActionNoise("pink", env), episodes=1)
+        view.play(episodes=1)
+        with pytest.raises(TypeError, match="function of the observation"):
+            view.play(3)  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match="noise"):
+            view.play("storm")
+
+        def broken(observation: Any) -> Any:
+            raise ArithmeticError("no idea")
+
+        view.start(broken)
+        while view.running:
+            time.sleep(0.01)
+        with pytest.raises(ArithmeticError, match="no idea"):
+            view.stop()
+    with pytest.raises(RuntimeError, match="closed"):
+        view.play(episodes=1)
+
+
+def test_what_cannot_be_shown_is_refused() -> None:
+    with pytest.raises(TypeError, match="environment of babybench"):
+        babybench.View(gymnasium.make("CartPole-v1"))
+    with babybench.view(SMALL) as view:
+        port = int(view.url.split(":")[2].split("/")[0])
+        with pytest.raises(OSError, match=str(port)):
+            babybench.view(SMALL, port=port)
+
+
+def test_the_command_shows_mimo_until_he_has_lived_enough(tmp_path: Path) -> None:
+    (tmp_path / "c.yml").write_text(
+        "behavior: none\nscene: base\ntouch_active: false\nvision_active: false\nmax_episode_steps: 5\n"
+    )
+    call = [sys.executable, "-m", "babybench", "view", "--config", "c.yml", "--episodes", "2", "--policy", "zero"]
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("http://127.0.0.1:")
