@@ -2,33 +2,23 @@
 # Builds the Python wheel for Linux on 64-bit Arm, and runs it there: a session with every scene under an emulated processor, whose numbers must
 # be those of the wheel of this processor, to the bit.
 #   scripts/wheel_aarch64.sh [FOLDER]     # the wheels go to FOLDER, target/wheel by default
-# The linker is Zig's and the C library that of manylinux2014, as in a release (CONTRIBUTING.md). The emulated Python is Debian's for Arm, unpacked
-# and not installed. Needs rustup, Python 3 with venv, qemu-user-static, and the network for crates, wheels and Debian's packages. Takes about a
-# quarter of an hour.
+# scripts/wheels.sh builds it, as for a release (CONTRIBUTING.md). The emulated Python is Debian's for Arm, unpacked and not installed. Needs
+# rustup, Python 3 with venv, qemu-user-static, and the network for crates, wheels and Debian's packages. Takes about a quarter of an hour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 wheels=$(realpath -m "${1:-target/wheel}")
-work=$PWD/target/wheel-aarch64 target=aarch64-unknown-linux-gnu
+work=$PWD/target/wheel-aarch64
 emulator=qemu-aarch64-static
 if ! command -v "$emulator" >/dev/null; then echo "scripts/wheel_aarch64.sh: needs $emulator (Debian: qemu-user-static)" >&2; exit 2; fi
 mkdir -p "$work" "$wheels"
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_QUIET=1
 
 python3 -m venv "$work/tools"
-"$work/tools/bin/pip" install maturin==1.16.0 ziglang==0.15.2
-rustc=$(scripts/toolchain.sh target/toolchain "$target")
-wheel() { # TARGET: prints the path of its wheel
-  local folder=$work/wheels/$1
-  rm -rf "$folder"
-  # Without a Python beside it, as one wheel serves them all.
-  env RUSTC="$rustc" PATH="$work/tools/bin:$PATH" CARGO_TARGET_DIR="$work/build" \
-    "$work/tools/bin/maturin" build --quiet --release --locked --manifest-path python/Cargo.toml --target "$1" --zig \
-    --compatibility manylinux2014 --out "$folder" >&2
-  cp "$folder"/*.whl "$wheels"
-  echo "$folder"/*.whl
-}
-there=$(wheel "$target")
-here=$(wheel x86_64-unknown-linux-gnu)
+rm -rf "$work/wheels"
+scripts/wheels.sh --out "$work/wheels" manylinux-x86_64 manylinux-aarch64
+there=$(echo "$work"/wheels/*_aarch64.whl)
+here=$(echo "$work"/wheels/*_x86_64.whl)
+cp "$there" "$here" "$wheels"
 
 # Debian's Python for Arm, unpacked: package lists of our own, as those of the system know one processor only.
 root=$work/root version=$(apt-cache depends python3 | sed -n 's/.*Depends: \(python3\.[0-9]*\)$/\1/p' | head -1)
