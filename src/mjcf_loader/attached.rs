@@ -3,8 +3,11 @@
 use super::actuator::Actuator;
 use super::custom::Key;
 use super::document::{Body, Document};
+use super::error::{ErrorKind, LoadError};
+use super::mesh::Mesh;
 use super::relation::{Along, Equality, Exclude, Held, Pair, Tendon};
 use super::sensor::{FrameOf, Object, Sensor};
+use super::xml::Tree;
 use crate::model::{DynType, ObjType};
 
 /// A kind of element that others refer to.
@@ -284,4 +287,72 @@ pub(super) struct Absent {
     pub at: usize,
     pub thing: Thing,
     pub name: String,
+}
+
+/// How much was copied or looked at for bodies of other models, which the limits bound: a few bytes of text may ask for all of a model again.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Amount {
+    elements: usize,
+    /// Numbers of assets.
+    numbers: usize,
+    /// What keyframes say of elements.
+    said: usize,
+}
+
+impl Amount {
+    /// Counts all of a model.
+    pub fn of(model: &Attachable) -> Self {
+        let from = &model.document;
+        let hung: usize = from
+            .bodies
+            .iter()
+            .map(|body| hanging(body).count() + body.lights.len())
+            .sum();
+        let referring = from.pairs.len() + from.excludes.len() + from.equalities.len() + from.tendons.len();
+        let pieces: usize = from.tendons.iter().map(|tendon| tendon.path.len()).sum();
+        let measured = from.actuators.len() + from.sensors.len();
+        let assets =
+            from.textures.len() + from.materials.len() + from.meshes.len() + from.hfields.len() + from.skins.len();
+        let rest = from.numerics.len() + from.texts.len() + from.keys.len() + from.frames.len();
+        let of_mesh = |mesh: &Mesh| mesh.vertex.len() + mesh.normal.len() + mesh.texcoord.len() + mesh.face.len();
+        let numbers: usize = from
+            .meshes
+            .iter()
+            .map(of_mesh)
+            .chain(from.hfields.iter().map(|field| field.elevation.len()))
+            .chain(from.skins.iter().map(|skin| skin.vertex.len() + skin.face.len()))
+            .chain(from.numerics.iter().map(|numeric| numeric.data.len()))
+            .sum();
+        let said = &model.said;
+        Self {
+            elements: 1 + hung + referring + pieces + measured + assets + rest,
+            numbers,
+            said: from.keys.len() * (said.joints.len() + said.actuators.len() + said.mocaps.len()),
+        }
+    }
+
+    /// Adds others for the element at a place.
+    ///
+    /// # Errors
+    /// It is more than the limits allow.
+    pub(super) fn add(&mut self, others: Self, at: usize, tree: &Tree) -> Result<(), LoadError> {
+        self.elements += others.elements;
+        self.numbers += others.numbers;
+        self.said += others.said;
+        let limits = &tree.limits;
+        for (what, found, limit) in [
+            ("elements of attached models", self.elements, limits.elements),
+            (
+                "numbers in assets of attached models",
+                self.numbers,
+                limits.mesh_elements,
+            ),
+            ("numbers in keyframes", self.said, limits.key_numbers),
+        ] {
+            if found > limit {
+                return Err(tree.error(at, ErrorKind::TooMuch { what, limit }));
+            }
+        }
+        Ok(())
+    }
 }

@@ -7,7 +7,7 @@ use crate::math::Vec3;
 use crate::model::{self, CamLight, GeomType, JointType, Options, Statistic};
 
 use super::actuator::Actuator;
-use super::attached::{Absent, Attachable, AttachedKey};
+use super::attached::{Absent, Amount, Attachable, AttachedKey};
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
 use super::custom::{Key, Numeric, Text};
@@ -260,9 +260,8 @@ pub(super) struct Document {
     pub replicates: bool,
     /// What did not come along with bodies of other models.
     pub absent: Vec<Absent>,
-    /// Elements of other models that were looked at, and what keyframes say of them.
-    pub looked_at: usize,
-    pub said: usize,
+    /// How much was copied of other models, here and in those.
+    pub copied: Amount,
     /// Other models, by name.
     pub models: BTreeMap<String, Attachable>,
     pub pairs: Vec<Pair>,
@@ -305,8 +304,7 @@ impl Document {
             suffixes: BTreeSet::new(),
             replicates: false,
             absent: Vec::new(),
-            looked_at: 0,
-            said: 0,
+            copied: Amount::default(),
             models: BTreeMap::new(),
             pairs: Vec::new(),
             excludes: Vec::new(),

@@ -226,6 +226,7 @@ fn add_model(parts: &Parts, index: usize, e: &Element, document: &mut Document) 
     let model = read_model(parts, index)?;
     let given = ModelAsset::read(e).name;
     let name = if given.is_empty() { model.model.clone() } else { given };
+    document.copied.add(model.copied, e.at, parts.tree)?;
     let kind = "model";
     if document.models.contains_key(&name) {
         return Err(parts.tree.error(e.at, ErrorKind::DuplicateName { kind, name }));

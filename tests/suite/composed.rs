@@ -119,6 +119,40 @@ fn models_within_models_end() {
     };
     let error = refused(&many, &limits).expect("too many");
     assert!(error.ends_with("more than 30 elements of attached models"), "{error}");
+    // models in between count, too, and so do the numbers of what comes along each time
+    let mut assets = assets();
+    let each: String = (0..5)
+        .map(|k| format!(r#"<attach model="arm" body="arm" prefix="{k}"/>"#))
+        .collect();
+    let between = format!(r#"<mujoco><asset><model file="arm.xml"/></asset><worldbody>{each}</worldbody></mujoco>"#);
+    assets.insert("parts/between.xml", between.as_str()).expect("a path");
+    let mesh = r#"<mujoco model="mesh"><asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset><worldbody><body name="b"/></worldbody></mujoco>"#;
+    assets.insert("parts/mesh.xml", mesh).expect("a path");
+    let told = |text: &str, limits: &Limits| load_str_with(text, "m.xml", &assets, limits).map_err(|e| e.to_string());
+    let both = r#"<mujoco><asset><model name="a" file="parts/between.xml"/><model name="b" file="parts/between.xml"/></asset></mujoco>"#;
+    let limits = Limits {
+        elements: 80,
+        ..Limits::default()
+    };
+    let one = both.replace(r#"<model name="b" file="parts/between.xml"/>"#, "");
+    assert!(told(&one, &limits).is_ok());
+    let error = told(both, &limits).expect_err("too many");
+    assert!(error.ends_with("elements of attached models"), "{error}");
+    let meshes = |count: usize| {
+        let each = (0..count).map(|k| format!(r#"<attach model="mesh" body="b" prefix="{k}"/>"#));
+        let each: String = each.collect();
+        format!(r#"<mujoco><asset><model file="parts/mesh.xml"/></asset><worldbody>{each}</worldbody></mujoco>"#)
+    };
+    let limits = Limits {
+        mesh_elements: 40,
+        ..Limits::default()
+    };
+    assert!(told(&meshes(3), &limits).is_ok());
+    let error = told(&meshes(4), &limits).expect_err("too many numbers");
+    assert!(
+        error.ends_with("more than 40 numbers in assets of attached models"),
+        "{error}"
+    );
     let none = Limits {
         include_depth: 0,
         ..Limits::default()
@@ -153,6 +187,16 @@ fn a_cable_is_a_chain_of_bodies() {
         let error = made(&CABLE.replace(from, to), "").expect_err(to);
         assert!(error.contains(expected), "{to}: {error}");
     }
+    let limits = Limits {
+        bodies: 5,
+        ..Limits::default()
+    };
+    let text = format!(
+        "<mujoco><worldbody>{}{CABLE}</worldbody></mujoco>",
+        CABLE.replace("\"c\"", "\"d\"")
+    );
+    let error = load_str_with(&text, "m.xml", &assets(), &limits).expect_err("many cables");
+    assert!(error.to_string().ends_with("more than 5 bodies"), "{error}");
     let copies = format!("<replicate count=\"2\">{}</replicate>", CABLE.replace("free", "none"));
     let error = made(&copies, "").expect_err("lost");
     assert!(error.contains("put a body around it"), "{error}");

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::attached::{Absent, Attachable, Referring, Thing, hanging};
+use super::super::attached::{Absent, Amount, Attachable, Referring, Thing, hanging};
 use super::super::compile::stem;
 use super::super::document::{Attach, Body, Document};
 use super::super::error::{ErrorKind, LoadError};
@@ -120,33 +120,6 @@ impl Taking<'_> {
     }
 }
 
-/// Counts what is looked at, which the limits bound.
-fn count(attach: &Attach, model: &Attachable, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
-    let from = &model.document;
-    let hung: usize = from
-        .bodies
-        .iter()
-        .map(|body| hanging(body).count() + body.lights.len())
-        .sum();
-    let referring = from.pairs.len() + from.excludes.len() + from.equalities.len() + from.tendons.len();
-    let pieces: usize = from.tendons.iter().map(|tendon| tendon.path.len()).sum();
-    let measured = from.actuators.len() + from.sensors.len();
-    let assets = from.textures.len() + from.materials.len() + from.meshes.len() + from.hfields.len() + from.skins.len();
-    let rest = from.numerics.len() + from.texts.len() + from.keys.len() + from.frames.len();
-    document.looked_at += 1 + hung + referring + pieces + measured + assets + rest;
-    let (what, limit) = ("elements of attached models", tree.limits.elements);
-    if document.looked_at > limit {
-        return Err(tree.error(attach.at, ErrorKind::TooMuch { what, limit }));
-    }
-    let said = &model.said;
-    document.said += from.keys.len() * (said.joints.len() + said.actuators.len() + said.mocaps.len());
-    let (what, limit) = ("numbers in keyframes", tree.limits.key_numbers);
-    if document.said > limit {
-        return Err(tree.error(attach.at, ErrorKind::TooMuch { what, limit }));
-    }
-    Ok(())
-}
-
 fn take(
     attach: &Attach,
     model: &mut Attachable,
@@ -154,7 +127,7 @@ fn take(
     tree: &Tree,
     document: &mut Document,
 ) -> Result<(), LoadError> {
-    count(attach, model, tree, document)?;
+    document.copied.add(Amount::of(model), attach.at, tree)?;
     keep_keys(attach, model, spot, tree, document)?;
     let bodies = &model.document.bodies;
     let Some(root) = bodies.iter().position(|body| body.name == attach.body) else {

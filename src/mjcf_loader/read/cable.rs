@@ -16,21 +16,14 @@ const LOST: &str = "MuJoCo 3.3.0 loses a composite in a <replicate> that is not 
 const SHAPE: &str =
     "the geoms of a cable are capsules, cylinders or boxes: give <geom type=\"capsule\" size=\"0.01\"/>";
 
-/// Adds a cable.
-pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
-    let invalid = |what| tree.error(e.at, ErrorKind::Invalid(what));
-    let composite = Composite::read(e);
-    if composite.kind == CompositeType::Gone {
-        return Err(invalid(GONE));
-    }
-    // frames around it count for nothing, as in MuJoCo, but a copy without a body around it would lose it
-    let mut around = spot.within;
-    while let Some(frame) = around.map(|frame| &document.frames[frame]) {
-        if frame.copy.is_some() {
-            return Err(invalid(LOST));
-        }
-        around = frame.within;
-    }
+/// Tells whether MuJoCo would lose a composite: frames around it count for nothing there, but in a copy without a body around it it has gone.
+fn is_lost(spot: Spot, document: &Document) -> bool {
+    let frame = |id: Option<usize>| id.map(|id| &document.frames[id]);
+    std::iter::successors(frame(spot.within), |inner| frame(inner.within)).any(|frame| frame.copy.is_some())
+}
+
+/// Reads what geoms, sites and joints of a cable are like.
+fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
     let mut like = Prototypes::initial();
     for part in &e.children {
         match part.name {
@@ -41,12 +34,30 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
         }
     }
     if e.children.iter().filter(|part| part.name == "joint").count() > 1 {
-        return Err(invalid("a cable has one <joint kind=\"main\">"));
+        return Err("a cable has one <joint kind=\"main\">");
     }
     if !matches!(like.geom.kind, GeomType::Capsule | GeomType::Cylinder | GeomType::Box) {
-        return Err(invalid(SHAPE));
+        return Err(SHAPE);
     }
+    Ok(like)
+}
+
+/// Adds a cable.
+pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+    let invalid = |what| tree.error(e.at, ErrorKind::Invalid(what));
+    let composite = Composite::read(e);
+    if composite.kind == CompositeType::Gone {
+        return Err(invalid(GONE));
+    }
+    if is_lost(spot, document) {
+        return Err(invalid(LOST));
+    }
+    let mut like = prototypes(e).map_err(invalid)?;
     let links = composite.links().map_err(invalid)?;
+    let (what, limit) = ("bodies", tree.limits.bodies);
+    if document.bodies.len() + links.len() > limit {
+        return Err(tree.error(e.at, ErrorKind::TooMuch { what, limit })); // each is a few bytes of text
+    }
     (like.geom.at, like.site.at, like.joint.at) = (e.at, e.at, e.at);
     let prefix = &composite.prefix;
     if !spot.again {
