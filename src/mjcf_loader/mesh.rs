@@ -41,7 +41,7 @@ table! {
         "refquat" refquat: [f64; 4] = [1.0, 0.0, 0.0, 0.0], Kind::Quat, own, "Orientation that becomes the axes of the mesh.";
         "scale" scale: Vec3 = [1.0; 3], reals(3, Any), "Factors on the coordinates, after `refpos` and `refquat`.";
         "smoothnormal" smoothnormal: bool = false, FLAG, own, "Whether normals are means over all faces of a vertex; else those that turn away from the mean by more than 37 degrees are left out.";
-        "maxhullvert" maxhullvert: i32 = -1, int(-1, MAX_COUNT), "Most corners of the convex hull; -1 for any number. A hull that has more is refused.";
+        "maxhullvert" maxhullvert: i32 = -1, int(4, MAX_COUNT), "Most corners of the convex hull; any number without it. Where the hull has more, it is of those that are found first.";
         "inertia" inertia: MeshInertia = MeshInertia::Legacy, INERTIAS, "Solid of which mass and inertia are: `convex`, the convex hull; `exact`, what the surface encloses; `legacy`, the same with all parts counted positive; `shell`, the surface.";
     }
 }

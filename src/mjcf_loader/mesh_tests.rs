@@ -144,7 +144,7 @@ fn what_is_no_mesh_is_refused() {
         (&own("face='0 1 4294967295'"), GEOM, "three whole numbers"),
         (&own("normal='0 0 1'"), GEOM, "as many normals"),
         (&own("texcoord='0 0'"), GEOM, "as many texture coordinates"),
-        (&own("maxhullvert='3'"), GEOM, "maxhullvert must be above 3"),
+        (&own("maxhullvert='3'"), GEOM, "maxhullvert"),
         (&own("scale='0 1 1'"), GEOM, "too small"),
         (&own("refquat='0 0 0 0'"), GEOM, "zero quaternion"),
         (

@@ -47,8 +47,6 @@ struct Writer<'a> {
     /// Geoms that a tendon may wrap around.
     rounds: Vec<String>,
     cameras: Vec<String>,
-    /// Whether there is a plane, which does not touch meshes: which corners touch depends on the order of the edges that Qhull finds.
-    plane: bool,
     /// The height field, where there is one.
     hfield: Option<Node>,
     /// Meshes, with the elements that define them.
@@ -78,7 +76,6 @@ pub fn document(language: &Language, seed: u64) -> Node {
         sites: Vec::new(),
         rounds: Vec::new(),
         cameras: Vec::new(),
-        plane: false,
         hfield: None,
         meshes: Vec::new(),
         copies: false,
@@ -194,13 +191,11 @@ impl Writer<'_> {
         if self.dice.chance(0.6) {
             let height = self.dice.uniform(-0.5, 0.2);
             let name = self.name("g");
-            let plane = Node::new("geom")
+            let mut plane = Node::new("geom")
                 .with("name", name.as_str())
                 .with("type", "plane")
-                .with("size", "1 1 1");
-            let plane = plane.with("contype", "4").with("conaffinity", "1");
-            let mut plane = plane.with("pos", numbers(&[0.0, 0.0, height]));
-            self.plane = true;
+                .with("size", "1 1 1")
+                .with("pos", numbers(&[0.0, 0.0, height]));
             if self.dice.chance(0.8) {
                 plane.set("quat", "1 0 0 0");
             }

@@ -19,9 +19,6 @@ const DRAWN: u64 = 4;
 /// States from which each document is stepped.
 const STATES: u64 = 12;
 
-/// Values that are not tried: the last digits of what they stand for depend on the order of the triangles that Qhull finds.
-const INEXACT: &[(&str, &str, &str)] = &[("asset/mesh", "inertia", "convex")];
-
 /// A document with one attribute set.
 pub struct Single {
     /// What is set, for people: `worldbody/body/geom@condim="4"`, with `default/` before it where a class sets it.
@@ -61,8 +58,7 @@ pub fn listed(above: &[&str]) -> String {
 /// Returns the values to try.
 fn values(path: &str, attribute: &Attribute) -> Vec<String> {
     if !attribute.words.is_empty() {
-        let tried = |word: &&String| !INEXACT.contains(&(path, attribute.name, word.as_str()));
-        return attribute.words.iter().filter(tried).cloned().collect();
+        return attribute.words.clone();
     }
     match attribute.how {
         How::Placed(given) => given.iter().map(|value| (*value).to_owned()).collect(),

@@ -77,6 +77,8 @@ struct Builder<'p> {
     /// How high a point could be above such a facet.
     most_outside: f64,
     merge_count: u32,
+    /// Ends of edges of merged facets that were gone through.
+    work: usize,
     merges: Vec<Merge>,
     degenerates: Vec<Merge>,
     vertex_merges: Vec<VertexMerge>,
@@ -115,6 +117,7 @@ impl<'p> Builder<'p> {
             min_vertex: -tolerance.dist,
             most_outside: 0.0,
             merge_count: 0,
+            work: 0,
             merges: Vec::new(),
             degenerates: Vec::new(),
             vertex_merges: Vec::new(),

@@ -4,7 +4,7 @@ use super::epa::epa;
 use super::fix_normal::fixed;
 use super::frame;
 use super::gjk::{Limits, Simplex, gjk};
-use super::mesh::MeshShape;
+use super::mesh::{MeshReach, MeshShape};
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
 use super::{BIG, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, sub};
@@ -77,17 +77,18 @@ pub(super) fn hfield(
         mat: &mat,
         ..*b
     };
-    with_shape(&local, 0.0, |bare| {
-        let Some(cells) = cells(field, bare.whole, margin) else {
-            return;
-        };
-        with_shape(&local, margin, |other| {
-            touch_cells(field, &cells, other, margin, options, polytope, |dist, pos, normal| {
-                let normal = mat_vec(a.mat, normal);
-                let pos = add(mat_vec(a.mat, pos), a.pos);
-                let frame = frame::from_normal(fixed(b, pos, normal));
-                out.push(ContactPoint { dist, pos, frame });
-            });
+    let mut under = None;
+    match local.mesh.filter(|_| local.kind == GeomType::Mesh) {
+        Some(mesh) => under = cells(field, &MeshReach::new(&local, mesh), margin),
+        None => with_shape(&local, 0.0, |bare| under = cells(field, bare.whole, margin)),
+    }
+    let Some(cells) = under else { return };
+    with_shape(&local, margin, |other| {
+        touch_cells(field, &cells, other, margin, options, polytope, |dist, pos, normal| {
+            let normal = mat_vec(a.mat, normal);
+            let pos = add(mat_vec(a.mat, pos), a.pos);
+            let frame = frame::from_normal(fixed(b, pos, normal));
+            out.push(ContactPoint { dist, pos, frame });
         });
     });
 }

@@ -124,6 +124,27 @@ fn farthest(mesh: &Mesh, dir: Vec3) -> (Option<usize>, usize) {
     (None, best)
 }
 
+/// A mesh as MuJoCo measures how far it reaches over a height field: by the corners of its hull, however few, which `maxhullvert` may leave
+/// out others of.
+pub(super) struct MeshReach<'a> {
+    pose: Pose<'a>,
+    mesh: &'a Mesh,
+}
+
+impl<'a> MeshReach<'a> {
+    pub(super) fn new(geom: &PlacedGeom<'a>, mesh: &'a Mesh) -> Self {
+        let pose = Pose::new(geom, 0.0);
+        MeshReach { pose, mesh }
+    }
+}
+
+impl Support for MeshReach<'_> {
+    fn support(&self, dir: Vec3) -> Vec3 {
+        let (_, vertex) = farthest(self.mesh, mat_t_vec(self.pose.mat, dir));
+        self.pose.place(self.mesh.vert[vertex].map(f64::from), dir)
+    }
+}
+
 /// Finds the contacts of a plane and a mesh: the deepest vertex, and up to two more at some distance from it, among its neighbours
 /// on the hull.
 pub(super) fn plane_mesh(a: &PlacedGeom, b: &PlacedGeom, mesh: &Mesh, margin: f64, out: &mut Vec<ContactPoint>) {

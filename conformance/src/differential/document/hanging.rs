@@ -108,18 +108,12 @@ impl Writer<'_> {
         if ["sphere", "cylinder"].contains(&shape) {
             self.rounds.push(name.clone());
         }
-        if shape != "mesh" || !self.plane {
-            self.geoms.push(name);
-        }
+        self.geoms.push(name);
         self.class(&mut geom, "class");
         // a mesh has its size, and so has what is fitted to one
         if shape == "mesh" || self.dice.chance(0.03) {
             let mesh = self.mesh();
             geom.set("mesh", mesh);
-            if shape == "mesh" && self.plane {
-                geom.set("contype", "2");
-                geom.set("conaffinity", "3");
-            }
             self.language
                 .dress(&mut geom, "worldbody/body/geom", false, &mut self.dice);
             return geom;
@@ -196,7 +190,9 @@ impl Writer<'_> {
         }
         point(&mut self.dice, [0.0, 0.0, -high]);
         mesh.set("vertex", numbers(&vertices));
-        mesh.set("face", faces(rings, around));
+        if self.dice.chance(0.7) {
+            mesh.set("face", faces(rings, around)); // else they are those of the hull
+        }
         self.language.dress(&mut mesh, "asset/mesh", false, &mut self.dice);
         self.meshes.push(mesh);
         name

@@ -106,8 +106,7 @@ pub(super) const MESH: &[Rule] = &[
     ("vertex", Placed(&[])),
     ("normal", Nothing),
     ("texcoord", Nothing),
-    // the triangles of the hull stand for those that are not given; their order, and with it the last digits of sums in single
-    // precision, is not MuJoCo's
+    // without them those of the hull are meant
     ("face", Placed(&[])),
     ("refpos", Drawn(0.3, |d| d.reals(3, 0.1))),
     ("refquat", Drawn(0.3, Dice::quat)),
@@ -116,7 +115,8 @@ pub(super) const MESH: &[Rule] = &[
         Drawn(0.3, |d| [d.log(0.5, 2.0), d.log(0.5, 2.0), d.log(0.5, 2.0)].join(" ")),
     ),
     ("smoothnormal", Nothing),
-    ("maxhullvert", Nothing),
+    ("maxhullvert", Drawn(0.2, |d| d.pick(&["4", "5", "7", "12"]).to_owned())),
+    // convex is tried with a geom that touches: MuJoCo 3.3.0 crashes where none does, as there is no hull then
     (
         "inertia",
         Drawn(0.4, |d| d.pick(&["legacy", "exact", "shell"]).to_owned()),

@@ -21,6 +21,8 @@ const TOO_WIDE: f64 = 100.0;
 const FEW_VERTICES: usize = 8;
 /// The greatest number of merges that is counted (`qh_MAXnummerge`).
 const MOST_MERGES: usize = 511;
+/// The most ends of edges of merged facets that are gone through, in about a quarter of a minute.
+const MOST_WORK: usize = 500_000_000;
 
 impl Builder<'_> {
     /// Merges the new facets of a point that are not clearly convex (`qh_premerge`): those in the plane of their horizon
@@ -182,10 +184,11 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Ends what would go on for ever: a hull is done long before there are so many facets and merges.
+    /// Ends what would go on for ever, or for minutes: a hull is done long before there are so many facets and merges, and a cap of ten
+    /// thousand edges, which each of its merges goes through, before there was so much work.
     fn check_pace(&self) -> Step {
         let most = 1000 + 200 * self.points.len();
-        if self.facets.len() > most || self.merge_count as usize > most {
+        if self.facets.len() > most || self.merge_count as usize > most || self.work > MOST_WORK {
             Err(Stuck)
         } else {
             Ok(())

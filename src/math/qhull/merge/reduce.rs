@@ -52,12 +52,18 @@ impl Builder<'_> {
         if self.facets[facet].simplicial {
             return false;
         }
-        let on_edge = |vertex: &Id| {
-            let mut ridges = self.facets[facet].ridges.iter();
-            ridges.any(|&ridge| self.ridges[ridge].vertices.contains(vertex))
-        };
+        // a facet that grows to a cap of thousands of edges is asked at each merge, so that each vertex must not look through all edges
+        let ridges = self.facets[facet].ridges.iter();
+        let mut on_edges: Vec<Id> = ridges
+            .flat_map(|&ridge| &self.ridges[ridge].vertices)
+            .copied()
+            .collect();
+        on_edges.sort_unstable();
+        self.work += on_edges.len();
         let vertices = self.facets[facet].vertices.iter().copied();
-        let extra: Vec<Id> = vertices.filter(|vertex| !on_edge(vertex)).collect();
+        let extra: Vec<Id> = vertices
+            .filter(|vertex| on_edges.binary_search(vertex).is_err())
+            .collect();
         for &vertex in &extra {
             drop_sorted(&mut self.facets[facet].vertices, vertex);
             drop_swapping(&mut self.vertices[vertex].neighbors, facet);

@@ -15,7 +15,7 @@ use super::surface::asset_path;
 use crate::assets::AssetSource;
 use crate::math::hull::quickhull;
 use crate::math::qhull;
-use crate::math::{Vec3, cross, dot, mat_t_vec, mat_vec, quat_to_mat};
+use crate::math::{Vec3, mat_t_vec, mat_vec, quat_to_mat};
 use crate::mjcf_loader::compile::geometry::normalize;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
@@ -86,11 +86,8 @@ fn touching(context: &Context, document: &Document, ids: &Ids) -> Result<Vec<boo
     Ok(touching)
 }
 
-/// How much of the volume two hulls of the same points may differ in.
-const SAME_VOLUME: f64 = 1e-6;
-
 const NO_HULL: &str = "the mesh has no convex hull: its vertices are on a plane, on a line or at one point";
-const HULL: &str = "the mesh has a convex hull of more corners than maxhullvert; leave maxhullvert out: which corners MuJoCo keeps is not reproduced";
+const HULL: &str = "rounding errors leave no hull of at most maxhullvert corners: leave maxhullvert out";
 
 fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result<model::Mesh, &'static str> {
     let Surface {
@@ -104,19 +101,11 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
     if mesh.inertia == MeshInertia::Exact {
         normals::check_orientation(&vert, &face)?;
     }
-    if (0..4).contains(&mesh.maxhullvert) {
-        return Err("maxhullvert must be above 3, or -1");
-    }
     let hull = (touches || face.is_empty() || mesh.inertia == MeshInertia::Convex)
-        .then(|| hull(&vert).ok_or(NO_HULL))
+        .then(|| hull(&vert, usize::try_from(mesh.maxhullvert).ok()))
         .transpose()?;
-    if let Some(hull) = &hull {
-        if mesh.maxhullvert >= 0 && hull.vert.len() > mesh.maxhullvert as usize {
-            return Err(HULL);
-        }
-        if face.is_empty() {
-            face.clone_from(&hull.face);
-        }
+    if let Some(hull) = hull.as_ref().filter(|_| face.is_empty()) {
+        face.clone_from(&hull.face);
     }
     let (mut normal, facenormal) = if normal.is_empty() {
         (normals::of_vertices(&vert, &face, mesh.smoothnormal), face.clone())
@@ -164,11 +153,26 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
     })
 }
 
-/// Builds the convex hull; `None` if the vertices span no volume.
-fn hull(vert: &[[f32; 3]]) -> Option<MeshHull> {
-    let wide = vert.iter().map(|v| v.map(f64::from));
+/// Builds the convex hull, of at most `most` corners: in Qhull's order, as MuJoCo has it, or where Qhull would end with an error, in that of the
+/// vertices.
+fn hull(vert: &[[f32; 3]], most: Option<usize>) -> Result<MeshHull, &'static str> {
+    let points: Vec<Vec3> = vert.iter().map(|v| v.map(f64::from)).collect();
+    let ordered =
+        qhull::hull(&points, most).and_then(|hull| MeshHull::ordered(hull.corners, &hull.edges, hull.triangles));
+    if let Some(hull) = ordered {
+        return Ok(hull);
+    }
+    let hull = hull_of(&points).ok_or(NO_HULL)?;
+    if most.is_some_and(|most| hull.vert.len() > most) {
+        return Err(HULL);
+    }
+    Ok(hull)
+}
+
+/// Builds the convex hull in the order of the vertices; `None` if they span no volume.
+fn hull_of(points: &[Vec3]) -> Option<MeshHull> {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for v in wide.clone() {
+    for v in points {
         for k in 0..3 {
             low[k] = low[k].min(v[k]);
             high[k] = high[k].max(v[k]);
@@ -178,32 +182,16 @@ fn hull(vert: &[[f32; 3]]) -> Option<MeshHull> {
     // a factor of two leaves every digit as it is, and numbers near one leave room for small faces
     let unit = (-extent.log2().floor().clamp(-1000.0, 1000.0)) as i32;
     let factor = f64::from_bits(((1023 + i64::from(unit)) as u64) << 52);
-    let points: Vec<Vec3> = wide
-        .map(|v| std::array::from_fn(|k| (v[k] - 0.5 * (low[k] + high[k])) * factor))
-        .collect();
+    let centred = points
+        .iter()
+        .map(|v| std::array::from_fn(|k| (v[k] - 0.5 * (low[k] + high[k])) * factor));
+    let points: Vec<Vec3> = centred.collect();
     // single precision leaves errors of 1e-7, so that even the last leaves out nothing that one could see
     let faces = [1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9]
         .iter()
         .find_map(|&tolerance| quickhull(&points, tolerance))?;
     let alive = faces.iter().filter(|face| face.alive);
-    let plain = MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect());
-    Some(in_order(vert, &points, &plain).unwrap_or(plain))
-}
-
-/// Builds the hull again in Qhull's order; `None` if it is not closed or encloses another volume, as rounding errors may leave it.
-fn in_order(vert: &[[f32; 3]], points: &[Vec3], plain: &MeshHull) -> Option<MeshHull> {
-    let wide: Vec<Vec3> = vert.iter().map(|v| v.map(f64::from)).collect();
-    let found = qhull::hull(&wide, None)?;
-    let hull = MeshHull::ordered(found.corners, &found.edges, found.triangles)?;
-    let volume = |hull: &MeshHull| -> f64 {
-        let six = hull.face.iter().map(|face| {
-            let [a, b, c] = face.map(|i| points[i as usize]);
-            dot(a, cross(b, c))
-        });
-        six.sum()
-    };
-    let (ours, theirs) = (volume(plain), volume(&hull));
-    ((ours - theirs).abs() <= SAME_VOLUME * ours).then_some(hull)
+    Some(MeshHull::new(alive.map(|face| face.corner.map(|i| i as u32)).collect()))
 }
 
 /// Moves, turns and scales what the document says.
