@@ -6,7 +6,7 @@ import { readFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { chromium } from "playwright-core";
+import { launch } from "../launch.mjs";
 import { native, upTo } from "./native.mjs";
 import { root, serve } from "./server.mjs";
 import { sums } from "./sums.js";
@@ -16,8 +16,8 @@ test("node", async () => {
 });
 
 test("Chromium", async () => {
+  const browser = await launch();
   const server = await serve();
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
   try {
     const page = await browser.newPage();
     await page.goto(server.page);

@@ -1,12 +1,12 @@
 // Environments in a worker of a browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { chromium } from "playwright-core";
+import { launch } from "../launch.mjs";
 import { serve } from "./server.mjs";
 
 test("a worker steps, draws and tells errors", async () => {
+  const browser = await launch();
   const server = await serve();
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
   try {
     const page = await browser.newPage();
     await page.goto(server.page);

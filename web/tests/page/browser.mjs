@@ -2,18 +2,18 @@
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
 import { serve } from "../../page/serve.mjs";
+import { launch } from "../launch.mjs";
 
 export const dist = process.env.DIST ?? fileURLToPath(new URL("../../dist", import.meta.url));
 /** Milliseconds that a test waits for the page, at most. */
 const PATIENCE = Number(process.env.PATIENCE ?? 120_000);
-const ARGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb", "--font-render-hinting=none"];
+const ARGS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb", "--font-render-hinting=none"];
 
 /** Starts the browser and the server; the page lies in a subfolder, as it may. */
 export async function start(how = {}) {
+  const browser = await launch(...ARGS);
   const server = await serve(dist, 0, "/some/folder/", how);
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ARGS });
   return {
     browser,
     url: server.url,
