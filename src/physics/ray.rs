@@ -117,16 +117,31 @@ fn ray_hfield(field: &HField, (p, v): (Vec3, Vec3)) -> Option<f64> {
     let (rows, columns) = (field.nrow, field.ncol);
     let steps = [2.0 * x / (columns - 1) as f64, 2.0 * y / (rows - 1) as f64];
     let place = |k: usize, at: f64| (p[k] + at * v[k] + field.size[k]) / steps[k];
-    let range = |k: usize, count: usize| {
-        let [a, b] = segment.map(|at| place(k, at));
+    let range = |part: [f64; 2], k: usize, count: usize| {
+        let [a, b] = part.map(|at| place(k, at));
         let last = (count - 1) as f64;
         let first = (a.min(b).floor() - 1.0).clamp(0.0, last) as usize;
         first..(a.max(b).ceil() + 1.0).clamp(0.0, last) as usize
     };
+    // MuJoCo looks at all squares of the rectangle that the ray crosses; it meets none but those near it, of each row those that it is over
+    // while it is over the row or one beside it
+    let over_row = |r: usize| {
+        let at = |row: f64| (steps[1] * row - y - p[1]) / v[1];
+        let (a, b) = (at(r as f64 - 1.0), at(r as f64 + 2.0));
+        if v[1] == 0.0 {
+            segment
+        } else {
+            [segment[0].max(a.min(b)), segment[1].min(a.max(b))]
+        }
+    };
     let height = |place: usize| field.data.get(place).copied().map_or(0.0, f64::from);
     let basis = across(v);
-    for r in range(1, rows) {
-        for c in range(0, columns) {
+    for r in range(segment, 1, rows) {
+        let over = over_row(r);
+        if over[0] > over[1] {
+            continue;
+        }
+        for c in range(over, 0, columns) {
             let corner = |r: usize, c: usize| {
                 let [x, y] = [steps[0] * c as f64 - x, steps[1] * r as f64 - y];
                 sub([x, y, height(r * columns + c) * top], p)
