@@ -310,62 +310,13 @@ fn of_contacts(m: &Model) -> Named {
 }
 
 fn of_equalities(m: &Model) -> Named {
-    let mut eq_data = Vec::new();
-    let (mut eq_type, mut eq_obj1, mut eq_obj2) = (Vec::new(), Vec::new(), Vec::new());
-    for kind in &m.eq_kind {
-        match kind {
-            EqualityKind::Joint {
-                joint1,
-                joint2,
-                polycoef,
-            } => {
-                eq_type.push(2.0);
-                eq_obj1.push(*joint1 as f64);
-                eq_obj2.push(joint2.map_or(-1.0, |joint| joint as f64));
-                // The last entry is the unused torque scale.
-                eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
-            }
-            EqualityKind::Tendon {
-                tendon1,
-                tendon2,
-                polycoef,
-            } => {
-                eq_type.push(3.0);
-                eq_obj1.push(*tendon1 as f64);
-                eq_obj2.push(tendon2.map_or(-1.0, |tendon| tendon as f64));
-                eq_data.extend(polycoef.iter().chain(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
-            }
-            EqualityKind::Connect {
-                body1,
-                body2,
-                anchor1,
-                anchor2,
-            } => {
-                eq_type.push(0.0);
-                eq_obj1.push(*body1 as f64);
-                eq_obj2.push(*body2 as f64);
-                eq_data.extend(anchor1.iter().chain(anchor2).chain(&[0.0, 0.0, 0.0, 0.0, 1.0]));
-            }
-            EqualityKind::Weld {
-                body1,
-                body2,
-                anchor,
-                relpos,
-                relquat,
-                torquescale,
-            } => {
-                eq_type.push(1.0);
-                eq_obj1.push(*body1 as f64);
-                eq_obj2.push(*body2 as f64);
-                eq_data.extend(anchor.iter().chain(relpos).chain(relquat).chain([torquescale]));
-            }
-        }
-    }
+    let rows: Vec<_> = m.eq_kind.iter().map(EqualityKind::numbers).collect();
+    let id = |k: usize| rows.iter().map(|(ids, _)| f64::from(ids[k])).collect();
     vec![
-        ("eq_type", eq_type),
-        ("eq_obj1id", eq_obj1),
-        ("eq_obj2id", eq_obj2),
-        ("eq_data", eq_data),
+        ("eq_type", id(0)),
+        ("eq_obj1id", id(2)),
+        ("eq_obj2id", id(3)),
+        ("eq_data", rows.iter().flat_map(|(_, data)| *data).collect()),
         ("eq_active0", flags(&m.eq_active0)),
         ("eq_solref", flat(&m.eq_solref)),
         ("eq_solimp", flat(&m.eq_solimp)),

@@ -78,59 +78,12 @@ pub fn extras<'py>(py: Python<'py>, model: &Model) -> PyResult<Bound<'py, PyDict
         model.materials.iter().map(|m| &m.name[..]).collect::<Vec<_>>(),
     )?;
     extras.set_item("nlight", model.lights.len())?;
-    let mut rows: Vec<[f64; 11]> = Vec::with_capacity(model.neq());
-    let mut ids: Vec<[i32; 3]> = Vec::with_capacity(model.neq());
-    for kind in &model.eq_kind {
-        let mut row = [0.0; 11];
-        ids.push(match *kind {
-            EqualityKind::Weld {
-                body1,
-                body2,
-                anchor,
-                relpos,
-                relquat,
-                torquescale,
-            } => {
-                row[..3].copy_from_slice(&anchor);
-                row[3..6].copy_from_slice(&relpos);
-                row[6..10].copy_from_slice(&relquat);
-                row[10] = torquescale;
-                [1, body1 as i32, body2 as i32]
-            }
-            EqualityKind::Connect {
-                body1,
-                body2,
-                anchor1,
-                anchor2,
-            } => {
-                row[..3].copy_from_slice(&anchor1);
-                row[3..6].copy_from_slice(&anchor2);
-                row[10] = 1.0;
-                [0, body1 as i32, body2 as i32]
-            }
-            EqualityKind::Joint {
-                joint1,
-                joint2,
-                polycoef,
-            } => {
-                row[..5].copy_from_slice(&polycoef);
-                row[10] = 1.0;
-                [2, joint1 as i32, joint2.map_or(-1, |j| j as i32)]
-            }
-            EqualityKind::Tendon {
-                tendon1,
-                tendon2,
-                polycoef,
-            } => {
-                row[..5].copy_from_slice(&polycoef);
-                row[10] = 1.0;
-                [3, tendon1 as i32, tendon2.map_or(-1, |t| t as i32)]
-            }
-        });
-        rows.push(row);
-    }
+    let (ids, rows): (Vec<_>, Vec<_>) = model.eq_kind.iter().map(EqualityKind::numbers).unzip();
     extras.set_item("eq_data", rows[..].to_array(py)?)?;
-    for (k, name) in ["eq_type", "eq_obj1id", "eq_obj2id"].into_iter().enumerate() {
+    for (k, name) in ["eq_type", "eq_objtype", "eq_obj1id", "eq_obj2id"]
+        .into_iter()
+        .enumerate()
+    {
         extras.set_item(name, PyArray1::from_iter(py, ids.iter().map(|id| id[k])))?;
     }
     Ok(extras)

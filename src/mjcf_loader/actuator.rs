@@ -36,7 +36,7 @@ table! {
         "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the control.";
         "forcerange" forcerange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
-        check "group", int(i32::MIN as i64, i32::MAX as i64), "Group. Ignored: groups are for viewers.";
+        "group" group: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Group, which `actuatorgroupdisable` may name.";
     }
 }
 

@@ -5,7 +5,7 @@ use super::custom::Key;
 use super::document::{Body, Document};
 use super::error::{ErrorKind, LoadError};
 use super::mesh::Mesh;
-use super::relation::{Along, Equality, Exclude, Held, Pair, Tendon};
+use super::relation::{Along, Equality, Exclude, Held, Pair, Tendon, WeldEquality};
 use super::sensor::{FrameOf, Object, Sensor};
 use super::xml::Tree;
 use crate::model::{DynType, ObjType};
@@ -79,13 +79,17 @@ referring! {
 
 /// Returns the names that an equality refers to.
 fn held(held: &mut Held) -> Vec<(Thing, &mut String)> {
-    let (kind, first, second) = match held {
-        Held::Joint(joint) => (Thing::Joint, &mut joint.joint1, &mut joint.joint2),
-        Held::Tendon(tendon) => (Thing::Tendon, &mut tendon.tendon1, &mut tendon.tendon2),
-        Held::Connect(connect) => (Thing::Body, &mut connect.body1, &mut connect.body2),
-        Held::Weld(weld) => (Thing::Body, &mut weld.body1, &mut weld.body2),
-    };
-    std::iter::once(first).chain(second).map(|name| (kind, name)).collect()
+    let of = |kind, first, second| std::iter::chain(first, second).map(move |name| (kind, name));
+    match held {
+        Held::Joint(joint) => of(Thing::Joint, Some(&mut joint.joint1), joint.joint2.as_mut()).collect(),
+        Held::Tendon(tendon) => of(Thing::Tendon, Some(&mut tendon.tendon1), tendon.tendon2.as_mut()).collect(),
+        Held::Connect(ends) | Held::Weld(WeldEquality { ends, .. }) => {
+            let bodies = of(Thing::Body, ends.body1.as_mut(), ends.body2.as_mut());
+            bodies
+                .chain(of(Thing::Site, ends.site1.as_mut(), ends.site2.as_mut()))
+                .collect()
+        }
+    }
 }
 
 /// Returns the names of a piece of a tendon.

@@ -43,6 +43,8 @@ pub(super) enum Kind {
     Data,
     /// Two whole numbers.
     Ints,
+    /// Groups of actuators from 0 to 30, of which each is a bit.
+    Groups,
 }
 
 pub(super) const TEXT: Kind = Kind::Text;
@@ -75,6 +77,9 @@ impl Kind {
 
     /// Returns how a document would write what a field holds.
     pub fn show(self, field: &impl Store) -> String {
+        if matches!(self, Kind::Groups) {
+            return String::new(); // none by default, and what is stored are bits
+        }
         field.show()
     }
 }
@@ -271,6 +276,12 @@ impl Attr {
                     }),
                     None => Ok(Value::Reals(values)),
                 }
+            }
+            Kind::Groups => {
+                let each = |word: &str| whole(attribute, word, 0, 30).map(|group| 1 << group);
+                let mut bits = text.split_ascii_whitespace().map(each);
+                bits.try_fold(0, |all, bit| bit.map(|bit: i64| all | bit))
+                    .map(Value::Int)
             }
             Kind::Reals { min, max, sign } => numbers(attribute, text, min, max, sign, limits.real).map(Value::Reals),
             Kind::Quat => match numbers(attribute, text, 4, 4, Sign::Any, limits.real)? {

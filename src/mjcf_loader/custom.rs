@@ -1,8 +1,9 @@
 //! Tables of what a document says to programs, and of the states that it names.
 
 use super::attribute::Sign::Any;
-use super::attribute::{Kind, TEXT, int, real, some};
-use super::table::table;
+use super::attribute::{Kind, TEXT, Words, int, real, some, words};
+use super::schema::Element;
+use super::table::{Table, table};
 
 /// The greatest number of values in one `<numeric>`.
 const MAX_NUMERIC: usize = 500;
@@ -21,6 +22,77 @@ table! {
     element Text {
         "name" name: String = String::new(), TEXT, required, "Name.";
         "data" data: String = String::new(), TEXT, required, "Text.";
+    }
+}
+
+/// What a tuple may name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Named {
+    Body,
+    Joint,
+    Geom,
+    Site,
+    Camera,
+    Mesh,
+    HField,
+    Texture,
+    Material,
+    Tendon,
+    Actuator,
+    /// What nothing here refers to by its name.
+    Other,
+}
+
+const NAMED: Words<Named> = words! {
+    "body" => Named::Body,
+    "xbody" => Named::Body,
+    "joint" => Named::Joint,
+    "geom" => Named::Geom,
+    "site" => Named::Site,
+    "camera" => Named::Camera,
+    "mesh" => Named::Mesh,
+    "hfield" => Named::HField,
+    "texture" => Named::Texture,
+    "material" => Named::Material,
+    "tendon" => Named::Tendon,
+    "actuator" => Named::Actuator,
+    "light" => Named::Other,
+    "skin" => Named::Other,
+    "pair" => Named::Other,
+    "exclude" => Named::Other,
+    "equality" => Named::Other,
+    "sensor" => Named::Other,
+    "numeric" => Named::Other,
+    "text" => Named::Other,
+    "tuple" => Named::Other,
+    "key" => Named::Other,
+};
+
+table! {
+    /// An `<element>` of a tuple.
+    element TupleElement {
+        "objtype" objtype: Option<Named> = None, NAMED, required, "Kind of what is named.";
+        "objname" objname: String = String::new(), TEXT, required, "Its name.";
+        check "prm", real(Any), "A number for programs. Not kept.";
+    }
+}
+
+table! {
+    /// `<custom><tuple>`: a list of things for programs, which is checked and not kept.
+    element Tuple {
+        also elements: Vec<TupleElement> = Vec::new();
+        "name" name: String = String::new(), TEXT, required, "Name.";
+    }
+}
+
+impl Tuple {
+    /// Reads the element with what it lists.
+    pub fn hold(e: &Element) -> Self {
+        let elements = e.children.iter().map(TupleElement::read).collect();
+        Self {
+            elements,
+            ..Self::read(e)
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use super::actuator::Actuator;
 use super::attached::{Absent, Amount, Attachable, AttachedKey};
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, TEXT, int, real, reals, some};
-use super::custom::{Key, Numeric, Text};
+use super::custom::{Key, Numeric, Text, Tuple};
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::sensor::Sensor;
@@ -271,6 +271,7 @@ pub(super) struct Document {
     pub actuators: Vec<Actuator>,
     pub sensors: Vec<Sensor>,
     pub numerics: Vec<Numeric>,
+    pub tuples: Vec<Tuple>,
     pub texts: Vec<Text>,
     pub keys: Vec<Key>,
     /// Keyframes of other models, which follow the document's own.
@@ -313,6 +314,7 @@ impl Document {
             actuators: Vec::new(),
             sensors: Vec::new(),
             numerics: Vec::new(),
+            tuples: Vec::new(),
             texts: Vec::new(),
             keys: Vec::new(),
             attached_keys: Vec::new(),

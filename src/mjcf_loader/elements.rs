@@ -8,21 +8,21 @@ use super::actuator::{
 };
 use super::attribute::{Attr, TEXT};
 use super::composite::{self, Composite, CompositeJoint, CompositeSkin};
-use super::custom::{Key, Numeric, Text};
+use super::custom::{Key, Numeric, Text, Tuple, TupleElement};
 use super::document::{
     Attach, Body, BodyFrame, Camera, Compiler, FreeJoint, Geom, Inertial, Joint, Light, ModelAsset, Replicate, Site,
     Size,
 };
 use super::mesh::{HField, Mesh};
 use super::relation::{
-    ConnectEquality, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint,
-    TendonLooks, TendonSite, WeldEquality,
+    Ends, Equality, Exclude, JointEquality, Pair, Pulley, Tendon, TendonEquality, TendonGeom, TendonJoint, TendonLooks,
+    TendonSite, WeldEquality,
 };
 use super::schema::{self, Rule};
 use super::sensor;
 use super::settings::{Global, Headlight, LengthRange, Map, Quality, Rgba, Root, Scale};
 use super::skin::{Bone, Skin};
-use super::surface::{Material, Texture};
+use super::surface::{Layer, Material, Texture};
 use super::table::Table;
 
 /// The groups of attributes of a table.
@@ -86,7 +86,8 @@ static DEFAULT: Rule = rule(
 );
 
 static TEXTURE: Rule = rule("texture", &[Texture::ATTRIBUTES], &[]);
-static MATERIAL: Rule = rule("material", &[CLASS, Material::ATTRIBUTES], &[]);
+static LAYER: Rule = rule("layer", &[Layer::ATTRIBUTES], &[]);
+static MATERIAL: Rule = rule("material", &[CLASS, Material::ATTRIBUTES], &[&LAYER]);
 static MESH: Rule = rule("mesh", &[CLASS, Mesh::ATTRIBUTES], &[]);
 static HFIELD: Rule = rule("hfield", &[HField::ATTRIBUTES], &[]);
 static BONE: Rule = rule("bone", &[Bone::ATTRIBUTES], &[]);
@@ -147,11 +148,7 @@ static EXCLUDE: Rule = rule("exclude", &[Exclude::ATTRIBUTES], &[]);
 static CONTACT: Rule = rule("contact", &[], &[&PAIR, &EXCLUDE]);
 
 static EQUALITY_JOINT: Rule = rule("joint", &[CLASS, JointEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
-static EQUALITY_CONNECT: Rule = rule(
-    "connect",
-    &[CLASS, ConnectEquality::ATTRIBUTES, Equality::ATTRIBUTES],
-    &[],
-);
+static EQUALITY_CONNECT: Rule = rule("connect", &[CLASS, Ends::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
 static EQUALITY_WELD: Rule = rule("weld", &[CLASS, WeldEquality::ATTRIBUTES, Equality::ATTRIBUTES], &[]);
 static EQUALITY_TENDON: Rule = rule(
     "tendon",
@@ -331,7 +328,9 @@ sensor_rules!(
 
 static NUMERIC: Rule = rule("numeric", &[Numeric::ATTRIBUTES], &[]);
 static CUSTOM_TEXT: Rule = rule("text", &[Text::ATTRIBUTES], &[]);
-static CUSTOM: Rule = rule("custom", &[], &[&NUMERIC, &CUSTOM_TEXT]);
+static TUPLE_ELEMENT: Rule = rule("element", &[TupleElement::ATTRIBUTES], &[]);
+static TUPLE: Rule = rule("tuple", &[Tuple::ATTRIBUTES], &[&TUPLE_ELEMENT]);
+static CUSTOM: Rule = rule("custom", &[], &[&NUMERIC, &CUSTOM_TEXT, &TUPLE]);
 
 static KEY: Rule = rule("key", &[Key::ATTRIBUTES], &[]);
 static KEYFRAME: Rule = rule("keyframe", &[], &[&KEY]);

@@ -95,6 +95,7 @@ fn values(kind: Kind) -> String {
         Kind::Quat => "4 numbers, not all 0".to_owned(),
         Kind::User | Kind::State | Kind::Poses | Kind::Data => "numbers".to_owned(),
         Kind::Ints => "2 whole numbers".to_owned(),
+        Kind::Groups => "whole numbers, 0 to 30".to_owned(),
         Kind::UserCount => "whole number from -1".to_owned(),
         Kind::EulerSeq => "three letters of xyzXYZ".to_owned(),
         Kind::Reals { min, max, sign } => {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::actuator::Actuator;
 use super::attached::Attachable;
-use super::custom::{Key, Numeric, Text};
+use super::custom::{Key, Numeric, Text, Tuple};
 use super::document::{Camera, Compiler, Document, Geom, Joint, Light, ModelAsset, Site};
 use super::elements;
 use super::error::{ErrorKind, LoadError};
@@ -52,7 +52,7 @@ impl Class {
             "pair" => self.pair.apply(e),
             "equality" => self.equality.apply(e),
             "tendon" => self.tendon.string(e),
-            "material" => self.material.apply(e),
+            "material" => self.material.look(e),
             "mesh" => self.mesh.apply(e),
             "general" | "motor" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
             | "adhesion" => {
@@ -270,7 +270,7 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
         ("asset", "hfield") => document.hfields.push(HField::read(e)),
         ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
         ("asset", "model") => {} // once the document itself is read
-        ("asset", _) => document.materials.push(with(&class()?.material, e, Material::apply)),
+        ("asset", _) => document.materials.push(with(&class()?.material, e, Material::look)),
         ("contact", "pair") => document.pairs.push(with(&class()?.pair, e, Pair::apply)),
         ("contact", _) => document.excludes.push(Exclude::read(e)),
         ("equality", _) => document.equalities.push(with(&class()?.equality, e, Equality::hold)),
@@ -287,7 +287,8 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
         }
         ("sensor", _) => document.sensors.push(Sensor::of(e)),
         ("custom", "numeric") => document.numerics.push(Numeric::read(e)),
-        ("custom", _) => document.texts.push(Text::read(e)),
+        ("custom", "text") => document.texts.push(Text::read(e)),
+        ("custom", _) => document.tuples.push(Tuple::hold(e)),
         ("keyframe", _) => document.keys.push(Key::read(e)),
         _ => {}
     }

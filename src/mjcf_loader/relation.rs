@@ -52,22 +52,22 @@ table! {
 }
 
 table! {
-    /// Attributes of `<equality><weld>`.
-    group WeldEquality {
-        "body1" body1: String = String::new(), TEXT, required, "First body.";
+    /// What a connection or a weld holds together: two bodies, or two sites.
+    group Ends {
+        "body1" body1: Option<String> = None, TEXT, own, "First body.";
         "body2" body2: Option<String> = None, TEXT, own, "Second body; else the world.";
-        "relpose" relpose: [f64; 7] = [0.0; 7], reals(7, Any), own, "Pose of the second body in the first; that at `qpos0` if the quaternion is zero.";
-        "anchor" anchor: Vec3 = [0.0; 3], reals(3, Any), own, "Point of the second body that is held, m.";
-        "torquescale" torquescale: f64 = 1.0, real(NonNegative), own, "Scale of rotational errors, m.";
+        "anchor" anchor: Option<Vec3> = None, reals(3, Any), own, "Point that is held, m: of the first body in a connection, of the second in a weld.";
+        "site1" site1: Option<String> = None, TEXT, own, "First site, in place of bodies.";
+        "site2" site2: Option<String> = None, TEXT, own, "Second site.";
     }
 }
 
 table! {
-    /// Attributes of `<equality><connect>`.
-    group ConnectEquality {
-        "body1" body1: String = String::new(), TEXT, required, "First body.";
-        "body2" body2: Option<String> = None, TEXT, own, "Second body; else the world.";
-        "anchor" anchor: Vec3 = [0.0; 3], reals(3, Any), required, "Point of the first body that is held, m.";
+    /// Attributes of `<equality><weld>`.
+    group WeldEquality {
+        "relpose" relpose: Option<[f64; 7]> = None, reals(7, Any), own, "Pose of the second body in the first; that at `qpos0` if the quaternion is zero.";
+        "torquescale" torquescale: f64 = 1.0, real(NonNegative), own, "Scale of rotational errors, m.";
+        with ends: Ends;
     }
 }
 
@@ -76,7 +76,7 @@ table! {
 pub(super) enum Held {
     Joint(JointEquality),
     Tendon(TendonEquality),
-    Connect(ConnectEquality),
+    Connect(Ends),
     Weld(WeldEquality),
 }
 
@@ -96,7 +96,7 @@ impl Equality {
     pub fn hold(&mut self, e: &Element) {
         self.apply(e);
         self.held = match e.name {
-            "connect" => Held::Connect(ConnectEquality::read(e)),
+            "connect" => Held::Connect(Ends::read(e)),
             "tendon" => Held::Tendon(TendonEquality::read(e)),
             "weld" => Held::Weld(WeldEquality::read(e)),
             _ => Held::Joint(JointEquality::read(e)),

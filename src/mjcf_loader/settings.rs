@@ -115,6 +115,7 @@ table! {
         "viscosity" viscosity: f64 = 0.0, real(NonNegative), "Viscosity of the medium around bodies, Pa s.";
         "wind" wind: Vec3 = [0.0; 3], reals(3, Any), "Velocity of the medium, m/s.";
         "magnetic" magnetic: Vec3 = [0.0, -0.5, 0.0], reals(3, Any), "Magnetic flux, which magnetometers read.";
+        "actuatorgroupdisable" disableactuator: u32 = 0, Kind::Groups, "Groups of actuators that exert no force, from 0 to 30.";
         check "apirate", real(NonNegative), "Rate at which programs are to be told. Ignored.";
         check "o_margin" | "o_solref" | "o_solimp" | "o_friction", some(1, 5, Any), "Parameters of all contacts where the flag `override` is on, which it cannot be. Ignored.";
         check "sdf_iterations" | "sdf_initpoints", int(0, MAX_COUNT), "Collision of signed distance fields, of which there are none. Ignored.";

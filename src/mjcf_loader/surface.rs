@@ -3,8 +3,9 @@
 use crate::model::{Builtin, Mark, TextureType};
 
 use super::attribute::Sign::{Any, NonNegative, Positive, Unit};
-use super::attribute::{FLAG, TEXT, int, real, reals};
-use super::table::table;
+use super::attribute::{FLAG, TEXT, Words, int, real, reals, words};
+use super::schema::Element;
+use super::table::{Table, table};
 use super::words::{BUILTINS, MARKS, MAX_PIXELS, TEXTURES};
 
 table! {
@@ -36,9 +37,47 @@ table! {
     }
 }
 
+/// The role of the layer that MuJoCo's own renderer draws.
+const DRAWN: &str = "rgb";
+
+/// What a layer is for.
+const ROLES: Words<&str> = words! {
+    "rgb" => DRAWN,
+    "occlusion" => "occlusion",
+    "roughness" => "roughness",
+    "metallic" => "metallic",
+    "normal" => "normal",
+    "opacity" => "opacity",
+    "emissive" => "emissive",
+    "rgba" => "rgba",
+    "orm" => "orm",
+};
+
+table! {
+    /// A `<layer>` of a material.
+    element Layer {
+        "texture" texture: String = String::new(), TEXT, required, "Texture.";
+        "role" role: Option<&'static str> = None, ROLES, required, "What it is for. Only `rgb` is drawn, as in MuJoCo's own renderer; the others are for other renderers.";
+    }
+}
+
+impl Material {
+    /// Reads the element with its layers, of which the last one of colours is its texture.
+    pub fn look(&mut self, e: &Element) {
+        self.apply(e);
+        self.layers = e.children.iter().map(Layer::read).collect();
+        self.two_ways = !self.layers.is_empty() && e.text("texture").is_some();
+        if let Some(layer) = self.layers.iter().rfind(|layer| layer.role == Some(DRAWN)) {
+            self.texture = Some(layer.texture.clone());
+        }
+    }
+}
+
 table! {
     /// `<material>`.
     element Material {
+        also layers: Vec<Layer> = Vec::new();
+        also two_ways: bool = false;
         "name" name: String = String::new(), TEXT, required, "Name.";
         "texture" texture: Option<String> = None, TEXT, "Texture.";
         "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";

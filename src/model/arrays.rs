@@ -359,6 +359,8 @@ arrays! {
     actuator_forcelimited: Vec<bool>,
     /// Limits of the force before the gear, N m.
     actuator_forcerange: Vec<[f64; 2]>,
+    /// Group, which `disableactuator` of the options may switch off.
+    ["internals"] actuator_group: Vec<i32>,
     /// Shortest and longest length, which only MuJoCo's muscles use: as given, else found by simulation where `<lengthrange>` of
     /// `<compiler>` asks for it.
     ["internals"] actuator_lengthrange: Vec<[f64; 2]>,

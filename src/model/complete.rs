@@ -106,6 +106,15 @@ pub(crate) struct LightPose {
 }
 
 impl Model {
+    /// Returns whether the options switch off the group of an actuator.
+    pub(crate) fn actuator_disabled(&self, actuator: usize) -> bool {
+        let group = u32::try_from(self.actuator_group[actuator]).unwrap_or(u32::MAX);
+        self.opt
+            .disableactuator
+            .checked_shr(group)
+            .is_some_and(|bits| bits & 1 != 0)
+    }
+
     /// Completes the arrays of a document with the constants that need dynamics.
     pub(crate) fn new(mut arrays: Arrays, constants: Constants) -> Self {
         arrays.body_invweight0 = constants.body_invweight0;

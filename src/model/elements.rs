@@ -136,6 +136,8 @@ pub enum EqualityKind {
         anchor1: Vec3,
         /// The point in body 2, m: where the first one is at `qpos0`.
         anchor2: Vec3,
+        /// The sites that are the points, if they are sites.
+        sites: Option<[usize; 2]>,
     },
     /// Body 1 keeps its pose relative to body 2.
     Weld {
@@ -151,7 +153,78 @@ pub enum EqualityKind {
         relquat: Quat,
         /// Weight of the rotational rows.
         torquescale: f64,
+        /// The sites whose poses are held together, if it holds sites.
+        sites: Option<[usize; 2]>,
     },
+}
+
+impl EqualityKind {
+    /// Returns MuJoCo's `eq_type`, `eq_objtype`, `eq_obj1id` and `eq_obj2id`, and the row of `eq_data`.
+    pub fn numbers(&self) -> ([i32; 4], [f64; 11]) {
+        let id = |of: Option<usize>| of.map_or(-1, |id| id as i32);
+        // mjOBJ_BODY or mjOBJ_SITE, and the ids
+        let ends = |bodies: [usize; 2], sites: Option<[usize; 2]>| {
+            let [first, second] = sites.unwrap_or(bodies);
+            (if sites.is_some() { 6 } else { 1 }, first as i32, second as i32)
+        };
+        // the scale of torques is there where nothing uses it, too
+        let mut data = [0.0; 11];
+        data[10] = 1.0;
+        let (kind, (object, first, second)) = match *self {
+            Self::Connect {
+                body1,
+                body2,
+                anchor1,
+                anchor2,
+                sites,
+            } => {
+                if sites.is_some() {
+                    data = [0.0; 11];
+                } else {
+                    data[..3].copy_from_slice(&anchor1);
+                    data[3..6].copy_from_slice(&anchor2);
+                }
+                (0, ends([body1, body2], sites))
+            }
+            Self::Weld {
+                body1,
+                body2,
+                anchor,
+                relpos,
+                relquat,
+                torquescale,
+                sites,
+            } => {
+                if sites.is_some() {
+                    // nothing uses it, and it is what a polynomial begins with
+                    data[1] = 1.0;
+                } else {
+                    data[..3].copy_from_slice(&anchor);
+                    data[3..6].copy_from_slice(&relpos);
+                    data[6..10].copy_from_slice(&relquat);
+                }
+                data[10] = torquescale;
+                (1, ends([body1, body2], sites))
+            }
+            Self::Joint {
+                joint1,
+                joint2,
+                polycoef,
+            } => {
+                data[..5].copy_from_slice(&polycoef);
+                (2, (0, joint1 as i32, id(joint2)))
+            }
+            Self::Tendon {
+                tendon1,
+                tendon2,
+                polycoef,
+            } => {
+                data[..5].copy_from_slice(&polycoef);
+                (3, (0, tendon1 as i32, id(tendon2)))
+            }
+        };
+        ([kind, object, first, second], data)
+    }
 }
 
 /// An object on the path of a tendon (MuJoCo's `mjtWrap`). A fixed tendon has joints only, a spatial one everything else.

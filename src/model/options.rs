@@ -91,6 +91,8 @@ pub struct Options {
     pub wind: Vec3,
     /// Magnetic flux, which magnetometers read.
     pub magnetic: Vec3,
+    /// Groups of actuators that exert no force (`actuatorgroupdisable`): bit `k` is group `k`, of 0 to 30.
+    pub disableactuator: u32,
     /// Parts of the simulation that may be switched off.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub flags: Flags,

@@ -115,9 +115,10 @@ pub(super) fn measure(model: &Model, state: &State, theirs: &Simulation) -> Vec<
     if agrees {
         let [mut qvel, qpos] = advanced(state, theirs, limit);
         if cg {
-            // as far as accelerations agree, which conjugate gradients may leave far from the minimum
-            let apart = h * max_abs(&state.qacc, theirs.qacc());
-            qvel = qvel.or_apart(max_abs(&state.qvel, theirs.qvel()), 2.0 * apart);
+            // conjugate gradients may stop far from the minimum, where accelerations are not yet those of the forces, from which
+            // velocities follow: as far as forces agree, as implicit damping makes differences only smaller
+            let apart = h * slack.force_norm(&state.qfrc_constraint, theirs.qfrc_constraint());
+            qvel = qvel.or_apart(slack.norm(&state.qvel, theirs.qvel()), 2.0 * apart);
         }
         all.push(qvel.or(slack.velocities(&state.qvel, theirs.qvel(), h)));
         let moved = h * max_abs(&state.qvel, theirs.qvel());

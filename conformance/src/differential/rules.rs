@@ -34,7 +34,7 @@ use How::{Drawn, Nothing, Placed, Word};
 pub type Rule = (&'static str, How);
 
 /// Attributes of which an element may have one at most.
-pub const RIVALS: [&[&str]; 9] = [
+pub const RIVALS: [&[&str]; 11] = [
     &["quat", "axisangle", "xyaxes", "zaxis", "euler", "fromto"],
     &["pos", "fromto"],
     &["diaginertia", "fullinertia"],
@@ -44,6 +44,8 @@ pub const RIVALS: [&[&str]; 9] = [
     &["actrange", "inheritrange"],
     &["geom1", "body1"],
     &["geom2", "body2"],
+    &["site1", "anchor"],
+    &["site1", "relpose"],
 ];
 
 /// Elements none of whose attributes changes physics.
@@ -53,6 +55,7 @@ pub const WITHOUT_PHYSICS: &[&str] = &[
     "visual",
     "asset/texture",
     "asset/material",
+    "asset/material/layer",
     "asset/skin",
     "asset/skin/bone",
     "deformable",

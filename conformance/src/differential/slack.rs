@@ -43,15 +43,37 @@ impl Slack {
         )
     }
 
-    fn within(&self, quantity: &'static str, ours: &[f64], theirs: &[f64], h: f64) -> Option<Measured> {
+    /// Returns the root of `d' M d` of a difference `d`.
+    pub fn norm(&self, ours: &[f64], theirs: &[f64]) -> f64 {
+        let apart: Vec<f64> = ours.iter().zip(theirs).map(|(a, b)| a - b).collect();
+        let momentum = |row: &[f64]| row.iter().zip(&apart).map(|(m, d)| m * d).sum::<f64>();
+        let rows = self.inertia.chunks_exact(apart.len().max(1));
+        rows.zip(&apart).map(|(row, d)| d * momentum(row)).sum::<f64>().sqrt()
+    }
+
+    /// Returns the root of `f' M^-1 f` of a difference `f` of forces, by Cholesky's decomposition.
+    pub fn force_norm(&self, ours: &[f64], theirs: &[f64]) -> f64 {
         let n = ours.len();
-        if n != theirs.len() || n * n != self.inertia.len() {
+        let mut lower = self.inertia.clone();
+        // y of L y = f, whose square is f' M^-1 f
+        let mut y: Vec<f64> = ours.iter().zip(theirs).map(|(a, b)| a - b).collect();
+        for i in 0..n {
+            for j in 0..=i {
+                let sum: f64 = (0..j).map(|k| lower[i * n + k] * lower[j * n + k]).sum();
+                let rest = lower[i * n + j] - sum;
+                lower[i * n + j] = if i == j { rest.sqrt() } else { rest / lower[j * n + j] };
+            }
+            let sum: f64 = (0..i).map(|k| lower[i * n + k] * y[k]).sum();
+            y[i] = (y[i] - sum) / lower[i * n + i];
+        }
+        y.iter().map(|v| v * v).sum::<f64>().sqrt()
+    }
+
+    fn within(&self, quantity: &'static str, ours: &[f64], theirs: &[f64], h: f64) -> Option<Measured> {
+        if self.inertia.len() != ours.len() * ours.len() || ours.len() != theirs.len() {
             return None;
         }
-        let apart: Vec<f64> = ours.iter().zip(theirs).map(|(a, b)| (a - b) / h).collect();
-        let momentum = |row: &[f64]| row.iter().zip(&apart).map(|(m, d)| m * d).sum::<f64>();
-        let rows = self.inertia.chunks_exact(n.max(1));
-        let cost = 0.5 * rows.zip(&apart).map(|(row, d)| d * momentum(row)).sum::<f64>();
+        let cost = 0.5 * (self.norm(ours, theirs) / h).powi(2);
         let measured = Measured::new(
             quantity,
             cost / self.cost,
@@ -88,6 +110,17 @@ mod tests {
             inertia: vec![200.0, 0.0, 0.0, 1.0],
         };
         assert!(heavy.accelerations(&[0.99e-4, 0.0], &[0.0, 0.0]).is_none());
+    }
+
+    #[test]
+    fn forces_count_by_the_acceleration_that_they_are() {
+        let slack = Slack {
+            cost: 1e-8,
+            inertia: vec![2.0, 0.5, 0.5, 1.0],
+        };
+        // M d for d = (1, 2)
+        let of_force = slack.force_norm(&[3.0 + 3.0, 1.0 + 2.5], &[3.0, 1.0]);
+        assert!((of_force - slack.norm(&[1.0, 2.0], &[0.0, 0.0])).abs() < 1e-12);
     }
 
     #[test]

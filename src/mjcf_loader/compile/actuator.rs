@@ -39,6 +39,7 @@ pub(super) fn compile_actuators(
         let (ctrlrange, actrange) = ranges(context, actuator, range)?;
         let limited = |attribute, limited, range| context.limited(actuator.at, attribute, limited, range);
         arrays.actuator_name.push(actuator.name.clone());
+        arrays.actuator_group.push(actuator.group);
         arrays.actuator_trntype.push(trntype);
         arrays.actuator_trnid.push(trnid);
         arrays.actuator_refid.push(refid);

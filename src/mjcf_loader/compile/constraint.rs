@@ -1,11 +1,9 @@
-//! Compiles contact pairs and equalities.
+//! Compiles contact pairs and excludes.
 
 use super::context::{Context, Ids};
-use crate::math::quat_normalize;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::LoadError;
-use crate::mjcf_loader::relation::{ConnectEquality, Equality, Held, JointEquality, TendonEquality, WeldEquality};
-use crate::model::{Arrays, EqualityKind};
+use crate::model::Arrays;
 
 /// Compiles explicit pairs and excludes, both sorted by the pair of bodies.
 pub(super) fn compile_contacts(
@@ -54,114 +52,5 @@ pub(super) fn compile_contacts(
         arrays.exclude.push(bodies);
     }
     arrays.exclude.sort_unstable();
-    Ok(())
-}
-
-/// Finds the two bodies of an equality, the second of which is the world if it is not named.
-fn two_bodies(
-    context: &Context,
-    at: usize,
-    body1: &str,
-    body2: Option<&String>,
-    ids: &Ids,
-) -> Result<[usize; 2], LoadError> {
-    let body1 = ids.body.find(context.tree, at, "body1", body1)?;
-    let body2 = match body2 {
-        Some(name) => ids.body.find(context.tree, at, "body2", name)?,
-        None => 0,
-    };
-    if body1 == body2 {
-        return Err(context.invalid(at, "a body cannot be held by itself"));
-    }
-    Ok([body1, body2])
-}
-
-/// Compiles an equality. A weld without a pose of its own gets it at `qpos0`, which needs kinematics; until then its
-/// quaternion is zero.
-pub(super) fn compile_equality(
-    context: &Context,
-    equality: &Equality,
-    ids: &Ids,
-    arrays: &mut Arrays,
-) -> Result<(), LoadError> {
-    let at = equality.at;
-    let kind = match &equality.held {
-        Held::Joint(JointEquality {
-            joint1,
-            joint2,
-            polycoef,
-        }) => {
-            let find = |attribute, name: &String| ids.scalar_joint(context, arrays, at, attribute, name);
-            let (joint1, joint2) = (
-                find("joint1", joint1)?,
-                joint2.as_ref().map(|name| find("joint2", name)).transpose()?,
-            );
-            if joint2 == Some(joint1) {
-                return Err(context.invalid(at, "a joint cannot follow itself"));
-            }
-            EqualityKind::Joint {
-                joint1,
-                joint2,
-                polycoef: *polycoef,
-            }
-        }
-        Held::Tendon(TendonEquality {
-            tendon1,
-            tendon2,
-            polycoef,
-        }) => {
-            let find = |attribute, name: &String| ids.tendon.find(context.tree, at, attribute, name);
-            let (tendon1, tendon2) = (
-                find("tendon1", tendon1)?,
-                tendon2.as_ref().map(|name| find("tendon2", name)).transpose()?,
-            );
-            if tendon2 == Some(tendon1) {
-                return Err(context.invalid(at, "a tendon cannot follow itself"));
-            }
-            EqualityKind::Tendon {
-                tendon1,
-                tendon2,
-                polycoef: *polycoef,
-            }
-        }
-        Held::Connect(ConnectEquality { body1, body2, anchor }) => {
-            let [body1, body2] = two_bodies(context, at, body1, body2.as_ref(), ids)?;
-            // where it is in body 2 follows from the poses at qpos0
-            let (anchor1, anchor2) = (*anchor, [0.0; 3]);
-            EqualityKind::Connect {
-                body1,
-                body2,
-                anchor1,
-                anchor2,
-            }
-        }
-        Held::Weld(WeldEquality {
-            body1,
-            body2,
-            relpose,
-            anchor,
-            torquescale,
-        }) => {
-            let [body1, body2] = two_bodies(context, at, body1, body2.as_ref(), ids)?;
-            let [x, y, z, quat @ ..] = *relpose;
-            let (relpos, relquat) = match quat {
-                [0.0, 0.0, 0.0, 0.0] => ([0.0; 3], quat),
-                quat => ([x, y, z], quat_normalize(quat)),
-            };
-            EqualityKind::Weld {
-                body1,
-                body2,
-                anchor: *anchor,
-                relpos,
-                relquat,
-                torquescale: *torquescale,
-            }
-        }
-    };
-    arrays.eq_name.push(equality.name.clone());
-    arrays.eq_kind.push(kind);
-    arrays.eq_active0.push(equality.active);
-    arrays.eq_solref.push(equality.solref);
-    arrays.eq_solimp.push(equality.solimp);
     Ok(())
 }

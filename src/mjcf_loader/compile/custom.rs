@@ -1,17 +1,30 @@
 //! Compiles custom data and keyframes.
 
-use super::context::Context;
+use super::context::{Context, Ids};
 use super::geometry::normalize;
 use crate::math::{Quat, Vec3, quat_at, quat_normalize};
 use crate::mjcf_loader::attached::{AttachedKey, KeyPart, Keyed};
-use crate::mjcf_loader::custom::Key;
+use crate::mjcf_loader::custom::{Key, Named, TupleElement};
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::table::Table;
 use crate::model::{Arrays, Keyframe};
 
 /// Compiles `<custom>`: numbers and texts for programs.
-pub(super) fn compile_custom(context: &Context, document: &Document, arrays: &mut Arrays) -> Result<(), LoadError> {
+pub(super) fn compile_custom(
+    context: &Context,
+    document: &Document,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<(), LoadError> {
+    for tuple in &document.tuples {
+        if tuple.elements.is_empty() {
+            return Err(context.invalid(tuple.at, "a tuple needs elements"));
+        }
+        for element in &tuple.elements {
+            check_element(context, element, ids)?;
+        }
+    }
     for numeric in &document.numerics {
         let mut data = numeric.data.clone();
         let size = numeric.size.unwrap_or(data.len());
@@ -33,6 +46,27 @@ pub(super) fn compile_custom(context: &Context, document: &Document, arrays: &mu
         arrays.text_data.push(text.data.clone());
     }
     Ok(())
+}
+
+/// Checks that there is what an element of a tuple names.
+fn check_element(context: &Context, element: &TupleElement, ids: &Ids) -> Result<(), LoadError> {
+    let names = match element.objtype {
+        Some(Named::Body) => &ids.body,
+        Some(Named::Joint) => &ids.joint,
+        Some(Named::Geom) => &ids.geom,
+        Some(Named::Site) => &ids.site,
+        Some(Named::Camera) => &ids.camera,
+        Some(Named::Mesh) => &ids.mesh,
+        Some(Named::HField) => &ids.hfield,
+        Some(Named::Texture) => &ids.texture,
+        Some(Named::Material) => &ids.material,
+        Some(Named::Tendon) => &ids.tendon,
+        Some(Named::Actuator) => &ids.actuator,
+        Some(Named::Other) | None => return Ok(()),
+    };
+    names
+        .find(context.tree, element.at, "objname", &element.objname)
+        .map(drop)
 }
 
 /// Compiles the keyframes, after everything that has coordinates or controls.

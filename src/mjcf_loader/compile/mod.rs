@@ -7,6 +7,7 @@ mod camera;
 mod constraint;
 mod context;
 mod custom;
+mod equality;
 mod fluid;
 mod geom;
 mod geometry;
@@ -67,7 +68,7 @@ pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource
     same_frames(&mut arrays);
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;
     for equality in &document.equalities {
-        constraint::compile_equality(&context, equality, &ids, &mut arrays)?;
+        equality::compile_equality(&context, equality, &ids, &mut arrays)?;
     }
     let users = document.tendons.iter().map(|tendon| &tendon.user);
     let user = User::new("nuser_tendon", document.size.nuser_tendon, users);
@@ -77,7 +78,7 @@ pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
     sensor::compile_sensors(&context, document, &ids, &mut arrays)?;
     skin::check_skins(&context, document, &ids, source)?;
-    custom::compile_custom(&context, document, &mut arrays)?;
+    custom::compile_custom(&context, document, &ids, &mut arrays)?;
     custom::compile_keys(&context, document, &mut arrays)?;
     Ok(arrays)
 }

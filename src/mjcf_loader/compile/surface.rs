@@ -133,6 +133,12 @@ pub(super) fn compile_material(
     ids: &Ids,
 ) -> Result<model::Material, LoadError> {
     let find = |name: &String| ids.texture.find(context.tree, material.at, "texture", name);
+    if material.two_ways {
+        return Err(context.invalid(material.at, "give the attribute texture or layers, not both"));
+    }
+    for layer in &material.layers {
+        ids.texture.find(context.tree, layer.at, "texture", &layer.texture)?;
+    }
     Ok(model::Material {
         name: material.name.clone(),
         texture: material.texture.as_ref().map(find).transpose()?,

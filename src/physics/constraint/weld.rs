@@ -44,10 +44,14 @@ pub fn connected_points(model: &Model, s: &State, id: usize) -> Option<[Vec3; 2]
         body2,
         anchor1,
         anchor2,
+        sites,
     } = model.eq_kind[id]
     else {
         return None;
     };
+    if let Some(sites) = sites {
+        return Some(sites.map(|site| s.site_xpos[site]));
+    }
     let carried = |body: usize, anchor: Vec3| add(mat_vec(&s.xmat[body], anchor), s.xpos[body]);
     Some([carried(body1, anchor1), carried(body2, anchor2)])
 }
@@ -61,6 +65,7 @@ pub fn weld_points(model: &Model, s: &State, id: usize) -> Option<Weld> {
         relpos,
         relquat,
         torquescale,
+        sites,
     } = model.eq_kind[id]
     else {
         return None;
@@ -68,8 +73,13 @@ pub fn weld_points(model: &Model, s: &State, id: usize) -> Option<Weld> {
     let (b1, b2) = (body1, body2);
     let point1 = add(mat_vec(&s.xmat[b1], relpos), s.xpos[b1]);
     let point2 = add(mat_vec(&s.xmat[b2], anchor), s.xpos[b2]);
-    let quat1 = quat_mul(s.xquat[b1], relquat);
-    let quat2_conj = quat_conj(s.xquat[b2]);
+    let (quat1, quat2_conj) = match sites {
+        Some([site1, site2]) => (
+            quat_mul(s.xquat[b1], model.site_quat[site1]),
+            quat_conj(quat_mul(s.xquat[b2], model.site_quat[site2])),
+        ),
+        None => (quat_mul(s.xquat[b1], relquat), quat_conj(s.xquat[b2])),
+    };
     let q = quat_mul(quat2_conj, quat1);
     let p = sub(point1, point2);
     let error = [

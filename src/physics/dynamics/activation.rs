@@ -54,7 +54,9 @@ pub fn advance(model: &Model, act: &mut [f64], act_dot: &[f64]) {
     }
     for (i, address) in model.actuator_actadr.iter().enumerate() {
         if let Some(k) = *address {
-            act[k] = next(model, i, act[k], act_dot[k]);
+            // one whose group is off stands still, but within its limits
+            let rate = if model.actuator_disabled(i) { 0.0 } else { act_dot[k] };
+            act[k] = next(model, i, act[k], rate);
         }
     }
 }

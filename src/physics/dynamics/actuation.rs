@@ -38,7 +38,12 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
         }
         let length = transmission::length(model, s, i, gear);
         let velocity = transmission::velocity(model, topology, s, i, gear);
-        let mut force = gain_and_bias(model, i, ctrl, [length, velocity]);
+        // what is off still has the least force of its range, as in MuJoCo
+        let mut force = if model.actuator_disabled(i) {
+            0.0
+        } else {
+            gain_and_bias(model, i, ctrl, [length, velocity])
+        };
         if let Some(torque) = muscle {
             force *= torque;
         }

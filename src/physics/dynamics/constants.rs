@@ -65,6 +65,7 @@ fn weld_poses(model: &Arrays, s: &State) -> Vec<WeldPose> {
             body2,
             anchor,
             relquat: [0.0, 0.0, 0.0, 0.0],
+            sites: None,
             ..
         } = kind
         {
@@ -84,7 +85,11 @@ fn connect_anchors(model: &Arrays, s: &State) -> Vec<(usize, Vec3)> {
     let kinds = model.eq_kind.iter().enumerate();
     let connections = kinds.filter_map(|(equality, kind)| match *kind {
         EqualityKind::Connect {
-            body1, body2, anchor1, ..
+            body1,
+            body2,
+            anchor1,
+            sites: None,
+            ..
         } => {
             let point = add(mat_vec(&s.xmat[body1], anchor1), s.xpos[body1]);
             Some((equality, mat_t_vec(&s.xmat[body2], sub(point, s.xpos[body2]))))

@@ -169,6 +169,9 @@ impl Derivative {
 /// Returns the derivative of an actuator's force by the rate of its length, which MuJoCo 3.3.0 takes where the force is at its limit,
 /// too.
 fn force_slope(model: &Model, s: &State, i: usize) -> f64 {
+    if model.actuator_disabled(i) {
+        return 0.0;
+    }
     let mut slope = match model.actuator_biastype[i] {
         // MuJoCo's does not depend on the velocity
         BiasType::None | BiasType::Muscle => 0.0,

@@ -73,6 +73,11 @@ impl Writer<'_> {
                     node.set("joint2", joint2.as_str());
                 }
                 node
+            } else if self.sites.len() > 1 && self.dice.chance(0.3) {
+                let sites = self.sites.clone();
+                let [site1, site2] = self.two(&sites);
+                let node = Node::new(self.dice.pick(&["weld", "connect"]));
+                node.with("site1", site1).with("site2", site2)
             } else if bodies.len() > 1 {
                 let [body1, body2] = self.two(&bodies);
                 let node = Node::new(self.dice.pick(&["weld", "connect"])).with("body1", body1);

@@ -10,7 +10,10 @@ pub(super) const ACTUATOR: &[Rule] = &[
     ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
     ("forcerange", Drawn(0.4, |d| d.range(2.0))),
     ("user", Nothing),
-    ("group", Nothing),
+    (
+        "group",
+        Drawn(0.15, |d| d.pick(&["1", "2", "30", "31", "-1"]).to_owned()),
+    ),
 ];
 
 pub(super) const TARGET: &[Rule] = &[

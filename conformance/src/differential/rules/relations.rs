@@ -58,6 +58,8 @@ pub(super) const CONNECT: &[Rule] = &[
     ("body1", Placed(&["ball"])),
     ("body2", Placed(&["ball"])),
     ("anchor", Drawn(1.0, |d| d.reals(3, 0.2))),
+    ("site1", Placed(&["wrist"])),
+    ("site2", Placed(&["ground"])),
 ];
 
 pub(super) const WELD: &[Rule] = &[
@@ -66,6 +68,8 @@ pub(super) const WELD: &[Rule] = &[
     ("relpose", Drawn(0.3, |d| format!("{} {}", d.reals(3, 0.3), d.quat()))),
     ("anchor", Drawn(0.3, |d| d.reals(3, 0.2))),
     ("torquescale", Drawn(0.3, |d| d.log(0.05, 5.0))),
+    ("site1", Placed(&["wrist"])),
+    ("site2", Placed(&["ground"])),
 ];
 
 pub(super) const TENDON: &[Rule] = &[

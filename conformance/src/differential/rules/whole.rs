@@ -55,6 +55,10 @@ pub(super) const OPTION: &[Rule] = &[
         Drawn(0.12, |d| d.pick(&["1", "2", "3", "5", "20"]).to_owned()),
     ),
     ("noslip_tolerance", Drawn(0.12, |d| d.log(1e-12, 1e-4))),
+    (
+        "actuatorgroupdisable",
+        Drawn(0.1, |d| d.pick(&["0", "1", "2 30", "1 2 1"]).to_owned()),
+    ),
     ("apirate", Nothing),
     ("magnetic", Nothing),
     ("o_margin", Nothing),
