@@ -8,7 +8,8 @@ Example:
     >>> env.close()
 
 :func:`make` and :class:`Env` are one environment, :class:`VectorEnv` is many, ``babybench.sb3`` is many for
-Stable-Baselines3, :class:`ActionNoise` moves them at random, :func:`view` shows them in a browser or a notebook.
+Stable-Baselines3, ``babybench.pettingzoo`` is two infants in one room, :class:`ActionNoise` moves them at random,
+:func:`view` shows them in a browser or a notebook.
 Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
 ``babybench/HandRegard-v0``, ``babybench/Installation-v0`` and, of tasks with a reward, ``babybench/Reach-v0``,
 ``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0``, ``babybench/RollOver-v0``,
@@ -55,6 +56,7 @@ _HOMES = {
     "VectorEnv": "babybench_core.vector",
     "View": "babybench_core.view",
     "make": "babybench_core.env",
+    "pettingzoo": "babybench.pettingzoo",
     "read_config": "babybench_core.scenes",
     "sb3": "babybench.sb3",
     "view": "babybench_core.view",
@@ -68,7 +70,7 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module
 
     home = import_module(_HOMES[name])
-    return home if name in ("data", "figures", "sb3") else getattr(home, name)
+    return home if name in ("data", "figures", "pettingzoo", "sb3") else getattr(home, name)
 
 
 def __dir__() -> list[str]:

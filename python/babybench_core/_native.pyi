@@ -177,6 +177,12 @@ class Env:
         """Returns the observation of the last reset, step or :meth:`refresh`."""
     def info(self, details: bool = True) -> dict[str, Any]:
         """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
+    def other_spaces(self) -> list[tuple[tuple[_Array, _Array], int]]:
+        """Returns the bounds of an action of each other infant in the scene, and the length of his observation."""
+    def act_other(self, index: int, action: npt.ArrayLike) -> None:
+        """Gives another infant an action, which holds until the next one or a reset."""
+    def observe_other(self, index: int) -> _Array:
+        """Returns what another infant feels: angles (rad), velocities (rad/s), the head's motion, torques (N m)."""
     def set_goal(self, desired: npt.ArrayLike) -> dict[str, _Array]:
         """Changes the desired goal of the episode; returns the observation with it."""
     def compute_reward(self, achieved: npt.ArrayLike, desired: npt.ArrayLike, terms: npt.ArrayLike) -> _Floats:

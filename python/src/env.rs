@@ -1,8 +1,8 @@
 //! One environment.
 
-use babybench::env::Snapshot;
+use babybench::env::{OtherInfant, Snapshot};
 use numpy::PyArray1;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -26,6 +26,9 @@ pub struct Inner {
     pub painters: Painters,
     pub action: Vec<f32>,
     views: Option<Views>,
+    /// The other infants in the scene, and what one of them feels.
+    others: Vec<OtherInfant>,
+    felt: Vec<f64>,
 }
 
 /// An environment.
@@ -75,6 +78,8 @@ impl Env {
         let env = detached(py, || shared.env())?;
         let views = if views { Some(Views::new(py, &env)?) } else { None };
         let inner = Inner {
+            others: env.others(),
+            felt: Vec::new(),
             env,
             blueprint,
             painters: Painters::default(),
@@ -194,6 +199,40 @@ impl Env {
         terms: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         task::compute_reward(py, &self.guard()?.open()?.env, [achieved, desired, terms])
+    }
+
+    // --- other infants ---
+
+    fn other_spaces<'py>(&self, py: Python<'py>) -> PyResult<Vec<(Pair<'py, f32>, usize)>> {
+        let mut guard = self.guard()?;
+        let others = &guard.open()?.others;
+        let space = |other: &OtherInfant| {
+            let space = other.action_space();
+            let bound = |side: &[f32]| PyArray1::from_slice(py, side);
+            ((bound(space.low()), bound(space.high())), other.observation_len())
+        };
+        Ok(others.iter().map(space).collect())
+    }
+
+    fn act_other(&self, index: usize, action: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut guard = self.guard()?;
+        let Inner {
+            env,
+            others,
+            action: numbers,
+            ..
+        } = guard.open()?;
+        let other = others.get(index).ok_or_else(|| no_other(index))?;
+        read("action", action, &[other.actuators().len()], numbers)?;
+        other.act(env, numbers).map_err(IntoException::into_exception)
+    }
+
+    fn observe_other<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut guard = self.guard()?;
+        let Inner { env, others, felt, .. } = guard.open()?;
+        let other = others.get(index).ok_or_else(|| no_other(index))?;
+        other.observe(env.model(), env.state(), felt);
+        Ok(PyArray1::from_slice(py, felt))
     }
 
     #[getter]
@@ -430,6 +469,13 @@ impl Env {
     ) -> PyResult<Bound<'py, PyAny>> {
         pictures::segmentation(py, self.guard()?.open()?, &camera, [width, height])
     }
+}
+
+/// Says that the scene has no such other infant.
+fn no_other(index: usize) -> PyErr {
+    PyIndexError::new_err(format!(
+        "the scene has no other infant {index}: see `others` in the guide's chapter on rooms"
+    ))
 }
 
 fn felt(inner: &Inner) -> PyResult<&babybench::sensors::Touch> {
