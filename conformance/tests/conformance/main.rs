@@ -9,6 +9,7 @@ mod contact_free;
 mod contact_geometry;
 mod differential;
 mod growth;
+mod hulls;
 mod kit;
 mod live_loader;
 mod live_mujoco;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         contact_geometry::trials(),
         differential::trials(),
         growth::trials(),
+        hulls::trials(),
         kit::trials(),
         live_loader::trials(),
         live_mujoco::trials(),
