@@ -1,0 +1,193 @@
+//! What is learned, and how: for each task the numbers that its policy looks at, and the stages of its training.
+
+use babybench::config::Behavior;
+use babybench::sensors::Component;
+use babybench::{Config, Env};
+
+use crate::linear::{Design, Feature};
+
+/// A stage of training: some weights are free, the others stay.
+pub struct Stage {
+    pub free: Vec<usize>,
+    /// The number that is 1 in the desired goal; left to chance by default.
+    pub goal: Option<usize>,
+    pub generations: usize,
+    /// Candidates of a generation.
+    pub size: usize,
+    /// Episodes of each candidate.
+    pub trials: usize,
+    /// Spread of the first generation.
+    pub spread: f64,
+}
+
+/// A policy that is to be learned.
+pub struct Plan {
+    pub design: Design,
+    /// The weights to begin with.
+    pub start: Vec<f64>,
+    pub stages: Vec<Stage>,
+    /// What a metre costs that is missing at the nearest moment of an episode without success.
+    pub shaping: f64,
+    fingers: Option<usize>,
+}
+
+/// The tasks, in the order of their training.
+pub const TASKS: [Behavior; 5] = [
+    Behavior::Reach,
+    Behavior::SelfBody,
+    Behavior::Standup,
+    Behavior::RollOver,
+    Behavior::Catch,
+];
+
+/// Returns the configuration in which a policy of a task is trained: the task's own, without senses that it does not use.
+pub fn config(behavior: Behavior, age: Option<f64>) -> Config {
+    let own = Config::of(behavior);
+    let max_episode_steps = match behavior {
+        Behavior::Reach | Behavior::RollOver => 300,
+        _ => own.max_episode_steps,
+    };
+    Config {
+        age,
+        max_episode_steps,
+        ..own
+    }
+}
+
+/// Where the numbers of an action and of its joint stand.
+struct Drive {
+    action: usize,
+    angle: usize,
+    velocity: usize,
+}
+
+impl Plan {
+    /// Returns the plan of a task.
+    pub fn of(behavior: Behavior, env: &Env) -> Result<Self, Box<dyn std::error::Error>> {
+        let drives = drives(env)?;
+        let mut plan = Self {
+            design: Design::default(),
+            start: Vec::new(),
+            stages: Vec::new(),
+            shaping: 0.0,
+            fingers: None,
+        };
+        match behavior {
+            Behavior::Reach => plan.reach(&drives),
+            Behavior::SelfBody => plan.self_body(&drives, env)?,
+            Behavior::Standup => plan.postures(&drives, 250, 20, 1),
+            Behavior::RollOver => plan.postures(&drives, 150, 16, 1),
+            Behavior::Catch => plan.postures(&drives, 80, 16, 3),
+            other => return Err(format!("{other} has no plan").into()),
+        }
+        Ok(plan)
+    }
+
+    /// Returns what is missing to the goal, m, if that counts.
+    pub fn distance(&self, env: &Env) -> Option<f64> {
+        let target = env.goal().desired.iter().position(|v| *v > 0.0)?;
+        let xpos = &env.state().xpos;
+        let (from, to) = (xpos[self.fingers?], xpos.get(target)?);
+        let squares = from.iter().zip(to).map(|(a, b)| (a - b) * (a - b));
+        Some(squares.sum::<f64>().sqrt())
+    }
+
+    fn all_free(&mut self, start: f64, generations: usize, size: usize, trials: usize, spread: f64) {
+        self.start = vec![start; self.design.terms.len()];
+        self.stages.push(Stage {
+            free: (0..self.start.len()).collect(),
+            goal: None,
+            generations,
+            size,
+            trials,
+            spread,
+        });
+    }
+
+    /// Every torque depends on the way to the ball, and on the angles and the velocities of the arm.
+    fn reach(&mut self, drives: &[Drive]) {
+        let design = &mut self.design;
+        design.feature(Feature::one());
+        for axis in 0..3 {
+            let parts = vec![("desired_goal", axis, 5.0), ("achieved_goal", axis, -5.0)];
+            design.feature(Feature { offset: 0.0, parts });
+        }
+        for drive in drives {
+            design.feature(Feature::of("observation", drive.angle, 1.0));
+            design.feature(Feature::of("observation", drive.velocity, 0.1));
+        }
+        for drive in drives {
+            for feature in 0..design.features.len() {
+                design.term(drive.action, feature, 0.3);
+            }
+        }
+        self.all_free(0.0, 120, 20, 4, 0.7);
+    }
+
+    /// For each goal a posture, to which springs and dampers of the policy's own pull.
+    fn self_body(&mut self, drives: &[Drive], env: &Env) -> Result<(), Box<dyn std::error::Error>> {
+        self.shaping = 500.0;
+        self.fingers = env.model().body("right_fingers");
+        let design = &mut self.design;
+        for drive in drives {
+            let angle = design.feature(Feature::of("observation", drive.angle, 1.0));
+            let velocity = design.feature(Feature::of("observation", drive.velocity, 0.1));
+            design.term(drive.action, angle, 1.0);
+            design.term(drive.action, velocity, 1.0);
+            self.start.extend([-1.0, -1.0]);
+        }
+        let skin = env.senses().touch().ok_or("selfbody needs touch")?.layout().bodies();
+        for body in skin.iter().map(|skin| skin.body) {
+            let name = &env.model().body_name[body];
+            if ["right_fingers", "left_lower_arm"].contains(&name.as_str()) {
+                continue;
+            }
+            let goal = design.feature(Feature::of("desired_goal", body, 1.0));
+            let first = design.terms.len();
+            for drive in drives {
+                design.term(drive.action, goal, 1.0);
+                self.start.push(0.0);
+            }
+            self.stages.push(Stage {
+                free: (first..design.terms.len()).collect(),
+                goal: Some(body),
+                generations: 30,
+                size: 12,
+                trials: 1,
+                spread: 1.0,
+            });
+        }
+        Ok(())
+    }
+
+    /// Every number of the action depends on its own joint.
+    fn postures(&mut self, drives: &[Drive], generations: usize, size: usize, trials: usize) {
+        let design = &mut self.design;
+        let one = design.feature(Feature::one());
+        for drive in drives {
+            let angle = design.feature(Feature::of("observation", drive.angle, 1.0));
+            let velocity = design.feature(Feature::of("observation", drive.velocity, 0.1));
+            for feature in [one, angle, velocity] {
+                design.term(drive.action, feature, 0.3);
+            }
+        }
+        self.all_free(0.0, generations, size, trials, 0.5);
+    }
+}
+
+/// Finds the joint of each number of an action; muscles have a block of numbers after another.
+fn drives(env: &Env) -> Result<Vec<Drive>, Box<dyn std::error::Error>> {
+    let (model, actuators) = (env.model(), env.actuation().actuators());
+    let senses = env.senses().proprioception();
+    let drive = |action: usize| {
+        let joint = &model.jnt_name[model.actuator_trnid[actuators[action % actuators.len()]]];
+        let place = |component| senses.find(model, component, joint).map(|range| range.start);
+        let missing = || format!("{joint} is not felt");
+        Ok(Drive {
+            action,
+            angle: place(Component::Angles).ok_or_else(missing)?,
+            velocity: place(Component::Velocities).ok_or_else(missing)?,
+        })
+    };
+    (0..env.action_space().len()).map(drive).collect()
+}
