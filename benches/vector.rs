@@ -6,7 +6,8 @@
 //!   spend; loops by the latter.
 //! - `crowd`: a step in a vector of many environments against the same steps in one environment alone, one thread, by processor time:
 //!   what it costs that environments take turns in the caches.
-//! - `rates`: an environment whose eyes see 30 pictures a second against one that draws in every step, by processor time.
+//! - `rates`: an environment whose eyes see 30 pictures a second, and one whose eyes are asked for in every tenth step, against one that draws in
+//!   every step, by processor time.
 //! - `nodes`: 64 nodes of a search, each a state that goes on from the same one for a step, in a `physics::Batch` of one thread against one engine
 //!   and a state that is copied, stepped and copied again, by processor time.
 //! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
@@ -346,13 +347,27 @@ fn nodes(name: &str, blueprint: &Blueprint) {
     );
 }
 
-/// Both make the same steps; the actions do not depend on what is seen.
+/// Eyes that see less often, or that are asked for in every tenth step, against those that see in each.
 fn rates(name: &str, config: &Config) {
     let rated = Config {
         vision_rate: Some(30.0),
         ..config.clone()
     };
-    let [mut every, mut some] = [config.clone(), rated].map(|config| {
+    let lazy = Config {
+        vision_lazy: true,
+        ..config.clone()
+    };
+    less(&format!("rates/{name}, 30 Hz over every step"), config, rated);
+    less(
+        &format!("rates/{name}, one of ten asked for over every step"),
+        config,
+        lazy,
+    );
+}
+
+/// Both make the same steps; the actions do not depend on what is seen.
+fn less(what: &str, config: &Config, other: Config) {
+    let [mut every, mut some] = [config.clone(), other].map(|config| {
         let mut env = Env::new(config).expect("available");
         env.reset(Some(0)).expect("no divergence");
         env
@@ -364,13 +379,18 @@ fn rates(name: &str, config: &Config) {
     };
     let actions: Vec<Vec<f32>> = (0..PAIRS * EYE_STEPS).map(actions).collect();
     let run = |env: &mut Env, action: &[f32]| {
-        if black_box(env.step(action).expect("no divergence")).truncated {
+        let step = env.step(action).expect("no divergence");
+        let (truncated, looks) = (step.truncated, step.info.steps.is_multiple_of(10));
+        if looks {
+            // draws where that waits, and nothing otherwise
+            black_box(env.look().expect("a renderer"));
+        }
+        if truncated {
             env.reset(Some(0)).expect("no divergence");
         }
     };
-    let what = format!("rates/{name}, 30 Hz over every step");
     pair(
-        &what,
+        what,
         [EYE_STEPS, 1],
         cpu_time,
         &actions,

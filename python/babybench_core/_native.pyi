@@ -152,8 +152,11 @@ class Env:
     STATE_ARRAYS: ClassVar[list[str]]
     """The names of :meth:`state_array`."""
 
-    def __new__(cls, blueprint: Blueprint, views: bool = False) -> Env:
-        """Makes an environment; with ``views``, observations are read-only arrays that each step brings up to date."""
+    def __new__(cls, blueprint: Blueprint, views: bool = False, lazy: bool = False) -> Env:
+        """Makes an environment; with ``views``, observations are read-only arrays that each step brings up to date.
+
+        With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them.
+        """
 
     def reset(self, seed: int | None = None) -> dict[str, _Array]:
         """Starts an episode: the settled state, then ten random start actions (not without behavior).
@@ -175,6 +178,8 @@ class Env:
         """Applies actions, (K, action size), one after the other, and returns nothing: to replay, and to time the core."""
     def observation(self) -> dict[str, _Array]:
         """Returns the observation of the last reset, step or :meth:`refresh`."""
+    def eyes(self) -> dict[str, _Array]:
+        """Returns the images of the last observation, and draws them if nobody has yet."""
     def info(self, details: bool = True) -> dict[str, Any]:
         """Returns the information of the last step; ``details`` adds names of touched parts and angles of gaze (rad)."""
     def other_spaces(self) -> list[tuple[tuple[_Array, _Array], int]]:
@@ -439,8 +444,12 @@ class VectorEnv:
         autoreset: str = "next_step",
         threads: int = 0,
         max_memory: int | None = None,
+        lazy: bool = False,
     ) -> VectorEnv:
-        """Makes an environment of each blueprint; ``autoreset`` is ``next_step``, ``same_step`` or ``disabled``."""
+        """Makes an environment of each blueprint; ``autoreset`` is ``next_step``, ``same_step`` or ``disabled``.
+
+        With ``lazy``, observations and their spaces are without images: :meth:`eyes` has them.
+        """
 
     def reset(
         self,
@@ -459,6 +468,8 @@ class VectorEnv:
         self, n: int, copy: bool = False
     ) -> tuple[dict[str, _Array], _Floats, _Flags, _Flags, npt.NDArray[np.int64]]:
         """Waits for ``n`` environments: observations, rewards, terminated, truncated, and which they are."""
+    def eyes(self, copy: bool = False) -> dict[str, _Array]:
+        """Returns the images of the last rows, and draws them if nobody has yet."""
     def close(self) -> None:
         """Ends the threads and frees the environments."""
     @property

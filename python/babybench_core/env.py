@@ -41,7 +41,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     | `achieved_goal` | float64 | of tasks with goals: what is achieved                                                |
     | `desired_goal`  | float64 | what is to be achieved                                                               |
 
-    Arrays are fresh with every step, unless ``views`` is set.
+    Arrays are fresh with every step, unless ``views`` is set. With ``vision_lazy`` images are left out: :meth:`eyes` draws them.
 
     The information has ``steps`` and, by behavior, ``right_hand_touches`` and ``left_hand_touches`` (ids of the geoms that
     the palm has touched in this episode) with their names in ``right_hand_parts`` and ``left_hand_parts``; or how many
@@ -111,7 +111,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self.metadata = {**self.metadata, "render_fps": round(1 / self.dt)}
 
     def _build(self) -> None:
-        self._core = _native.Env(scenes.blueprint(self.config, self._assets), self._views)
+        self._core = _native.Env(scenes.blueprint(self.config, self._assets), self._views, self.config["vision_lazy"])
 
     @property
     def dt(self) -> float:
@@ -213,6 +213,23 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         self._window.show(seconds)
 
     # --- pictures ---
+
+    def eyes(self) -> Observation:
+        """Returns the images of the last observation: ``eye_left`` and ``eye_right``, unless configured otherwise.
+
+        With ``vision_lazy`` neither observations nor ``observation_space`` have images, and only this draws them, with the bits
+        that they have otherwise; call it before the next step. Called twice, it draws once.
+
+        Example:
+            >>> import babybench
+            >>> env = babybench.make("hand_regard", vision_lazy=True)
+            >>> observation, info = env.reset(seed=0)
+            >>> list(observation)
+            ['observation']
+            >>> env.eyes()["eye_left"].shape
+            (64, 64, 3)
+        """
+        return self._core.eyes()
 
     def picture(
         self,

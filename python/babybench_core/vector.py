@@ -132,6 +132,10 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             raise ValueError(f"render_mode is {render_mode!r}, expected None or rgb_array")
         mode = _USUAL if autoreset_mode is None else AutoresetMode(autoreset_mode)
         full = [scenes.read_config(one, **keys) for one in configs]
+        if len({one["vision_lazy"] for one in full}) > 1:
+            raise ValueError(
+                "vision_lazy is True in some configurations and False in others; it must be the same in all"
+            )
         self.config: dict[str, Any] = full[0]
         """The configuration of the first environment."""
         self.configs: tuple[dict[str, Any], ...] = tuple(full) if len(full) == num_envs else (full[0],) * num_envs
@@ -155,6 +159,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         self.metadata = {"render_modes": ["rgb_array"], "render_fps": 200, "autoreset_mode": mode}
         self.spec = None
         self.closed = False
+        self._order: Optional[npt.NDArray[np.intp]] = None
         self._sent: Optional[npt.NDArray[np.float32]] = None
 
     def _build(self) -> None:
@@ -164,7 +169,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             if id(config) not in made:
                 made[id(config)] = scenes.blueprint(config, self._assets)
         self._blueprints = tuple(made[id(config)] for config in self.configs)
-        self._core = _native.VectorEnv(self._blueprints, _MODES[self.autoreset_mode], *self._limits)
+        lazy = self.config["vision_lazy"]
+        self._core = _native.VectorEnv(self._blueprints, _MODES[self.autoreset_mode], *self._limits, lazy)
 
     # --- Gymnasium ---
 
@@ -193,6 +199,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         for env, wanted in enumerate(changes.of_vector(changes.of_options(options), self.num_envs)):
             if wanted is not None and (mask is None or mask[env]):
                 self.change_model(env, wanted)
+        self._order = None
         return self._core.reset(seed, mask, self._copy), self._infos()
 
     def step(self, actions: npt.ArrayLike) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
@@ -207,6 +214,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
             ValueError: Actions of another shape, or with numbers that are not finite; nothing has happened then.
             RuntimeError: Environments that need a reset, or are in flight.
         """
+        self._order = None
         observations = self._core.step(actions, self._copy)
         return observations, *self._given(*self._core.flags), self._infos()
 
@@ -217,11 +225,23 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
     def step_wait(self, **_: object) -> tuple[Observations, npt.NDArray[np.float64], Mask, Mask, dict[str, Any]]:
         """Waits for what :meth:`step_async` began; rows are in the order of the environments."""
         received, rewards, terminated, truncated, ids = self._core.recv(self.num_envs)
-        order = np.argsort(ids)
+        order = self._order = np.argsort(ids)
         infos = self._infos(ids)
         rows = {key: rows[order] for key, rows in received.items()}
         ordered = {key: rows[order] for key, rows in infos.items()}
         return rows, rewards[order], terminated[order], truncated[order], ordered
+
+    def eyes(self) -> Observations:
+        """Returns the images of the last observations, a row for each environment that was returned.
+
+        With ``vision_lazy`` neither observations nor spaces have images, and only this draws them, on all threads; call it before
+        the next step. Called twice, it draws once.
+
+        Raises:
+            RuntimeError: An environment has been sent on.
+        """
+        seen = self._core.eyes(self._copy)
+        return seen if self._order is None else {key: rows[self._order] for key, rows in seen.items()}
 
     def render(self) -> Optional[tuple[npt.NDArray[np.uint8], ...]]:
         """Draws the rooms, (render_size, render_size, 3) each, with ``render_mode="rgb_array"``."""
@@ -274,6 +294,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
         Raises:
             RuntimeError: Fewer are under way.
         """
+        self._order = None
         wanted = self._core.in_flight if batch_size is None else batch_size
         received, rewards, terminated, truncated, ids = self._core.recv(wanted, self._copy)
         return received, *self._given(rewards, terminated, truncated), self._infos(ids)

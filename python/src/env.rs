@@ -11,7 +11,7 @@ use crate::blueprint::Blueprint;
 use crate::errors::{IntoException, detached};
 use crate::guarded::{Guard, Guarded};
 use crate::info::{Space, info_dict, report_dict, spaces, target_of};
-use crate::observation::{Views, fresh};
+use crate::observation::{Views, fresh, fresh_blind, fresh_images};
 use crate::pictures::{self, Painters};
 use crate::{model_change, state, task, touch};
 
@@ -29,6 +29,8 @@ pub struct Inner {
     /// The other infants in the scene, and what one of them feels.
     others: Vec<OtherInfant>,
     felt: Vec<f64>,
+    /// Whether observations are without images, for those who ask for them.
+    lazy: bool,
 }
 
 /// An environment.
@@ -61,6 +63,12 @@ impl Env {
 
     /// Returns the present observation.
     pub fn observed<'py>(py: Python<'py>, inner: &mut Inner) -> PyResult<Bound<'py, PyDict>> {
+        if inner.lazy && inner.views.is_none() {
+            return fresh_blind(py, &inner.env);
+        }
+        if !inner.lazy && inner.env.senses().vision_is_lazy() {
+            detached(py, || inner.env.look().map(drop))?;
+        }
         let Some(views) = &mut inner.views else {
             return fresh(py, &inner.env);
         };
@@ -72,11 +80,11 @@ impl Env {
 #[pymethods]
 impl Env {
     #[new]
-    #[pyo3(signature = (blueprint, views=false))]
-    fn new(py: Python<'_>, blueprint: Py<Blueprint>, views: bool) -> PyResult<Self> {
+    #[pyo3(signature = (blueprint, views=false, lazy=false))]
+    fn new(py: Python<'_>, blueprint: Py<Blueprint>, views: bool, lazy: bool) -> PyResult<Self> {
         let shared = &blueprint.get().inner;
         let env = detached(py, || shared.env())?;
-        let views = if views { Some(Views::new(py, &env)?) } else { None };
+        let views = if views { Some(Views::new(py, &env, lazy)?) } else { None };
         let inner = Inner {
             others: env.others(),
             felt: Vec::new(),
@@ -85,6 +93,7 @@ impl Env {
             painters: Painters::default(),
             action: Vec::new(),
             views,
+            lazy,
         };
         Ok(Self {
             inner: Guarded::new(inner, "environment", "give each thread one of its own"),
@@ -173,6 +182,17 @@ impl Env {
     fn observation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         Self::observed(py, guard.open()?)
+    }
+
+    fn eyes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let inner = guard.open()?;
+        detached(py, || inner.env.look().map(drop))?;
+        let Some(views) = inner.views.as_mut().filter(|_| inner.lazy) else {
+            return fresh_images(py, &inner.env);
+        };
+        views.update(py, &inner.env)?;
+        Ok(views.images.bind(py).clone())
     }
 
     #[pyo3(signature = (details=true))]
@@ -280,7 +300,8 @@ impl Env {
     #[getter]
     fn observation_spaces(&self) -> PyResult<Vec<Space>> {
         let mut guard = self.guard()?;
-        Ok(spaces(&guard.open()?.env.observation_space()))
+        let inner = guard.open()?;
+        Ok(spaces(&inner.env.observation_space(), inner.lazy))
     }
 
     fn seed_action_space(&self, seed: u64) -> PyResult<()> {

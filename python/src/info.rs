@@ -3,6 +3,8 @@
 use babybench::config::Part;
 use babybench::env::{EYE_HAND_PAIRS, Info, InfoValue};
 use babybench::mimo::{LockReport, LockTarget};
+use babybench::sensors::ObservationEntry;
+use babybench::spaces::ObservationSpace;
 use babybench::vector::Infos;
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -15,10 +17,15 @@ use crate::arrays::shaped;
 /// Key, shape, number type, lower and upper bound.
 pub type Space = (&'static str, Vec<usize>, &'static str, f64, f64);
 
-/// Describes observation spaces.
-pub fn spaces(spaces: &[babybench::spaces::ObservationSpace]) -> Vec<Space> {
-    let describe = |s: &babybench::spaces::ObservationSpace| (s.key, s.shape.clone(), s.dtype.name(), s.low, s.high);
-    spaces.iter().map(describe).collect()
+/// Describes observation spaces, without images if those who want them ask for them.
+pub fn spaces(spaces: &[ObservationSpace], lazy: bool) -> Vec<Space> {
+    let describe = |s: &ObservationSpace| (s.key, s.shape.clone(), s.dtype.name(), s.low, s.high);
+    spaces.iter().filter(|s| !(lazy && is_image(s))).map(describe).collect()
+}
+
+/// Returns whether a space is that of images.
+pub fn is_image(space: &ObservationSpace) -> bool {
+    ObservationEntry::of_key(space.key).is_some_and(|entry| entry.image.is_some())
 }
 
 /// Calls with what is to be locked or unlocked: a joint's number or name, or the name of a part.

@@ -33,8 +33,35 @@ fn fresh_array<'py>(py: Python<'py>, values: Values<'_>, shape: &[usize]) -> PyR
 
 /// Returns a fresh dictionary of fresh arrays.
 pub fn fresh<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDict>> {
+    fresh_of(py, env, |_| true)
+}
+
+/// Returns a fresh dictionary of fresh arrays, without images.
+pub fn fresh_blind<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDict>> {
+    fresh_of(py, env, |entry| entry.image.is_none())
+}
+
+/// Returns a fresh dictionary of fresh arrays of the images.
+pub fn fresh_images<'py>(py: Python<'py>, env: &Env) -> PyResult<Bound<'py, PyDict>> {
+    fresh_of(py, env, |entry| entry.image.is_some())
+}
+
+/// Returns the entries that are chosen and there.
+fn fresh_of<'py>(
+    py: Python<'py>,
+    env: &Env,
+    chosen: impl Fn(&ObservationEntry) -> bool,
+) -> PyResult<Bound<'py, PyDict>> {
     let (dict, observation) = (PyDict::new(py), env.observation());
-    for ((entry, values), space) in observation.entries().zip(env.observation_space()) {
+    let mut spaces = env.observation_space().into_iter();
+    for (entry, values) in observation.entries() {
+        // both have the same order, and images that wait are among the spaces alone
+        let Some(space) = spaces.find(|space| space.key == entry.key) else {
+            break;
+        };
+        if !chosen(entry) {
+            continue;
+        }
         let array = match skin_of(env, entry) {
             Some(felt) => sparse(py, felt)?.into_any(),
             None => fresh_array(py, values, &space.shape)?,
@@ -51,8 +78,11 @@ pub fn dict_of_row<'py>(
     spaces: &[ObservationSpace],
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    for ((entry, values), space) in observation.entries().zip(spaces) {
-        dict.set_item(entry.key, fresh_array(py, values, &space.shape)?)?;
+    for (entry, values) in observation.entries() {
+        // images that are asked for are not among the spaces
+        if let Some(space) = spaces.iter().find(|space| space.key == entry.key) {
+            dict.set_item(entry.key, fresh_array(py, values, &space.shape)?)?;
+        }
     }
     Ok(dict)
 }
@@ -76,6 +106,8 @@ pub fn write_touched(out: &mut [f32], touch: &SkinValues) {
 /// An entry of an observation in an array that stays the same.
 struct View {
     entry: &'static ObservationEntry,
+    /// Its place in [`ObservationEntry::ALL`].
+    place: usize,
     slab: AnySlab,
     /// Sensors of a skin that are not zero in the array.
     touched: Vec<u32>,
@@ -83,22 +115,36 @@ struct View {
 
 /// An observation whose arrays stay the same from step to step.
 pub struct Views {
+    /// What an observation has.
     pub dict: Py<PyDict>,
+    /// The images, if they are drawn for those who ask.
+    pub images: Py<PyDict>,
     views: Vec<View>,
 }
 
 impl Views {
-    /// Makes views of what an environment observes.
-    pub fn new(py: Python<'_>, env: &Env) -> PyResult<Self> {
-        let (dict, mut views) = (PyDict::new(py), Vec::new());
-        for ((entry, _), space) in env.observation().entries().zip(env.observation_space()) {
+    /// Makes views of what an environment observes; images that are drawn for those who ask stand apart.
+    pub fn new(py: Python<'_>, env: &Env, lazy: bool) -> PyResult<Self> {
+        let (dict, images, mut views) = (PyDict::new(py), PyDict::new(py), Vec::new());
+        for space in env.observation_space() {
+            let mut known = ObservationEntry::ALL.iter().enumerate();
+            let Some((place, entry)) = known.find(|(_, entry)| entry.key == space.key) else {
+                continue;
+            };
             let slab = AnySlab::new(py, entry.dtype, &space.shape)?;
-            dict.set_item(entry.key, slab.view())?;
+            let of = if lazy && entry.image.is_some() { &images } else { &dict };
+            of.set_item(entry.key, slab.view())?;
             let touched = Vec::new();
-            views.push(View { entry, slab, touched });
+            views.push(View {
+                entry,
+                place,
+                slab,
+                touched,
+            });
         }
         let mut views = Self {
             dict: dict.unbind(),
+            images: images.unbind(),
             views,
         };
         views.update(py, env)?;
@@ -107,8 +153,10 @@ impl Views {
 
     /// Brings the arrays up to date.
     pub fn update(&mut self, py: Python<'_>, env: &Env) -> PyResult<()> {
-        for (view, (entry, values)) in self.views.iter_mut().zip(env.observation().entries()) {
-            debug_assert_eq!(view.entry.key, entry.key);
+        let observed = env.observation().values();
+        for view in &mut self.views {
+            // images that wait, and what a restored snapshot does not hold, stay as they are
+            let Some(values) = observed[view.place] else { continue };
             match (skin_of(env, view.entry), &view.slab) {
                 (Some(felt), AnySlab::F32(slab)) => {
                     let (width, touched) = (felt.width(), &mut view.touched);

@@ -14,6 +14,10 @@ pub struct Arrays {
     pub rows: usize,
     /// Observations by key, as Python sees them.
     pub dict: Py<PyDict>,
+    /// Images by key, if they are drawn for those who ask.
+    images: Py<PyDict>,
+    /// Whether they are.
+    lazy: bool,
     /// The arrays of the entries, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
     entries: Vec<Option<AnySlab>>,
     /// Values of a touch sensor.
@@ -26,14 +30,21 @@ pub struct Arrays {
 }
 
 impl Arrays {
-    pub fn new(py: Python<'_>, rows: usize, spaces: &[ObservationSpace], touch_width: usize) -> PyResult<Self> {
-        let (dict, mut touched) = (PyDict::new(py), None);
+    pub fn new(
+        py: Python<'_>,
+        rows: usize,
+        spaces: &[ObservationSpace],
+        touch_width: usize,
+        lazy: bool,
+    ) -> PyResult<Self> {
+        let (dict, images, mut touched) = (PyDict::new(py), PyDict::new(py), None);
         let slab = |entry: &ObservationEntry| -> PyResult<Option<AnySlab>> {
             let Some(space) = spaces.iter().find(|space| space.key == entry.key) else {
                 return Ok(None);
             };
             let slab = AnySlab::new(py, entry.dtype, &[&[rows], &space.shape[..]].concat())?;
-            dict.set_item(entry.key, slab.view())?;
+            let of = if lazy && entry.image.is_some() { &images } else { &dict };
+            of.set_item(entry.key, slab.view())?;
             if entry.sense == Some(Sense::Touch) {
                 touched = Some(vec![Vec::new(); rows]);
             }
@@ -43,6 +54,8 @@ impl Arrays {
             rows,
             entries: ObservationEntry::ALL.iter().map(slab).collect::<PyResult<_>>()?,
             dict: dict.unbind(),
+            images: images.unbind(),
+            lazy,
             touched,
             touch_width,
             rewards: Slab::new(py, &[rows])?,
@@ -56,8 +69,27 @@ impl Arrays {
         if !copy {
             return Ok(self.dict.bind(py).clone());
         }
+        let lazy = self.lazy;
+        self.copies(py, |entry| !(lazy && entry.image.is_some()))
+    }
+
+    /// Returns the images alone.
+    pub fn eyes<'py>(&mut self, py: Python<'py>, copy: bool) -> PyResult<Bound<'py, PyDict>> {
+        if !copy && self.lazy {
+            return Ok(self.images.bind(py).clone());
+        }
+        self.copies(py, |entry| entry.image.is_some())
+    }
+
+    /// Returns the entries that are chosen in arrays of Python's own.
+    fn copies<'py>(
+        &mut self,
+        py: Python<'py>,
+        chosen: impl Fn(&ObservationEntry) -> bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for (entry, slab) in ObservationEntry::ALL.iter().zip(&mut self.entries) {
+        let entries = ObservationEntry::ALL.iter().zip(&mut self.entries);
+        for (entry, slab) in entries.filter(|(entry, _)| chosen(entry)) {
             let copied = match (slab, &self.touched, entry.sense) {
                 (None, _, _) => continue,
                 (Some(AnySlab::F32(slab)), Some(touched), Some(Sense::Touch)) => {

@@ -1,6 +1,7 @@
 //! Many environments at once, with arrays of NumPy over them.
 
 use babybench::env::Snapshot;
+use babybench::spaces::ObservationSpace;
 use babybench::vector::Seeds;
 use babybench::{AutoresetMode, VectorOptions};
 use numpy::PyArray1;
@@ -14,7 +15,7 @@ use crate::config::to_dict;
 use crate::env::UNINTERRUPTED;
 use crate::errors::{IntoException, detached};
 use crate::guarded::{Guard, Guarded};
-use crate::info::{Space, info_dict, infos_dict, report_dict, spaces, target_of};
+use crate::info::{Space, info_dict, infos_dict, is_image, report_dict, spaces, target_of};
 use crate::observation::dict_of_row;
 use crate::rows::Arrays;
 use crate::{model_change, task};
@@ -23,10 +24,16 @@ use crate::{model_change, task};
 struct Inner {
     envs: babybench::VectorEnv,
     touch_width: usize,
+    /// Whether observations are without images, for those who ask for them.
+    lazy: bool,
+    /// The spaces of what observations have.
+    spaces: Vec<ObservationSpace>,
     /// Rows of all environments, for steps.
     all: Arrays,
     /// Rows of those that were received last.
     some: Option<Arrays>,
+    /// Whether the last rows are those that were received.
+    received: bool,
     actions: Vec<f32>,
 }
 
@@ -62,13 +69,14 @@ impl VectorEnv {
 #[pymethods]
 impl VectorEnv {
     #[new]
-    #[pyo3(signature = (blueprints, autoreset="next_step", threads=0, max_memory=None))]
+    #[pyo3(signature = (blueprints, autoreset="next_step", threads=0, max_memory=None, lazy=false))]
     fn new(
         py: Python<'_>,
         blueprints: Vec<Py<Blueprint>>,
         autoreset: &str,
         threads: usize,
         max_memory: Option<u64>,
+        lazy: bool,
     ) -> PyResult<Self> {
         let autoreset = match autoreset {
             "next_step" => AutoresetMode::NextStep,
@@ -91,10 +99,14 @@ impl VectorEnv {
             .ok()
             .and_then(|env| env.senses().touch())
             .map_or(0, |touch| touch.width());
+        let all = envs.single_observation_space();
         let inner = Inner {
-            all: Arrays::new(py, envs.len(), envs.single_observation_space(), touch_width)?,
+            spaces: all.iter().filter(|space| !(lazy && is_image(space))).cloned().collect(),
+            all: Arrays::new(py, envs.len(), all, touch_width, lazy)?,
             touch_width,
+            lazy,
             some: None,
+            received: false,
             actions: Vec::new(),
             envs,
         };
@@ -124,7 +136,10 @@ impl VectorEnv {
             (None, None) => Seeds::Keep,
         };
         let mut guard = self.guard()?;
-        let Inner { envs, all, .. } = guard.open()?;
+        let Inner {
+            envs, all, received, ..
+        } = guard.open()?;
+        *received = false;
         all.fill(py, |buffers| {
             detached(py, || envs.reset_into(mask.as_deref(), seeds, buffers))
         })?;
@@ -137,6 +152,7 @@ impl VectorEnv {
         let inner = guard.open()?;
         let shape = [inner.envs.len(), inner.envs.single_action_space().len()];
         read("actions", actions, &shape, &mut inner.actions)?;
+        inner.received = false;
         let Inner { envs, all, actions, .. } = inner;
         all.fill(py, |buffers| detached(py, || envs.step_into(actions, buffers)))?;
         all.observations(py, copy)
@@ -175,8 +191,11 @@ impl VectorEnv {
             envs,
             some,
             touch_width,
+            lazy,
+            received,
             ..
         } = guard.open()?;
+        *received = true;
         let arrays = match some {
             Some(arrays) if arrays.rows == n => arrays,
             // more than there are is refused below, without room for them
@@ -185,6 +204,7 @@ impl VectorEnv {
                 n.min(envs.len()),
                 envs.single_observation_space(),
                 *touch_width,
+                *lazy,
             )?),
         };
         let ids = arrays.fill(py, |buffers| {
@@ -199,6 +219,21 @@ impl VectorEnv {
             of(&arrays.truncated.view),
             ids.into_any(),
         ))
+    }
+
+    #[pyo3(signature = (copy=false))]
+    fn eyes<'py>(&self, py: Python<'py>, copy: bool) -> PyResult<Bound<'py, PyDict>> {
+        let mut guard = self.guard()?;
+        let Inner {
+            envs,
+            all,
+            some,
+            received,
+            ..
+        } = guard.open()?;
+        let arrays = some.as_mut().filter(|_| *received).unwrap_or(all);
+        arrays.fill(py, |buffers| detached(py, || envs.look_into(buffers)))?;
+        arrays.eyes(py, copy)
     }
 
     fn close(&self) -> PyResult<()> {
@@ -233,8 +268,7 @@ impl VectorEnv {
 
     fn final_observations<'py>(&self, py: Python<'py>) -> PyResult<Vec<(usize, Bound<'py, PyDict>)>> {
         let mut guard = self.guard()?;
-        let envs = &guard.open()?.envs;
-        let spaces = envs.single_observation_space();
+        let Inner { envs, spaces, .. } = guard.open()?;
         let (finals, ids) = (envs.finals(), envs.batch().ids);
         let ends = finals
             .iter()
@@ -320,7 +354,7 @@ impl VectorEnv {
 
     #[getter]
     fn observation_spaces(&self) -> PyResult<Vec<Space>> {
-        Ok(spaces(self.guard()?.open()?.envs.single_observation_space()))
+        Ok(spaces(&self.guard()?.open()?.spaces, false))
     }
 
     fn seed_action_spaces(&self, seed: u64) -> PyResult<()> {

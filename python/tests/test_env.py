@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import SEEING, SMALL
+from gymnasium.utils.env_checker import check_env
 
 import babybench
 
@@ -341,3 +342,36 @@ def test_changes_of_the_model_that_are_none(env, changes, error, match):
     with pytest.raises(error, match=match):
         env.reset(options={"model": changes})
     assert env.snapshot() == before
+
+
+@pytest.mark.parametrize("views", [False, True])
+def test_eyes_are_drawn_for_those_who_ask(views):
+    keys = {"vision_resolution": 16, "vision_outputs": ["rgb", "depth"], "touch_scale": 4}
+    every = babybench.make("test_installation", **keys)
+    some = babybench.make("test_installation", views=views, vision_lazy=True, **keys)
+    images = ["eye_left", "eye_right", "eye_left_depth", "eye_right_depth"]
+    assert [key for key in every.observation_space.spaces if key not in some.observation_space.spaces] == sorted(images)
+    whole, _ = every.reset(seed=3)
+    blind, _ = some.reset(seed=3)
+    for step in range(9):
+        assert blind in some.observation_space
+        if step % 3 == 0:
+            seen = some.eyes()
+            assert list(seen) == images
+            for key, image in {**blind, **seen, **some.eyes()}.items():
+                np.testing.assert_array_equal(image, whole[key], err_msg=f"{key} of step {step}")
+        for key, array in every.eyes().items():
+            np.testing.assert_array_equal(array, whole[key])
+        action = every.action_space.sample()
+        whole, blind = every.step(action)[0], some.step(action)[0]
+    assert some.snapshot() == every.snapshot()
+
+
+def test_a_restored_environment_has_no_picture_to_draw():
+    env = babybench.make("test_installation", vision_lazy=True, touch_active=False)
+    env.reset(seed=0)
+    env.restore(env.snapshot())
+    assert env.eyes() == {}
+    env.step(env.action_space.sample())
+    assert set(env.eyes()) == {"eye_left", "eye_right"}
+    check_env(env, skip_render_check=True)

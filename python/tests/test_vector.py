@@ -366,3 +366,33 @@ def test_hands_in_view_are_counted_in_both_ways(compat):
         info = envs.info(k)
         assert list(info["page_regards"].values()) == infos["page_regards"][k].tolist()
         assert list(info["kit_regards"].values()) == infos["kit_regards"][k].tolist()
+
+
+@pytest.mark.parametrize("copy", [True, False])
+def test_eyes_of_all_are_drawn_for_those_who_ask(copy):
+    keys = {**SEEING, "max_episode_steps": 4}
+    every = babybench.VectorEnv(keys, 3, autoreset_mode="SameStep")
+    some = babybench.VectorEnv(keys, 3, autoreset_mode="SameStep", copy=copy, threads=2, vision_lazy=True)
+    every.reset(seed=1)
+    some.reset(seed=1)
+    for step, actions in enumerate(actions_of(every, 6)):
+        whole, *_, infos = every.step(actions)
+        blind, *_, blind_infos = some.step(actions)
+        assert some.observation_space.contains(blind)
+        assert "eye_left" not in blind
+        if "final_obs" in infos:
+            assert infos["final_obs"][0].keys() - blind_infos["final_obs"][0].keys() == {"eye_left", "eye_right"}
+        if step % 2 == 0:
+            for key, images in {**blind, **some.eyes(), **some.eyes()}.items():
+                np.testing.assert_array_equal(images, whole[key], err_msg=f"{key} of step {step}")
+    every.step_async(actions)
+    some.step_async(actions)
+    whole = every.step_wait()[0]
+    some.step_wait()
+    for key, images in some.eyes().items():
+        np.testing.assert_array_equal(images, whole[key])
+    with pytest.raises(ValueError, match="vision_lazy"):
+        babybench.VectorEnv([keys, {**keys, "vision_lazy": True}])
+    some.send(actions)
+    with pytest.raises(RuntimeError, match="environment 0"):
+        some.eyes()

@@ -32,6 +32,7 @@ const SHAPING: [Shaping; 5] = [
             "noise_vision",
             "delay_vision",
             "vision_rate",
+            "vision_lazy",
         ],
         reason: "it shapes what the eyes see, and they are off; set `vision_active: true`",
     },
@@ -117,6 +118,11 @@ impl Config {
                 let reason = "the Python code that `compat: reference` follows looks and feels in every step";
                 return Some((key, format!("{rate:?}"), reason.to_string()));
             }
+            Compat::Reference if self.vision_lazy => (
+                "vision_lazy",
+                self.vision_lazy.to_string(),
+                "the Python code that `compat: reference` follows draws images in every step",
+            ),
             Compat::Reference if self.vision_active && self.vision_resolution > self.render_size => (
                 "vision_resolution",
                 self.vision_resolution.to_string(),

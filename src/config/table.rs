@@ -158,6 +158,7 @@ config! {
         vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The images of each eye that are observed.";
         vision_threads: u32 = 1, EYES, "Threads that draw the eyes of an environment alone: 2 is faster by the clock, to the same bytes." + "Vectors of environments have threads of their own, and draw each environment with one.";
         vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees in a second, Hz; none for one in each step." + "Between two of them the last one is observed; environments of other seeds see theirs in other steps.";
+        vision_lazy: bool = false, Bool, "Images are drawn when they are asked for, and not at all if nobody does." + "Rust asks with `Env::look`, Python by reading them. Where a later image depends on each, by noise, a delay or a rate, all are drawn.";
         @group eyes: EyeOptions, "How sharp the eyes see, and where (`vision_acuity` ...).", "How sharp the eyes see, and where." {
             acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
             acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";

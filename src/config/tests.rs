@@ -48,7 +48,7 @@ fn defaults_are_those_of_the_api_page() {
                 render_size=480 save_logs_every=1000 compat=api engine=soft renderer=cpu learner=mimo other_age=none scene_extra=\"\" seed=0 facial_expression=default done_active=true action_penalty=true jitter=false position_inaccurate=false \
                 starting_position=supine mobile_limb=right_foot mobile_baseline=0.2 mobile_extinction=0.2 mobile_reward=false play_reward=false GROWTH DELAYS proprio_velocity=true \
                 proprio_torque=true proprio_limits=true proprio_actuation=true vestibular_active=true \
-                vision_active=true vision_resolution=64 vision_outputs=[rgb] vision_threads=1 vision_rate=none EYES touch_active=true touch_scale=1.0 touch_function=normal touch_rate=none \
+                vision_active=true vision_resolution=64 vision_outputs=[rgb] vision_threads=1 vision_rate=none vision_lazy=false EYES touch_active=true touch_scale=1.0 touch_function=normal touch_rate=none \
                 touch_response=nearest touch_hands=true touch_fingers=true touch_arms=true touch_feet=true \
                 touch_legs=true touch_body=true touch_head=true touch_eyes=false PAIN actuation_model=spring_damper \
                 act_hands=true act_fingers=true act_arms=true act_feet=true act_legs=true act_body=true act_head=true \

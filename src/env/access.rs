@@ -28,7 +28,11 @@ impl Env {
             low: entry.low,
             high: entry.high,
         };
-        self.observation().entries().map(space).collect()
+        // images have their place whether they are drawn or wait
+        self.with_goals(self.senses.observation_with(true))
+            .entries()
+            .map(space)
+            .collect()
     }
 
     /// Returns the information of the last step.

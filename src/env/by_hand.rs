@@ -95,8 +95,9 @@ impl<'a> Parts<'a> {
         env.restore(snapshot)?;
         env.refresh()?;
         // what was sensed just now takes the place of what the snapshot holds
+        let picture = env.senses.picture;
         env.restore(snapshot)?;
-        env.senses.known = true;
+        (env.senses.known, env.senses.picture) = (true, picture);
         Ok(env.observation())
     }
 
@@ -111,6 +112,7 @@ impl<'a> Parts<'a> {
     ///
     /// Under `compat: reference` a reset of the environment is this, [`Parts::forward`] at the settled state, and the start actions.
     pub fn reset_data(&mut self) {
+        self.env.senses.forget_picture();
         let mut scene = self.env.play().scene;
         scene.forget();
         scene.reset_actuators();
@@ -126,6 +128,7 @@ impl<'a> Parts<'a> {
     /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
     pub fn forward(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
         self.set_position(qpos, qvel)?;
+        self.env.senses.forget_picture();
         let forward = self.env.play().scene.forward();
         self.env.episode.ready = forward.is_ok();
         forward
@@ -178,6 +181,7 @@ impl<'a> Parts<'a> {
     /// # Errors
     /// A simulation that diverged.
     pub fn physics_step(&mut self) -> Result<(), EnvError> {
+        self.env.senses.forget_picture();
         let stepped = self.env.play().scene.steps(1);
         self.env.episode.ready &= stepped.is_ok();
         stepped

@@ -95,6 +95,7 @@ impl Env {
 
     pub(super) fn end_episode(&mut self) -> u64 {
         self.episode.ready = false;
+        self.senses.forget_picture();
         std::mem::take(&mut self.episode.steps)
     }
 

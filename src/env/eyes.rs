@@ -2,12 +2,96 @@
 
 use std::sync::Arc;
 
-use crate::env::{Env, EnvError};
+use crate::env::{Env, EnvError, Observation, Senses};
+use crate::physics::State;
 use crate::render::{ImageBuffers, RenderRequest, SharedGpu, draw_on};
 use crate::sensors::EyeImages;
+use crate::sensors::transform::Sense;
+use crate::spaces::NumpyRng;
+
+/// Where the picture is that belongs to the last observation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Picture {
+    /// In the observation.
+    Drawn,
+    /// Not drawn yet.
+    Waiting,
+    /// Never drawn, and the scene has moved on.
+    Gone,
+}
+
+impl Senses {
+    /// Draws what the eyes see, if they look now, and transforms it.
+    pub(super) fn observe_eyes(&mut self, state: &State, rng: &mut NumpyRng) -> Result<(), EnvError> {
+        let looks = self.eyes_look();
+        let Some(vision) = &mut self.vision else { return Ok(()) };
+        if looks {
+            vision.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
+        }
+        self.take_picture(rng);
+        Ok(())
+    }
+
+    /// Transforms the images that have just been drawn.
+    pub(super) fn take_picture(&mut self, rng: &mut NumpyRng) {
+        self.drawn += u64::from(self.eyes_look());
+        self.picture = Picture::Drawn;
+        for sense in Sense::EYES {
+            self.transform(sense, rng);
+        }
+    }
+
+    /// Returns whether what the eyes see is drawn when somebody asks for it. What a later picture depends on is drawn in any case.
+    pub(super) fn is_lazy(&self) -> bool {
+        self.vision_lazy && self.vision.is_some() && Sense::EYES.iter().all(|&eye| self.pipeline.is_independent(eye))
+    }
+
+    /// Returns whether there is something to draw for those who draw the eyes when they want to.
+    pub(super) fn wants_drawing(&self) -> bool {
+        self.picture == Picture::Waiting || !self.is_lazy()
+    }
+
+    /// Gives up a picture that nobody asked for, as the scene that it would show moves on.
+    pub(super) fn forget_picture(&mut self) {
+        if self.picture == Picture::Waiting {
+            self.picture = Picture::Gone;
+        }
+    }
+}
+
+impl Env {
+    /// Draws what the eyes see at the last observation, if that waits for somebody who asks ([`Config::vision_lazy`](crate::Config::vision_lazy)),
+    /// and returns the whole observation. It has the bits that it has without `vision_lazy`, whatever was asked for before. Until then, and
+    /// for good if a step comes first, the observation is without images. Otherwise nothing is drawn.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let config = Config { touch_active: false, vision_lazy: true, ..Config::default() };
+    /// let mut env = Env::new(config)?;
+    /// env.reset(Some(0))?;
+    /// let action = vec![0.2; env.action_space().len()];
+    /// for _ in 0..9 {
+    ///     assert!(env.step(&action)?.observation.eye_left.is_none());
+    /// }
+    /// assert!(env.look()?.eye_left.is_some());
+    /// assert_eq!(env.senses().pictures_drawn(), 1);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As the renderer.
+    pub fn look(&mut self) -> Result<Observation<'_>, EnvError> {
+        if self.senses.picture == Picture::Waiting {
+            draw_eyes([&mut *self])?;
+        }
+        Ok(self.observation())
+    }
+}
 
 /// Draws what the eyes of many environments see into their observations, and transforms it. With `renderer: wgpu`, all environments of a
-/// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other.
+/// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other. Those with
+/// [`Config::vision_lazy`](crate::Config::vision_lazy) whose eyes have been drawn already are left as they are.
 ///
 /// ```
 /// use babybench::env::draw_eyes;
@@ -32,7 +116,9 @@ use crate::sensors::EyeImages;
 pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Result<(), EnvError> {
     let mut on_gpus: Vec<&mut Env> = Vec::new();
     for env in environments {
-        let Some(vision) = &env.senses.vision else { continue };
+        let Some(vision) = env.senses.vision.as_ref().filter(|_| env.senses.wants_drawing()) else {
+            continue;
+        };
         env.physics.check_shape()?;
         if vision.renderer().shared_gpu().is_some() {
             on_gpus.push(env);
@@ -66,7 +152,7 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
         draw_on(&batch.gpu, &batch.requests, batch.images)?;
     }
     for env in environments {
-        env.senses.transform_eyes(&mut env.rng);
+        env.senses.take_picture(&mut env.rng);
     }
     Ok(())
 }

@@ -223,6 +223,7 @@ impl Env {
         self.physics.check_shape()?;
         self.mark(Some(EnvStage::Actuation));
         let frame_skip = self.blueprint.config().frame_skip;
+        self.senses.forget_picture();
         self.senses.prepare();
         let Play {
             mut scene,
@@ -300,15 +301,21 @@ impl Env {
     }
 
     /// Returns the observation of the last reset, step or [`Env::refresh`], all of it of one moment: after [`Env::restore`] it is without
-    /// what a snapshot does not hold (touch, pain, images), and changes of [`Env::state_mut`] are not in it.
+    /// what a snapshot does not hold (touch, pain, images), and changes of [`Env::state_mut`] are not in it. Images that wait for
+    /// [`Env::look`] are not in it, either.
     pub fn observation(&self) -> Observation<'_> {
+        self.with_goals(self.senses.observation())
+    }
+
+    /// Adds the goals to what is sensed.
+    fn with_goals<'a>(&'a self, sensed: Observation<'a>) -> Observation<'a> {
         fn goal(values: &[f64]) -> Option<&[f64]> {
             (!values.is_empty()).then_some(values)
         }
         Observation {
             achieved_goal: goal(&self.goals.achieved),
             desired_goal: goal(&self.goals.desired),
-            ..self.senses.observation()
+            ..sensed
         }
     }
 

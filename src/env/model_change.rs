@@ -280,7 +280,10 @@ impl Env {
         if self.config().actuation_model == ActuationModel::Muscle && change.concerns("actuator_gear") {
             return Err(ModelChangeError::Muscles.into());
         }
-        self.blueprint = self.blueprint.changed(&change)?;
+        let blueprint = self.blueprint.changed(&change)?;
+        // a picture that waits is that of the geoms as they are
+        self.look()?;
+        self.blueprint = blueprint;
         let model = self.blueprint.model();
         change.apply_to(&mut self.physics.base, model);
         change.apply_to(&mut self.physics.state.params, model);

@@ -13,10 +13,20 @@ struct Stage {
     configured: bool,
 }
 
+impl Stage {
+    /// Returns a transform that the configuration asks for.
+    fn configured(transform: Box<dyn Transform>) -> Self {
+        let configured = true;
+        Self { transform, configured }
+    }
+}
+
 /// The transforms of a sense.
 #[derive(Clone, Default)]
 struct Chain {
     stages: Vec<Stage>,
+    /// How many of them, the first ones, look at what is sensed now and at nothing else: acuity, foveation.
+    optics: usize,
     /// For a sense that does not look in every step: what it saw last, after so many stages. Those behind, a delay and what a program
     /// added, go on in every step.
     hold: Option<(usize, Hold)>,
@@ -34,30 +44,26 @@ impl Pipeline {
     /// foveation, noise, delay.
     pub fn configure(&mut self, model: &Model, config: &Config, sense: Sense, like: &Signal<'_>) {
         let chain = &mut self.chains[sense as usize];
-        let mut add = |transform: Box<dyn Transform>| {
-            let configured = true;
-            chain.stages.push(Stage { transform, configured });
-        };
         if let &Signal::Eye { height, width, .. } = like {
             let eye = usize::from(sense == Sense::EyeRight);
-            optics(model, config, eye, [height, width])
-                .into_iter()
-                .for_each(&mut add);
+            let optics = optics(model, config, eye, [height, width]);
+            chain.optics = optics.len();
+            chain.stages.extend(optics.into_iter().map(Stage::configured));
         }
         let (deviation, delay) = sense.noise_and_delay(config);
         if deviation > 0.0 {
             let noise = Noise::new(deviation);
             let magnitudes = matches!(like, Signal::Skin(values) if values.width() == 1);
-            add(Box::new(if magnitudes { noise.of_magnitudes() } else { noise }));
+            let noise = if magnitudes { noise.of_magnitudes() } else { noise };
+            chain.stages.push(Stage::configured(Box::new(noise)));
         }
         if sense.rate(config).is_some() {
             chain.hold = Some((chain.stages.len(), Hold::new(like)));
         }
         let steps = effective(config, config.delays.of(delay));
         if steps > 0 {
-            let transform = Box::new(Delay::new(steps, Delays::step_ms(config.frame_skip), like));
-            let configured = true;
-            chain.stages.push(Stage { transform, configured });
+            let delay = Delay::new(steps, Delays::step_ms(config.frame_skip), like);
+            chain.stages.push(Stage::configured(Box::new(delay)));
         }
     }
 
@@ -67,6 +73,13 @@ impl Pipeline {
         !chain.stages.is_empty() || chain.hold.is_some()
     }
 
+    /// Returns whether what a sense reports in a step can be left out without changing what comes later: no transform remembers it or draws
+    /// random numbers for it.
+    pub fn is_independent(&self, sense: Sense) -> bool {
+        let chain = &self.chains[sense as usize];
+        chain.stages.len() == chain.optics && chain.hold.is_none()
+    }
+
     /// Returns the transforms of a sense.
     pub fn of(&self, sense: Sense) -> impl Iterator<Item = &dyn Transform> {
         self.chains[sense as usize].stages.iter().map(|stage| &*stage.transform)
@@ -74,7 +87,7 @@ impl Pipeline {
 
     /// Transforms what a sense reports. If it has not looked in this step, it is what it saw last.
     pub fn apply(&mut self, sense: Sense, mut signal: Signal<'_>, looked: bool, rng: &mut NumpyRng) {
-        let Chain { stages, hold } = &mut self.chains[sense as usize];
+        let Chain { stages, hold, .. } = &mut self.chains[sense as usize];
         let mut apply = |stages: &mut [Stage], signal: &mut Signal<'_>| {
             for stage in stages {
                 stage.transform.apply(signal.reborrow(), rng);
@@ -134,7 +147,7 @@ impl Pipeline {
 
     /// Takes over what the same transforms saved, from the front of `bytes`; `false` if it is something else.
     pub fn load(&mut self, bytes: &mut &[u8]) -> bool {
-        self.chains.iter_mut().all(|Chain { stages, hold }| {
+        self.chains.iter_mut().all(|Chain { stages, hold, .. }| {
             let loaded = stages
                 .iter_mut()
                 .all(|stage| take_part(bytes).is_some_and(|part| stage.transform.load(part)));

@@ -11,6 +11,7 @@ impl Env {
     /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
         self.set_position(qpos, qvel)?;
+        self.senses.forget_picture();
         if let Err(e) = self.physics.forward() {
             self.episode.ready = false;
             return Err(e.into());
@@ -46,6 +47,7 @@ impl Env {
     /// [`Env::reset`] is needed; as the renderer.
     pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
         // the solver leaves its solution in the state as the start of the next one: the state gets its own back
+        self.senses.forget_picture();
         let before = self.physics.state.clone();
         let posed = self.physics.forward();
         self.physics.state.copy_dynamic_from(&before);

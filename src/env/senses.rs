@@ -3,6 +3,7 @@
 use crate::actuation::Actuation;
 use crate::config::VisionOutput;
 use crate::env::clock::Clock;
+use crate::env::eyes::Picture;
 use crate::env::pipeline::Pipeline;
 use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
@@ -38,6 +39,13 @@ pub struct Senses {
     pain_values: SkinValues,
     /// Whether [`super::draw_eyes`] draws what the eyes see, instead of each step.
     pub(super) vision_deferred: bool,
+    /// Whether pictures wait for somebody who asks for them.
+    pub(super) vision_lazy: bool,
+    pub(super) picture: Picture,
+    /// How often the eyes were drawn.
+    pub(super) drawn: u64,
+    /// How often there was an observation.
+    pub(super) moment: u64,
     /// Whether touch, pain and images belong to the same moment as the rest: a restored snapshot does not hold them.
     pub(super) known: bool,
 }
@@ -81,6 +89,10 @@ impl Senses {
             numbers: numbers.map(|len| len.map(|len| vec![0.0; len])),
             eyes: [images(), images()],
             vision_deferred: false,
+            vision_lazy: config.vision_lazy,
+            picture: Picture::Drawn,
+            drawn: 0,
+            moment: 0,
             known: true,
             pipeline: Pipeline::default(),
             clocks: [config.vision_rate, config.touch_rate].map(|rate| Some(Clock::new(rate?, blueprint.dt()))),
@@ -129,6 +141,7 @@ impl Senses {
     /// Adds a transform to a sense that is on.
     pub(super) fn add_transform(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         self.pipeline.add(sense, transform);
+        self.forget_picture();
         self.make_room();
     }
 
@@ -168,7 +181,7 @@ impl Senses {
     }
 
     /// Transforms what a sense reports.
-    fn transform(&mut self, sense: Sense, rng: &mut NumpyRng) {
+    pub(super) fn transform(&mut self, sense: Sense, rng: &mut NumpyRng) {
         if self.pipeline.changes(sense) {
             let mut pipeline = std::mem::take(&mut self.pipeline);
             let looked = self.looks(sense);
@@ -236,21 +249,13 @@ impl Senses {
             v.observe(state, numbers_of(&mut self.numbers, Sense::Vestibular));
             self.transform(Sense::Vestibular, rng);
         }
-        if !self.vision_deferred {
+        self.moment += 1;
+        let lazy = self.is_lazy();
+        self.picture = if lazy { Picture::Waiting } else { Picture::Drawn };
+        if !lazy && !self.vision_deferred {
             self.observe_eyes(state, rng)?;
         }
         self.known = true;
-        Ok(())
-    }
-
-    /// Draws what the eyes see, if they look now, and transforms it.
-    pub(super) fn observe_eyes(&mut self, state: &State, rng: &mut NumpyRng) -> Result<(), EnvError> {
-        let looks = self.eyes_look();
-        let Some(vision) = &mut self.vision else { return Ok(()) };
-        if looks {
-            vision.draw(state, self.eyes.each_mut().map(EyeImages::buffers))?;
-        }
-        self.transform_eyes(rng);
         Ok(())
     }
 
@@ -282,16 +287,9 @@ impl Senses {
         }
     }
 
-    /// Transforms the images that have just been drawn.
-    pub(super) fn transform_eyes(&mut self, rng: &mut NumpyRng) {
-        for sense in Sense::EYES {
-            self.transform(sense, rng);
-        }
-    }
-
     /// Wakes the thread that draws the second eye, as both will be drawn in a moment.
     pub(super) fn prepare(&self) {
-        let look = self.clocks[0].as_ref().is_none_or(Clock::will_be_due);
+        let look = !self.is_lazy() && self.clocks[0].as_ref().is_none_or(Clock::will_be_due);
         if let (Some(vision), true) = (&self.vision, look) {
             vision.renderer().prepare();
         }
@@ -315,9 +313,14 @@ impl Senses {
         }
     }
 
-    /// Returns what was observed last.
+    /// Returns what was observed last, without images that have not been drawn.
     pub(super) fn observation(&self) -> Observation<'_> {
-        let eyes = if self.known { &self.eyes } else { &NO_IMAGES };
+        self.observation_with(self.picture == Picture::Drawn)
+    }
+
+    /// Returns what was observed last, with images of whatever moment or without.
+    pub(super) fn observation_with(&self, images: bool) -> Observation<'_> {
+        let eyes = if self.known && images { &self.eyes } else { &NO_IMAGES };
         Observation::from_fn(|entry| match (entry.sense?, entry.image) {
             (eye, Some(image)) => eyes[usize::from(eye == Sense::EyeRight)].image(image),
             (Sense::Touch, None) => self.touch_observed().map(|felt| felt.values().into()),

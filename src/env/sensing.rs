@@ -59,6 +59,24 @@ impl Senses {
         self.vision.as_ref().map_or(1, |vision| vision.renderer().threads())
     }
 
+    /// Returns how often the eyes were drawn for observations, both at once: with [`Config::vision_lazy`](crate::Config::vision_lazy), only for
+    /// those who asked.
+    pub fn pictures_drawn(&self) -> u64 {
+        self.drawn
+    }
+
+    /// Returns whether the eyes are drawn when somebody asks for it ([`Env::look`](crate::Env::look)): the configuration says
+    /// [`vision_lazy`](crate::Config::vision_lazy), and no later picture depends on each, by noise, a delay, a rate or a transform that a program added.
+    pub fn vision_is_lazy(&self) -> bool {
+        self.is_lazy()
+    }
+
+    /// Returns how often there was an observation: two are of one moment where it is the same.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn moment(&self) -> u64 {
+        self.moment
+    }
+
     /// Returns whether [`draw_eyes`](crate::env::draw_eyes) draws the eyes' images, not each step.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn vision_is_deferred(&self) -> bool {

@@ -240,6 +240,7 @@ impl Env {
         self.episode.ready = ready == 1;
         self.rng = NumpyRng::at(seed, drawn);
         self.senses.known = false;
+        self.senses.forget_picture();
         Ok(())
     }
 

@@ -290,6 +290,7 @@ impl Policy for CommandPolicy {
     }
 
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
+        env.look().map_err(|e| PolicyError::Other(Box::new(e)))?;
         let mut line = json::text(&Line::new(env, self.now)).into_bytes();
         line.push(b'\n');
         let answer = self.ask(line)?;

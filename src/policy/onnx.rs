@@ -17,6 +17,7 @@ use super::{Policy, PolicyError};
 use crate::env::{Env, Observation};
 use crate::files;
 use crate::limits::Limits;
+use crate::sensors::ObservationEntry;
 use crate::spaces::{BoxSpace, Dtype, ObservationSpace, Values};
 use crate::text::quoted;
 
@@ -221,6 +222,12 @@ impl OnnxPolicy {
         self.run(observation, space, action).map_err(|e| self.error(e))
     }
 
+    /// Returns whether the model takes images.
+    fn sees(&self) -> bool {
+        let mut senses = self.inputs.iter().flat_map(|input| &input.senses);
+        senses.any(|key| ObservationEntry::of_key(key).is_some_and(|entry| entry.image.is_some()))
+    }
+
     fn match_inputs(&self, spaces: &[ObservationSpace]) -> Result<Vec<Input>, OnnxError> {
         let ids = self.model.input_ids();
         let names: Vec<String> = ids.iter().map(|&id| name(&self.model, id)).collect();
@@ -417,6 +424,9 @@ impl Policy for OnnxPolicy {
     fn act(&mut self, env: &mut Env, action: &mut Vec<f32>) -> Result<(), PolicyError> {
         if self.inputs.is_empty() {
             self.connect(&env.observation_space())?;
+        }
+        if self.sees() {
+            env.look().map_err(|e| PolicyError::Other(Box::new(e)))?;
         }
         self.decide(&env.observation(), env.action_space(), action)
     }

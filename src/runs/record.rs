@@ -232,12 +232,15 @@ impl Recorder {
         let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
         let drawn = env.drawn();
         env.step(action)?;
+        // checksums are of images, too
+        env.look()?;
         rows.push(env, action, drawn, &self.shared.options);
         Ok(())
     }
 
     /// Records the present moment of an environment as a step, with the action that is said to have led to it: for steps that a program
-    /// puts together itself ([`Env::by_hand`]). A replay, which knows actions alone, finds other bits there.
+    /// puts together itself ([`Env::by_hand`]). A replay, which knows actions alone, finds other bits there. Images that wait for
+    /// [`Env::look`] are not recorded.
     ///
     /// # Errors
     /// No episode was begun; an action of wrong length or with numbers that are not finite.

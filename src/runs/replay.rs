@@ -112,6 +112,7 @@ pub fn replay_with_images(
         {
             out.eye_size = env.config().vision_resolution as usize;
             out.eye_steps.push(t as i64);
+            env.look().map_err(at(t))?;
             out.push_eyes(env, viewer).map_err(at(t))?;
         }
     }

@@ -114,6 +114,11 @@ impl Buffers<'_> {
         self.write_entries(row, observation, |_| true);
     }
 
+    /// Writes the images of a row.
+    pub(super) fn write_images(&mut self, row: usize, env: &Env) {
+        self.write_entries(row, &env.observation(), |entry| entry.image.is_some());
+    }
+
     pub(super) fn write_flags(&mut self, row: usize, reward: f64, terminated: bool, truncated: bool) {
         if let Some(rewards) = &mut self.rewards {
             rewards[row] = reward;

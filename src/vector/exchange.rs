@@ -339,11 +339,12 @@ impl VectorEnv {
     fn begin_batch(&mut self) {
         self.ids.clear();
         self.failures.clear();
+        self.unseen = self.lazy;
     }
 
     /// Draws the eyes of all environments of the batch together, if each does not draw its own.
     fn draw_eyes(&mut self) -> Result<(), VectorError> {
-        if !self.deferred {
+        if !self.deferred || self.lazy {
             return Ok(());
         }
         let ids = &self.ids;
@@ -374,7 +375,7 @@ impl VectorEnv {
     }
 }
 
-fn panicked(slot: &Slot) -> Option<VectorError> {
+pub(super) fn panicked(slot: &Slot) -> Option<VectorError> {
     slot.panicked.as_ref().map(|message| VectorError::Panicked {
         env: slot.index,
         message: message.clone(),

@@ -24,6 +24,7 @@ mod buffers;
 mod error;
 mod exchange;
 mod infos;
+mod look;
 mod memory;
 pub(crate) mod options;
 mod rows;
@@ -80,6 +81,10 @@ pub struct VectorEnv {
     autoreset: AutoresetMode,
     /// Whether the eyes of all environments are drawn together.
     deferred: bool,
+    /// Whether the eyes of environments are drawn when somebody asks for it.
+    lazy: bool,
+    /// Whether the rows are still without pictures.
+    unseen: bool,
     layout: Layout,
     action_space: BoxSpace,
     observation_space: Vec<ObservationSpace>,
@@ -141,6 +146,7 @@ impl VectorEnv {
         let deferred = envs
             .iter()
             .all(|e| e.senses().vision().is_some() && e.config().renderer == RendererKind::Wgpu);
+        let lazy = envs.iter().any(|env| env.senses().vision_is_lazy());
         let layout = Layout::new(&envs);
         let (action_space, observation_space) = (envs[0].action_space().clone(), envs[0].observation_space());
         let slots = envs.into_iter().enumerate().map(|(index, mut env)| {
@@ -159,6 +165,8 @@ impl VectorEnv {
             clipped,
             autoreset: mode,
             deferred,
+            lazy,
+            unseen: false,
             layout,
             action_space,
             observation_space,
@@ -210,7 +218,7 @@ impl VectorEnv {
         let n = self.ids.len();
         Batch {
             ids: &self.ids,
-            observation: self.rows.observation(n),
+            observation: self.rows.observation(n, !self.unseen),
             rewards: &self.rows.rewards()[..n],
             terminated: &self.rows.terminated()[..n],
             truncated: &self.rows.truncated()[..n],
@@ -230,7 +238,7 @@ impl VectorEnv {
         let n = self.ids.len();
         self.finals.as_ref().map(|ends| Finals {
             ended: &ends.ended[..n],
-            observation: ends.rows.observation(n),
+            observation: ends.rows.observation(n, true),
             infos: ends.infos.infos(n),
         })
     }

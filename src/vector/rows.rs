@@ -104,11 +104,11 @@ impl Rows {
         }
     }
 
-    /// Returns the observations of the first `n` rows.
-    pub fn observation(&self, n: usize) -> Observation<'_> {
+    /// Returns the observations of the first `n` rows, with images or without.
+    pub fn observation(&self, n: usize, images: bool) -> Observation<'_> {
         let mut arrays = self.entries.iter().zip(self.layout.entries);
-        Observation::from_fn(|_| {
-            let (array, len) = arrays.next()?;
+        Observation::from_fn(|entry| {
+            let (array, len) = arrays.next().filter(|_| images || entry.image.is_none())?;
             Some(array.as_ref()?.first(n * len?))
         })
     }

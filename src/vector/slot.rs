@@ -15,6 +15,8 @@ pub(super) enum Order {
     Step,
     /// Start an episode, with a seed or without.
     Reset(Option<u64>),
+    /// Draw what the eyes see, if that waits.
+    Look,
 }
 
 /// An environment on its way between the vector and the threads.
@@ -82,8 +84,11 @@ impl Slot {
     }
 
     fn perform(&mut self) {
-        (self.reward, self.terminated, self.truncated) = (0.0, false, false);
-        (self.ended, self.failure) = (false, None);
+        if !matches!(self.order, Order::Look) {
+            // whoever looks keeps what came of the last step
+            (self.reward, self.terminated, self.truncated) = (0.0, false, false);
+            (self.ended, self.failure) = (false, None);
+        }
         match self.order {
             Order::Reset(seed) => {
                 if let Err(e) = self.revive() {
@@ -94,6 +99,7 @@ impl Slot {
             }
             Order::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
             Order::Step => self.step(),
+            Order::Look => self.failure = self.env.look().err(),
         }
     }
 
@@ -131,7 +137,8 @@ impl Slot {
     }
 
     fn keep_last(&mut self) {
-        if self.env.senses().vision_is_deferred() && self.env.ready() {
+        let senses = self.env.senses();
+        if (senses.vision_is_deferred() || senses.vision_is_lazy()) && self.env.ready() {
             // the others are still under way: this environment draws what it saw last by itself
             if let Err(e) = draw_eyes([&mut self.env]) {
                 self.failure.get_or_insert(e);
@@ -171,7 +178,7 @@ impl Last {
 
     /// Returns the last observation.
     pub fn observation(&self) -> Observation<'_> {
-        self.rows.observation(1)
+        self.rows.observation(1, true)
     }
 }
 

@@ -86,6 +86,7 @@ impl Render {
             }
         }
         if self.observed {
+            env.look()?;
             return self.draw_observed(&env);
         }
         let size = self.size.unwrap_or(env.config().render_size as usize);

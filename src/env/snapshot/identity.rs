@@ -19,7 +19,7 @@ pub(in crate::env) struct Identity {
 }
 
 /// Keys on which no snapshot depends.
-const APART: [&str; 7] = [
+const APART: [&str; 8] = [
     "save_dir",
     "max_episode_steps",
     "render_size",
@@ -27,6 +27,7 @@ const APART: [&str; 7] = [
     "renderer",
     "seed",
     "vision_threads",
+    "vision_lazy",
 ];
 
 impl Identity {
@@ -159,6 +160,10 @@ fn fingerprint(model: &Model, config: &Config) -> u64 {
     let shapes = |key: &&Key| {
         // rates, too, came later
         if !rated && ["vision_rate", "touch_rate"].contains(&key.name) {
+            return false;
+        }
+        // when images are drawn is remembered nowhere
+        if key.name == "vision_lazy" {
             return false;
         }
         ["Delays", "Pain"].contains(&key.section)

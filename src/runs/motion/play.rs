@@ -79,6 +79,7 @@ pub fn play_motion(
             None => {
                 env.by_hand().show(&qpos, &qvel)?;
                 if let Some(recorder) = &mut recorder {
+                    env.look()?;
                     recorder.note(env, &still)?;
                 }
             }

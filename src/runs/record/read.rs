@@ -135,6 +135,7 @@ impl Record {
             // what the policy drew is not drawn again
             env.draw_from(drawn.data[t] as u64);
             env.step(&action)?;
+            env.look()?;
             if first_difference.is_none() && checksum(env) != expected {
                 first_difference = Some(t as u64);
             }

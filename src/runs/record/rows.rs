@@ -99,8 +99,8 @@ impl Rows {
             (_, Some(_)) => options.eyes_every.is_some(),
             _ => options.senses,
         };
-        let observation = env.observation();
-        let there = |entry: &&ObservationEntry| observation.get(entry.key).is_some();
+        let spaces = env.observation_space();
+        let there = |entry: &&ObservationEntry| spaces.iter().any(|space| space.key == entry.key);
         let entries = ObservationEntry::ALL.iter().filter(wanted).filter(there);
         self.senses = entries.map(|entry| (entry, Array::zeros(entry.dtype, 0))).collect();
     }

@@ -174,11 +174,11 @@ fn add(npz: &mut NpzWriter, name: &str, shape: &[usize], values: Values<'_>) -> 
 impl Replay {
     /// Starts a replay of `len` steps with the senses of an environment.
     pub(super) fn begin(env: &Env, len: usize) -> Self {
-        let observation = env.observation();
+        let spaces = env.observation_space();
+        let there = |key| spaces.iter().any(|space| space.key == key);
         // pictures are taken whether the eyes see or not
-        let kept = |entry: &&ObservationEntry| {
-            is_sense(entry) && (observation.get(entry.key).is_some() || entry.image == Some(VisionOutput::Rgb))
-        };
+        let kept =
+            |entry: &&ObservationEntry| is_sense(entry) && (there(entry.key) || entry.image == Some(VisionOutput::Rgb));
         let senses = ObservationEntry::ALL.iter().filter(kept);
         Self {
             len,

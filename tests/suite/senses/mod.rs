@@ -3,6 +3,7 @@
 mod delays;
 mod eyes;
 mod infants;
+mod lazy;
 mod rates;
 #[cfg(feature = "npz")]
 mod readers;

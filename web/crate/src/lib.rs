@@ -36,7 +36,9 @@ impl Blueprint {
     /// files of the caller's, by path, which lie over those of the library.
     #[wasm_bindgen(constructor)]
     pub fn new(yaml: &str, name: &str, paths: Vec<String>, contents: Vec<Uint8Array>) -> Result<Blueprint, JsValue> {
-        let config = Config::from_yaml(yaml, name).map_err(|e| js::config_error(&e))?;
+        let mut config = Config::from_yaml(yaml, name).map_err(|e| js::config_error(&e))?;
+        // a page that wants no pictures defers them: its arrays are of what was observed last
+        config.vision_lazy = false;
         let mut files = MemoryAssets::new();
         for (path, bytes) in paths.iter().zip(contents) {
             files.insert(path, bytes.to_vec()).map_err(js::error)?;
