@@ -1,0 +1,86 @@
+//! Prints how many bytes an observation has that travels between machines, as it is and packed: touch as the sensors that feel something
+//! (their numbers and forces), pictures as PNG, which loses nothing. The rest is as it is.
+
+use babybench::{Config, Env, Observation};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+
+/// BabyBench's three configurations, by name.
+const EXAMPLES: [(&str, &str); 3] = [
+    ("self_touch", include_str!("../configs/config_selftouch.yml")),
+    ("hand_regard", include_str!("../configs/config_handregard.yml")),
+    (
+        "test_installation",
+        include_str!("../configs/config_test_installation.yml"),
+    ),
+];
+/// Steps of an episode, and episodes, over which the mean is taken.
+const STEPS: usize = 100;
+const EPISODES: u64 = 3;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("| configuration | numbers | touch | touch, packed | both eyes | both eyes, packed | all | all, packed |");
+    println!("|---|--:|--:|--:|--:|--:|--:|--:|");
+    for (name, text) in EXAMPLES {
+        let mut env = Env::new(Config::from_yaml(text, name)?)?;
+        let (mut sizes, mut action) = (Sizes::default(), Vec::new());
+        for seed in 0..EPISODES {
+            env.reset(Some(seed))?;
+            for _ in 0..STEPS {
+                env.sample_action(&mut action);
+                env.step(&action)?;
+                sizes.add(&env)?;
+            }
+        }
+        sizes.print(name);
+    }
+    Ok(())
+}
+
+/// Bytes of what was observed so far.
+#[derive(Default)]
+struct Sizes {
+    numbers: usize,
+    touch: [usize; 2],
+    eyes: [usize; 2],
+    observations: usize,
+}
+
+impl Sizes {
+    fn add(&mut self, env: &Env) -> Result<(), Box<dyn std::error::Error>> {
+        let seen: Observation = env.observation();
+        let numbers = [
+            seen.vestibular,
+            seen.touch_pooled,
+            seen.achieved_goal,
+            seen.desired_goal,
+        ];
+        self.numbers += 8 * numbers
+            .iter()
+            .flatten()
+            .fold(seen.proprioception.len(), |n, v| n + v.len());
+        if let Some(felt) = env.senses().touch_observed() {
+            self.touch[0] += size_of_val(felt.values());
+            // two bytes say which sensor it is
+            self.touch[1] += felt.touched().len() * (2 + 4 * felt.width());
+        }
+        for eye in [seen.eye_left, seen.eye_right].into_iter().flatten() {
+            let side = env.config().vision_resolution;
+            let mut packed = Vec::new();
+            PngEncoder::new(&mut packed).write_image(eye, side, side, ExtendedColorType::Rgb8)?;
+            self.eyes[0] += eye.len();
+            self.eyes[1] += packed.len();
+        }
+        self.observations += 1;
+        Ok(())
+    }
+
+    fn print(&self, name: &str) {
+        let mean = |bytes: usize| bytes / self.observations.max(1);
+        let [touch, touch_packed] = self.touch.map(mean);
+        let [eyes, eyes_packed] = self.eyes.map(mean);
+        let numbers = mean(self.numbers);
+        let (all, packed) = (numbers + touch + eyes, numbers + touch_packed + eyes_packed);
+        println!("| {name} | {numbers} | {touch} | {touch_packed} | {eyes} | {eyes_packed} | {all} | {packed} |");
+    }
+}
