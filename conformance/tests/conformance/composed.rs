@@ -1,4 +1,5 @@
-//! Models that are made of others, cables, and sites that are held together, each beside MuJoCo 3.3.0: compiled arrays and steps.
+//! Models that are made of others, cables, sites that are held together, and friction of what turns, each beside MuJoCo 3.3.0: compiled arrays
+//! and steps.
 
 use conformance::mujoco::{MUJOCO, needed};
 use conformance::worlds::{Outcome, compare_all};
@@ -12,7 +13,7 @@ pub fn trials() -> Vec<Trial> {
 fn composed_models_are_those_of_mujoco() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/composed").into();
     let worlds = compare_all(needed(), &[folder]).expect("documents");
-    assert_eq!(worlds.len(), 18, "documents that MuJoCo takes");
+    assert_eq!(worlds.len(), 19, "documents that MuJoCo takes");
     for world in worlds {
         match world.outcome {
             Outcome::Both(figures) => assert!(figures.agrees(), "{}: {:?}", world.path, figures.arrays),

@@ -10,6 +10,9 @@ use crate::physics::engine::EngineError;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
+/// Least diagonal entry of the matrix of a contact's friction, 1/kg, as in MuJoCo.
+const LEAST: f64 = 1e-10;
+
 impl Dual {
     /// Changes the forces of dry friction and of friction of contacts, after another solver (MuJoCo's `mj_solNoSlip`), and
     /// `qacc, qfrc_constraint` with them; the start of the next step's solver stays. `bodies` must be up to date.
@@ -67,6 +70,13 @@ impl Dual {
         if row == col { value - efc.r[row] } else { value }
     }
 
+    /// Returns an entry of the matrix of a contact's friction. Directions in which nothing can move count as MuJoCo counts them: what it
+    /// finds to be singular, where forces stay as they are, depends on it.
+    fn of_contact(&self, efc: &Efc, row: usize, col: usize) -> f64 {
+        let value = self.rigid(efc, row, col);
+        if row == col { value.max(LEAST) } else { value }
+    }
+
     /// Returns the derivative of the cost without regularisation by the force of a row.
     fn residual(&self, efc: &Efc, row: usize) -> f64 {
         let n = efc.nefc();
@@ -95,7 +105,7 @@ impl Dual {
                 residual[r] = self.residual(efc, j + r);
                 old[r] = efc.force[j + r];
                 for (c, v) in a[r].iter_mut().enumerate() {
-                    *v = self.rigid(efc, j + r, j + c);
+                    *v = self.of_contact(efc, j + r, j + c);
                 }
             }
             let rest = |r: usize| residual[r] - (a[r][0] * old[0] + a[r][1] * old[1]);
@@ -128,7 +138,7 @@ impl Dual {
             residual[r] = self.residual(efc, first + r);
             old[r] = efc.force[first + r];
             for c in 0..n {
-                cost.a[r][c] = self.rigid(efc, first + r, first + c);
+                cost.a[r][c] = self.of_contact(efc, first + r, first + c);
             }
         }
         for r in 0..n {
