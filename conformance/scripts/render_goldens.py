@@ -1,6 +1,6 @@
 """Writes conformance/data/render_{base,crib,cubes}.npz: what MuJoCo 3.3.0 draws of the models in assets/, by OSMesa.
 
-    MUJOCO_GL=osmesa python render_goldens.py [--assets DIR] [--out DIR] [--poses DIR] [--time]
+    MUJOCO_GL=osmesa python render_goldens.py [--assets DIR] [--out DIR] [--poses DIR] [--time] [--only small]
 
 Body version 1 in base and crib, 2 in cubes. States are positions only; pictures are of mj_forward at them. Kinds of
 states, in turn: random torques; a hand before the eyes; toys before the eyes, or the own body and the floor; MIMo
@@ -15,7 +15,8 @@ turned and moved to look into the room (crib: at the rails). Arrays:
 Pictures have row 0 at the top. So that they compress, each stores the difference to the pixel on the left, modulo 256.
 With --time nothing is written: of the first states in DIR, the CPU time of drawing is printed, a line for each: scene, number
 of the state, `eyes` (both) or `corner`, ms. `conformance speed --pictures yes` lays ours beside it.
-Of data/glass.xml, a scene with transparent things, render_glass.npz has the views of all cameras:
+Of data/glass.xml (transparent things), data/meshes.xml (meshes, by mesh_room.py) and data/strings.xml (tendons), render_glass.npz and so
+on have the views of all cameras; with --only small nothing else is written:
 
     views       (V, 120, 160, 3)    u8
 
@@ -37,6 +38,7 @@ from check_assets import GROUPS, POSES, compile_model
 STATES = 24
 TIMED = 8
 VERSION = {"base": 1, "crib": 1, "cubes": 2}
+SMALL = ["glass", "meshes", "strings"]
 VIEWS = [("corner", 0), ("top", 3), ("side1", 1), ("side2", 2), ("closeup", 0), ("eye_left", 1)]
 
 
@@ -159,14 +161,15 @@ def packed(pictures):
     return pictures
 
 
-def glass(directory, out):
-    model = mujoco.MjModel.from_xml_path(str(directory / "glass.xml"))
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_camlight(model, data)
-    renderer = mujoco.Renderer(model, 120, 160)
-    np.savez_compressed(out / "render_glass.npz", views=packed([draw(renderer, data, c) for c in range(model.ncam)]))
-    renderer.close()
+def small_scenes(directory, out):
+    for name in SMALL:
+        model = mujoco.MjModel.from_xml_path(str(directory / f"{name}.xml"))
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        renderer = mujoco.Renderer(model, 120, 160)
+        views = packed([draw(renderer, data, c) for c in range(model.ncam)])
+        np.savez_compressed(out / f"render_{name}.npz", views=views)
+        renderer.close()
 
 
 def main():
@@ -176,7 +179,11 @@ def main():
     parser.add_argument("--out", type=Path, default=here / "data")
     parser.add_argument("--poses", type=Path)
     parser.add_argument("--time", action="store_true")
+    parser.add_argument("--only", choices=["small"])
     args = parser.parse_args()
+    if args.only:
+        small_scenes(here / "data", args.out)
+        return
     with tempfile.TemporaryDirectory() as temporary:
         directory = Path(temporary) / "assets"
         shutil.copytree(args.assets, directory)
@@ -211,7 +218,7 @@ def main():
             if args.poses:
                 np.concatenate(poses).tofile(args.poses / f"{scene}.poses")
     if not args.time:
-        glass(here / "data", args.out)
+        small_scenes(here / "data", args.out)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, Kind, Store, TEXT, Value, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
-use super::words::{MAX_GROUP, SOLIMP, SOLREF, TRI, Tri};
+use super::words::{GREY, MAX_GROUP, SOLIMP, SOLREF, TRI, Tri};
 
 table! {
     /// `<pair>`.
@@ -208,16 +208,16 @@ table! {
         "stiffness" stiffness: f64 = 0.0, real(NonNegative), "Stiffness of the spring.";
         "damping" damping: f64 = 0.0, real(NonNegative), "Damping.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
-        check "group", int(0, MAX_GROUP), "Visual group. Ignored: tendons are not drawn.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group.";
     }
 }
 
 table! {
     /// Attributes that only spatial tendons have, beside those of all.
     group TendonLooks {
-        "width" width: f64 = 0.003, real(Any), "Width in MuJoCo's viewer, m, which must be positive. Otherwise ignored: tendons are not drawn.";
-        check "rgba", reals(4, Any), "Colour in MuJoCo's viewer. Ignored: tendons are not drawn.";
-        check "material", TEXT, "Material in MuJoCo's viewer. Ignored: tendons are not drawn.";
+        "width" width: f64 = 0.003, real(Any), "Radius that the tendon is drawn with, m, which must be positive.";
+        "rgba" rgba: [f64; 4] = GREY, reals(4, Any), "Colour and opacity.";
+        "material" material: Option<String> = None, TEXT, "Material.";
     }
 }
 

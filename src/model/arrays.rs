@@ -334,6 +334,14 @@ arrays! {
     ["internals"] tendon_invweight0: Vec<f64>,
     /// Length at `qpos0`.
     ["internals"] tendon_length0: Vec<f64>,
+    /// Visual group.
+    ["internals"] tendon_group: Vec<usize>,
+    /// Radius of what is drawn, m.
+    ["internals"] tendon_width: Vec<f64>,
+    /// Colour and opacity.
+    ["internals"] tendon_rgba: Vec<[f64; 4]>,
+    /// Material.
+    ["internals"] tendon_matid: Vec<Option<usize>>,
     /// Numbers for programs, `nuser_tendon` for each tendon.
     tendon_user: Vec<Vec<f64>>,
 

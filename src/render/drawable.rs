@@ -1,8 +1,9 @@
-//! Visible geoms and sites: shape, size, colour.
+//! Visible geoms, sites and tendons: shape, size, colour.
 
-use crate::math::Vec3;
+use crate::math::{Mat3, Vec3};
 use crate::model::{GeomType, Model};
 use crate::render::scenery::single;
+use crate::render::tendon::rope;
 use crate::render::texture::TexturePixels;
 use crate::render::view::Poses;
 
@@ -20,6 +21,13 @@ pub enum Element {
     Geom(usize),
     /// A site, by id.
     Site(usize),
+    /// A straight piece of a spatial tendon.
+    Tendon {
+        /// The tendon, by id.
+        tendon: usize,
+        /// The piece, from the first on; how many there are changes as the tendon touches geoms and leaves them.
+        piece: usize,
+    },
 }
 
 /// The mesh that a [`Drawable`] uses.
@@ -44,7 +52,7 @@ impl Shape {
     pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
 }
 
-/// A visible geom or site.
+/// A visible geom or site, or a piece of a tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawable {
     /// Element of the model.
@@ -53,8 +61,8 @@ pub struct Drawable {
     pub shape: Shape,
     /// Index into [`Scenery::meshes`](crate::render::Scenery::meshes).
     pub mesh: usize,
-    /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length. Images follow
-    /// [`Poses::geom_size`].
+    /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
+    /// for a piece of a tendon. Images follow [`Drawable::placed`].
     pub size: [f32; 3],
     /// Radius of the bounding sphere around its origin, m.
     pub radius: f32,
@@ -75,6 +83,8 @@ pub struct Drawable {
     /// Type and size of the element in the model.
     kind: GeomType,
     measured: Vec3,
+    /// The upward direction times the length of a tendon that hangs loose; zeros for everything else, m.
+    pub(super) rope: Vec3,
     /// Half of a side that has no end, m.
     far: f32,
     /// Whether the texture keeps its scale when the size changes.
@@ -86,6 +96,7 @@ pub(super) fn material(model: &Model, element: Element) -> Option<usize> {
     match element {
         Element::Geom(g) => model.geom_matid[g],
         Element::Site(s) => model.site_matid[s],
+        Element::Tendon { tendon, .. } => model.tendon_matid[tendon],
     }
 }
 
@@ -114,6 +125,10 @@ impl Drawable {
         let (kind, size, own) = match element {
             Element::Geom(g) => (model.geom_type[g], model.geom_size[g], model.geom_rgba[g]),
             Element::Site(s) => (model.site_type[s], model.site_size[s], model.site_rgba[s]),
+            Element::Tendon { tendon, .. } => {
+                let size = [model.tendon_width[tendon], 1.0, 0.0];
+                (GeomType::Capsule, size, model.tendon_rgba[tendon])
+            }
         };
         let (shape, scale, radius) = dimensions(kind, size, far);
         let mut drawable = Self {
@@ -132,6 +147,7 @@ impl Drawable {
             texture_offset: 0.0,
             kind,
             measured: size,
+            rope: [0.0; 3],
             far,
             texuniform: false,
         };
@@ -139,6 +155,9 @@ impl Drawable {
             && kind == GeomType::HField
         {
             drawable.radius = model.geom_rbound[g] as f32;
+        }
+        if let Element::Tendon { tendon, .. } = element {
+            drawable.rope = rope(model, tendon);
         }
         if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
             if drawable.rgba == DEFAULT_RGBA {
@@ -157,21 +176,30 @@ impl Drawable {
         Self { mesh, ..self }
     }
 
-    /// Returns the drawable with the size that its geom has in these poses.
+    /// Returns the drawable with the size that it has in these poses, its position and its orientation; `None` for a piece of a tendon
+    /// that is not there.
     #[inline(always)]
-    pub fn sized(&self, poses: &Poses) -> Self {
-        let size = match self.element {
-            Element::Geom(g) => poses.geom_size.get(g),
-            Element::Site(_) => None,
-        };
-        match size {
-            Some(size) if *size != self.measured => self.resized(*size),
-            _ => *self,
+    pub fn placed(&self, poses: &Poses) -> Option<(Self, Vec3, Mat3)> {
+        match self.element {
+            Element::Geom(g) => {
+                let drawable = match poses.geom_size.get(g) {
+                    Some(size) if *size != self.measured => self.resized(*size),
+                    _ => *self,
+                };
+                Some((drawable, poses.geom_xpos[g], poses.geom_xmat[g]))
+            }
+            Element::Site(s) => Some((*self, poses.site_xpos[s], poses.site_xmat[s])),
+            Element::Tendon { tendon, piece } => self.strung(poses, tendon, piece),
         }
     }
 
+    /// Returns the size of the element in the model.
+    pub(super) fn measured(&self) -> Vec3 {
+        self.measured
+    }
+
     #[cold]
-    fn resized(&self, measured: Vec3) -> Self {
+    pub(super) fn resized(&self, measured: Vec3) -> Self {
         let (_, size, radius) = dimensions(self.kind, measured, self.far);
         let mut other = Self {
             size,

@@ -43,6 +43,7 @@ mod plain;
 mod renderer;
 mod scenery;
 mod strip;
+mod tendon;
 mod texture;
 mod view;
 

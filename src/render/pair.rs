@@ -221,6 +221,10 @@ struct PosesBuffer {
     geom_size: Vec<Vec3>,
     site_xpos: Vec<Vec3>,
     site_xmat: Vec<Mat3>,
+    ten_wrapadr: Vec<usize>,
+    ten_wrapnum: Vec<usize>,
+    wrap_xpos: Vec<Vec3>,
+    wrap_obj: Vec<i32>,
     cam_xpos: Vec<Vec3>,
     cam_xmat: Vec<Mat3>,
     free: Option<(Vec3, Mat3)>,
@@ -240,6 +244,10 @@ impl PosesBuffer {
         copy(&mut self.geom_size, poses.geom_size);
         copy(&mut self.site_xpos, poses.site_xpos);
         copy(&mut self.site_xmat, poses.site_xmat);
+        copy(&mut self.ten_wrapadr, poses.ten_wrapadr);
+        copy(&mut self.ten_wrapnum, poses.ten_wrapnum);
+        copy(&mut self.wrap_xpos, poses.wrap_xpos);
+        copy(&mut self.wrap_obj, poses.wrap_obj);
         copy(&mut self.cam_xpos, poses.cam_xpos);
         copy(&mut self.cam_xmat, poses.cam_xmat);
         self.free = poses.free;
@@ -255,6 +263,10 @@ impl PosesBuffer {
             geom_size: &self.geom_size,
             site_xpos: &self.site_xpos,
             site_xmat: &self.site_xmat,
+            ten_wrapadr: &self.ten_wrapadr,
+            ten_wrapnum: &self.ten_wrapnum,
+            wrap_xpos: &self.wrap_xpos,
+            wrap_obj: &self.wrap_obj,
             cam_xpos: &self.cam_xpos,
             cam_xmat: &self.cam_xmat,
             free: self.free,

@@ -7,10 +7,11 @@ use crate::render::RenderError;
 use crate::render::drawable::{Drawable, Element, Shape, material};
 use crate::render::mesh::Mesh;
 use crate::render::model_mesh::ModelMeshes;
+use crate::render::tendon::pieces;
 use crate::render::texture::{Loader, TexturePixels};
 use crate::render::view::{Poses, View};
 
-/// Groups of geoms and sites that are visible.
+/// Groups of geoms, sites and tendons that are visible.
 const VISIBLE_GROUPS: std::ops::Range<usize> = 0..3;
 /// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
@@ -102,7 +103,7 @@ impl Camera {
 #[doc(alias = "mjvScene")]
 #[derive(Clone, Debug)]
 pub struct Scenery {
-    /// Visible geoms and sites, in the order of the model.
+    /// Visible geoms, sites and tendons, in the order of the model.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub drawables: Vec<Drawable>,
     /// Meshes: those of [`Shape::ALL`](crate::render::Shape::ALL) in its order, then those of the model that are visible.
@@ -132,8 +133,8 @@ pub struct Scenery {
     /// Distance of the far plane, m.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub far: f64,
-    /// Numbers of geoms, sites and bodies that poses must have.
-    sizes: [usize; 3],
+    /// Numbers of geoms, sites, bodies, tendons and points of tendons that poses must have.
+    sizes: [usize; 5],
 }
 
 impl Scenery {
@@ -216,7 +217,13 @@ impl Scenery {
                 .collect(),
             near: vis.znear * model.stat.extent,
             far,
-            sizes: [model.ngeom(), model.nsite(), model.nbody()],
+            sizes: [
+                model.ngeom(),
+                model.nsite(),
+                model.nbody(),
+                model.ntendon(),
+                2 * model.nwrap(),
+            ],
         })
     }
 
@@ -261,7 +268,7 @@ impl Scenery {
             return Err(RenderError::OffCentre { camera });
         }
         view.check()?;
-        let [geoms, sites, bodies] = self.sizes;
+        let [geoms, sites, bodies, tendons, points] = self.sizes;
         for (what, positions, matrices, expected) in [
             ("geoms", poses.geom_xpos.len(), poses.geom_xmat.len(), geoms),
             ("geoms", poses.geom_size.len(), poses.geom_size.len(), geoms),
@@ -272,6 +279,8 @@ impl Scenery {
                 poses.cam_xmat.len(),
                 self.cameras.len(),
             ),
+            ("tendons", poses.ten_wrapadr.len(), poses.ten_wrapnum.len(), tendons),
+            ("points of tendons", poses.wrap_xpos.len(), poses.wrap_obj.len(), points),
             ("bodies", poses.xpos.len(), poses.xmat.len(), bodies),
             ("bodies", poses.subtree_com.len(), poses.subtree_com.len(), bodies),
         ] {
@@ -288,7 +297,9 @@ impl Scenery {
 fn visible(model: &Model) -> impl Iterator<Item = Element> {
     let geoms = (0..model.ngeom()).filter(|&g| VISIBLE_GROUPS.contains(&model.geom_group[g]));
     let sites = (0..model.nsite()).filter(|&s| VISIBLE_GROUPS.contains(&model.site_group[s]));
-    geoms.map(Element::Geom).chain(sites.map(Element::Site))
+    let tendons = (0..model.ntendon()).filter(|&t| VISIBLE_GROUPS.contains(&model.tendon_group[t]));
+    let tendons = tendons.flat_map(move |tendon| pieces(model, tendon));
+    geoms.map(Element::Geom).chain(sites.map(Element::Site)).chain(tendons)
 }
 
 pub(super) fn single<const N: usize>(v: [f64; N]) -> [f32; N] {

@@ -111,6 +111,18 @@ pub struct Poses<'a> {
     pub site_xpos: &'a [Vec3],
     /// Orientations of the sites.
     pub site_xmat: &'a [Mat3],
+    /// First point of each tendon in `wrap_xpos`.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub ten_wrapadr: &'a [usize],
+    /// Number of points of each tendon; none for fixed ones.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub ten_wrapnum: &'a [usize],
+    /// Points that spatial tendons run through.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub wrap_xpos: &'a [Vec3],
+    /// The geom that each of these points is on, -1 for a site, -2 for a pulley.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub wrap_obj: &'a [i32],
     /// Positions of the cameras.
     pub cam_xpos: &'a [Vec3],
     /// Orientations of the cameras.
@@ -138,8 +150,8 @@ pub struct ImageBuffers<'a> {
     /// Distance (m) from the camera's plane to the surface at the centre of each pixel, (H, W); infinite where there is
     /// nothing. Transparent things are not drawn.
     pub depth: Option<&'a mut [f32]>,
-    /// The id of the geom at the centre of each pixel, (H, W); -1 where there is none. Sites occlude geoms behind
-    /// them, and so do transparent geoms.
+    /// The id of the geom at the centre of each pixel, (H, W); -1 where there is none. Sites and tendons occlude geoms
+    /// behind them, and so do transparent geoms.
     pub segmentation: Option<&'a mut [i32]>,
 }
 

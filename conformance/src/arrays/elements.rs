@@ -130,6 +130,10 @@ pub fn unrecorded(m: &Model) -> Named {
         ("tendon_solref_fri", flat(&m.tendon_solref_fri)),
         ("tendon_solimp_fri", flat(&m.tendon_solimp_fri)),
         ("tendon_length0", m.tendon_length0.clone()),
+        ("tendon_group", ids(&m.tendon_group)),
+        ("tendon_width", m.tendon_width.clone()),
+        ("tendon_rgba", flat(&m.tendon_rgba)),
+        ("tendon_matid", optional(&m.tendon_matid)),
         (
             "actuator_trntype",
             m.actuator_trntype.iter().map(transmission).collect(),

@@ -14,20 +14,20 @@ use testkit::harness::{Need, Trial};
 use testkit::{show, trials};
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs GPU: eyes_and_room_cameras_show_what_mujoco_draws, transparent_geoms_are_what_mujoco_draws]
+    trials![needs GPU: eyes_and_room_cameras_show_what_mujoco_draws, small_scenes_are_what_mujoco_draws]
 }
 
 /// An adapter for wgpu.
 const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
-    match GpuRenderer::new(glass().1.into()) {
+    match GpuRenderer::new(small("glass").1.into()) {
         Err(e @ GpuError::NoAdapter { .. }) => Err(e.to_string()),
         _ => Ok(()),
     }
 });
 
-/// What BabyBench's scenes do not have: transparent geoms, a plane seen from below.
-fn glass() -> (Model, Scenery) {
-    let model = load_str(&data::text("glass.xml"), "glass.xml", &embedded())
+/// What BabyBench's scenes do not have: transparent geoms, a plane seen from below; meshes; tendons.
+fn small(name: &str) -> (Model, Scenery) {
+    let model = load_str(&data::text(&format!("{name}.xml")), name, &embedded())
         .and_then(compile)
         .expect("the scene compiles");
     let scenery = Scenery::new(&model, &embedded()).expect("the textures load");
@@ -127,18 +127,21 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
     }
 }
 
-fn transparent_geoms_are_what_mujoco_draws() {
-    let (mut gpu, mut engine) = open(glass().0);
-    let state = state(&mut engine, &[]);
-    let npz = data::npz("render_glass.npz");
-    let (size, theirs) = pictures(&npz, "views");
-    let shots: Vec<_> = (0..theirs.len()).map(|k| shot(&state, k, size)).collect();
-    for apart in [true, false] {
-        gpu.draw_apart(apart);
-        for (one, shot) in differences(&mut gpu, &shots, &theirs).iter().zip(&shots) {
-            show!("{:10} {one}", engine.model().cam_name[shot.view.camera]);
-            let fine = one.mean() <= 0.4 && one.off()[0] <= 0.2 && one.least_ssim() >= 0.999;
-            assert!(only_print() || fine, "{one}");
+fn small_scenes_are_what_mujoco_draws() {
+    for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("strings", 0.05)] {
+        let (mut gpu, mut engine) = open(small(name).0);
+        let qpos0 = engine.model().qpos0.clone();
+        let state = state(&mut engine, &qpos0);
+        let npz = data::npz(&format!("render_{name}.npz"));
+        let (size, theirs) = pictures(&npz, "views");
+        let shots: Vec<_> = (0..theirs.len()).map(|k| shot(&state, k, size)).collect();
+        for apart in [true, false] {
+            gpu.draw_apart(apart);
+            for (one, shot) in differences(&mut gpu, &shots, &theirs).iter().zip(&shots) {
+                show!("{name} {:10} {one}", engine.model().cam_name[shot.view.camera]);
+                let fine = one.mean() <= mean && one.off()[0] <= 0.2 && one.least_ssim() >= 0.999;
+                assert!(only_print() || fine, "{one}");
+            }
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Compiles tendons.
 
-use super::context::{Context, Ids, User};
+use super::context::{Context, Ids, User, named};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::relation::{Along, Tendon};
+use crate::mjcf_loader::settings::single;
 use crate::model::{Arrays, GeomType, Wrap};
 
 /// MuJoCo takes such a tendon, but lets its length depend on both coefficients and its force on the last alone.
@@ -70,6 +71,17 @@ pub(super) fn compile_tendon(
     arrays.tendon_solimp_fri.push(tendon.solimp_friction);
     arrays.tendon_stiffness.push(tendon.stiffness);
     arrays.tendon_damping.push(tendon.damping);
+    compile_looks(context, tendon, ids, arrays)
+}
+
+/// Compiles what only changes pictures.
+fn compile_looks(context: &Context, tendon: &Tendon, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
+    let find = |name: &String| ids.material.find(context.tree, tendon.at, "material", name);
+    let looks = &tendon.looks;
+    arrays.tendon_matid.push(named(&looks.material).map(find).transpose()?);
+    arrays.tendon_group.push(tendon.group);
+    arrays.tendon_width.push(looks.width);
+    arrays.tendon_rgba.push(looks.rgba.map(single));
     Ok(())
 }
 

@@ -6,9 +6,8 @@ use super::camera::{Eye, Row, V3, dot, single};
 use super::group::Waiting;
 use super::plane::{Basis, Vertex};
 use super::target::{Target, Triangle};
-use crate::math::{Mat3, Vec3};
 use crate::render::RenderError;
-use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
+use crate::render::drawable::{BEHIND, Drawable, OPAQUE, Shape};
 use crate::render::scenery::Scenery;
 use crate::render::view::{Poses, View};
 
@@ -102,14 +101,6 @@ pub struct Targets {
     pub centre: bool,
 }
 
-/// Returns the pose of a drawable in the world.
-pub fn pose(drawable: &Drawable, poses: &Poses) -> (Vec3, Mat3) {
-    match drawable.element {
-        Element::Geom(g) => (poses.geom_xpos[g], poses.geom_xmat[g]),
-        Element::Site(s) => (poses.site_xpos[s], poses.site_xmat[s]),
-    }
-}
-
 impl Frame {
     /// Begins an image: finds what is in view.
     pub fn begin(
@@ -123,8 +114,10 @@ impl Frame {
         let eye = Eye::new(scenery, poses, view);
         self.clear(scenery, view, targets);
         for (i, drawable) in scenery.drawables.iter().enumerate() {
-            let drawable = &drawable.sized(poses);
-            let (pos, mat) = pose(drawable, poses);
+            let Some((drawable, pos, mat)) = drawable.placed(poses) else {
+                continue;
+            };
+            let drawable = &drawable;
             let [x, y, z] = eye.locate(single(pos));
             let r = drawable.radius;
             // the side planes of the frustum lean by `tan`; the root makes their normals unit vectors
@@ -209,8 +202,10 @@ impl Frame {
 
     /// Draws a drawable unless it is hidden.
     fn place(&mut self, scenery: &Scenery, poses: &Poses, eye: &Eye, index: usize, transparent: bool) {
-        let drawable = &scenery.drawables[index].sized(poses);
-        let (pos, mat) = pose(drawable, poses);
+        let Some((drawable, pos, mat)) = scenery.drawables[index].placed(poses) else {
+            return;
+        };
+        let drawable = &drawable;
         if self.hidden(drawable, eye, single(pos)) {
             return;
         }

@@ -28,8 +28,6 @@ mod triangles;
 
 #[cfg(feature = "wgpu")]
 pub(super) use camera::{Eye, V3, dot, single};
-#[cfg(feature = "wgpu")]
-pub(super) use frame::pose;
 use frame::{Frame, Targets};
 #[cfg(feature = "wgpu")]
 pub(super) use light::{PlacedLight, place as place_lights};
@@ -99,7 +97,7 @@ impl CpuRenderer {
         if let Some(out) = segmentation {
             frame.elements(out, |index| match scenery.drawables[index].element {
                 Element::Geom(geom) => geom as i32,
-                Element::Site(_) => -1,
+                Element::Site(_) | Element::Tendon { .. } => -1,
             });
         }
         if targets.colour {
@@ -195,8 +193,8 @@ impl CpuRenderer {
         self.draw(scenery, poses, view, ImageBuffers::depth(out))
     }
 
-    /// Draws geom ids: the geom at the centre of each pixel, rows from the top; -1 where there is none. Sites occlude
-    /// geoms behind them, and so do transparent geoms.
+    /// Draws geom ids: the geom at the centre of each pixel, rows from the top; -1 where there is none. Sites and
+    /// tendons occlude geoms behind them, and so do transparent geoms.
     ///
     /// # Errors
     /// Fails like [`CpuRenderer::rgb`].

@@ -201,7 +201,10 @@ impl Seen {
         self.lit.clear();
         for &index in &frame.placed {
             let draw = &frame.draws[index as usize];
-            let drawable = &scenery.drawables[index as usize].sized(poses);
+            let Some((drawable, ..)) = scenery.drawables[index as usize].placed(poses) else {
+                continue;
+            };
+            let drawable = &drawable;
             let mesh = &scenery.meshes[drawable.mesh];
             let (mut batch, mut count) = ([0; 4], 0);
             for first in (draw.base..draw.end).step_by(STRIDE) {

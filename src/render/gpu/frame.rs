@@ -4,7 +4,7 @@ use super::atlas::{Atlas, Tile};
 use super::pipelines::Output;
 use super::scene::{GpuScene, LIGHTS};
 use crate::render::RenderRequest;
-use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, pose, single};
+use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, single};
 use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
 use crate::render::scenery::Scenery;
 
@@ -154,8 +154,10 @@ impl Frame {
     /// Culls and sorts the drawables of a view.
     fn sort(&mut self, r: &Submission, view: usize, eye: &Eye) {
         for (i, drawable) in r.scenery.drawables.iter().enumerate() {
-            let drawable = &drawable.sized(&r.requests[view].poses);
-            let (pos, mat) = pose(drawable, &r.requests[view].poses);
+            let Some((drawable, pos, mat)) = drawable.placed(&r.requests[view].poses) else {
+                continue;
+            };
+            let drawable = &drawable;
             let at = eye.locate(single(pos));
             // drawables inside their image need no clipping at its border, so those of all views share one call
             let Some(whole) = seen(eye, at, drawable.radius, r.scenery.far as f32) else {
@@ -217,8 +219,9 @@ impl Frame {
         for of_view in clear.chunk_by(|a, b| a.0 == b.0) {
             let (start, view) = (self.calls.len(), of_view[0].0);
             for &(_, _, drawable) in of_view.iter().chain(of_view.iter().rev()) {
-                let poses = &r.requests[view].poses;
-                let (pos, mat) = pose(&r.scenery.drawables[drawable], poses);
+                let Some((_, pos, mat)) = r.scenery.drawables[drawable].placed(&r.requests[view].poses) else {
+                    continue;
+                };
                 let class = if behind(&self.eyes[view], &r.scenery.drawables[drawable], single(pos), &mat) {
                     r.scene.class_behind[drawable]
                 } else {
@@ -237,12 +240,14 @@ impl Frame {
     /// Adds an instance, to the last call since `start` if that is of the same class. `own` instances are drawn with the
     /// image as viewport.
     fn emit(&mut self, r: &Submission, start: usize, class: usize, view: usize, drawable: usize, own: bool) {
+        let Some(instance) = instance(r, &self.eyes[view], view, &r.scenery.drawables[drawable], own) else {
+            return;
+        };
         let first = self.instances.len() as u32;
         match self.calls[start..].last_mut() {
             Some(call) if call.class == class => call.count += 1,
             _ => self.calls.push(Call { class, first, count: 1 }),
         }
-        let instance = instance(r, &self.eyes[view], view, &r.scenery.drawables[drawable], own);
         self.instances.push(instance);
     }
 }
@@ -266,9 +271,10 @@ fn behind(eye: &Eye, drawable: &Drawable, pos: V3, mat: &crate::math::Mat3) -> b
     drawable.shape == Shape::Plane && dot(d, [mat[2] as f32, mat[5] as f32, mat[8] as f32]) < 0.0
 }
 
-fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> [f32; INSTANCE] {
-    let drawable = &drawable.sized(&r.requests[view].poses);
-    let (pos, mat) = pose(drawable, &r.requests[view].poses);
+/// Returns the attributes of an instance; `None` for a piece of a tendon that is not there.
+fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bool) -> Option<[f32; INSTANCE]> {
+    let (drawable, pos, mat) = drawable.placed(&r.requests[view].poses)?;
+    let drawable = &drawable;
     let [x, y, z] = eye.model(pos, &mat, drawable.size);
     let [sx, sy, length] = drawable.size;
     let cap = 0.5 * (sx + sy);
@@ -278,7 +284,7 @@ fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bo
     }
     let id = match drawable.element {
         Element::Geom(g) => (g + 1) as f32,
-        Element::Site(_) => 0.0,
+        Element::Site(_) | Element::Tendon { .. } => 0.0,
     };
     let [u, v, s] = drawable.texture_scale;
     let (pos, m) = (single(pos), mat.map(|v| v as f32));
@@ -307,5 +313,5 @@ fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bo
     ];
     let mut out = [0.0; INSTANCE];
     out.copy_from_slice(rows.as_flattened());
-    out
+    Some(out)
 }

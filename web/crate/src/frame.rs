@@ -3,7 +3,7 @@
 use babybench::math::mat_t_vec;
 use babybench::model::Model;
 use babybench::physics::State;
-use babybench::render::{Element, Poses, Scenery};
+use babybench::render::{Poses, Scenery};
 use babybench::sensors::Touch;
 
 /// Poses, feelings and contacts of one moment.
@@ -26,12 +26,13 @@ impl Frame {
         self.poses.clear();
         let placed = Poses::from(s);
         for d in &scenery.drawables {
-            let (pos, mat) = match d.element {
-                Element::Geom(g) => (&s.geom_xpos[g], &s.geom_xmat[g]),
-                Element::Site(i) => (&s.site_xpos[i], &s.site_xmat[i]),
+            // a piece of a tendon that is not there has no extent
+            let Some((now, pos, mat)) = d.placed(&placed) else {
+                self.poses.extend([0.0; 12]);
+                continue;
             };
             self.poses.extend(pos.iter().map(|&v| v as f32));
-            let size = d.sized(&placed).size;
+            let size = now.size;
             let grown = |i: usize| if size[i] == d.size[i] { 1.0 } else { size[i] / d.size[i] };
             self.poses
                 .extend(mat.iter().enumerate().map(|(i, &v)| v as f32 * grown(i % 3)));

@@ -113,8 +113,11 @@ fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
     let (geom, body, name) = match d.element {
         Element::Geom(g) => (Some(g), m.geom_bodyid[g], &m.geom_name[g]),
         Element::Site(s) => (None, m.site_bodyid[s], &m.site_name[s]),
+        Element::Tendon { tendon, .. } => (None, 0, &m.tendon_name[tendon]),
     };
     let shape = match d.shape {
+        // which the page can stretch, unlike a capsule
+        _ if matches!(d.element, Element::Tendon { .. }) => "cylinder",
         Shape::Plane => "plane",
         Shape::Sphere => "sphere",
         Shape::Capsule => "capsule",
