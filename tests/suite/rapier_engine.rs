@@ -403,6 +403,42 @@ fn geoms_that_start_deep_in_each_other_have_finite_forces() {
     }
 }
 
+/// A block whose shape is a mesh lies on the floor and carries a ball.
+#[test]
+fn meshes_touch_as_their_hulls() {
+    let text = "<mujoco><asset><mesh name='m' vertex='-.1 -.1 -.1 .1 -.1 -.1 -.1 .1 -.1 .1 .1 -.1 -.1 -.1 .1 .1 -.1 .1 -.1 .1 .1 .1 .1 .1'/></asset>\
+        <worldbody><geom type='plane' size='1 1 1'/>\
+        <body pos='0 0 .1'><freejoint/><geom type='mesh' mesh='m' mass='1'/></body>\
+        <body pos='0 0 .25'><freejoint/><geom size='.05' mass='.5'/></body></worldbody></mujoco>";
+    let model = load_str(text, "m.xml", &MemoryAssets::new())
+        .and_then(compile)
+        .expect("a model");
+    let model = Arc::new(model);
+    let mut engine = RapierEngine::new(model.clone(), RapierOptions::default()).expect("a model for Rapier");
+    let mut state = engine.new_state();
+    let mut carried = 0.0;
+    for step in 0..500 {
+        engine.step(&mut state).expect("no divergence");
+        let of_floor = state.contact.iter().filter(|contact| contact.geom[0] == 0);
+        carried += if step < 400 {
+            0.0
+        } else {
+            of_floor.map(|contact| contact.force[0]).sum()
+        };
+    }
+    let weight = 1.5 * 9.81;
+    assert!(
+        (0.01 * carried / weight - 1.0).abs() < 0.02,
+        "{} N of {weight} N",
+        0.01 * carried
+    );
+    assert!(
+        (state.xpos[1][2] - 0.1).abs() < 2e-3 && (state.xpos[2][2] - 0.25).abs() < 4e-3,
+        "{:?}",
+        state.xpos
+    );
+}
+
 fn endure(behavior: Behavior, scene: Scene, steps: usize) {
     let long = std::env::var_os("BABYBENCH_LONG").is_some_and(|v| v == "1");
     let steps = if long {

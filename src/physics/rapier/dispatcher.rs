@@ -12,6 +12,7 @@ use rapier3d_f64::parry::shape::{PackedFeatureId, Shape, TypedShape};
 use crate::math::{MAT3_ID, Mat3, Vec3, add_scaled};
 use crate::model::GeomType;
 use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
+use crate::physics::rapier::hull::{HullShape, plain};
 
 /// A query dispatcher with the contact manifolds of [`crate::physics::contact`], and Parry's for everything else.
 ///
@@ -40,6 +41,9 @@ impl ContactDispatcher {
 /// Describes a shape as the contact routines see it: type, size, bounding radius, and whether its frame differs from
 /// the collider's (Parry's cylinders stand along y).
 fn describe(shape: &dyn Shape) -> Option<(GeomType, Vec3, f64, bool)> {
+    if let Some(hull) = shape.as_shape::<HullShape>() {
+        return Some((GeomType::Mesh, [0.0; 3], hull.radius(), false));
+    }
     Some(match shape.as_typed_shape() {
         TypedShape::HalfSpace(_) => (GeomType::Plane, [0.0; 3], 0.0, false),
         TypedShape::Ball(b) => (GeomType::Sphere, [b.radius, 0.0, 0.0], b.radius, false),
@@ -76,7 +80,7 @@ fn vector(v: Vec3) -> Vector {
 
 impl ContactDispatcher {
     /// Finds contacts in the frame of the first shape; `None` when a shape is not one of the model's.
-    fn points(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Option<(Vec<ContactPoint>, bool)> {
+    fn points<'s>(&self, pos12: &Pose, g1: &'s dyn Shape, g2: &'s dyn Shape) -> Option<(Vec<ContactPoint>, bool)> {
         let (kind1, size1, radius1, upright1) = describe(g1)?;
         let (kind2, size2, radius2, upright2) = describe(g2)?;
         let mat1 = if upright1 {
@@ -86,12 +90,13 @@ impl ContactDispatcher {
         };
         let mat2 = geom_mat(ParryMat3::from_quat(pos12.rotation), upright2);
         let t = pos12.translation;
+        let mesh = |shape: &'s dyn Shape| shape.as_shape::<HullShape>().map(|hull| &*hull.mesh);
         let first = PlacedGeom {
             kind: kind1,
             size: size1,
             pos: [0.0; 3],
             mat: &mat1,
-            mesh: None,
+            mesh: mesh(g1),
             hfield: None,
         };
         let second = PlacedGeom {
@@ -99,7 +104,7 @@ impl ContactDispatcher {
             size: size2,
             pos: [t.x, t.y, t.z],
             mat: &mat2,
-            mesh: None,
+            mesh: mesh(g2),
             hfield: None,
         };
         let flipped = kind1 > kind2;
@@ -130,6 +135,7 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let Some((points, flipped)) = self.points(pos12, g1, g2) else {
+            let (g1, g2) = (plain(g1), plain(g2));
             return DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
         };
         for m in manifolds.iter_mut() {
@@ -184,11 +190,11 @@ impl QueryDispatcher for ContactDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        DefaultQueryDispatcher.intersection_test(pos12, g1, g2)
+        DefaultQueryDispatcher.intersection_test(pos12, plain(g1), plain(g2))
     }
 
     fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
-        DefaultQueryDispatcher.distance(pos12, g1, g2)
+        DefaultQueryDispatcher.distance(pos12, plain(g1), plain(g2))
     }
 
     fn contact(
@@ -198,7 +204,7 @@ impl QueryDispatcher for ContactDispatcher {
         g2: &dyn Shape,
         prediction: f64,
     ) -> Result<Option<Contact>, Unsupported> {
-        DefaultQueryDispatcher.contact(pos12, g1, g2, prediction)
+        DefaultQueryDispatcher.contact(pos12, plain(g1), plain(g2), prediction)
     }
 
     fn closest_points(
@@ -208,7 +214,7 @@ impl QueryDispatcher for ContactDispatcher {
         g2: &dyn Shape,
         max_dist: f64,
     ) -> Result<ClosestPoints, Unsupported> {
-        DefaultQueryDispatcher.closest_points(pos12, g1, g2, max_dist)
+        DefaultQueryDispatcher.closest_points(pos12, plain(g1), plain(g2), max_dist)
     }
 
     fn cast_shapes(
@@ -219,7 +225,7 @@ impl QueryDispatcher for ContactDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        DefaultQueryDispatcher.cast_shapes(pos12, velocity, g1, g2, options)
+        DefaultQueryDispatcher.cast_shapes(pos12, velocity, plain(g1), plain(g2), options)
     }
 
     fn cast_shapes_nonlinear(
@@ -232,6 +238,7 @@ impl QueryDispatcher for ContactDispatcher {
         end: f64,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let (g1, g2) = (plain(g1), plain(g2));
         DefaultQueryDispatcher.cast_shapes_nonlinear(motion1, g1, motion2, g2, start, end, stop_at_penetration)
     }
 }

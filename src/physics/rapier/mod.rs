@@ -28,6 +28,7 @@ mod bridge;
 mod contacts;
 mod dispatcher;
 mod engine;
+mod hull;
 mod inertial;
 mod rig;
 mod rows;

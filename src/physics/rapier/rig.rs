@@ -239,7 +239,7 @@ impl Rig {
     fn insert_colliders(&mut self, model: &Model, sets: &mut Sets) {
         for g in collider_order(model) {
             let b = model.geom_bodyid[g];
-            let collider = ColliderBuilder::new(shape(model.geom_type[g], model.geom_size[g]))
+            let collider = ColliderBuilder::new(shape(model, g, model.geom_size[g]))
                 .position(self.frame[b].inverse() * geom_pose(model, g))
                 .density(0.0)
                 .user_data(g as u128)

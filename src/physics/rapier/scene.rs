@@ -17,6 +17,7 @@ use crate::model::{GeomType, Model};
 use crate::physics::Quirks;
 use crate::physics::engine::EngineError;
 use crate::physics::rapier::ContactDispatcher;
+use crate::physics::rapier::hull::HullShape;
 use crate::physics::state::State;
 use crate::physics::world::{ContactRules, contact_options};
 
@@ -102,17 +103,22 @@ pub(super) fn pose(pos: Vec3, q: Quat) -> Pose {
     )
 }
 
-pub(super) fn shape(kind: GeomType, s: Vec3) -> SharedShape {
+/// Returns the shape of a geom of this size.
+pub(super) fn shape(model: &Model, geom: usize, s: Vec3) -> SharedShape {
     let along_z = Vector::new(0.0, 0.0, s[1]);
-    match kind {
+    match model.geom_type[geom] {
         GeomType::Plane => SharedShape::halfspace(Vector::Z),
         GeomType::Sphere => SharedShape::ball(s[0]),
         GeomType::Capsule => SharedShape::capsule(-along_z, along_z, s[0]),
         // Parry has no ellipsoid; ours collide with nothing, and a ball serves queries
         GeomType::Ellipsoid => SharedShape::ball(s[0].max(s[1]).max(s[2])),
         GeomType::Cylinder => SharedShape::cylinder(s[1], s[0]),
-        // a mesh that touches is refused; queries see the box around it
-        GeomType::Box | GeomType::HField | GeomType::Mesh => SharedShape::cuboid(s[0], s[1], s[2]),
+        GeomType::Mesh => match model.geom_dataid[geom].and_then(|id| model.meshes.get(id)) {
+            Some(mesh) => HullShape::shared(mesh, s),
+            None => SharedShape::cuboid(s[0], s[1], s[2]),
+        },
+        // a height field that touches is refused; queries see the box around it
+        GeomType::Box | GeomType::HField => SharedShape::cuboid(s[0], s[1], s[2]),
     }
 }
 
@@ -163,7 +169,7 @@ fn insert_colliders(
     let types = ActiveCollisionTypes::KINEMATIC_KINEMATIC | ActiveCollisionTypes::KINEMATIC_FIXED;
     let mut handles = vec![ColliderHandle::invalid(); order.len()];
     for &g in order {
-        let collider = ColliderBuilder::new(shape(model.geom_type[g], model.geom_size[g]))
+        let collider = ColliderBuilder::new(shape(model, g, model.geom_size[g]))
             .position(geom_pose(model, g))
             .density(0.0)
             .user_data(g as u128)
@@ -238,7 +244,7 @@ impl RapierScene {
             if self.sizes[g] != size
                 && let Some(collider) = self.colliders.get_mut(self.collider_handle[g])
             {
-                collider.set_shape(shape(self.model.geom_type[g], size));
+                collider.set_shape(shape(&self.model, g, size));
                 self.sizes[g] = size;
             }
         }

@@ -80,9 +80,7 @@ fn shapes(model: &Model) -> Result<(), RapierError> {
             || model.pair_geom.iter().any(|pair| pair.contains(&g));
         let what = match model.geom_type[g] {
             GeomType::Ellipsoid => "Parry has no ellipsoid that things could touch",
-            GeomType::HField | GeomType::Mesh => {
-                "meshes and height fields that things could touch are the soft engine's only"
-            }
+            GeomType::HField => "height fields that things could touch are the soft engine's only",
             _ => continue,
         };
         if touches {
