@@ -57,7 +57,7 @@ def test_what_tasks_of_the_library_measure_is_in_the_information():
     assert info["left_foot_movements_baseline"] >= 0 == info["mobile_movement_reinforcement"]
     env = babybench.make("play", vision_active=False, touch_active=False)
     _, info = env.reset(seed=0)
-    assert info["toys"] == 7
+    assert info["toys"] == 9
     assert info["toys_touched"] == info["holding_time"] == 0
 
 

@@ -82,9 +82,22 @@ embed![
     "tex/sleeve_left.png",
     "tex/sleeve_right.png",
     "tex/sleeve_up.png",
+    "toys/cup_bottom.obj",
+    "toys/cup_stave.obj",
+    "toys/duck_beak.obj",
+    "toys/duck_body.obj",
+    "toys/lid_round_corner.obj",
+    "toys/lid_round_side.obj",
+    "toys/lid_wedge_0.obj",
+    "toys/lid_wedge_1.obj",
+    "toys/lid_wedge_2.obj",
+    "toys/rattle_handle.obj",
+    "toys/rattle_head.obj",
+    "toys/ring_bow.obj",
+    "toys/wedge.obj",
 ];
 
-/// Returns the embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`.
+/// Returns the embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`; beside them `toys/*.obj`.
 pub fn embedded() -> EmbeddedAssets {
     EmbeddedAssets(FILES)
 }

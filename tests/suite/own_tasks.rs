@@ -144,7 +144,7 @@ fn toys_count_as_they_are_touched_and_moved() {
     config.play.reward = true;
     let mut env = env(config);
     env.reset(Some(0)).expect("no divergence");
-    assert_eq!(measure(env.info(), "toys"), 7.0);
+    assert_eq!(measure(env.info(), "toys"), 9.0);
     let still = vec![0.0; env.action_space().len()];
     let before = measure(env.step(&still).expect("no divergence").info, "toys_touched");
     // over his thigh, from where it rolls down
@@ -173,7 +173,7 @@ fn a_toy_is_held_while_only_he_touches_it() {
     let (place, axes) = (env.state().xpos[hand], env.state().xmat[hand]);
     let still = vec![0.0; env.action_space().len()];
     let mut held: f64 = 0.0;
-    for side in [0.03, -0.03] {
+    for side in [0.03, -0.03, 0.02, -0.02] {
         let beside: [f64; 3] = std::array::from_fn(|k| place[k] + side * axes[3 * k + 1] + 0.03 * axes[3 * k + 2]);
         put(&mut env, "violet_block", beside);
         for _ in 0..10 {

@@ -9,7 +9,7 @@ from .. import _native
 
 
 def assets_folder() -> Path:
-    """Returns a folder with the library's assets, which is written on first use: ``babybench/*.xml`` and ``tex/*.png``."""
+    """Returns a folder with the library's assets, written on first use: ``babybench/*.xml``, ``tex/*.png``, ``toys/*.obj``."""
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     folder = Path(base) / "babybench" / _native.__version__ / "assets"
     try:

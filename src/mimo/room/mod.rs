@@ -29,8 +29,8 @@ use extra::Extra;
 
 /// Folder of the library's documents, in which a custom scene is read.
 const FOLDER: &str = "babybench/";
-/// Folder of the library's textures.
-const TEXTURES: &str = "tex/";
+/// Folders of the library's textures and meshes.
+const BESIDE: [&str; 2] = ["tex/", "toys/"];
 /// The library's settings, which several documents include.
 const SETTINGS: &str = "babybench/settings.xml";
 /// The same under another name: a document may include both [`PARTS`] and `base.xml`, and no file twice.
@@ -256,13 +256,14 @@ impl<A: AssetSource> AssetSource for Room<A> {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         let path = resolve("", path)?;
         let Some(name) = path.strip_prefix(FOLDER) else {
-            return if path.starts_with(TEXTURES) {
-                self.read_library(&path)
-            } else {
-                Err(AssetError::Outside {
+            let beside = BESIDE.iter().any(|folder| path.starts_with(folder));
+            // what the library does not have there is beside the document's folder, where nothing is read
+            return match beside.then(|| self.read_library(&path)) {
+                None | Some(Err(AssetError::NotFound(_))) => Err(AssetError::Outside {
                     path: format!("../{path}"),
                     folder: self.shown("."),
-                })
+                }),
+                Some(answer) => answer,
             };
         };
         if !self.library(name) {
