@@ -2,6 +2,7 @@
 
 use crate::math::*;
 use crate::model::Model;
+use crate::physics::constraint::impedance::Impedance;
 use crate::physics::constraint::{Block, ConstraintType, Efc, impedance};
 use crate::physics::state::State;
 use crate::physics::tiles::Lanes;
@@ -137,10 +138,16 @@ impl Rows<'_> {
     #[inline(always)]
     pub(super) fn row(&mut self, pos: f64, margin: f64, violation: f64, spec: Spec) -> f64 {
         let i = impedance(spec.solref, spec.solimp, violation, self.model.opt.least_timeconst());
-        let r = ((1.0 - i.imp) / i.imp * spec.diag).max(MINVAL);
-        let k = if self.block_mut().kind.is_friction() { 0.0 } else { i.k };
-        self.push(pos, margin, spec.diag, r, -k * i.imp * (pos - margin), i.b);
+        self.row_with(pos, margin, spec.diag, i);
         i.b
+    }
+
+    /// Appends a row of an impedance; `diag` approximates the diagonal of `J M^-1 J'`.
+    #[inline(always)]
+    pub(super) fn row_with(&mut self, pos: f64, margin: f64, diag: f64, i: Impedance) {
+        let r = ((1.0 - i.imp) / i.imp * diag).max(MINVAL);
+        let k = if self.block_mut().kind.is_friction() { 0.0 } else { i.k };
+        self.push(pos, margin, diag, r, -k * i.imp * (pos - margin), i.b);
     }
 
     #[inline(always)]

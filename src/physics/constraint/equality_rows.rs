@@ -2,7 +2,7 @@
 
 use super::append::{Rows, Spec};
 use super::tendon_rows::tendons;
-use super::{ConstraintType, connected_points, weld_points};
+use super::{ConstraintType, connected_points, impedance, weld_points};
 use crate::math::sub;
 use crate::model::EqualityKind;
 use crate::physics::state::State;
@@ -95,6 +95,7 @@ fn tendon_equality(rows: &mut Rows, s: &State, id: usize, (first, second): (usiz
 }
 
 /// Appends the six rows of a weld: translation, rotation.
+#[inline(always)]
 fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2]) {
     let model = rows.model;
     let Some(weld) = weld_points(model, s, id) else {
@@ -120,6 +121,7 @@ fn weld_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 
 }
 
 /// Appends the three rows of a connection of two points.
+#[inline(always)]
 fn connect_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2]) {
     let Some([point1, point2]) = connected_points(rows.model, s, id) else {
         return;
@@ -136,6 +138,7 @@ fn connect_equality(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usiz
 }
 
 /// Gives the last block its rows, which hold two bodies: those of translation first, then those of rotation.
+#[inline(always)]
 fn hold(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2], error: &[f64]) {
     let model = rows.model;
     // MuJoCo drops an equality that no degree of freedom can do anything about, which it sees only where the Jacobian is
@@ -149,12 +152,10 @@ fn hold(rows: &mut Rows, s: &State, id: usize, [body1, body2]: [usize; 2], error
     }
     let (w1, w2) = (s.params.body_invweight0[body1], s.params.body_invweight0[body2]);
     let norm = error.iter().map(|e| e * e).sum::<f64>().sqrt();
+    // all rows have the violation of the whole, and so one impedance
+    let least = model.opt.least_timeconst();
+    let impedance = impedance(model.eq_solref[id], model.eq_solimp[id], norm, least);
     for (k, &pos) in error.iter().enumerate() {
-        let spec = Spec {
-            solref: model.eq_solref[id],
-            solimp: model.eq_solimp[id],
-            diag: w1[k / 3] + w2[k / 3],
-        };
-        rows.row(pos, 0.0, norm, spec);
+        rows.row_with(pos, 0.0, w1[k / 3] + w2[k / 3], impedance);
     }
 }

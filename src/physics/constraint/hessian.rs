@@ -11,6 +11,7 @@ use crate::physics::tiles::{
 use crate::physics::vectorize::vectorize;
 
 mod pattern;
+mod weigh;
 
 /// A symmetric positive matrix over the lanes of an island, kept up to date from one iteration to the next.
 ///
@@ -23,6 +24,8 @@ pub(super) struct Hessian {
     words: usize,
     /// Pattern as bits, while it is found.
     bits: Vec<u64>,
+    /// Those before elimination that the pattern is of.
+    analysed: Vec<u64>,
     pattern: Pattern,
     /// Place of tile (i, j) at `i rows + j`; only those of the pattern are valid.
     place: Vec<u32>,
@@ -57,6 +60,7 @@ impl Hessian {
         Self {
             words: 0,
             bits: Vec::with_capacity(rows * rows.div_ceil(64)),
+            analysed: Vec::with_capacity(rows * rows.div_ceil(64)),
             pattern: Pattern::with_capacity(rows, tiles),
             place: Vec::with_capacity(rows * rows / 4),
             child: Vec::with_capacity(rows),
@@ -201,33 +205,6 @@ impl Hessian {
     #[inline(always)]
     fn touches_changed(&self, island: &Island, j: &Jacobian) -> bool {
         island.cols(j).iter().any(|&c| self.changed[c as usize])
-    }
-
-    /// Computes `weighted = diag(weight) J`.
-    #[inline(always)]
-    fn weigh_diagonal(&mut self, jac: &[Lanes], weight: &[f64], dim: usize) {
-        self.weighted.clear();
-        for rows in jac.chunks_exact(dim) {
-            self.weighted
-                .extend(rows.iter().zip(weight).map(|(row, w)| row.map(|v| w * v)));
-        }
-    }
-
-    /// Computes `weighted = C J`.
-    #[inline(always)]
-    fn weigh(&mut self, jac: &[Lanes], c: &[[f64; 6]; 6], dim: usize) {
-        self.weighted.clear();
-        for rows in jac.chunks_exact(dim) {
-            for c in &c[..dim] {
-                let mut sum = [0.0; 4];
-                for (row, c) in rows.iter().zip(c) {
-                    for k in 0..4 {
-                        sum[k] += c * row[k];
-                    }
-                }
-                self.weighted.push(sum);
-            }
-        }
     }
 
     /// Adds `J' weighted` to the changed rows of the lower triangle.

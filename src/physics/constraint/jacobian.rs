@@ -1,5 +1,7 @@
 //! Products with the Jacobian of the constraint rows of an island.
 
+use std::hint::black_box;
+
 use crate::physics::constraint::Efc;
 use crate::physics::tiles::{Lanes, total};
 
@@ -63,12 +65,24 @@ fn some_products<const N: usize>(cols: &[u32], jac: &[Lanes], j: &Jacobian, firs
             }
         }
     }
-    sums.map(|s| total(&s))
+    // three rows that are summed up across would tempt the compiler to work across them in all columns: with three times the instructions
+    black_box(sums).map(|s| total(&s))
 }
 
 /// Computes `out += J' force`.
 #[inline(always)]
 pub(super) fn add_transposed_product(cols: &[u32], jac: &[Lanes], j: &Jacobian, force: &[f64], out: &mut [Lanes]) {
+    if let (3, Some(force)) = (j.dim, force.first_chunk::<3>()) {
+        // contacts: a number of rows that is known saves most of the loop
+        let (rows, _) = jac[j.jac..j.jac + 3 * j.ncol].as_chunks::<3>();
+        for (&c, [x, y, z]) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
+            let out = &mut out[c as usize];
+            for k in 0..4 {
+                out[k] = ((out[k] + x[k] * force[0]) + y[k] * force[1]) + z[k] * force[2];
+            }
+        }
+        return;
+    }
     let rows = jac[j.jac..j.jac + j.dim * j.ncol].chunks_exact(j.dim);
     for (&c, rows) in cols[j.col..j.col + j.ncol].iter().zip(rows) {
         let out = &mut out[c as usize];

@@ -3,12 +3,13 @@
 use super::append::{Rows, Spec};
 use super::contact_rows::contact;
 use super::equality_rows::equalities;
+use super::jacobian::{Jacobian, product};
 use super::joint_rows::joint_limits;
 use super::tendon_rows::{tendon_friction, tendon_limits};
 use super::{Block, ConstraintType, Efc, MAX_ROWS};
 use crate::model::Model;
 use crate::physics::state::State;
-use crate::physics::tiles::{Lanes, total};
+use crate::physics::tiles::Lanes;
 use crate::physics::topology::Topology;
 
 /// Builds the constraint rows. Keeps those of dry friction of joints, which are always the same.
@@ -123,23 +124,16 @@ impl RowBuilder {
             if b.kind.is_friction() {
                 continue;
             }
-            let (row, dim, dof) = (b.row, b.dim, b.dof);
-            let mut v = [0.0; MAX_ROWS];
-            if let Some(dof) = dof {
+            let (row, dim) = (b.row, b.dim);
+            let v: [f64; MAX_ROWS] = if let Some(dof) = b.dof {
                 let value = efc.jac[b.jac].iter().find(|v| **v != 0.0);
+                let mut v = [0.0; MAX_ROWS];
                 v[0] = value.copied().unwrap_or(0.0) * s.qvel[dof];
+                v
             } else {
-                let mut sums = [[0.0; 4]; MAX_ROWS];
-                for (tile, rows) in efc.tiles(b) {
-                    let x = &self.qvel[tile as usize];
-                    for (sum, row) in sums.iter_mut().zip(rows) {
-                        for k in 0..4 {
-                            sum[k] += row[k] * x[k];
-                        }
-                    }
-                }
-                v = sums.map(|s| total(&s));
-            }
+                let (col, ncol, jac) = (b.col, b.ncol, b.jac);
+                product(&efc.cols, &efc.jac, &Jacobian { dim, col, ncol, jac }, &self.qvel)
+            };
             let rows = row..row + dim;
             for ((vel, aref), v) in efc.vel[rows.clone()].iter_mut().zip(&mut efc.aref[rows]).zip(v) {
                 *aref -= *vel * v;

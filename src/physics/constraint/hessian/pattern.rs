@@ -27,11 +27,15 @@ impl Hessian {
                 cols.iter().for_each(|&c| set(&mut self.bits[row..], c));
             }
         }
-        self.eliminate(n);
-        let tiles = self.pattern.tiles();
-        self.h.resize(tiles, ZERO);
-        self.factor.resize(tiles, ZERO);
-        self.inv.resize(n, [0.0; 4]);
+        // while contacts stay between the same parts, so does the pattern
+        if self.inv.len() != n || self.bits != self.analysed {
+            self.analysed.clone_from(&self.bits);
+            self.eliminate(n);
+            let tiles = self.pattern.tiles();
+            self.h.resize(tiles, ZERO);
+            self.factor.resize(tiles, ZERO);
+            self.inv.resize(n, [0.0; 4]);
+        }
         self.changed.clear();
         // a factor of another island, or of other contacts, is no use
         self.changed.resize(n, true);
