@@ -175,6 +175,13 @@ fn a_policy_that_learns_is_trained_and_then_settles() {
     assert_ne!(score(&["--policy", "babbling"]), score(&["--policy", "held"]));
     let error = fail(&[&train[..], &["--policy", "babbling", "--envs", "2"]].concat());
     assert!(error.contains("--envs"), "{error}");
+    // what it had learned is in no log: it does not go on without it
+    let error = fail(&[&train[..], &["--policy", "babbling", "--resume"]].concat());
+    assert!(
+        error.contains("had learned") && error.contains("without --resume"),
+        "{error}"
+    );
+    succeed(&[&train[..], &["--policy", "held", "--resume"]].concat());
 
     let plan = folder.path().join("plan.yml");
     let text = "configs: [config.yml]\npolicies: [babbling]\nseeds: 2\nsteps: 2000\nrecord: 0\nevaluate: 2\n";

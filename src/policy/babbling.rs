@@ -243,9 +243,10 @@ impl Learner {
 
     fn random(&mut self) -> Movement {
         let seconds = DURATIONS[self.rng.below(DURATIONS.len())];
-        let action = (0..self.arms.action_len()).map(|_| self.rng.uniform() as f32);
+        let mut action = Vec::new();
+        self.arms.space().sample(&mut self.rng, &mut action);
         Movement {
-            action: self.arms.in_bounds(action.collect()),
+            action,
             steps: self.steps(seconds),
         }
     }

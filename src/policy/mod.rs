@@ -5,6 +5,7 @@ mod command;
 #[cfg(feature = "onnx")]
 mod onnx;
 mod protocol;
+mod watching;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -17,6 +18,7 @@ internals!(use command::DEFAULT_LIMIT);
 #[cfg(feature = "onnx")]
 pub use onnx::{OnnxError, OnnxPolicy};
 use thiserror::Error;
+pub use watching::Watching;
 
 use crate::env::Env;
 use crate::spaces::{ActionNoise, Noise};
@@ -27,8 +29,8 @@ use crate::spaces::{ActionNoise, Noise};
 pub enum PolicyError {
     /// The command cannot be started.
     #[error(
-        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, oscillators, babbling, an .onnx file, \
-         or a command with its arguments"
+        "cannot start the policy {command:?}: {source}; a policy is random, zero, held, ou, pink, oscillators, babbling, watching, an \
+         .onnx file, or a command with its arguments"
     )]
     Start {
         /// The command.
@@ -214,8 +216,10 @@ pub enum PolicySource {
     Zero,
     /// A noise that lasts: `held`, `ou`, `pink` or `oscillators`.
     Noise(Noise),
-    /// `babbling`: learns while it acts.
+    /// `babbling`: learns to touch itself while it acts.
     Babbling,
+    /// `watching`: learns to look at its hands while it acts.
+    Watching,
     /// A file that ends in `.onnx`.
     Onnx(PathBuf),
     /// Anything else.
@@ -239,6 +243,7 @@ impl PolicySource {
             "random" => Self::Random,
             "zero" => Self::Zero,
             "babbling" => Self::Babbling,
+            "watching" => Self::Watching,
             file if model(file) && Path::new(file).is_file() => Self::Onnx(file.into()),
             _ => match command::words(text).as_deref() {
                 Some([word]) if model(word) => Self::Onnx(word.into()),
@@ -249,7 +254,7 @@ impl PolicySource {
 
     /// Tells whether the policy learns while it acts: its episodes belong together, one after another.
     pub fn learns(&self) -> bool {
-        *self == Self::Babbling
+        matches!(self, Self::Babbling | Self::Watching)
     }
 
     /// Opens the policy. `limit` is the time limit of a command for an action.
@@ -262,6 +267,7 @@ impl PolicySource {
             Self::Zero => Box::new(ZeroPolicy),
             Self::Noise(noise) => Box::new(NoisePolicy::new(*noise)),
             Self::Babbling => Box::new(Babbling::new()),
+            Self::Watching => Box::new(Watching::new()),
             #[cfg(feature = "onnx")]
             Self::Onnx(path) => Box::new(OnnxPolicy::open(path)?),
             #[cfg(not(feature = "onnx"))]

@@ -31,7 +31,7 @@ pub struct Evaluate {
     /// Maximum number of steps of an episode
     #[arg(long, value_name = "STEPS", default_value_t = 1000, allow_negative_numbers = true, value_parser = count::<u64>)]
     duration: u64,
-    /// Policy: random, zero, a noise (held, ou, pink, oscillators), babbling (which learns while it acts, one episode after another),
+    /// Policy: random, zero, a noise (held, ou, pink, oscillators), babbling or watching (which learn while they act, one episode after another),
     /// a model (FILE.onnx, if this program is built with the feature onnx), or a command with its arguments that reads observations
     /// (a line of JSON each) from its standard input and writes actions (a JSON list each) to its standard output; quotes keep words
     /// with spaces together

@@ -35,7 +35,8 @@ pub struct Train {
     /// Random seed; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
-    /// Policy instead of random actions, as evaluate takes it: babbling learns to touch itself while it acts
+    /// Policy instead of random actions, as evaluate takes it: babbling learns to touch itself while it acts, watching to look at its
+    /// hands. What these have learned is in no log, so that --resume refuses them
     #[arg(long, conflicts_with_all = ["noise", "envs"])]
     policy: Option<String>,
     #[command(flatten)]
@@ -52,7 +53,9 @@ impl Train {
         let interrupt = Interrupt::watch();
         let blueprint = self.source.blueprint(Compat::Api)?;
         let config = blueprint.config();
-        if !self.resume {
+        if self.resume {
+            self.refuse_forgetting(config)?;
+        } else {
             look_at_old_log(config)?;
         }
         if let Some(n) = self.many.envs() {
@@ -99,6 +102,26 @@ impl Train {
             Some(name) => PolicySource::new(name).open(DEFAULT_LIMIT),
             None => Ok(self.babbling.policy()),
         }
+    }
+
+    /// Tells whether the policy learns while it acts.
+    fn learns(&self) -> bool {
+        self.policy
+            .as_deref()
+            .is_some_and(|name| PolicySource::new(name).learns())
+    }
+
+    /// Refuses to go on with a policy that has forgotten what it had learned when the log ended.
+    fn refuse_forgetting(&self, config: &Config) -> Result<(), String> {
+        let path = training_path(&config.save_dir);
+        if !self.learns() || !path.exists() {
+            return Ok(());
+        }
+        let (path, name) = (path.display(), self.policy.as_deref().unwrap_or_default());
+        Err(format!(
+            "--resume goes on from {path}, but what the policy {name} had learned by its end is kept nowhere: train without --resume, in \
+             a save_dir of its own if the log is to stay"
+        ))
     }
 
     /// Trains in many environments at once; that number i has the seed plus i.
@@ -153,7 +176,12 @@ impl Train {
         let n = totals.records;
         if steps < self.train_for {
             let goal = self.train_for;
-            let done = format!("{n} records, {steps} of {goal} steps are in {dir}; --resume continues from there");
+            let next = if self.learns() {
+                "what the policy has learned is lost"
+            } else {
+                "--resume continues from there"
+            };
+            let done = format!("{n} records, {steps} of {goal} steps are in {dir}; {next}");
             return Err(Interrupted(done).into());
         }
         say!("{n} records, {steps} steps: {}", config.save_dir)?;

@@ -106,11 +106,8 @@ impl Arms {
         self.space.clip(d, value as f32)
     }
 
-    /// Spreads numbers in 0..1 over the bounds of an action.
-    pub(super) fn in_bounds(&self, mut action: Vec<f32>) -> Vec<f32> {
-        for (value, (low, high)) in action.iter_mut().zip(self.space.low().iter().zip(self.space.high())) {
-            *value = low + (high - low) * *value;
-        }
-        action
+    /// Returns the bounds of an action.
+    pub(super) fn space(&self) -> &BoxSpace {
+        &self.space
     }
 }

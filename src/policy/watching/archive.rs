@@ -1,0 +1,144 @@
+//! The postures in which hands were seen best, and what is tried next.
+
+use super::limbs::{HANDS, Limb, Limbs};
+use crate::spaces::NumpyRng;
+
+/// Number of postures that are kept for each hand, and for both together.
+const KEPT: usize = 8;
+/// Variations: standard deviations in half ranges of the joints, one of these by chance.
+const VARIATIONS: [f64; 4] = [0.03, 0.07, 0.15, 0.3];
+/// How well a hand is seen at least, so that its posture is worth varying.
+const SEEN: f64 = 0.01;
+/// Share of the trials that do the best one again: what was seen by chance is not seen twice.
+const AGAIN: f64 = 0.15;
+/// Share of the trials that vary one of the best postures of both hands, rather than put together those of each.
+const TOGETHER: f64 = 0.6;
+
+/// A posture, and how well each hand was seen in it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Trial {
+    pub(super) posture: Vec<f64>,
+    pub(super) seen: [f64; HANDS],
+    /// How often it was tried; `seen` is the mean.
+    times: u32,
+}
+
+impl Trial {
+    pub(super) fn new(posture: Vec<f64>, seen: [f64; HANDS]) -> Self {
+        let times = 1;
+        Self { posture, seen, times }
+    }
+
+    /// Adds what was seen in the same posture before.
+    fn join(&mut self, before: &Self) {
+        let all = f64::from(self.times + before.times);
+        for (seen, other) in self.seen.iter_mut().zip(before.seen) {
+            *seen = (f64::from(self.times) * *seen + f64::from(before.times) * other) / all;
+        }
+        self.times += before.times;
+    }
+
+    fn worth(&self, hand: Option<usize>) -> f64 {
+        hand.map_or_else(|| self.seen.iter().sum(), |hand| self.seen[hand])
+    }
+}
+
+/// The best trials: for each hand, then for both, the best ones first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Archive {
+    hands: [Vec<Trial>; HANDS],
+    both: Vec<Trial>,
+}
+
+impl Archive {
+    /// Returns the best trial for both hands.
+    pub(super) fn best(&self) -> Option<&Trial> {
+        self.both.first()
+    }
+
+    pub(super) fn add(&mut self, mut trial: Trial) {
+        let mut lists: Vec<&mut Vec<Trial>> = self.hands.iter_mut().chain([&mut self.both]).collect();
+        let same = |other: &Trial| other.posture == trial.posture;
+        if let Some(before) = lists.iter().find_map(|list| list.iter().find(|&t| same(t)).cloned()) {
+            lists.iter_mut().for_each(|list| list.retain(|other| !same(other)));
+            trial.join(&before);
+        }
+        for (hand, list) in self.hands.iter_mut().enumerate() {
+            insert(list, &trial, Some(hand));
+        }
+        insert(&mut self.both, &trial, None);
+    }
+
+    /// Returns the posture of the next trial; `random` is the share of those that are drawn anew.
+    pub(super) fn propose(&self, limbs: &Limbs, rng: &mut NumpyRng, random: f64) -> Vec<f64> {
+        let chance = rng.uniform();
+        if let Some(best) = self.best().filter(|_| chance < AGAIN) {
+            return best.posture.clone();
+        }
+        let mut posture = limbs.random(rng);
+        let some = |rng: &mut NumpyRng, list: &'_ Vec<Trial>| -> Option<Trial> {
+            // the best ones most often
+            let k = ((rng.uniform() * rng.uniform()) * list.len() as f64) as usize;
+            list.get(k).cloned()
+        };
+        let together = rng.uniform() < TOGETHER;
+        let parents: [Option<Trial>; HANDS] = if together {
+            let parent = some(rng, &self.both);
+            [parent.clone(), parent]
+        } else {
+            [some(rng, &self.hands[0]), some(rng, &self.hands[1])]
+        };
+        if rng.uniform() < random {
+            return posture;
+        }
+        let lead = usize::from(rng.uniform() < 0.5);
+        let head = parents[lead].as_ref().or(parents[1 - lead].as_ref());
+        let deviation = VARIATIONS[rng.below(VARIATIONS.len())];
+        for (k, limb) in limbs.limbs().enumerate() {
+            let parent = match limb {
+                Limb::Head => head,
+                // an arm whose hand was not seen is drawn anew
+                _ => limb
+                    .hand()
+                    .and_then(|hand| parents[hand].as_ref().filter(|trial| trial.seen[hand] > SEEN)),
+            };
+            if let Some(parent) = parent {
+                posture[k] = limbs.vary(k, parent.posture[k], deviation * rng.normal());
+            }
+        }
+        posture
+    }
+}
+
+/// Adds a trial to those with most of its worth, if a hand is seen in it.
+fn insert(list: &mut Vec<Trial>, trial: &Trial, hand: Option<usize>) {
+    let worth = trial.worth(hand);
+    if worth <= SEEN {
+        return;
+    }
+    let place = list.partition_point(|other| other.worth(hand) >= worth);
+    if place < KEPT {
+        list.insert(place, trial.clone());
+        list.truncate(KEPT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_seen_again_falls_back() {
+        let mut archive = Archive::default();
+        archive.add(Trial::new(vec![0.0], [0.0, 0.9]));
+        archive.add(Trial::new(vec![1.0], [0.3, 0.4]));
+        assert_eq!(archive.best().map(|t| &t.posture[..]), Some(&[0.0][..]));
+        archive.add(Trial::new(vec![0.0], [0.0, 0.0]));
+        assert_eq!(archive.best().map(|t| &t.posture[..]), Some(&[1.0][..]));
+        assert_eq!(archive.both.len(), 2);
+        assert!((archive.both[1].seen[1] - 0.45).abs() < 1e-12);
+        // what was never seen is not kept
+        archive.add(Trial::new(vec![2.0], [0.0, 0.0]));
+        assert_eq!((archive.both.len(), archive.hands[0].len()), (2, 1));
+    }
+}
