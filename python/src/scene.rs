@@ -27,7 +27,7 @@ impl IntoException for SceneFileError {
     }
 }
 
-/// Returns the complete document of a configuration's scene, and its images by name.
+/// Returns the complete document of a configuration's scene, and the files that it names.
 #[pyfunction]
 #[pyo3(signature = (config, assets=None))]
 pub fn scene_file<'py>(
@@ -38,12 +38,12 @@ pub fn scene_file<'py>(
     let config = config_of(py, config)?;
     let assets = assets.map(DirAssets::new).transpose();
     let assets = assets.map_err(IntoException::into_exception)?;
-    let SceneFile { xml, images } = detached(py, || match &assets {
+    let SceneFile { xml, files: named } = detached(py, || match &assets {
         Some(assets) => complete_scene_from(&config, assets),
         None => complete_scene(&config),
     })?;
     let files = PyDict::new(py);
-    for (name, bytes) in &images {
+    for (name, bytes) in &named {
         files.set_item(name, PyBytes::new(py, bytes))?;
     }
     Ok((xml, files))

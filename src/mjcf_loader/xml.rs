@@ -130,13 +130,13 @@ impl Tree {
     }
 
     #[cfg(feature = "eval")]
-    /// Appends the element `root` and all below it to `out`, one tag a line. `replace` may give an attribute of an element
-    /// another value.
+    /// Appends the element `root` and all below it to `out`, one tag a line. `replace` is told an element, an
+    /// attribute and its value, for which it may give another one.
     pub fn write<E>(
         &self,
         root: usize,
         out: &mut String,
-        mut replace: impl FnMut(&str, &str, &str) -> Result<Option<String>, E>,
+        mut replace: impl FnMut(usize, &str, &str) -> Result<Option<String>, E>,
     ) -> Result<(), E> {
         // elements that are open, with their next child; depth costs no stack
         let mut open: Vec<(usize, usize)> = Vec::new();
@@ -167,12 +167,12 @@ impl Tree {
         &self,
         at: usize,
         out: &mut String,
-        replace: &mut impl FnMut(&str, &str, &str) -> Result<Option<String>, E>,
+        replace: &mut impl FnMut(usize, &str, &str) -> Result<Option<String>, E>,
     ) -> Result<(), E> {
         let node = &self.nodes[at];
         out.push_str(&format!("<{}", node.name));
         for (name, value) in &node.attributes {
-            let other = replace(&node.name, name, value)?;
+            let other = replace(at, name, value)?;
             let value = quick_xml::escape::escape(other.as_deref().unwrap_or(value));
             out.push_str(&format!(" {name}=\"{value}\""));
         }

@@ -1,38 +1,28 @@
 //! `scene.xml`: the complete scene of an environment in one MJCF document, which this library and MuJoCo load.
 //!
-//! Includes are replaced by their contents; a comment at the top holds the configuration. Images of textures are
-//! written next to it into `tex/`, so that the folder can be moved as a whole.
+//! Includes are replaced by their contents; a comment at the top holds the configuration. Images, meshes and attached models are
+//! written next to it into `tex/`, `mesh/` and `models/`, so that the folder can be moved as a whole.
+
+mod complete;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::assets::{AssetSource, DirAssets, directory, resolve};
+use crate::assets::{AssetSource, DirAssets, directory};
 use crate::config::{Compat, Config, ConfigError};
 use crate::env::Blueprint;
 use crate::files::{self, replace_file};
 use crate::limits::Limits;
-use crate::mimo::{DOCUMENT, RoomError, Version, document_path, embedded, has_own_scene, open_room, scene_xml};
-use crate::mjcf_loader::{LoadError, Tree, load};
+use crate::mimo::{RoomError, Version, document_path, embedded, has_own_scene, open_room, scene_xml};
+use crate::mjcf_loader::{LoadError, load};
 use crate::model::Model;
 use crate::physics::compile;
+use complete::{IMAGES, complete};
 
 /// The document in the folder of a run.
 const SCENE: &str = "scene.xml";
-/// Folder of the images, next to the document.
-const IMAGES: &str = "tex";
-/// Attributes that name images.
-const IMAGE_ATTRIBUTES: [&str; 7] = [
-    "file",
-    "fileright",
-    "fileleft",
-    "fileup",
-    "filedown",
-    "filefront",
-    "fileback",
-];
-
 /// An error in writing or reading the file of a scene.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -77,13 +67,13 @@ pub enum SceneFileError {
     Config(#[from] ConfigError),
 }
 
-/// A document and its images, by path relative to it.
+/// A document and the files that it names, by path relative to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
     /// The document.
     pub xml: String,
-    /// The images.
-    pub images: BTreeMap<String, Vec<u8>>,
+    /// The images, meshes and attached models.
+    pub files: BTreeMap<String, Vec<u8>>,
 }
 
 /// Writes the scene of a configuration, from the embedded assets, as one document.
@@ -105,33 +95,10 @@ pub fn complete_scene_from(config: &Config, assets: &dyn AssetSource) -> Result<
 
 /// Writes a document of a configuration as one document.
 fn complete_document(document: &str, config: &Config, assets: &dyn AssetSource) -> Result<SceneFile, SceneFileError> {
-    let (tree, root) = Tree::read(document, document_path(config), assets, &Limits::default())?;
-    let mut xml = comment(config);
-    let mut images = BTreeMap::new();
-    let is_folder = |element: &str, attribute: &str| element == "compiler" && attribute == "texturedir";
-    let mut texturedir = String::new();
-    tree.write(root, &mut String::new(), |element, attribute, value| {
-        if is_folder(element, attribute) {
-            texturedir = value.to_string();
-        }
-        Ok::<_, SceneFileError>(None)
-    })?;
-    let texturedir = texturedir.trim_end_matches('/');
-    tree.write(root, &mut xml, |element, attribute, value| {
-        if is_folder(element, attribute) {
-            return Ok(Some(String::new()));
-        }
-        let names_image = element == "texture" && IMAGE_ATTRIBUTES.contains(&attribute) && !value.is_empty();
-        let file = || match texturedir {
-            "" => value.to_string(),
-            folder => format!("{folder}/{value}"),
-        };
-        names_image.then(|| image(&file(), assets, &mut images)).transpose()
-    })?;
-    Ok(SceneFile { xml, images })
+    complete(document, document_path(config), comment(config), assets)
 }
 
-/// Writes `scene.xml` and its images, from the embedded assets, into the folder of a run, which is made if it is not there.
+/// Writes `scene.xml` and what it names, from the embedded assets, into the folder of a run, which is made if it is not there.
 ///
 /// # Errors
 /// Errors of the file system.
@@ -160,9 +127,11 @@ fn write_scene_file(scene: &SceneFile, save_dir: &Path) -> Result<PathBuf, Scene
         let path = path.to_path_buf();
         move |source| SceneFileError::Io { path, source }
     };
-    let folder = save_dir.join(IMAGES);
-    std::fs::create_dir_all(&folder).map_err(io(&folder))?;
-    for (name, bytes) in &scene.images {
+    for folder in std::iter::once(IMAGES).chain(scene.files.keys().map(|name| directory(name))) {
+        let folder = save_dir.join(folder);
+        std::fs::create_dir_all(&folder).map_err(io(&folder))?;
+    }
+    for (name, bytes) in &scene.files {
         let path = save_dir.join(name);
         replace_file(&path, bytes).map_err(io(&path))?;
     }
@@ -275,27 +244,4 @@ fn comment(config: &Config) -> String {
     }
     out.push_str("-->\n");
     out
-}
-
-/// Takes an image along and returns its new path. Images of equal names, from different folders, are numbered.
-fn image(
-    file: &str,
-    assets: &dyn AssetSource,
-    images: &mut BTreeMap<String, Vec<u8>>,
-) -> Result<String, SceneFileError> {
-    let broken = |reason: String| SceneFileError::Asset {
-        file: file.to_string(),
-        reason,
-    };
-    let path = resolve(directory(DOCUMENT), file).map_err(|e| broken(e.to_string()))?;
-    let bytes = assets.read(&path).map_err(|e| broken(e.to_string()))?.into_owned();
-    let own = file.rsplit('/').next().unwrap_or(file);
-    let mut name = format!("{IMAGES}/{own}");
-    let mut number = 1;
-    while images.get(&name).is_some_and(|there| *there != bytes) {
-        number += 1;
-        name = format!("{IMAGES}/{number}_{own}");
-    }
-    images.insert(name.clone(), bytes);
-    Ok(name)
 }

@@ -88,8 +88,8 @@ pub fn free(behavior: Behavior, scene: Scene) -> Config {
 pub fn edited(config: &Config, edit: impl FnOnce(String) -> String) -> Model {
     let scene = complete_scene(config).expect("the embedded assets load");
     let mut assets = MemoryAssets::new();
-    for (path, image) in scene.images {
-        assets.insert(&path, image).expect("a relative path");
+    for (path, file) in scene.files {
+        assets.insert(&path, file).expect("a relative path");
     }
     let spec = load_str(&edit(scene.xml), "scene.xml", &assets);
     spec.and_then(compile).expect("the scene compiles")

@@ -66,3 +66,26 @@ fn a_folder_of_textures_is_followed() {
         survives("scene_file_texturedir", &replaced);
     }
 }
+
+#[test]
+fn meshes_and_attached_models_come_along() {
+    let corner =
+        |far: &str| format!("v 0 0 0\nv {far} 0 0\nv 0 {far} 0\nv 0 0 {far}\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    // two files of one name, of which each gives its mesh its own
+    let toy = "<mujoco><compiler meshdir=\"parts/\"/><asset><mesh file=\"corner.obj\"/></asset>\
+         <worldbody><body name=\"toy\" pos=\"0 0 2\"><geom type=\"mesh\" mesh=\"corner\"/></body></worldbody></mujoco>";
+    let added = "<asset><mesh file=\"shapes/corner.obj\"/><mesh file=\"corner.obj\" name=\"other\"/><model name=\"box\" file=\"toys/toy.xml\"/></asset>\
+         <worldbody><geom type=\"mesh\" mesh=\"corner\" pos=\"2 0 2\"/><geom type=\"mesh\" mesh=\"other\" pos=\"2 2 2\"/>\
+         <attach model=\"box\" body=\"toy\" prefix=\"a_\"/></worldbody></mujocoinclude>";
+    let crib = original("babybench/crib.xml").replace("</mujocoinclude>", added);
+    survives(
+        "scene_file_meshes",
+        &[
+            ("babybench/crib.xml", crib),
+            ("babybench/shapes/corner.obj", corner("0.1")),
+            ("babybench/corner.obj", corner("0.2")),
+            ("babybench/toys/toy.xml", toy.to_string()),
+            ("babybench/toys/parts/corner.obj", corner("0.3")),
+        ],
+    );
+}

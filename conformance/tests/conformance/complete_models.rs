@@ -59,8 +59,8 @@ fn loaded(config: &Config, text: &str) -> Vec<(&'static str, Arc<Model>)> {
     let mut flat = MemoryAssets::new();
     let scene = complete_scene(config).expect("the embedded assets load");
     flat.insert("flat.xml", scene.xml).expect("a relative path");
-    for (path, image) in scene.images {
-        flat.insert(&path, image).expect("a relative path");
+    for (path, file) in scene.files {
+        flat.insert(&path, file).expect("a relative path");
     }
     let folder = Folder::new(&format!("{:?}_{}", config.behavior, config.scene));
     write_scene(config, &folder.0).expect("a folder that can be written");
