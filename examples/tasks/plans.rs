@@ -43,9 +43,10 @@ pub const TASKS: [Behavior; 5] = [
 /// Returns the configuration in which a policy of a task is trained: the task's own, without senses that it does not use.
 pub fn config(behavior: Behavior, age: Option<f64>) -> Config {
     let own = Config::of(behavior);
-    let max_episode_steps = match behavior {
-        Behavior::Reach | Behavior::RollOver => 300,
-        _ => own.max_episode_steps,
+    let max_episode_steps = if behavior == Behavior::Reach {
+        300
+    } else {
+        own.max_episode_steps
     };
     Config {
         age,
@@ -76,7 +77,7 @@ impl Plan {
             Behavior::Reach => plan.reach(&drives),
             Behavior::SelfBody => plan.self_body(&drives, env)?,
             Behavior::Standup => plan.postures(&drives, 250, 20, 1),
-            Behavior::RollOver => plan.postures(&drives, 150, 16, 1),
+            Behavior::RollOver => plan.postures(&drives, 60, 20, 1),
             Behavior::Catch => plan.postures(&drives, 80, 16, 3),
             other => return Err(format!("{other} has no plan").into()),
         }

@@ -57,7 +57,7 @@ fn page(table: &str) -> String {
     format!(
         "# Policies of the tasks\n\n\
          A trained policy for each of MIMo's tasks, as an ONNX model: its action is a linear function of the angles and velocities of\n\
-         his joints, and of the goal. `babybench evaluate` takes them with `--policy`.\n\n\
+         his joints, and of the goal. `babybench evaluate` takes them with `--policy`, and the page has them in a list.\n\n\
          ```sh\n\
          cargo run --release --features onnx -- evaluate --config configs/config_reach.yml --policy policies/reach.onnx\n\
          ```\n\n\
@@ -66,7 +66,7 @@ fn page(table: &str) -> String {
          | policy | steps trained | its return | random | zero | held | its successes | random | zero | held |\n\
          |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n{table}\n\
          ![Return over steps of training](curves.svg)\n\n\
-         Return over steps of training: blue that of the policy, grey the mean of the candidates that are tried, dashed a random policy. In `selfbody` one part of the body is learned after\n\
+         Return over steps of training: blue that of the policy, grey the mean of the candidates that are tried, dashed a random policy. `roll_over` brings him onto his side, not yet onto his belly. In `selfbody` one part of the body is learned after\n\
          another, and the curve has a piece for each. Training is separable CMA-ES ([`examples/tasks`](../examples/tasks)), the same bits for the same seed, whatever the number of threads:\n\n\
          ```sh\n\
          cargo run --release --features onnx,npz --example tasks -- reach --seed 0    # or selfbody, standup, roll_over, catch; --age 3\n\

@@ -40,17 +40,19 @@ writeFileSync(join(out, "index.html"), home ? html.replace('content="./card.png"
 for (const file of ["icon.svg", "page.webmanifest"]) copyFileSync(join(here, file), join(out, file));
 copyFileSync(join(here, "../../cli/src/commands/scene/room.xml"), join(out, "room.xml"));
 copyFileSync(join(here, "../../docs/page.png"), join(out, "card.png"));
+mkdirSync(join(out, "policies"), { recursive: true });
+for (const file of readdirSync(join(here, "../../policies")).filter((name) => name.endsWith(".onnx"))) copyFileSync(join(here, "../../policies", file), join(out, "policies", file));
 const font = join(here, "../node_modules/@fontsource-variable/inter");
 copyFileSync(join(font, "files/inter-latin-wght-normal.woff2"), join(out, "inter.woff2"));
 const licenses = { "three.js": "three/LICENSE", Inter: "@fontsource-variable/inter/LICENSE" };
 const texts = Object.entries(licenses).map(([name, file]) => `${name}\n\n${readFileSync(join(here, "../node_modules", file), "utf8")}`);
 writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
 
-// what a visit needs is kept for the next one, by its contents; the module for models only after it was wanted
+// what a visit needs is kept for the next one, by its contents; models and their module only after they were wanted
 const files = readdirSync(out, { recursive: true, withFileTypes: true })
   .filter((f) => f.isFile())
   .map((f) => relative(out, join(f.parentPath, f.name)).replaceAll("\\", "/"))
-  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|room\.xml|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$/.test(f))
+  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|room\.xml|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$|^policies\/\w+\.onnx$/.test(f))
   .sort();
 const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, { hash: createHash("sha256").update(readFileSync(join(out, f))).digest("hex"), wanted: !/onnx|remote|babybench\/worker/.test(f) }]));
 const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = {};", `const FILES = ${JSON.stringify(table)};`);

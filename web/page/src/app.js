@@ -224,9 +224,9 @@ export class App {
    * Builds a world of these settings alone, without what was set before.
    * @param {Settings} settings
    */
-  async begin(settings) {
+  begin(settings) {
     this.state.locks = [];
-    await this.make(settings, null);
+    return this.make(settings, null);
   }
 
   /**

@@ -2,6 +2,7 @@
 import { el, say } from "../dom.js";
 import { PARTS, capital, readable, split } from "../names.js";
 import { button, card, choice, drop, slider } from "./controls.js";
+import { trained } from "./trained.js";
 
 /** @typedef {import("../types").Scene} Scene */
 /** @typedef {import("../types").PolicyName} PolicyName */
@@ -19,7 +20,7 @@ const MEANINGS = {
 
 /** @param {import("../app.js").App} app */
 export function move(app) {
-  return el("div", {}, policies(app), pulling(app), sliders(app));
+  return el("div", {}, policies(app), trained(app), pulling(app), sliders(app));
 }
 
 /** @param {import("../app.js").App} app */

@@ -1,0 +1,44 @@
+// Policies that were trained for MIMo's tasks and lie beside the page: each starts its task and moves him.
+import { el } from "../dom.js";
+import { button, card } from "./controls.js";
+
+/** What each one does, its task, its file. @type {[string, string, string][]} */
+export const TRAINED = [
+  ["Reaches for the ball", "reach", "policies/reach.onnx"],
+  ["Touches a part of himself", "selfbody", "policies/selfbody.onnx"],
+  ["Stands up", "standup", "policies/standup.onnx"],
+  ["Rolls to his side", "roll_over", "policies/roll_over.onnx"],
+  ["Catches the ball", "catch", "policies/catch.onnx"],
+];
+
+/** @param {import("../app.js").App} app */
+export function trained(app) {
+  const buttons = TRAINED.map(([title, behavior, url]) => {
+    const start = button(title, () => app.attempt(() => begin(app, behavior, url)));
+    app.on("state", () => {
+      const on = app.state.policy === "model" && app.model?.url === url;
+      start.classList.toggle("on", on);
+      start.setAttribute("aria-pressed", String(on));
+    });
+    return start;
+  });
+  return card("Trained", el("p", { className: "soft small" }, "Networks that have learned a task. Each starts its task, with the scene and the body of its own; Next seed in Setup puts him another one."), el("div", { className: "row" }, ...buttons));
+}
+
+/**
+ * @param {import("../app.js").App} app
+ * @param {string} behavior
+ * @param {string} url
+ */
+async function begin(app, behavior, url) {
+  const bytes = await app.sharing.fetched(url, (answer) => answer.arrayBuffer());
+  if (!bytes) return;
+  const { policy } = app.state;
+  app.state.policy = "zero"; // the network that is there was made for another task
+  if (!(await app.begin({ behavior, vision_active: false }))) {
+    app.state.policy = policy;
+    return;
+  }
+  await app.bring({ name: url.replace(/.*\//, ""), bytes: new Uint8Array(bytes), url });
+  app.play(true);
+}
