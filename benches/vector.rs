@@ -15,13 +15,15 @@
 
 #[path = "../tests/common/allocations.rs"]
 mod allocations;
+#[path = "vector/measure.rs"]
+mod measure;
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use babybench::physics::{Batch, Engine, SoftEngine, SoftOptions, State};
 use babybench::spaces::NumpyRng;
 use babybench::{AutoresetMode, Blueprint, Config, Env, Observation, VectorEnv, VectorOptions};
+use measure::{cpu_time, pair, process_time, quartiles, resident_memory, wall_time};
 
 const EXAMPLES: [(&str, &str); 3] = [
     ("self_touch", include_str!("../configs/config_selftouch.yml")),
@@ -38,12 +40,6 @@ const ENVS: usize = 64;
 const PAIRS: usize = 25;
 const STEPS: usize = 8;
 
-/// First quartile, median, third quartile.
-fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
-    values.sort_by(f64::total_cmp);
-    [1, 2, 3].map(|q| values[(values.len() - 1) * q / 4])
-}
-
 fn vector(blueprint: &Blueprint, threads: usize) -> VectorEnv {
     vector_of(ENVS, blueprint, threads)
 }
@@ -57,65 +53,6 @@ fn vector_of(n: usize, blueprint: &Blueprint, threads: usize) -> VectorEnv {
     let mut envs = VectorEnv::new(blueprint, n, options).expect("available");
     envs.reset(0).expect("no divergence");
     envs
-}
-
-/// Times two programs on the same actions in turn, so many steps of so many environments at a time, and prints how many times faster the second is.
-fn pair(
-    name: &str,
-    [steps, envs]: [usize; 2],
-    clock: fn() -> f64,
-    actions: &[Vec<f32>],
-    mut one: impl FnMut(&[f32]),
-    mut other: impl FnMut(&[f32]),
-) {
-    let time = |program: &mut dyn FnMut(&[f32]), actions: &[Vec<f32>]| {
-        let start = clock();
-        actions.iter().for_each(|actions| program(actions));
-        clock() - start
-    };
-    let (mut ratios, mut us) = (Vec::new(), [Vec::new(), Vec::new()]);
-    for (k, actions) in actions.chunks_exact(steps).enumerate() {
-        // whoever is first changes from pair to pair
-        let times = if k % 2 == 0 {
-            [time(&mut one, actions), time(&mut other, actions)]
-        } else {
-            let second = time(&mut other, actions);
-            [time(&mut one, actions), second]
-        };
-        if k > 0 {
-            ratios.push(times[0] / times[1]);
-            us.iter_mut()
-                .zip(times)
-                .for_each(|(us, t)| us.push(t * 1e6 / (steps * envs) as f64));
-        }
-    }
-    let [low, median, high] = quartiles(ratios);
-    let [one, other] = us.map(|us| quartiles(us)[1]);
-    println!("{name:60} {median:.3} times ({low:.3} .. {high:.3}); {one:8.1} and {other:8.1} us per step");
-}
-
-/// Returns how long this thread has run, s, where the system tells (Linux), or else what time it is.
-fn cpu_time() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let ns = text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok());
-    ns.map_or_else(wall_time, |ns| ns * 1e-9)
-}
-
-/// Returns how long all threads of the process have run, s, where the system tells (Linux), or else what time it is.
-fn process_time() -> f64 {
-    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
-    let ns = threads.filter_map(|thread| {
-        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
-        text.split(' ').next()?.parse::<f64>().ok()
-    });
-    let ns: f64 = ns.sum();
-    if ns > 0.0 { ns * 1e-9 } else { wall_time() }
-}
-
-/// Returns what time it is, s, since the first call.
-fn wall_time() -> f64 {
-    static START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
 /// A plain loop over environments, as one writes it.
@@ -413,16 +350,6 @@ fn halves_of(len: usize) -> impl FnMut(&mut VectorEnv, &[f32]) {
             envs.send(&turn, &next).expect("they are here");
         }
     }
-}
-
-/// Returns the resident memory of the process, MB, where the system tells (Linux).
-fn resident_memory() -> f64 {
-    let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = text.lines().find_map(|l| l.strip_prefix("VmRSS:"));
-    let kib = line
-        .and_then(|l| l.split_whitespace().next())
-        .and_then(|k| k.parse::<f64>().ok());
-    kib.map_or(f64::NAN, |kib| kib * 1024.0 / 1e6)
 }
 
 fn memory(name: &str, blueprint: &Blueprint) {

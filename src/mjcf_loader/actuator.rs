@@ -166,11 +166,24 @@ const NO_CRANK: &str = "slidersite and cranklength are for slider-cranks: give c
 const NO_SITE: &str = "refsite needs the attribute site";
 const NEGATIVE_DAMPING: &str = "the ctrlrange of a damper must not be negative";
 
+/// Checks that the attributes of an actuator say of one thing how it acts on it.
+fn check_target(e: &Element) -> Result<(), &'static str> {
+    let given = |names: &[&str]| e.values().any(|(name, _)| names.contains(&name));
+    let elsewhere = given(&["joint", "jointinparent", "tendon", "site", "body"]);
+    if elsewhere && given(&["slidersite", "cranklength"]) {
+        return Err(NO_CRANK);
+    }
+    if given(&["joint", "jointinparent", "tendon", "cranksite", "body"]) && given(&["refsite"]) {
+        return Err(NO_SITE);
+    }
+    Ok(())
+}
+
 impl Actuator {
     /// Reads an actuator.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Its attributes contradict each other.
     pub fn drive(&mut self, e: &Element) -> Result<(), &'static str> {
         self.apply(e);
         self.control.apply(e);
@@ -178,14 +191,7 @@ impl Actuator {
         self.target.apply(e);
         self.at_site.apply(e);
         self.on_body.apply(e);
-        let given = |names: &[&str]| e.values().any(|(name, _)| names.contains(&name));
-        let elsewhere = given(&["joint", "jointinparent", "tendon", "site", "body"]);
-        if elsewhere && given(&["slidersite", "cranklength"]) {
-            return Err(NO_CRANK);
-        }
-        if given(&["joint", "jointinparent", "tendon", "cranksite", "body"]) && given(&["refsite"]) {
-            return Err(NO_SITE);
-        }
+        check_target(e)?;
         // what the elements below have in common with `general` they have by other names
         self.law.apply(e);
         match e.name {

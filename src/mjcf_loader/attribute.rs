@@ -1,7 +1,10 @@
-//! Attributes: what one may hold, how its text becomes a value, and how a value reaches a field of the typed document.
+//! Attributes: the values that one may hold, how its text becomes a value, and how a value reaches a field of the typed document.
+
+mod store;
 
 use super::error::ErrorKind;
 use crate::limits::Limits;
+pub(super) use store::Store;
 
 /// Bounds on a number.
 #[derive(Clone, Copy)]
@@ -397,127 +400,3 @@ fn number(attribute: &'static str, text: &str, sign: Sign, limit: f64) -> Result
         Err(ErrorKind::OutOfRange { attribute, value, want })
     }
 }
-
-/// A field that an attribute can be stored in.
-pub(super) trait Store {
-    /// Stores a value. A value of another kind, which the tables rule out, changes nothing.
-    fn store(&mut self, value: &Value);
-
-    /// Returns how a document would write the content; empty for nothing.
-    fn show(&self) -> String;
-}
-
-impl Store for String {
-    fn store(&mut self, value: &Value) {
-        if let Value::Text(text) = value {
-            text.clone_into(self);
-        }
-    }
-
-    fn show(&self) -> String {
-        self.clone()
-    }
-}
-
-impl Store for bool {
-    fn store(&mut self, value: &Value) {
-        if let Value::Flag(flag) = value {
-            *self = *flag;
-        }
-    }
-
-    fn show(&self) -> String {
-        self.to_string()
-    }
-}
-
-impl Store for f64 {
-    fn store(&mut self, value: &Value) {
-        if let Value::Reals(values) = value
-            && let [first, ..] = values[..]
-        {
-            *self = first;
-        }
-    }
-
-    fn show(&self) -> String {
-        self.to_string()
-    }
-}
-
-impl<const N: usize> Store for [f64; N] {
-    fn store(&mut self, value: &Value) {
-        if let Value::Reals(values) = value {
-            for (to, from) in self.iter_mut().zip(values) {
-                *to = *from;
-            }
-        }
-    }
-
-    fn show(&self) -> String {
-        self.map(|value| value.to_string()).join(" ")
-    }
-}
-
-impl Store for Vec<f64> {
-    fn store(&mut self, value: &Value) {
-        if let Value::Reals(values) = value {
-            self.clone_from(values);
-        }
-    }
-
-    fn show(&self) -> String {
-        self.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
-    }
-}
-
-impl Store for [u8; 3] {
-    fn store(&mut self, value: &Value) {
-        if let Value::Letters(letters) = value {
-            *self = *letters;
-        }
-    }
-
-    fn show(&self) -> String {
-        self.map(char::from).iter().collect()
-    }
-}
-
-macro_rules! store_whole {
-    ($($ty:ty),*) => {$(
-        impl Store for $ty {
-            fn store(&mut self, value: &Value) {
-                if let Value::Int(value) = value
-                    && let Ok(value) = Self::try_from(*value)
-                {
-                    *self = value;
-                }
-            }
-
-            fn show(&self) -> String {
-                self.to_string()
-            }
-        }
-    )*};
-}
-store_whole!(usize, u32, i32);
-
-/// A value that need not be given. A negative count, which the tables allow as -1, counts as not given.
-macro_rules! store_optional {
-    ($([$($parameter:tt)*] $ty:ty = $empty:expr),* $(,)?) => {$(
-        impl<$($parameter)*> Store for Option<$ty> {
-            fn store(&mut self, value: &Value) {
-                if !matches!(value, Value::Int(..0)) {
-                    let mut given = $empty;
-                    given.store(value);
-                    *self = Some(given);
-                }
-            }
-
-            fn show(&self) -> String {
-                self.as_ref().map(Store::show).unwrap_or_default()
-            }
-        }
-    )*};
-}
-store_optional!([] String = String::new(), [] f64 = 0.0, [] usize = 0, [const N: usize] [f64; N] = [0.0; N]);

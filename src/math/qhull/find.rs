@@ -16,7 +16,7 @@ pub(super) struct Found {
 const BELOW_ALL: f64 = -f64::MAX / 2.0;
 
 impl Builder<'_> {
-    /// After so many merges new facets are searched one by one, and tolerances of searches are doubled (`qh_USEfindbestnew`).
+    /// Tells whether there were enough merges that new facets are searched one by one, with doubled tolerances (`qh_USEfindbestnew`).
     pub(super) fn merged_much(&self) -> bool {
         self.merge_count > 50
     }
@@ -28,51 +28,11 @@ impl Builder<'_> {
     /// Walks from a facet to neighbours that the point is higher above (`qh_findbest`). Unless the best is asked for, the first
     /// facet that the point is outside of will do. Of new facets only new ones are walked to.
     pub(super) fn find_best(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> Step<Found> {
-        let p = self.point(point);
-        self.visit += 1;
-        let visit = self.visit;
-        let (mut found, mut height) = (NONE, BELOW_ALL);
-        if !self.facets[start].flipped {
-            height = self.distance(p, start);
-            found = start;
-            if !best && height >= self.tolerance.outside {
-                return Ok(Found {
-                    facet: start,
-                    dist: height,
-                    outside: true,
-                });
-            }
+        let (highest, last) = self.climb(point, start, best, only_new);
+        if highest.outside {
+            return Ok(highest);
         }
-        self.facets[start].visit = visit;
-        let mut at = start;
-        let mut next = start;
-        while next != NONE {
-            at = next;
-            next = NONE;
-            for i in 0..self.facets[at].neighbors.len() {
-                let neighbor = self.facets[at].neighbors[i];
-                if (only_new && !self.facets[neighbor].new) || self.facets[neighbor].visit == visit {
-                    continue;
-                }
-                self.facets[neighbor].visit = visit;
-                if self.facets[neighbor].flipped {
-                    continue;
-                }
-                let dist = self.distance(p, neighbor);
-                if dist > height {
-                    (found, height) = (neighbor, dist);
-                    if !best && dist >= self.tolerance.outside {
-                        return Ok(Found {
-                            facet: neighbor,
-                            dist,
-                            outside: true,
-                        });
-                    }
-                    next = neighbor;
-                    break;
-                }
-            }
-        }
+        let (mut found, mut height) = (highest.facet, highest.dist);
         let mut horizon = true;
         if only_new {
             if found == NONE {
@@ -99,7 +59,7 @@ impl Builder<'_> {
         }
         if found == NONE {
             // only flipped facets were seen: any that is not
-            (found, height) = self.find_lower(point, at)?;
+            (found, height) = self.find_lower(point, last)?;
         }
         if horizon {
             (found, height) = self.find_beyond(point, found, height);
@@ -109,6 +69,49 @@ impl Builder<'_> {
             dist: height,
             outside: height >= self.tolerance.outside,
         })
+    }
+
+    /// Goes from facet to facet as long as the point is higher above one of the neighbours. Returns the highest that is not flipped,
+    /// which counts as outside only if that ended the walk, and the facet where the walk ended.
+    fn climb(&mut self, point: u32, start: Id, best: bool, only_new: bool) -> (Found, Id) {
+        let p = self.point(point);
+        let enough = if best { None } else { Some(self.tolerance.outside) };
+        let stand = |facet: Id, dist: f64| Found {
+            facet,
+            dist,
+            outside: enough.is_some_and(|enough| dist >= enough),
+        };
+        self.visit += 1;
+        let visit = self.visit;
+        let mut highest = stand(NONE, BELOW_ALL);
+        if !self.facets[start].flipped {
+            highest = stand(start, self.distance(p, start));
+            if highest.outside {
+                return (highest, start);
+            }
+        }
+        self.facets[start].visit = visit;
+        let mut at = start;
+        'walk: while !highest.outside {
+            for i in 0..self.facets[at].neighbors.len() {
+                let neighbor = self.facets[at].neighbors[i];
+                if (only_new && !self.facets[neighbor].new) || self.facets[neighbor].visit == visit {
+                    continue;
+                }
+                self.facets[neighbor].visit = visit;
+                if self.facets[neighbor].flipped {
+                    continue;
+                }
+                let dist = self.distance(p, neighbor);
+                if dist > highest.dist {
+                    highest = stand(neighbor, dist);
+                    at = neighbor;
+                    continue 'walk;
+                }
+            }
+            break;
+        }
+        (highest, at)
     }
 
     /// Searches all new facets, from one on (`qh_findbestnew`), then beyond the best.

@@ -128,13 +128,8 @@ impl Builder<'_> {
         let mut facet = at;
         while facet != NONE {
             let mut next = NONE;
-            self.facets[facet].visit = self.visit;
-            let skip = self.edge_place(facet, vertex);
-            for &other in waiting {
-                if !self.facets[other].dup_ridge || self.facets[other].visit == self.visit {
-                    continue;
-                }
-                let place = self.edge_place(other, vertex);
+            let (skip, others) = self.beside(facet, waiting, vertex);
+            for (other, place) in others {
                 if self.facets[other].neighbors[place] != SHARED {
                     continue;
                 }
@@ -161,6 +156,16 @@ impl Builder<'_> {
         Ok(closed)
     }
 
+    /// Marks a facet at a shared edge as seen. Returns the place of the neighbour beyond the edge, and the facets there that were not
+    /// seen yet, with theirs.
+    fn beside(&mut self, facet: Id, waiting: &[Id], vertex: Id) -> (usize, Vec<(Id, usize)>) {
+        self.facets[facet].visit = self.visit;
+        let unseen = |other: &Id| self.facets[*other].dup_ridge && self.facets[*other].visit != self.visit;
+        let others = waiting.iter().copied().filter(unseen);
+        let others = others.map(|other| (other, self.edge_place(other, vertex))).collect();
+        (self.edge_place(facet, vertex), others)
+    }
+
     /// Looks through the consistent pairs at a shared edge.
     fn choose_pair(&mut self, waiting: &[Id], vertex: Id, at: Id) -> Step<Choice> {
         let mut choice = Choice::default();
@@ -168,13 +173,8 @@ impl Builder<'_> {
         let mut facet = at;
         while facet != NONE {
             let mut next = NONE;
-            self.facets[facet].visit = self.visit;
-            let skip = self.edge_place(facet, vertex);
-            for &other in waiting {
-                if !self.facets[other].dup_ridge || self.facets[other].visit == self.visit {
-                    continue;
-                }
-                let place = self.edge_place(other, vertex);
+            let (skip, others) = self.beside(facet, waiting, vertex);
+            for (other, place) in others {
                 choice.duplicate |= self.facets[facet].vertices.get(skip) == self.facets[other].vertices.get(place);
                 if self.facets[other].neighbors[place] != SHARED {
                     return Err(Stuck);

@@ -29,40 +29,14 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         }
         arrays.body_mocapid.push(body.mocap.then_some(arrays.nmocap));
         arrays.nmocap += usize::from(body.mocap);
-        arrays.body_jntadr.push(arrays.jnt_name.len());
-        arrays.body_dofadr.push(arrays.nv);
-        let mut dof = last_dof.get(body.parent).copied().flatten();
-        for joint in &body.joints {
-            compile_joint(context, joint, body, id, &mut dof, arrays)?;
-            let user = users.jnt.of(context, joint.at, &joint.user)?;
-            arrays.jnt_user.push(user);
-        }
-        last_dof.push(dof);
-        arrays.body_jntnum.push(body.joints.len());
-        arrays.body_dofnum.push(arrays.nv - arrays.body_dofadr[id]);
-        if arrays.body_dofnum[id] > 6 {
-            return Err(context.invalid(body.at, "a body can have at most 6 degrees of freedom"));
-        }
-        context.within(body.at, "degrees of freedom", limits.dofs, arrays.nv)?;
+        let above = last_dof.get(body.parent).copied().flatten();
+        last_dof.push(compile_joints(context, body, id, above, &users.jnt, arrays)?);
         arrays.body_weldid.push(if id == 0 || !body.joints.is_empty() {
             id
         } else {
             arrays.body_weldid[body.parent]
         });
-        arrays.body_geomadr.push(arrays.geom_name.len());
-        arrays.body_geomnum.push(body.geoms.len());
-        let mut solids = Vec::with_capacity(body.geoms.len());
-        for geom in &body.geoms {
-            context.within(geom.at, "geoms", limits.geoms, arrays.geom_name.len() + 1)?;
-            let solid = compile_geom(context, geom, id, ids, arrays)?;
-            // the others are only drawn, or only collide
-            let [lowest, highest] = context.compiler(body.at).inertiagrouprange;
-            if (lowest..=highest).contains(&(geom.group as f64)) {
-                solids.push(solid);
-            }
-            let user = users.geom.of(context, geom.at, &geom.user)?;
-            arrays.geom_user.push(user);
-        }
+        let solids = compile_geoms(context, body, id, ids, &users.geom, arrays)?;
         inertial(context, body, id, &solids, arrays)?;
         for site in &body.sites {
             compile_site(context, site, id, ids, arrays)?;
@@ -141,6 +115,108 @@ pub(super) fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Qua
     orientation(&frame.orientation, context.compiler(at)).map_err(|message| context.invalid(at, message))
 }
 
+/// Compiles the joints of a body. `last` is the last degree of freedom that moves its parent; returns that of the body itself.
+fn compile_joints(
+    context: &Context,
+    body: &Body,
+    id: usize,
+    mut last: Option<usize>,
+    user: &User,
+    arrays: &mut Arrays,
+) -> Result<Option<usize>, LoadError> {
+    arrays.body_jntadr.push(arrays.jnt_name.len());
+    arrays.body_dofadr.push(arrays.nv);
+    for joint in &body.joints {
+        compile_joint(context, joint, body, id, &mut last, arrays)?;
+        let user = user.of(context, joint.at, &joint.user)?;
+        arrays.jnt_user.push(user);
+    }
+    arrays.body_jntnum.push(body.joints.len());
+    arrays.body_dofnum.push(arrays.nv - arrays.body_dofadr[id]);
+    if arrays.body_dofnum[id] > 6 {
+        return Err(context.invalid(body.at, "a body can have at most 6 degrees of freedom"));
+    }
+    let limit = context.tree.limits.dofs;
+    context.within(body.at, "degrees of freedom", limit, arrays.nv)?;
+    Ok(last)
+}
+
+/// Compiles the geoms of a body; returns those that count for its inertia.
+fn compile_geoms(
+    context: &Context,
+    body: &Body,
+    id: usize,
+    ids: &Ids,
+    user: &User,
+    arrays: &mut Arrays,
+) -> Result<Vec<Solid>, LoadError> {
+    arrays.body_geomadr.push(arrays.geom_name.len());
+    arrays.body_geomnum.push(body.geoms.len());
+    let mut solids = Vec::with_capacity(body.geoms.len());
+    for geom in &body.geoms {
+        let limit = context.tree.limits.geoms;
+        context.within(geom.at, "geoms", limit, arrays.geom_name.len() + 1)?;
+        let solid = compile_geom(context, geom, id, ids, arrays)?;
+        // the others are only drawn, or only collide
+        let [lowest, highest] = context.compiler(body.at).inertiagrouprange;
+        if (lowest..=highest).contains(&(geom.group as f64)) {
+            solids.push(solid);
+        }
+        let user = user.of(context, geom.at, &geom.user)?;
+        arrays.geom_user.push(user);
+    }
+    Ok(solids)
+}
+
+/// The place of a joint in its body.
+struct Mount {
+    pos: Vec3,
+    axis: Vec3,
+    limited: bool,
+}
+
+impl Mount {
+    /// Checks that the joint can be in the body, and returns where: free and ball joints have no axis of their own, and a free joint is
+    /// at the origin.
+    fn of(context: &Context, joint: &Joint, body: &Body, body_id: usize) -> Result<Self, LoadError> {
+        let invalid = |message| Err(context.invalid(joint.at, message));
+        let limited = || context.limited(joint.at, "range", joint.limited, joint.range);
+        let z = [0.0, 0.0, 1.0];
+        match joint.kind {
+            JointType::Free => {
+                if body_id == 0 || body.parent != 0 {
+                    return invalid("a free joint can only be in a child of the world");
+                }
+                if body.joints.len() > 1 {
+                    return invalid("a free joint must be the only joint of its body");
+                }
+                let (pos, limited) = ([0.0; 3], false);
+                Ok(Self { pos, axis: z, limited })
+            }
+            JointType::Ball => {
+                let pos = context.point(joint.within, joint.pos);
+                // any upper end will do: beyond a half turn nothing reaches it
+                let limited = joint.limited == Tri::Yes || limited()?;
+                if limited && joint.range[0] != 0.0 {
+                    return invalid("the range of a ball joint must begin at 0");
+                }
+                Ok(Self { pos, axis: z, limited })
+            }
+            JointType::Slide | JointType::Hinge => {
+                let mut axis = joint.axis;
+                if normalize(&mut axis) < EPS {
+                    return invalid("the axis is too short");
+                }
+                Ok(Self {
+                    pos: context.point(joint.within, joint.pos),
+                    axis: context.direction(joint.within, axis),
+                    limited: limited()?,
+                })
+            }
+        }
+    }
+}
+
 fn compile_joint(
     context: &Context,
     joint: &Joint,
@@ -159,31 +235,7 @@ fn compile_joint(
     }
     let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler(joint.at).degree;
     let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
-    let mut axis = joint.axis;
-    let mut pos = joint.pos;
-    let mut limited = false;
-    if joint.kind == JointType::Free {
-        if body_id == 0 || body.parent != 0 {
-            return Err(context.invalid(joint.at, "a free joint can only be in a child of the world"));
-        }
-        if body.joints.len() > 1 {
-            return Err(context.invalid(joint.at, "a free joint must be the only joint of its body"));
-        }
-        (axis, pos) = ([0.0, 0.0, 1.0], [0.0; 3]);
-    } else if joint.kind == JointType::Ball {
-        (axis, pos) = ([0.0, 0.0, 1.0], context.point(joint.within, pos));
-        // any upper end will do: beyond a half turn nothing reaches it
-        limited = joint.limited == Tri::Yes || context.limited(joint.at, "range", joint.limited, joint.range)?;
-        if limited && joint.range[0] != 0.0 {
-            return Err(context.invalid(joint.at, "the range of a ball joint must begin at 0"));
-        }
-    } else {
-        if normalize(&mut axis) < EPS {
-            return Err(context.invalid(joint.at, "the axis is too short"));
-        }
-        (axis, pos) = (context.direction(joint.within, axis), context.point(joint.within, pos));
-        limited = context.limited(joint.at, "range", joint.limited, joint.range)?;
-    }
+    let Mount { pos, axis, limited } = Mount::of(context, joint, body, body_id)?;
     arrays.jnt_name.push(joint.name.clone());
     arrays.jnt_type.push(joint.kind);
     arrays.jnt_bodyid.push(body_id);

@@ -117,6 +117,11 @@ pub(super) fn compile_geom(
     arrays.geom_group.push(geom.group);
     arrays.geom_rgba.push(geom.rgba.map(single));
     arrays.geom_matid.push(named(&geom.material).map(find).transpose()?);
+    solid(context, geom, &extent, (pos, quat))
+}
+
+/// Returns a geom of this extent as a solid at a pose.
+fn solid(context: &Context, geom: &Geom, extent: &Extent, (pos, quat): (Vec3, Quat)) -> Result<Solid, LoadError> {
     if geom.shell && geom.kind == GeomType::Mesh {
         return Err(context.invalid(geom.at, SHELL));
     }
@@ -139,7 +144,7 @@ pub(super) fn compile_geom(
     })
 }
 
-/// What a geom fills.
+/// Space that a geom fills.
 struct Extent {
     aabb: [f64; 6],
     volume: f64,

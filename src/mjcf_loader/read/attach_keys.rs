@@ -70,55 +70,55 @@ pub(super) fn say(
     if from.keys.is_empty() {
         return;
     }
-    let (mut joint, mut qpos, mut qvel, mut mocap) = (0, 0, 0, 0);
-    let mut tell = |saying: Saying, of: Keyed, numbers: &[f64], from: usize, length: usize| {
-        if let Some(values) = numbers.get(from..from + length).filter(|values| !values.is_empty()) {
-            let values = values.to_vec();
-            document.attached_keys[saying.key].parts.push(KeyPart { of, values });
+    say_bodies(taking, from, said, document);
+    let mut act = 0;
+    for (id, (actuator, place)) in from.actuators.iter().zip(actuators).enumerate() {
+        if let Some(place) = *place {
+            for saying in std::mem::take(&mut said.actuators[id]) {
+                let key = &from.keys[saying.as_in];
+                tell(document, saying, Keyed::Act(place), &key.act, (act, na(actuator)));
+                tell(document, saying, Keyed::Ctrl(place), &key.ctrl, (id, 1));
+            }
         }
-    };
+        act += na(actuator);
+    }
+}
+
+/// Says what keyframes say of joints and of bodies that a program moves.
+fn say_bodies(taking: &Taking, from: &Document, said: &mut Said, document: &mut Document) {
+    let (mut joint, mut qpos, mut qvel, mut mocap) = (0, 0, 0, 0);
     for (id, body) in from.bodies.iter().enumerate() {
         let here = taking.bodies.contains(&id);
+        // a body that has not come along says nothing, and keeps it for the next time that something is taken
+        let taken = |sayings: &mut Vec<Saying>| if here { std::mem::take(sayings) } else { Vec::new() };
         let place = (id + taking.base).saturating_sub(taking.bodies.start);
         for (index, one) in body.joints.iter().enumerate() {
-            let sayings = if here {
-                std::mem::take(&mut said.joints[joint])
-            } else {
-                Vec::new()
-            };
-            for saying in sayings {
+            for saying in taken(&mut said.joints[joint]) {
                 let key = &from.keys[saying.as_in];
                 let (body, joint) = (place, index);
-                tell(saying, Keyed::Qpos { body, joint }, &key.qpos, qpos, one.kind.nq());
-                tell(saying, Keyed::Qvel { body, joint }, &key.qvel, qvel, one.kind.nv());
+                let (of_qpos, of_qvel) = (Keyed::Qpos { body, joint }, Keyed::Qvel { body, joint });
+                tell(document, saying, of_qpos, &key.qpos, (qpos, one.kind.nq()));
+                tell(document, saying, of_qvel, &key.qvel, (qvel, one.kind.nv()));
             }
             joint += 1;
             qpos += one.kind.nq();
             qvel += one.kind.nv();
         }
         if body.mocap {
-            let sayings = if here {
-                std::mem::take(&mut said.mocaps[mocap])
-            } else {
-                Vec::new()
-            };
-            for saying in sayings {
+            for saying in taken(&mut said.mocaps[mocap]) {
                 let key = &from.keys[saying.as_in];
-                tell(saying, Keyed::Mpos(place), &key.mpos, 3 * mocap, 3);
-                tell(saying, Keyed::Mquat(place), &key.mquat, 4 * mocap, 4);
+                tell(document, saying, Keyed::Mpos(place), &key.mpos, (3 * mocap, 3));
+                tell(document, saying, Keyed::Mquat(place), &key.mquat, (4 * mocap, 4));
             }
             mocap += 1;
         }
     }
-    let mut act = 0;
-    for (id, (actuator, place)) in from.actuators.iter().zip(actuators).enumerate() {
-        if let Some(place) = *place {
-            for saying in std::mem::take(&mut said.actuators[id]) {
-                let key = &from.keys[saying.as_in];
-                tell(saying, Keyed::Act(place), &key.act, act, na(actuator));
-                tell(saying, Keyed::Ctrl(place), &key.ctrl, id, 1);
-            }
-        }
-        act += na(actuator);
+}
+
+/// Says one thing in a keyframe of the document: the numbers from a place on, if the keyframe of the model has them.
+fn tell(document: &mut Document, saying: Saying, of: Keyed, numbers: &[f64], (from, length): (usize, usize)) {
+    if let Some(values) = numbers.get(from..from + length).filter(|values| !values.is_empty()) {
+        let values = values.to_vec();
+        document.attached_keys[saying.key].parts.push(KeyPart { of, values });
     }
 }

@@ -1,6 +1,6 @@
 //! `<composite type="cable">`: its bodies, joints, geoms, sites and excludes.
 
-use super::super::composite::{Composite, CompositeType, Prototypes};
+use super::super::composite::{Composite, CompositeType, Link, Prototypes};
 use super::super::custom::Text;
 use super::super::document::{Body, Document, Orientation};
 use super::super::error::{ErrorKind, LoadError};
@@ -67,58 +67,87 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
             data: format!("rope_{prefix}"),
         });
     }
-    let name = |kind: &str, index: usize| {
-        let suffix = spot.suffix;
-        match index {
-            0 => format!("{prefix}{kind}_first{suffix}"),
-            _ if index + 1 == links.len() => format!("{prefix}{kind}_last{suffix}"),
-            _ => format!("{prefix}{kind}_{index}{suffix}"),
-        }
+    let names = Names {
+        prefix,
+        suffix: spot.suffix,
+        count: links.len(),
     };
     for (index, link) in links.iter().enumerate() {
-        let (first, last) = (index == 0, index + 1 == links.len());
-        let mut body = Body {
-            at: e.at,
-            name: name("B", index),
-            parent: if first { spot.body } else { document.bodies.len() - 1 },
-            ..Body::initial()
-        };
-        body.frame.pos = link.pos;
-        body.frame.orientation = Orientation::Quat(link.quat);
-        let mut geom = like.geom.clone();
-        geom.name = format!("{prefix}G{index}{}", spot.suffix);
-        if geom.kind == GeomType::Box {
-            geom.frame.pos = [link.length / 2.0, 0.0, 0.0];
-            geom.size[0] = link.length / 2.0;
+        let parent = if index == 0 {
+            spot.body
         } else {
-            geom.fromto = Some([0.0, 0.0, 0.0, link.length, 0.0, 0.0]);
-        }
-        body.geoms.push(geom);
-        if !first || composite.initial != "none" {
-            let mut joint = like.joint.clone();
-            joint.name = name("J", index);
-            joint.kind = JointType::Ball;
-            if first && composite.initial == "free" {
-                joint.kind = JointType::Free;
-                (joint.damping, joint.armature, joint.frictionloss) = (0.0, 0.0, 0.0);
-            }
-            body.joints.push(joint);
-        }
-        if !last {
+            document.bodies.len() - 1
+        };
+        let body = piece(&composite, &like, link, index, &names);
+        document.bodies.push(Body {
+            at: e.at,
+            parent,
+            ..body
+        });
+        if index + 1 < links.len() {
             document.excludes.push(Exclude {
                 at: e.at,
                 name: String::new(),
-                body1: name("B", index),
-                body2: name("B", index + 1),
+                body1: names.of("B", index),
+                body2: names.of("B", index + 1),
             });
         }
-        if first || last {
-            let mut site = like.site.clone();
-            site.name = name("S", index);
-            site.frame.pos = [if last { link.length } else { 0.0 }, 0.0, 0.0];
-            body.sites.push(site);
-        }
-        document.bodies.push(body);
     }
     Ok(())
+}
+
+/// The names of a cable's parts: those of the first and the last body say so.
+struct Names<'a> {
+    prefix: &'a str,
+    suffix: &'a str,
+    /// Number of bodies.
+    count: usize,
+}
+
+impl Names<'_> {
+    fn of(&self, kind: &str, index: usize) -> String {
+        let Self { prefix, suffix, count } = self;
+        match index {
+            0 => format!("{prefix}{kind}_first{suffix}"),
+            _ if index + 1 == *count => format!("{prefix}{kind}_last{suffix}"),
+            _ => format!("{prefix}{kind}_{index}{suffix}"),
+        }
+    }
+}
+
+/// Returns a body of a cable: a geom along the link, a joint to the body before, and sites at the ends of the cable.
+fn piece(composite: &Composite, like: &Prototypes, link: &Link, index: usize, names: &Names) -> Body {
+    let (first, last) = (index == 0, index + 1 == names.count);
+    let mut body = Body {
+        name: names.of("B", index),
+        ..Body::initial()
+    };
+    body.frame.pos = link.pos;
+    body.frame.orientation = Orientation::Quat(link.quat);
+    let mut geom = like.geom.clone();
+    geom.name = format!("{}G{index}{}", names.prefix, names.suffix);
+    if geom.kind == GeomType::Box {
+        geom.frame.pos = [link.length / 2.0, 0.0, 0.0];
+        geom.size[0] = link.length / 2.0;
+    } else {
+        geom.fromto = Some([0.0, 0.0, 0.0, link.length, 0.0, 0.0]);
+    }
+    body.geoms.push(geom);
+    if !first || composite.initial != "none" {
+        let mut joint = like.joint.clone();
+        joint.name = names.of("J", index);
+        joint.kind = JointType::Ball;
+        if first && composite.initial == "free" {
+            joint.kind = JointType::Free;
+            (joint.damping, joint.armature, joint.frictionloss) = (0.0, 0.0, 0.0);
+        }
+        body.joints.push(joint);
+    }
+    if first || last {
+        let mut site = like.site.clone();
+        site.name = names.of("S", index);
+        site.frame.pos = [if last { link.length } else { 0.0 }, 0.0, 0.0];
+        body.sites.push(site);
+    }
+    body
 }

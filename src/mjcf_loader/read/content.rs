@@ -1,4 +1,4 @@
-//! What bodies hold: child bodies, frames, copies, and what hangs on them.
+//! Contents of bodies: child bodies, frames, copies, and the elements that hang on them.
 
 use super::super::document::{Body, BodyFrame, Camera, Copied, Document, FreeJoint, Geom, Inertial, Joint};
 use super::super::document::{Light, Orientation, Replicate, Site};
@@ -164,6 +164,25 @@ fn frame(e: &Element, spot: Spot, inner: &str, classes: &Classes, document: &mut
     Ok(document.frames.len() - 1)
 }
 
+/// Reads a `<freejoint>`, which no default class changes.
+fn free_joint(e: &Element, spot: Spot) -> Joint {
+    let FreeJoint {
+        at,
+        mut name,
+        group,
+        align,
+    } = FreeJoint::read(e);
+    rename(&mut name, spot);
+    Joint {
+        at,
+        name,
+        kind: JointType::Free,
+        group,
+        align,
+        ..Joint::initial()
+    }
+}
+
 /// Adds any other element to a body. It is kept out of `content`, which recurses, so that its stack frames stay small.
 #[inline(never)]
 fn hang(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [Body]) -> Result<(), LoadError> {
@@ -178,23 +197,7 @@ fn hang(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [
             return Err(classes.error(e, ErrorKind::RepeatedElement("inertial")));
         }
         "inertial" => body.inertial = Some(Inertial::read(e)),
-        "freejoint" => {
-            let FreeJoint {
-                at,
-                mut name,
-                group,
-                align,
-            } = FreeJoint::read(e);
-            rename(&mut name, spot);
-            body.joints.push(Joint {
-                at,
-                name,
-                kind: JointType::Free,
-                group,
-                align,
-                ..Joint::initial()
-            });
-        }
+        "freejoint" => body.joints.push(free_joint(e, spot)),
         "joint" => {
             let mut joint = with(&classes.of(e, around)?.joint, e, Joint::apply);
             rename(&mut joint.name, spot);

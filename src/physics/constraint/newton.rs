@@ -167,6 +167,14 @@ impl Newton {
         island.start(topology, warm, efc)
     }
 
+    /// Tells whether an island with a gradient of this length needs no step: the Hessian exceeds the inertia, so its steps are bounded
+    /// by the inertia's inverse.
+    #[inline(always)]
+    fn rests(&self, topology: &Topology, s: &State, length: f64) -> bool {
+        let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(&s.params, t)).sum();
+        mobility > 0.0 && length * length * mobility < MINVAL
+    }
+
     #[inline(always)]
     fn solve_island(
         &mut self,
@@ -178,12 +186,11 @@ impl Newton {
         s: &mut State,
     ) {
         let (mut cost, length) = self.begin(model, topology, blocks, efc, s);
+        let rests = self.rests(topology, s, length);
         let (island, hessian) = (&mut self.island, &mut self.hessian);
         let newton = model.opt.solver != SolverType::Cg;
         let scale = 1.0 / (model.stat.meaninertia * model.nv.max(1) as f64);
-        // what rests needs no step: the Hessian exceeds the inertia, so its steps are bounded by the inertia's inverse
-        let mobility: f64 = self.trees.iter().map(|&t| topology.mobility(&s.params, t)).sum();
-        if mobility > 0.0 && length * length * mobility < MINVAL {
+        if rests {
             island.store(topology, efc, s);
             return;
         }

@@ -104,13 +104,7 @@ impl Search {
         simplex: &mut Simplex,
     ) -> Enclosure {
         let mut may_test_tetrahedron = !limits.wants_distance();
-        // the search among finitely many points ends by itself
-        let finite = shape.a.discrete() && shape.b.discrete();
-        let tolerance2 = if finite {
-            0.0
-        } else {
-            limits.tolerance * limits.tolerance
-        };
+        let tolerance2 = limits.square_tolerance(shape);
         let mut iteration = 0;
         while iteration < limits.iterations {
             let (at_origin, dir) = towards_origin(self.nearest);
@@ -122,7 +116,7 @@ impl Search {
             // `may_stop`
             let may_stop = iteration > 0 || !at_origin || limits.stop_at_same_centre;
             if may_stop && 2.0 * dot(self.nearest, sub(self.nearest, newest)) < tolerance2 {
-                // the start point is no vertex; callers read at least one
+                // the start point is not a vertex; callers read at least one
                 if iteration == 0 {
                     self.count = 1;
                 }
@@ -179,6 +173,16 @@ impl Limits {
     #[inline(always)]
     fn wants_distance(&self) -> bool {
         self.cutoff > 0.0
+    }
+
+    /// Returns the square of the tolerance; 0 where the search, among finitely many points, ends by itself.
+    #[inline(always)]
+    fn square_tolerance<A: Support, B: Support>(&self, shape: &Difference<A, B>) -> f64 {
+        if shape.a.discrete() && shape.b.discrete() {
+            0.0
+        } else {
+            self.tolerance * self.tolerance
+        }
     }
 
     /// Returns whether the plane through the newest vertex across the direction from the nearest point keeps the shapes

@@ -57,19 +57,9 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
         }
     }
     s.qfrc_actuator = forces;
+    // as in MuJoCo, without actuators nothing compensates gravity, and there is no force that is too small, either
     if acting > 0 {
-        for d in 0..model.nv {
-            if model.jnt_actgravcomp[model.dof_jntid[d]] {
-                s.qfrc_actuator[d] += s.qfrc_gravcomp[d];
-            }
-        }
-    }
-    for (j, &[low, high]) in model.jnt_actfrcrange.iter().enumerate() {
-        // as in MuJoCo, without actuators there is no force that is too small, either
-        if acting > 0 && model.jnt_actfrclimited[j] {
-            let force = &mut s.qfrc_actuator[model.jnt_dofadr[j]];
-            *force = force.max(low).min(high);
-        }
+        limit_joint_forces(model, s);
     }
     for d in 0..model.nv {
         s.qfrc_smooth[d] = s.qfrc_passive[d] - s.qfrc_bias[d] + s.qfrc_applied[d] + s.qfrc_actuator[d];
@@ -78,6 +68,22 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
     let mut acc = std::mem::take(&mut s.qacc_smooth);
     bodies.solve(model, s, Damping::Without, &s.qfrc_smooth, &mut acc);
     s.qacc_smooth = acc;
+}
+
+/// Adds to the forces of actuators what compensates gravity in their place, and limits the sum on each joint.
+#[inline(always)]
+fn limit_joint_forces(model: &Model, s: &mut State) {
+    for d in 0..model.nv {
+        if model.jnt_actgravcomp[model.dof_jntid[d]] {
+            s.qfrc_actuator[d] += s.qfrc_gravcomp[d];
+        }
+    }
+    for (j, &[low, high]) in model.jnt_actfrcrange.iter().enumerate() {
+        if model.jnt_actfrclimited[j] {
+            let force = &mut s.qfrc_actuator[model.jnt_dofadr[j]];
+            *force = force.max(low).min(high);
+        }
+    }
 }
 
 /// Returns the force of an actuator by its control or activation, its length and its velocity.

@@ -119,11 +119,7 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
         () if facetexcoord.is_empty() => face.clone(),
         () => facetexcoord,
     };
-    let named = |corners: &[[u32; 3]], count: usize| {
-        let mut all = corners.as_flattened().iter();
-        all.all(|&i| i == model::Mesh::NONE || (i as usize) < count)
-    };
-    if !named(&facenormal, normal.len()) || !named(&facetexcoord, texcoord.len()) {
+    if !exist(&facenormal, normal.len()) || !exist(&facetexcoord, texcoord.len()) {
         return Err("there must be as many normals and texture coordinates as vertices");
     }
     transform(mesh, &mut vert, &mut normal);
@@ -151,6 +147,12 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
         of_hull,
         inertia_box: solid.inertia_box,
     })
+}
+
+/// Tells whether what the corners of faces name is among `count` normals or texture coordinates.
+fn exist(corners: &[[u32; 3]], count: usize) -> bool {
+    let mut all = corners.as_flattened().iter();
+    all.all(|&i| i == model::Mesh::NONE || (i as usize) < count)
 }
 
 /// Builds the convex hull, of at most `most` corners: in Qhull's order, as MuJoCo has it, or where Qhull would end with an error, in that of the

@@ -1,0 +1,105 @@
+//! Values that other keys exclude.
+
+use super::*;
+
+#[test]
+fn compat_decides_which_touch_functions_exist() {
+    check(
+        "compat: reference\ntouch_function: normal_force",
+        "compat=reference touch_function=normal_force",
+    );
+    check(
+        "compat: reference\ntouch_active: off",
+        "compat=reference touch_active=false",
+    );
+    check("compat: reference\ntouch_scale: 0", "compat=reference touch_scale=0.0");
+    let unknown = "but the Python code that `compat: reference` follows does not have it; use force_vector, \
+                   force_vector_global or normal_force";
+    check_error(
+        "touch_function: normal\ncompat: reference",
+        &format!(":1:17: `touch_function` is normal, {unknown}"),
+    );
+    check_error(
+        "seed: 1\ncompat: reference",
+        &format!(":2:9: `touch_function` is normal, {unknown}"),
+    );
+    check_error(
+        "touch_function: normal_force",
+        ":1:17: `touch_function` is normal_force, but that is the Python code's name for another quantity; use normal, \
+         force_vector or force_vector_global, or set `compat: reference`",
+    );
+}
+
+#[test]
+fn compat_reference_refuses_what_the_reference_cannot_do() {
+    let touch = "touch_function: force_vector\n";
+    check_error(
+        &format!("compat: reference\n{touch}vision_resolution: 128\nrender_size: 64"),
+        ":3:20: `vision_resolution` is 128, but under `compat: reference` an eye's image cannot be larger than \
+         `render_size`; raise `render_size`",
+    );
+    check(
+        "compat: reference\ntouch_active: off\nvision_active: off\nrender_size: 32",
+        "render_size=32 compat=reference vision_active=false touch_active=false",
+    );
+    check(
+        "vision_resolution: 128\nrender_size: 64",
+        "render_size=64 vision_resolution=128",
+    );
+    check_error(
+        &format!("compat: reference\n{touch}behavior: hand_regard"),
+        ":1:9: `touch_fingers` is true, but the Python code that `compat: reference` follows has no finger touch with \
+         `behavior: hand_regard`; set `touch_fingers: false` or `touch_active: false`",
+    );
+    check(
+        &format!("compat: reference\n{touch}behavior: hand_regard\ntouch_fingers: off"),
+        "behavior=hand_regard compat=reference touch_function=force_vector touch_fingers=false",
+    );
+}
+
+#[test]
+fn what_shapes_a_sense_that_is_off_is_refused() {
+    for (input, expect) in [
+        (
+            "vision_active: no\nvision_acuity: yes",
+            ":2:16: `vision_acuity` is true, but it shapes what the eyes see, and they are off; set `vision_active: true`",
+        ),
+        (
+            "vision_outputs: [depth]\nnoise_vision: 3",
+            ":2:15: `noise_vision` is 3.0, but it changes images in colour and grey, and neither is observed; add rgb or gray \
+             to `vision_outputs`",
+        ),
+        (
+            "touch_scale: 0\npain_active: yes",
+            ":2:14: `pain_active` is true, but it needs touch, which is off; set `touch_active: true` and a `touch_scale` \
+             above 0",
+        ),
+        (
+            "vestibular_active: no\ndelay_vestibular: 2",
+            ":2:19: `delay_vestibular` is 2.0, but it shapes the sense of balance, which is off; set `vestibular_active: true`",
+        ),
+        (
+            "pain_slope: 2",
+            ":1:13: `pain_slope` is 2.0, but it shapes pain, which is off; set `pain_active: true`",
+        ),
+        (
+            "delay_motor: 2.5",
+            ":1:14: `delay_motor` is 2.5, but it is counted in whole steps; use a whole number, or set `delay_unit: ms`",
+        ),
+        (
+            "delay_touch: 1001",
+            ":1:14: `delay_touch` is 1001.0, but that is 1001 steps of 5 ms, and a delay has at most 1000",
+        ),
+        (
+            "delay_sensory: 100\nvision_resolution: 4096",
+            ":1:16: `delay_sensory` is 100.0, but the images that wait would take 10066 MB, and may take 1073; lower it, or \
+             `vision_resolution`",
+        ),
+    ] {
+        check_error(input, expect);
+    }
+    check(
+        "delay_unit: ms\ndelay_motor: 2.5\nframe_skip: 2",
+        "frame_skip=2 delay_unit=ms delay_motor=2.5",
+    );
+}
