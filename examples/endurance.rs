@@ -28,9 +28,9 @@ const TWIN_EVERY: u64 = 1000;
 const TWIN_FOR: u64 = 10;
 /// Steps for which the kind of action stays.
 const KIND_FOR: u64 = 250;
-/// One step of so many has touch and eyes.
+/// Steps from one with touch and eyes to the next.
 const SENSES_SHARE: u64 = 100;
-/// One step, or start, of so many is the Rapier engine's.
+/// Steps, or starts, from one of the Rapier engine to the next.
 const RAPIER_STEPS: u64 = 200;
 const RAPIER_STARTS: u64 = 10;
 /// Starts between two that make sense.

@@ -105,7 +105,7 @@ def start(folder):
 
 
 def kills(command, which, count):
-    """Kills a command so many times in one folder; returns what stands in the table."""
+    """Kills a command this many times in one folder; returns what stands in the table."""
     with tempfile.TemporaryDirectory() as folder:
         start(folder)
         before = episodes(folder)

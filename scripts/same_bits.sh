@@ -42,7 +42,7 @@ processor() { # TARGET: its name in Debian
   echo "${name/riscv64gc/riscv64}"
 }
 
-# What runs, as words: the program with what emulates it, and how many threads and steps.
+# Lines of the program, run in its emulator with these threads and steps.
 lines() { # COMMAND THREADS LONGEST: all kinds
   local kind
   for kind in episode variant vector; do $1 $kind "$2" "$3" || return; done

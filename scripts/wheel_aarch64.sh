@@ -33,7 +33,7 @@ if [ ! -f "$root/complete" ]; then
   touch "$root/complete"
 fi
 
-# What the wheel depends on, for each processor.
+# The wheel's dependencies, for each processor.
 packages() { # NAME WHEEL PLATFORM
   rm -rf "${work:?}/$1"
   "$work/tools/bin/pip" install --target "$work/$1" --only-binary :all: --implementation cp --python-version "${version#python}" \

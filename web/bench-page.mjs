@@ -1,4 +1,4 @@
-// What a visit to the page costs: `node web/bench-page.mjs [SECONDS]`, after `web/build.sh`. It prints when the parts of the
+// Cost of a visit to the page: `node web/bench-page.mjs [SECONDS]`, after `web/build.sh`. It prints when the parts of the
 // first picture were there, in the median of five visits, and then plays in the tab with the eyes for so long (60 s).
 import { chromium } from "playwright-core";
 import { serve } from "./page/serve.mjs";

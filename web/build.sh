@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# What is missing is said before anything is built.
+# Missing tools are reported before anything is built.
 missing() {
   echo "web/build.sh: $1" >&2
   exit 1

@@ -83,7 +83,7 @@ VISUAL = {
     "headlight": "active ambient diffuse specular",
 }
 
-# What the scenes do not use but the loader understands.
+# A document with elements that the loader understands and the scenes do not use.
 FEATURES = """
 <mujoco model="features">
   <compiler angle="radian" eulerseq="ZyX" texturedir="../tex"/>

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Puts random documents beside MuJoCo, and writes the table of docs/differential.md.
 #   conformance/scripts/differential.sh [DOCUMENTS] [FIRST_SEED]     100,000 documents from seed 1 on
-# What differs is written, made small, into target/differential/.
+# Documents that differ are written, made small, into target/differential/.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 documents=${1:-100000} seed=${2:-1}

@@ -1,4 +1,4 @@
-//! What whole steps cost beside the Python kit.
+//! Cost of whole steps beside the Python kit.
 
 use std::fmt::Display;
 use std::fs::File;
@@ -28,9 +28,9 @@ const SEED: u64 = 0;
 /// A whole environment that both sides have.
 struct Task {
     name: &'static str,
-    /// What `kit_speed.py` builds theirs from.
+    /// Settings that `kit_speed.py` builds the kit's environment from.
     theirs: Value,
-    /// What ours is built from.
+    /// Configuration of our environment.
     ours: Config,
 }
 

@@ -23,7 +23,7 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// Compares a position and velocity of ours with MuJoCo's.
+    /// Compares our position and velocity with MuJoCo's.
     pub fn new(model: &Model, step: usize, ours: (&[f64], &[f64]), theirs: (&[f64], &[f64])) -> Self {
         let free = |own: bool| -> Vec<usize> {
             let is_free = |&j: &usize| model.jnt_type[j] == JointType::Free && (model.jnt_name[j].is_empty() != own);

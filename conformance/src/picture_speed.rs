@@ -1,4 +1,4 @@
-//! What pictures cost beside MuJoCo's own renderer.
+//! Cost of pictures beside MuJoCo's own renderer.
 
 use std::path::Path;
 use std::time::Instant;
@@ -122,7 +122,7 @@ fn rows(python: &Path) -> Result<Vec<Row>, String> {
         .collect()
 }
 
-/// What our pictures of a state cost, medians, ms.
+/// Cost of our pictures of a state, medians, ms.
 struct Spent {
     /// CPU time of one thread.
     cpu: f64,

@@ -28,7 +28,7 @@ const LEAST: f64 = 1e-16;
 
 /// Distances over steps.
 pub struct Panel {
-    /// What it shows.
+    /// Title above the plot.
     pub title: String,
     /// Names and values after each step, rad.
     pub lines: Vec<(String, Vec<f64>)>,

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use testkit::yardsticks::kit_python;
 
-/// What the Python must have, for messages.
+/// Packages that Python must have, as messages name them.
 pub const NEEDS: &str = "the packages of conformance/scripts/kit_requirements.txt in the Python that the variable PYTHON names \
                          (or that is made in target/python-kit), and OSMesa (Debian, Ubuntu: apt install libosmesa6)";
 

@@ -5,7 +5,7 @@ use babybench::physics::{Engine, SoftEngine, State};
 use crate::measure::{Summary, identical, max_abs, relative, relative_each, relative_to_change};
 use crate::reference::Reference;
 
-/// What a difference is divided by.
+/// Divisor of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Nothing.
@@ -20,7 +20,7 @@ pub enum Scale {
 pub struct Compared {
     /// Name in MuJoCo.
     pub name: &'static str,
-    /// What its errors are divided by.
+    /// Divisor of its errors.
     pub scale: Scale,
     /// Whether it is a position or orientation of bodies, geoms or sites.
     pub pose: bool,

@@ -1,1 +1,1 @@
-"""What the packages ``babybench`` and ``mimoEnv`` are made of; import those."""
+"""The implementation of the packages ``babybench`` and ``mimoEnv``; import those."""

@@ -218,7 +218,7 @@ class Env:
     def seed_action_space(self, seed: int) -> None:
         """Seeds the generator of :meth:`sample_action` and of start actions, as ``action_space.seed`` does."""
     def draw_from(self, drawn: int) -> None:
-        """Puts the generator of random choices to where it has drawn so many numbers since it was seeded."""
+        """Puts the generator of random choices to where it has drawn ``drawn`` numbers since it was seeded."""
     def sample_action(self) -> npt.NDArray[np.float32]:
         """Returns a random action, the same that ``action_space.sample()`` draws from the same seed."""
 
@@ -321,7 +321,7 @@ class View:
     def attend(self, env: Env) -> str:
         """Shows the environment to those who ask and says what is next: ``step``, ``reset``, or ``wait`` after 0.05 s."""
     def stepped(self, env: Env, seconds: float) -> None:
-        """Says that a step of so many seconds has been taken."""
+        """Says that a step of this many simulated seconds has been taken."""
     def restarted(self, env: Env) -> None:
         """Says that an episode has begun."""
     def close(self) -> None:

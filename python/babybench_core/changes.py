@@ -23,7 +23,7 @@ def arrays(
     """Returns whole arrays; elements that a mapping does not name keep their rows.
 
     Raises:
-        TypeError: Something that is no mapping of names.
+        TypeError: Something that is not a mapping of names.
         KeyError: There is no such array or element.
         ValueError: Numbers of another shape.
     """
@@ -36,7 +36,7 @@ def _whole(
     name: object, value: Any, present: Callable[[str], npt.NDArray[Any]], blueprint: _native.Blueprint
 ) -> npt.NDArray[Any]:
     if not isinstance(name, str):
-        raise TypeError(f"{name!r} is no name of an array of the model")
+        raise TypeError(f"{name!r} is not the name of an array of the model")
     if not isinstance(value, Mapping):
         return np.asarray(value)
     array = present(name)

@@ -1,4 +1,4 @@
-"""Records of runs: folders with a description and an archive of NumPy's for each episode.
+"""Records of runs: folders with a description and a NumPy archive for each episode.
 
 ``babybench run --record DIR`` and ``babybench evaluate --record DIR`` make them, and :class:`Recorder`. Two lines read
 one without this module::
@@ -181,7 +181,7 @@ class Record(Exports, Mapping[int, Episode]):
         description = self._descriptions[episode]
         name = description["file"]
         if Path(name).name != name:
-            raise ValueError(f"{self.folder}: {name!r} is no name of a file in this folder")
+            raise ValueError(f"{self.folder}: {name!r} is not the name of a file in this folder")
         return Episode(self, self.folder / name, description)
 
     def __iter__(self) -> Iterator[int]:

@@ -18,7 +18,7 @@ from babybench_core.senses import Proprioception, Touch
 from babybench_core.window import Window
 
 Observation = dict[str, npt.NDArray[Any]]
-"""What MIMo senses, by name: see :class:`Env`."""
+"""MIMo's sensations by name: see :class:`Env`."""
 
 
 class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
@@ -91,7 +91,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
         Raises:
             FileNotFoundError: There is no such file or folder.
-            ValueError: An unknown key, a value that is not allowed, assets that cannot be read. A keyword that is no key is
+            ValueError: An unknown key, a value that is not allowed, assets that cannot be read. A keyword that is not a key is
                 a ``TypeError``, too.
         """
         modes = self.metadata["render_modes"]
@@ -265,12 +265,12 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
 
     @cached_property
     def proprioception(self) -> Proprioception:
-        """What stands where in ``observation``."""
+        """The layout of ``observation``."""
         return Proprioception(self._core)
 
     @cached_property
     def touch(self) -> Touch:
-        """What stands where in ``touch``, and touch beyond the vector.
+        """The layout of ``touch``, and touch beyond the vector.
 
         Raises:
             ValueError: Touch is off.

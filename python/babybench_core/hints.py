@@ -1,4 +1,4 @@
-"""What to use instead of a name that does not exist."""
+"""Hints at the name to use instead of one that does not exist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What MIMo would feel and see in a motion: joint angles over time, from a video of an infant, a capture or a record."""
+"""MIMo's sensations in a given motion: joint angles over time, from a video of an infant, a capture or a record."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ MotionLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 @dataclass(frozen=True)
 class Played:
-    """What came of playing a motion."""
+    """Outcome of playing a motion."""
 
     record: Record
-    """What MIMo sensed."""
+    """The record of MIMo's sensations."""
     steps: int
     """Number of steps."""
     error: float

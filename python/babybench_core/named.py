@@ -29,7 +29,7 @@ KINDS = {
 """The methods that find elements, and the kind of each."""
 
 PREFIX = {"joint": "jnt", "camera": "cam", "equality": "eq", "texture": "tex", "material": "mat"}
-"""What the names of a kind's arrays begin with, where it is not the kind."""
+"""Prefix of the names of a kind's arrays, where it is not the kind."""
 
 
 def widened(values: NDArray[Any], width: int) -> NDArray[Any]:

@@ -39,7 +39,7 @@ class ActionNoise:
             seed: Of a vector, environment i gets the seed plus i.
 
         Raises:
-            ValueError: What is no noise; the text says what is.
+            ValueError: Not a noise; the text says what is.
         """
         if isinstance(env, VectorEnv):
             count, space = env.num_envs, env.single_action_space

@@ -26,7 +26,7 @@ class TouchBody(TypedDict):
 
 
 class LockReport(TypedDict):
-    """What a lock came to: names of joints."""
+    """Outcome of a lock: names of joints."""
 
     changed: list[str]
     """Joints that were locked or unlocked."""

@@ -25,7 +25,7 @@ from babybench_core.vector import AutoresetMode, VectorEnv
 Indices = Union[None, int, Iterable[int]]
 
 _OUTCOME = ("is_success", "is_failure", "reward_terms")
-"""What a task tells of a step."""
+"""Keys by which a task judges a step."""
 _KEYS = ("steps", "touches", "regards", "page_regards", "kit_regards", *_OUTCOME)
 
 

@@ -16,7 +16,7 @@ ConfigLike = Union[Mapping[str, object], str, "os.PathLike[str]", None]
 
 
 class UnexpectedKeyword(TypeError, ValueError):
-    """A keyword that is no key of the configuration.
+    """A keyword that is not a key of the configuration.
 
     It is a ``ValueError``, as the same key in a file is, and a ``TypeError``, by which libraries that offer an environment
     more than it takes know that they should do without.
@@ -38,7 +38,7 @@ def read_config(config: ConfigLike = None, **keys: object) -> dict[str, Any]:
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: An unknown key or a value that is not allowed; the text names it and what is allowed.
-        TypeError: A value of a type that no key has, or a keyword that is no key.
+        TypeError: A value of a type that no key has, or a keyword that is not a key.
     """
     found: Mapping[str, object]
     if config is None:

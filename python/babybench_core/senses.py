@@ -1,4 +1,4 @@
-"""What the numbers of an observation are: names, places, units; and touch beyond the vector."""
+"""The meaning of an observation's numbers: names, places, units; and touch beyond the vector."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Proprioception:
 
 
 class TouchLayout:
-    """What stands where in the entry ``touch``: thousands of sensors all over the skin.
+    """The layout of the entry ``touch``: thousands of sensors all over the skin.
 
     Sensors are ordered by body, and each has ``width`` numbers, in N: one (normal force) or three (a vector, in the
     frame that ``touch_function`` names).

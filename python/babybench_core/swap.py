@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 CHOICE = "BABYBENCH_MIMO"
 """The variable that decides: ``babybench`` or ``original``."""
 MIMO = ("mimoActuation", "mimoEnv", "mimoProprioception", "mimoTouch", "mimoVestibular", "mimoVision")
-"""What MIMo consists of."""
+"""Packages of MIMo."""
 
 _SERVED_BY_MIMO = (
     "{name} is MIMo's own ({folder}): MuJoCo runs these environments, not the engine of babybench. To run them on it, import "

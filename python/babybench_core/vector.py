@@ -42,7 +42,7 @@ _MODES = {
     AutoresetMode.SAME_STEP: "same_step",
     AutoresetMode.DISABLED: "disabled",
 }
-# before 1.0 every vector of Gymnasium's resets in the same step
+# before 1.0 every Gymnasium vector resets in the same step
 _USUAL = AutoresetMode.NEXT_STEP if hasattr(gymnasium.vector, "AutoresetMode") else AutoresetMode.SAME_STEP
 
 
@@ -303,12 +303,12 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
 
     @functools.cached_property
     def proprioception(self) -> Proprioception:
-        """What stands where in a row of ``observation``."""
+        """The layout of a row of ``observation``."""
         return Proprioception(_native.Env(self._blueprints[0], False))
 
     @functools.cached_property
     def touch(self) -> TouchLayout:
-        """What stands where in a row of ``touch``.
+        """The layout of a row of ``touch``.
 
         Raises:
             ValueError: Touch is off.
@@ -320,7 +320,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[type-arg, unused-ig
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Calls a method of one environment (``info``, ``snapshot``, ``lock``, ...) for each of them, as Gymnasium's vectors do.
 
-        An attribute that is no method is returned, once for each environment.
+        An attribute that is not a method is returned, once for each environment.
 
         Example:
             >>> import babybench

@@ -20,7 +20,7 @@ __all__ = ["View", "view"]
 
 Action = npt.NDArray[np.float32]
 Policy = Union[None, str, ActionNoise, Callable[[Mapping[str, Any]], npt.ArrayLike]]
-"""What moves MIMo: nothing, a noise or its name, or a function of the observation."""
+"""A source of actions: nothing, a noise or its name, or a function of the observation."""
 
 
 class View:
@@ -55,7 +55,7 @@ class View:
             height: Pixels of the frame in a notebook.
 
         Raises:
-            TypeError: This is no environment of this package.
+            TypeError: This is not an environment of this package.
             OSError: The port is taken.
         """
         inside = env.unwrapped
@@ -77,7 +77,7 @@ class View:
         return self._thread is not None and self._thread.is_alive()
 
     def show(self) -> bool:
-        """Shows the environment after a step of the program's, and returns when it is time for the next.
+        """Shows the environment after the program's step, and returns when it is time for the next.
 
         While nobody looks it returns at once: a closed or hidden page does not hold the program, not even one on which time
         stands.
@@ -222,7 +222,7 @@ def view(
         height: As of :class:`View`.
 
     Raises:
-        TypeError: This is no environment of this package.
+        TypeError: This is not an environment of this package.
         OSError: The port is taken.
     """
     made = isinstance(env, (str, Mapping))

@@ -21,7 +21,7 @@ HELP = (
     "up, down: speed   home: camera",
     "c: contacts   t: touch   h: help",
 )
-"""What keys and the pointer do."""
+"""The effect of keys and the pointer, as the window shows it."""
 
 _FPS = 60
 _SPEEDS = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
@@ -79,7 +79,7 @@ class Window:
     # --- time ---
 
     def show(self, seconds: float) -> None:
-        """Shows the environment after a step of so many simulated seconds, and waits until it is time for the next."""
+        """Shows the environment after a step of this many simulated seconds, and waits until it is time for the next."""
         self._listen()
         while self.open and self.paused and not self._single:
             self._draw()

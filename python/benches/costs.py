@@ -1,4 +1,4 @@
-"""What the Python side costs beside the core, measured in turn.
+"""Costs of the Python side beside the core, measured in turn.
 
 Run it with ``python benches/costs.py``; it prints a table. ``--quick`` takes a tenth of the time.
 """

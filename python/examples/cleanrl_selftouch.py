@@ -1,6 +1,6 @@
-"""Runs a script of CleanRL's for continuous actions, as it is, with MIMo: he is rewarded for touches that are new in the episode.
+"""Runs CleanRL's script for continuous actions, as it is, with MIMo: he is rewarded for touches that are new in the episode.
 
-CleanRL's scripts make environments by a name of Gymnasium's and flatten their observations; this file registers such a
+CleanRL's scripts make environments by a Gymnasium name and flatten their observations; this file registers such a
 name and starts the script that it is given::
 
     python cleanrl_selftouch.py cleanrl/ppo_continuous_action.py --total-timesteps 20000 --num-envs 8 --num-steps 256

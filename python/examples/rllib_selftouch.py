@@ -57,7 +57,7 @@ class Flat(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 
 class FlatVector(gymnasium.vector.VectorWrapper):
-    """The same for a vector of the library's, all environments at once."""
+    """The same for the library's vectors, all environments at once."""
 
     def __init__(self, envs: babybench.VectorEnv) -> None:
         """Wraps a vector with touch."""

@@ -13,7 +13,7 @@ use babybench::vector::VectorError;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-/// An error that has an exception of Python's.
+/// An error that has a Python exception.
 pub trait IntoException: Send {
     /// Returns the exception that says the same.
     fn into_exception(self) -> PyErr;

@@ -121,7 +121,7 @@ const ACCELERATION: u32 = 1 << 9;
 pub const POST: u32 = 1 << 10;
 /// Values of sensors.
 const SENSORS: u32 = 1 << 11;
-/// Contacts and rows of constraints, which are no fields.
+/// Contacts and rows of constraints, which are not fields.
 pub const CONSTRAINTS: u32 = 1 << 12;
 /// Fields that all steps compute.
 pub const COMPUTED: u32 = (CONSTRAINTS << 1) - 1 - INPUT - POST;

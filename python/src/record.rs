@@ -139,7 +139,7 @@ fn motion_exception(error: MotionError) -> PyErr {
     }
 }
 
-/// What playing a motion came to: steps, error, rad, the worst joint with its error, and the joints whose range it leaves.
+/// Outcome of playing a motion: steps, error, rad, the worst joint with its error, and the joints whose range it leaves.
 type PlayedSenses = (u64, f64, Option<(String, f64)>, Vec<String>);
 
 /// Plays a motion in an environment that was reset, and records it.

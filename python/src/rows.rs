@@ -64,7 +64,7 @@ impl Arrays {
         })
     }
 
-    /// Returns the observations in arrays of Python's own, or as read-only views.
+    /// Returns the observations in arrays that Python owns, or as read-only views.
     pub fn observations<'py>(&mut self, py: Python<'py>, copy: bool) -> PyResult<Bound<'py, PyDict>> {
         if !copy {
             return Ok(self.dict.bind(py).clone());

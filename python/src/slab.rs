@@ -37,7 +37,7 @@ impl<T: Element> Slab<T> {
         self.array.bind(py).readwrite()
     }
 
-    /// Returns an array of Python's own, written by a function of this one; it writes all of it.
+    /// Returns an array that Python owns, written by a function of this one; it writes all of it.
     pub fn copy<'py>(&mut self, py: Python<'py>, write: impl FnOnce(&[T], &mut [T])) -> PyResult<Bound<'py, PyAny>> {
         let array = self.array.bind(py).readonly();
         let values = array.as_slice()?;
@@ -84,7 +84,7 @@ macro_rules! slabs {
                 }
             }
 
-            /// Returns a copy of Python's own.
+            /// Returns a copy that Python owns.
             pub fn copy<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
                 match self {
                     $(Self::$kind(slab) => slab.copy(py, |from, to| to.copy_from_slice(from)),)*

@@ -1,4 +1,4 @@
-"""What tests of the starter kit's interface share."""
+"""Functions that tests of the starter kit's interface share."""
 
 from __future__ import annotations
 

@@ -332,7 +332,7 @@ def test_the_model_is_changed_for_this_and_for_later_episodes():
         ({"opt.gravity": [0, 0, np.inf]}, ValueError, "opt.gravity, number 2, is inf"),
         ({"opt.gravity": np.zeros(3) + 1j}, TypeError, "real numbers are needed"),
         ([1], TypeError, "expected a mapping"),
-        ({3: 1}, TypeError, "3 is no name"),
+        ({3: 1}, TypeError, "3 is not the name"),
     ],
 )
 def test_changes_of_the_model_that_are_none(env, changes, error, match):

@@ -1,4 +1,4 @@
-"""What is wrong is said by Python's own exceptions, and nothing hangs."""
+"""Mistakes raise Python's own exceptions, and nothing hangs."""
 
 from __future__ import annotations
 

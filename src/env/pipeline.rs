@@ -25,9 +25,9 @@ impl Stage {
 #[derive(Clone, Default)]
 struct Chain {
     stages: Vec<Stage>,
-    /// How many of them, the first ones, look at what is sensed now and at nothing else: acuity, foveation.
+    /// The number of the first stages that use what is sensed now and nothing else: acuity, foveation.
     optics: usize,
-    /// For a sense that does not look in every step: what it saw last, after so many stages. Those behind, a delay and what a program
+    /// For a sense that does not look in every step: what it saw last, after a number of stages. Those behind, a delay and what a program
     /// added, go on in every step.
     hold: Option<(usize, Hold)>,
 }

@@ -91,7 +91,7 @@ impl Measures {
         let velocity = npz.get_f64("qvel")?;
         let (dt, t) = (manifest.dt, steps.len());
         if !(dt.is_finite() && dt > 0.0) {
-            return Err(unfit("the time of a step is no positive number"));
+            return Err(unfit("the time of a step is not a positive number"));
         }
         let joints = Joints::of(manifest);
         let columns = velocity.shape.get(1).copied().unwrap_or(0);

@@ -49,7 +49,7 @@ impl Heights {
     /// Reads a file.
     ///
     /// # Errors
-    /// Bytes that are no such file, numbers that are not finite, more numbers than [`Limits::mesh_elements`]; what is wrong, without
+    /// Bytes that are not such a file, numbers that are not finite, more numbers than [`Limits::mesh_elements`]; what is wrong, without
     /// the name of the file.
     pub fn read(bytes: &[u8], format: HeightFormat, limits: &Limits) -> Result<Self, String> {
         match format {

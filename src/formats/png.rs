@@ -23,7 +23,7 @@ pub enum PictureError {
         /// The error of the system.
         source: std::io::Error,
     },
-    /// The pixels are no picture of this size.
+    /// The pixels are not a picture of this size.
     #[error("{}: {source}", path.display())]
     Encode {
         /// The file.

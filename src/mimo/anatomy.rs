@@ -112,7 +112,7 @@ mod tests {
             }
         }
         for kind in &BODIES {
-            assert!(found.contains(&kind.name), "{} is no body of MIMo", kind.name);
+            assert!(found.contains(&kind.name), "{} is not a body of MIMo", kind.name);
         }
     }
 }

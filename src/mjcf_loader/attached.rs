@@ -197,7 +197,7 @@ pub(super) struct AttachedKey {
     pub parts: Vec<KeyPart>,
 }
 
-/// What a keyframe says of an element.
+/// The part of a keyframe that concerns one element.
 #[derive(Clone)]
 pub(super) struct KeyPart {
     pub of: Keyed,
@@ -222,10 +222,10 @@ pub(super) struct Saying {
     pub as_in: usize,
 }
 
-/// What bodies can be taken of.
+/// A model whose bodies can be attached.
 pub(super) struct Attachable {
     pub document: Document,
-    /// What keyframes of the document say about each element of the model that has not come along since they were made, as in MuJoCo,
+    /// Parts of the document's keyframes that concern elements of the model that have not come along since they were made, as in MuJoCo,
     /// which keeps it for the next time that something is taken.
     pub said: Said,
 }
@@ -286,7 +286,7 @@ pub(super) fn hanging(body: &Body) -> impl Iterator<Item = (Thing, &String)> {
     own.chain(joints).chain(geoms).chain(sites).chain(cameras)
 }
 
-/// What an element of a model refers to that did not come along, and by what name: then the element did not, either.
+/// A reference of an element of a model to one that did not come along, and its name: then the element did not, either.
 pub(super) struct Absent {
     pub at: usize,
     pub thing: Thing,
@@ -299,7 +299,7 @@ pub(super) struct Amount {
     elements: usize,
     /// Numbers of assets.
     numbers: usize,
-    /// What keyframes say of elements.
+    /// Number of parts of keyframes.
     said: usize,
 }
 

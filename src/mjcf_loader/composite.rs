@@ -132,7 +132,7 @@ pub(super) static JOINT: [Attr; 11] = pick(
 /// The most bodies of a cable, whose chain costs memory with the square of its length.
 pub(super) const MAX_BODIES: usize = 1000;
 
-/// What x, y or z is along a curve.
+/// Course of x, y or z along a curve.
 #[derive(Clone, Copy)]
 enum Shape {
     Line,
@@ -279,7 +279,7 @@ fn turned(normal: &mut Vec3, edge: Vec3, previous: Vec3, next: Vec3, first: bool
     frame_to_quat(tangent, *normal, binormal)
 }
 
-/// What geoms, sites and joints of a composite are where it does not say.
+/// Geoms, sites and joints of a composite, before its own attributes are applied.
 pub(super) struct Prototypes {
     pub geom: Geom,
     pub site: Site,

@@ -254,11 +254,11 @@ pub(super) struct Document {
     pub bodies: Vec<Body>,
     /// Frames in the bodies, which elements name by their place here.
     pub frames: Vec<BodyFrame>,
-    /// What each `<replicate>` adds to the names of its copies.
+    /// Suffixes that each `<replicate>` adds to the names of its copies.
     pub suffixes: BTreeSet<String>,
     /// Whether a `<replicate>` stands in this document itself.
     pub replicates: bool,
-    /// What did not come along with bodies of other models.
+    /// References to elements that did not come along with bodies of other models.
     pub absent: Vec<Absent>,
     /// How much was copied of other models, here and in those.
     pub copied: Amount,

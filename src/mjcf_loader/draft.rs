@@ -32,7 +32,7 @@ use super::{compile, read};
 pub struct Draft {
     tree: Tree,
     document: Document,
-    /// What names begin with.
+    /// Prefix of all names.
     prefix: String,
 }
 

@@ -173,9 +173,9 @@ static SPATIAL: Rule = rule(
 );
 static TENDON: Rule = rule("tendon", &[], &[&FIXED, &SPATIAL]);
 
-/// What all actuators have.
+/// Attributes of all actuators.
 const DRIVE: Groups = Actuator::ATTRIBUTES;
-/// What they act on, and where.
+/// Attributes that name what they act on, and where.
 const TARGET: Groups = Target::ATTRIBUTES;
 const SITE_TARGET: Groups = AtSite::ATTRIBUTES;
 static GENERAL: Rule = rule(

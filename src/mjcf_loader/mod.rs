@@ -4,7 +4,7 @@
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
 //! physics: what needs dynamics (`*_invweight0`, statistics, poses of welds at `qpos0`) comes with the last step.
 //!
-//! What is understood is what the models of this project and the original BabyBench files use, and of the rest of the language
+//! The loader understands what the models of this project and the original BabyBench files use, and of the rest of the language
 //! whatever needs no deformable bodies, with few exceptions; the elements and
 //! attributes are listed by `babybench inspect --mjcf`. Everything else is an error that names the place. Ignored are only the
 //! memory reservations in `size`, the matrix format `jacobian`, skins, which are not drawn, and the colours in `visual/rgba` of what only MuJoCo's

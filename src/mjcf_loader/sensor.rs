@@ -38,42 +38,42 @@ table! {
 }
 
 table! {
-    /// What a sensor on a site refers to.
+    /// The site of a sensor on a site.
     group OnSite {
         "site" site: String = String::new(), TEXT, required, "Site that it sits on.";
     }
 }
 
 table! {
-    /// What a sensor of a joint refers to.
+    /// The joint of a sensor of a joint.
     group OfJoint {
         "joint" joint: String = String::new(), TEXT, required, "Joint that it measures.";
     }
 }
 
 table! {
-    /// What a sensor of a tendon refers to.
+    /// The tendon of a sensor of a tendon.
     group OfTendon {
         "tendon" tendon: String = String::new(), TEXT, required, "Tendon that it measures.";
     }
 }
 
 table! {
-    /// What a sensor of an actuator refers to.
+    /// The actuator of a sensor of an actuator.
     group OfActuator {
         "actuator" actuator: String = String::new(), TEXT, required, "Actuator that it measures.";
     }
 }
 
 table! {
-    /// What a sensor of a body and those below it refers to.
+    /// The body of a sensor of a body and those below it.
     group OfSubtree {
         "body" body: String = String::new(), TEXT, required, "Body that it measures, with all below it.";
     }
 }
 
 table! {
-    /// What a sensor of a frame refers to.
+    /// The object of a sensor of a frame, and its reference.
     group OfFrame {
         "objtype" objtype: FrameOf = FrameOf::Body, FRAMES, required, "Kind of the object; `body` for the frame of its centre of mass, `xbody` for its own.";
         "objname" objname: String = String::new(), TEXT, required, "Name of the object.";
@@ -89,7 +89,7 @@ table! {
 }
 
 table! {
-    /// What a sensor of a camera's picture refers to.
+    /// The site and the camera of a sensor of a camera's picture.
     group InPicture {
         "site" site: String = String::new(), TEXT, required, "Site that is seen.";
         "camera" camera: String = String::new(), TEXT, required, "Camera that sees it.";
@@ -97,7 +97,7 @@ table! {
 }
 
 table! {
-    /// What a sensor between geoms refers to.
+    /// The geoms, or bodies, of a sensor between geoms.
     group Between {
         "geom1" geom1: Option<String> = None, TEXT, first, "First geom.";
         "body1" body1: Option<String> = None, TEXT, first, "Body whose geoms are the first.";
@@ -132,7 +132,7 @@ const OBJECTS: Words<ObjType> = words! {
 };
 
 table! {
-    /// What a sensor that a program fills says about itself.
+    /// Size and stage of a sensor that a program fills.
     group OfUser {
         "dim" dim: usize = 0, int(0, MAX_USER), required, "Number of its values.";
         "needstage" needstage: usize = 3, STAGES, "Stage of a step after which the program fills it, for the program.";
@@ -142,7 +142,7 @@ table! {
     }
 }
 
-/// What a sensor refers to, by name.
+/// Objects that a sensor refers to, by name.
 #[derive(Clone)]
 pub(super) enum Object {
     Nothing,

@@ -357,7 +357,7 @@ arrays! {
     ["internals"] actuator_cranklength: Vec<f64>,
     /// Gear, the first of MuJoCo's six.
     actuator_gear: Vec<f64>,
-    /// All six gears of MuJoCo's, of which sites use more than the first: force and torque per unit of the actuator's force.
+    /// All six of MuJoCo's gears, of which sites use more than the first: force and torque per unit of the actuator's force.
     ["internals"] actuator_gear6: Vec<[f64; 6]>,
     /// Whether `actuator_ctrlrange` applies.
     actuator_ctrllimited: Vec<bool>,

@@ -46,7 +46,7 @@ impl Mesh {
     pub const NONE: u32 = u32::MAX;
 }
 
-/// The convex hull of a mesh as a graph of its corners, in the order of MuJoCo's, which Qhull makes: where several corners are equally
+/// The convex hull of a mesh as a graph of its corners, in MuJoCo's order, which Qhull makes: where several corners are equally
 /// far, it decides which is found first. Where Qhull's steps come to no hull, the order is that of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

@@ -26,7 +26,7 @@ macro_rules! sensors {
                 match self { $(Self::$kind => $code,)* }
             }
 
-            /// Returns how many numbers such a sensor gives; `sensor_dim` has those of a user's.
+            /// Returns how many numbers such a sensor gives; `sensor_dim` has that of a user sensor.
             pub const fn dim(self) -> usize {
                 match self { $(Self::$kind => $dim,)* }
             }

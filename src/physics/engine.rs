@@ -272,7 +272,7 @@ pub enum EngineError {
     },
     /// The simulation diverged in a contact, though positions, velocities and accelerations still are numbers.
     #[error(
-        "the simulation diverged in step {step} where the geoms {} and {} touch (position or force is no finite number): \
+        "the simulation diverged in step {step} where the geoms {} and {} touch (position or force is not a finite number): \
          make sizes, masses or speeds smaller", .geoms[0], .geoms[1]
     )]
     DivergedContact {

@@ -191,7 +191,7 @@ table! {
         pub qfrc_bias: [f64; model.nv] = 0.0;
         /// Spring and damper force (nv).
         pub qfrc_passive: [f64; model.nv] = 0.0;
-        /// What compensates gravity: a part of `qfrc_passive`, or of `qfrc_actuator` where `jnt_actgravcomp` says so.
+        /// Forces that compensate gravity: a part of `qfrc_passive`, or of `qfrc_actuator` where `jnt_actgravcomp` says so.
         pub qfrc_gravcomp: [f64; model.nv] = 0.0;
 
         // acceleration stage

@@ -75,7 +75,7 @@ impl Babbling {
     }
 }
 
-/// What the policy knows of one body, and what it is doing.
+/// The policy's knowledge of one body, and its present movement.
 #[derive(Clone, Debug)]
 struct Learner {
     arms: Arms,

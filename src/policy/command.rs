@@ -324,7 +324,7 @@ impl Drop for CommandPolicy {
 fn kill_group(child: &Child) {
     let group = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw);
     if let Some(group) = group {
-        // one that has just ended is no error
+        // one that has just ended is not an error
         let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
     }
 }

@@ -28,7 +28,7 @@ const OUTPUTS: [&str; 2] = ["action", "actions"];
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum OnnxError {
-    /// The file cannot be read, is no model, or has operators that are not known.
+    /// The file cannot be read, is not a model, or has operators that are not known.
     #[error("cannot load the model: {0}")]
     Load(String),
     /// An input is not among the active senses.
@@ -158,7 +158,7 @@ impl OnnxPolicy {
     /// Reads a model from memory; `name` stands for its file in errors.
     ///
     /// # Errors
-    /// Bytes that are no model, operators that are not known.
+    /// Bytes that are not a model, operators that are not known.
     pub fn from_bytes(bytes: Vec<u8>, name: impl Into<PathBuf>) -> Result<Self, PolicyError> {
         let path = name.into();
         match Self::load(bytes) {
@@ -200,7 +200,7 @@ impl OnnxPolicy {
     /// [`Policy::begin`] does it.
     ///
     /// # Errors
-    /// An input that is no sense, or of another shape or type.
+    /// An input that is not a sense, or of another shape or type.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn connect(&mut self, spaces: &[ObservationSpace]) -> Result<(), PolicyError> {
         self.inputs = self.match_inputs(spaces).map_err(|e| self.error(e))?;
@@ -211,7 +211,7 @@ impl OnnxPolicy {
     /// environment.
     ///
     /// # Errors
-    /// The model fails, or its output is no action.
+    /// The model fails, or its output is not an action.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn decide(
         &self,

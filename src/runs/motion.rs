@@ -32,7 +32,7 @@ pub enum MotionError {
         /// The error of the system.
         source: std::io::Error,
     },
-    /// The file is neither an archive of NumPy's nor a table.
+    /// The file is neither a NumPy archive nor a table.
     #[error("{}: motions are files whose names end in .npz or .csv", path.display())]
     Kind {
         /// The file.
@@ -60,7 +60,7 @@ pub enum MotionError {
         name: String,
         /// The number.
         value: f64,
-        /// What is expected instead.
+        /// The value that is expected instead.
         expected: &'static str,
     },
     /// MIMo has no such joint.
@@ -156,7 +156,7 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Reads a motion: an archive of NumPy's (`.npz`) or a table (`.csv`).
+    /// Reads a motion: a NumPy archive (`.npz`) or a table (`.csv`).
     ///
     /// An archive has `names` (joints), `angles` (frames, joints), rad, and `rate`, Hz; where the root is known, `root_pos`
     /// (frames, 3), m, and `root_quat` (frames, 4), w first. A table has a line of names, the first of which is `time`, s; each further
@@ -230,7 +230,7 @@ impl Motion {
         Self::new_with(names.data, rate, angles, root, limits)
     }
 
-    /// Writes the motion as an archive of NumPy's, which [`Motion::read`] reads.
+    /// Writes the motion as a NumPy archive, which [`Motion::read`] reads.
     ///
     /// # Errors
     /// Errors of the file system.

@@ -1,6 +1,6 @@
 //! Records of runs: folders that describe themselves, with everything that happened, for analysis and for replay.
 //!
-//! A folder has `manifest.json` ([`Manifest`]) and an archive of NumPy's for each episode. In Python two lines read one:
+//! A folder has `manifest.json` ([`Manifest`]) and a NumPy archive for each episode. In Python two lines read one:
 //!
 //! ```python
 //! import numpy

@@ -96,7 +96,7 @@ impl Buffers<'_> {
         let out = &mut out[row * values.len()..(row + 1) * values.len()];
         let of = |sensor: u32| width * sensor as usize..width * (sensor as usize + 1);
         for &sensor in &*touched {
-            // lists of the caller's may say anything
+            // the caller's lists may say anything
             if let Some(out) = out.get_mut(of(sensor)) {
                 out.fill(0.0);
             }

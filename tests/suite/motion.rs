@@ -197,7 +197,7 @@ fn hostile_tables_are_refused_with_their_line() {
         ("", "line 1: the table is empty"),
         ("a,b\n", "line 1: the first column is a; expected time"),
         ("time,a\n", "no frames"),
-        ("time,a\n0,x\n", "line 2: x is no number"),
+        ("time,a\n0,x\n", "line 2: x is not a number"),
         ("time,a\n0\n", "line 2: 1 cells, where the first line has 2 names"),
         ("time,a\n0,1,2\n", "line 2: 3 cells"),
         ("time,a\n0,nan\n", "frame 0 of \"a\" is NaN"),

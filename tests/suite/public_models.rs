@@ -1,4 +1,4 @@
-//! What public models ask of the loader: lenses, empty references, colours beyond one.
+//! Demands of public models on the loader: lenses, empty references, colours beyond one.
 
 use std::sync::Arc;
 

@@ -227,7 +227,11 @@ fn what_is_no_record_is_refused() {
     for (from, to, part) in [
         ("babybench record", "something else", "no record of babybench"),
         ("\"version\": 1,", "\"version\": 9,", "of version 9"),
-        ("episode_0.npz", "../episode_0.npz", "no name of a file in this folder"),
+        (
+            "episode_0.npz",
+            "../episode_0.npz",
+            "not the name of a file in this folder",
+        ),
         ("\"dt\"", "\"td\"", "missing field"),
     ] {
         std::fs::write(&manifest, text.replacen(from, to, 1)).expect("a file");

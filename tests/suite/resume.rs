@@ -48,7 +48,7 @@ fn names() -> Option<PartNames> {
     Some(PartNames::new(blueprint.model()))
 }
 
-/// Returns the files of a run of so many episodes.
+/// Returns the files of a run of `episodes` episodes.
 fn whole(episodes: u64, names: Option<PartNames>) -> [Vec<u8>; 2] {
     let folder = Folder::new("whole");
     let log = TrainingLog::create(&config(&folder, Behavior::SelfTouch)).expect("a log");

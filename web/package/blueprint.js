@@ -1,5 +1,5 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-// What environments of one configuration share.
+// The part that environments of one configuration share.
 import { files, text } from "./check.js";
 import { Blueprint as CoreBlueprint } from "./core.js";
 import { Env } from "./env.js";

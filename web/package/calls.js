@@ -1,4 +1,4 @@
-// What a worker may be asked of an environment, by name.
+// Calls of an environment that a worker answers, by name.
 
 export const METHODS = /** @type {const} */ ([
   "reset", "resetTo", "setState", "setActivity", "setGoal", "step", "computeReward", "sampleAction", "seedActionSpace", "update",

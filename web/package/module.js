@@ -1,4 +1,4 @@
-// What the files of the package share of the loaded module.
+// The loaded module, which the files of the package share.
 import { guard, MissingError } from "./errors.js";
 
 /** @type {{ memory?: WebAssembly.Memory }} */

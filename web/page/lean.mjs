@@ -1,4 +1,4 @@
-// What the page leaves out of three.js: headsets, environment maps and materials that it does not use. esbuild reads
+// Leaves out of three.js headsets, environment maps and materials that the page does not use. esbuild reads
 // three.js from its sources, where these stand in files of their own.
 import { readFileSync, realpathSync } from "node:fs";
 import { join } from "node:path";

@@ -11,7 +11,7 @@ use crate::arguments::count;
 /// The contents of a recording, and its place.
 #[derive(Args)]
 pub struct Recording {
-    /// Record everything into this new folder: manifest.json and an archive of NumPy's for each episode, which babybench replay repeats
+    /// Record everything into this new folder: manifest.json and a NumPy archive for each episode, which babybench replay repeats
     /// with the same bits
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,

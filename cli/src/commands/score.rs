@@ -19,7 +19,7 @@ pub struct ScoreArgs {
     /// Folder of a training run: its save_dir, with logs/training.pkl
     #[arg(value_name = "SAVE_DIR")]
     save_dir: PathBuf,
-    /// Print the score after so many steps, too, as in 10000,100000: of the episodes that had ended by then
+    /// Print the score after each of these numbers of steps, too, as in 10000,100000: of the episodes that had ended by then
     #[arg(long, value_name = "STEPS", value_delimiter = ',', value_parser = count::<u64>, conflicts_with = "json")]
     at: Vec<u64>,
     /// Print the score as one line of JSON

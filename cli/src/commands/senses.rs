@@ -19,7 +19,7 @@ use crate::print::{note, say};
 pub struct Senses {
     #[command(flatten)]
     source: Source,
-    /// The motion: an archive of NumPy's with names, angles (frames, joints) and rate, or a table (.csv) whose columns are time and joints
+    /// The motion: a NumPy archive with names, angles (frames, joints) and rate, or a table (.csv) whose columns are time and joints
     #[arg(long, value_name = "FILE")]
     motion: PathBuf,
     /// The angles of the file are in degrees
@@ -31,7 +31,7 @@ pub struct Senses {
     /// Random seed of the reset; that of the configuration by default
     #[arg(long, allow_negative_numbers = true, value_parser = number::<u64>)]
     seed: Option<u64>,
-    /// Write the motion as an archive of NumPy's, in rad: a table becomes one
+    /// Write the motion as a NumPy archive, in rad: a table becomes one
     #[arg(long, value_name = "FILE.npz")]
     save: Option<PathBuf>,
     #[command(flatten)]

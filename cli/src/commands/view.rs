@@ -23,7 +23,7 @@ pub struct ViewArgs {
     /// Use the MJCF and textures of this directory (babybench/*.xml, tex/*.png) instead of the embedded ones
     #[arg(long, value_name = "DIR", requires = "config")]
     assets: Option<PathBuf>,
-    /// What moves him: zero, random, a noise (held, ou, pink, oscillators), babbling, watching, a model (FILE.onnx, if this program is built with the
+    /// The policy that moves him: zero, random, a noise (held, ou, pink, oscillators), babbling, watching, a model (FILE.onnx, if this program is built with the
     /// feature onnx), or a command with its arguments, as for evaluate
     #[arg(long, default_value = "held")]
     policy: String,

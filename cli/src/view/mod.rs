@@ -18,14 +18,14 @@ use stage::Stage;
 
 /// How long [`View::attend`] waits at most.
 const AT_MOST: Duration = Duration::from_millis(50);
-/// What a viewer that is late catches up with at most: it would race.
+/// Longest delay that a late viewer catches up with: after a longer one it would race.
 const LATE: Duration = Duration::from_millis(100);
 /// How long after its last question a page still looks: hidden tabs do not ask.
 const LOOKS: Duration = Duration::from_secs(2);
 /// Pictures do not follow each other faster while steps are due.
 const PICTURE: Duration = Duration::from_millis(16);
 
-/// What is to be done now.
+/// The next thing to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     /// A step, and then [`View::stepped`].
@@ -115,7 +115,7 @@ impl View {
         }
     }
 
-    /// Says that a step has been taken, of so many simulated seconds.
+    /// Says that a step of `seconds` simulated seconds has been taken.
     pub fn stepped(&mut self, env: &mut Env, seconds: f64) {
         let now = Instant::now();
         let lasts = Duration::from_secs_f64((seconds / self.stage.speed).clamp(0.0, 3600.0));

@@ -1,4 +1,4 @@
-//! What browsers on this machine talk to: a page, and questions to which others find the answers.
+//! The server that browsers on this machine talk to: a page, and questions to which others find the answers.
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Read, Write};
@@ -39,7 +39,7 @@ pub struct Server {
     listens: Option<JoinHandle<()>>,
 }
 
-/// What connections share.
+/// State shared by all connections.
 struct Shared {
     /// The path of the page: nobody who has not seen it knows it.
     path: String,
@@ -143,7 +143,7 @@ struct Request {
     body: String,
 }
 
-/// What is wrong with a request: the status and what it says.
+/// Answer to a request that is refused: the status and its text.
 type Refusal = (&'static str, &'static str);
 
 /// Answers one request after the other.
@@ -195,7 +195,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Request, usize)>, Refusal> {
         Ok(httparse::Status::Complete(head)) => head,
         Ok(httparse::Status::Partial) if bytes.len() <= HEAD => return Ok(None),
         Ok(httparse::Status::Partial) => return Err((LARGE, "the head of the request is too long")),
-        Err(_) => return Err((BAD, "this is no request of HTTP")),
+        Err(_) => return Err((BAD, "this is not an HTTP request")),
     };
     let text = |name: &str| {
         let found = parsed.headers.iter().find(|h| h.name.eq_ignore_ascii_case(name));
@@ -205,7 +205,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Request, usize)>, Refusal> {
         return Err(("501 Not Implemented", "bodies come with their length"));
     }
     let length = text("content-length").map_or(Ok(0), |length| length.parse::<usize>());
-    let length = length.map_err(|_| (BAD, "the length of the body is no number"))?;
+    let length = length.map_err(|_| (BAD, "the length of the body is not a number"))?;
     if length > BODY {
         return Err((LARGE, "the body of the request is too long"));
     }

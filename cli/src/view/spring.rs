@@ -68,7 +68,7 @@ impl Spring {
         Some([held.at(env)?, held.target])
     }
 
-    /// Sets the force of the next step; the last one took so many seconds.
+    /// Sets the force of the next step; the last one took `seconds`.
     pub fn pull(&mut self, env: &mut Env, seconds: f64) {
         let Some(held) = &mut self.held else { return };
         let Some(at) = held.at(env) else { return };

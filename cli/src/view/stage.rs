@@ -1,4 +1,4 @@
-//! What people see and do: the camera, the spring, the clock's hands, and the picture.
+//! The stage that people see and act on: the camera, the spring, the clock's hands, and the picture.
 
 use babybench::Env;
 use babybench::env::EnvError;

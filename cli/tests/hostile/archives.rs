@@ -90,7 +90,7 @@ pub fn cases() -> Vec<Case> {
         first("version 9", b"\x93NUMPY\x09\x00\x02\x00{}".to_vec()),
         first("header longer than the array", b"\x93NUMPY\x01\x00\xff\xff{}".to_vec()),
         first("header of 4 GB", b"\x93NUMPY\x02\x00\xff\xff\xff\xff{}".to_vec()),
-        first("header that is no dictionary", npy("[1, 2]", &[])),
+        first("header that is not a dictionary", npy("[1, 2]", &[])),
         first("header that is open", npy("{'descr': '<f8'", &[])),
         first(
             "header without a shape",

@@ -28,7 +28,7 @@ pub enum Content {
     Pipe,
     /// A folder.
     Folder,
-    /// A file of so many zeros, which takes no room on a disk.
+    /// A file of this many zeros, which takes no room on a disk.
     Zeros(u64),
 }
 

@@ -76,7 +76,7 @@ pub fn cases() -> Vec<Case> {
         ("empty", ""),
         ("spaces", "   "),
         ("program that is not there", "no_such_program --fast"),
-        ("file that is no program", "./c.yml"),
+        ("file that is not a program", "./c.yml"),
         ("folder", "./"),
         ("open quote", "sh 'script.sh"),
         ("backslash at its end", "sh script.sh\\"),

@@ -28,7 +28,7 @@ const MAX_VALUE: f64 = 1e10;
 /// Times that MuJoCo is stepped from nearly the same state where the sides differ.
 const NUDGES: u64 = 8;
 
-/// What became of a document.
+/// Result of giving a document to both sides.
 pub enum Taken {
     /// Neither side loads it, and why ours does not.
     Refused(String),
@@ -40,7 +40,7 @@ pub enum Taken {
     Both(Box<Sides>),
 }
 
-/// What became of a state.
+/// Result of a step from one state on both sides.
 pub enum Stepped {
     /// MuJoCo gives up or warns, as where numbers are no longer finite, or will in the next step.
     Diverged,
@@ -50,7 +50,7 @@ pub enum Stepped {
     Compared {
         /// All quantities.
         measured: Vec<Measured>,
-        /// Whether what differs is a jump of MuJoCo's own.
+        /// Whether what differs is a jump of MuJoCo itself.
         jump: bool,
         /// Contacts.
         contacts: usize,

@@ -37,7 +37,7 @@ struct Writer<'a> {
     /// A radian in the unit of the document.
     radian: f64,
     autolimits: bool,
-    /// Whether there are default classes, whose poses are no places for `fromto`.
+    /// Whether there are default classes, whose poses are not places for `fromto`.
     defaults: bool,
     classes: Vec<String>,
     bodies: Vec<String>,

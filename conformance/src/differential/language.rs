@@ -1,4 +1,4 @@
-//! What the loader understands, joined with how its attributes are drawn.
+//! The elements that the loader understands, joined with the rules by which their attributes are drawn.
 
 use babybench::mjcf_loader::{AttributeInfo, elements};
 

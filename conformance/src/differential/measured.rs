@@ -14,7 +14,7 @@ pub(super) const QACC: &str = "qacc";
 /// A quantity that both sides have.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// What.
+    /// Name of the quantity that was compared.
     pub quantity: &'static str,
     /// How far ours is from MuJoCo's.
     pub error: f64,
@@ -66,7 +66,7 @@ impl Measured {
         }
     }
 
-    /// Measures numbers, relative to the largest of MuJoCo's.
+    /// Measures numbers, relative to MuJoCo's largest.
     fn relative(quantity: &'static str, ours: &[f64], theirs: &[f64], limit: f64) -> Self {
         if ours.len() != theirs.len() {
             let place = format!("{} values, MuJoCo {}", ours.len(), theirs.len());

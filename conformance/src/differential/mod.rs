@@ -1,6 +1,6 @@
 //! Random legal documents beside MuJoCo 3.3.0, one step from random states each.
 //!
-//! What is drawn follows from the loader's own list of elements and attributes ([`language`]) and from a line for each of
+//! Documents follow from the loader's own list of elements and attributes ([`language`]) and from a line for each of
 //! them that says how ([`rules`]), so that a new attribute is either drawn or a test fails. [`document`] puts the elements together,
 //! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. [`single`] has one
 //! document for each attribute and value.

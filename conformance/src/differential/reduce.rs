@@ -5,14 +5,14 @@ use super::node::Node;
 use super::state::Recipe;
 use crate::mujoco::Mujoco;
 
-/// What differs in a document: a quantity, far enough, in the step from a state.
+/// A difference to keep while a document shrinks: a quantity, far enough apart, in the step from a state.
 #[derive(Clone)]
 pub struct Finding {
     /// The document.
     pub document: Node,
     /// The state, for quantities of a step.
     pub recipe: Option<Recipe>,
-    /// What differs.
+    /// Name of the quantity that differs.
     pub quantity: String,
     /// By how much.
     pub error: f64,

@@ -21,7 +21,7 @@ const STATES: u64 = 12;
 
 /// A document with one attribute set.
 pub struct Single {
-    /// What is set, for people: `worldbody/body/geom@condim="4"`, with `default/` before it where a class sets it.
+    /// Attribute and value as people read them: `worldbody/body/geom@condim="4"`, with `default/` before it where a class sets it.
     pub what: String,
     /// The attribute alone, and whether a class sets it.
     pub attribute: String,
@@ -33,7 +33,7 @@ pub struct Single {
 
 /// How a document compares.
 pub struct Outcome {
-    /// What differs between the sides.
+    /// Quantities that differ between the sides.
     pub differences: Vec<Measured>,
     /// Whether MuJoCo takes it.
     pub taken: bool,
@@ -211,7 +211,7 @@ fn by_default(mut document: Node, at: usize, path: &str, name: &str, value: &str
     unmarked(document)
 }
 
-/// What MuJoCo makes of a document: its model, and its steps.
+/// MuJoCo's reading of a document: its model, and its steps.
 #[derive(PartialEq)]
 pub struct Meaning {
     model: Vec<Vec<f64>>,

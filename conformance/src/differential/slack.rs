@@ -13,7 +13,7 @@ use super::measured::Measured;
 /// Multiples of the cost at which one solver stops that two may be apart.
 const APART: f64 = 4.0;
 
-/// What solvers leave undone in a state.
+/// Distance from the optimum at which solvers stop in a state.
 pub struct Slack {
     /// Cost at which a solver stops.
     cost: f64,

@@ -5,7 +5,7 @@ use babybench::Model;
 use babybench::physics::State;
 use fastrand::Rng;
 
-/// What a random state consists of.
+/// Ingredients of a random state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recipe {
     /// Decides all values.

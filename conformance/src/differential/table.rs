@@ -1,4 +1,4 @@
-//! What was compared, how far the sides were apart, and what differed.
+//! A table of the comparisons: how often each was made, how far the sides were apart, and where they differed.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -3,7 +3,7 @@
 use babybench::Model;
 use fastrand::Rng;
 
-/// What moves MIMo, and how the episode begins.
+/// The way MIMo is moved, and how the episode begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// Controls 0.

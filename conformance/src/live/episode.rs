@@ -9,10 +9,10 @@ use crate::mujoco::Simulation;
 /// Steps at rest before the first state of [`Motion::Rest`].
 const REST: usize = 500;
 
-/// What an episode of a scene is made from.
+/// Everything that determines an episode of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Episode {
-    /// What moves.
+    /// The way MIMo is moved.
     pub motion: Motion,
     /// Decides all that is random, and which joints are locked.
     pub seed: u64,

@@ -17,10 +17,10 @@ const NUDGE: f64 = 1e-7;
 /// Steps with controls 0 before a rollout.
 const SETTLING: usize = 100;
 
-/// What is rolled out.
+/// A plan of rollouts.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// What moves.
+    /// The way MIMo is moved.
     pub motion: Motion,
     /// Steps.
     pub steps: usize,

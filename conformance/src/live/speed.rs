@@ -16,7 +16,7 @@ const SETTLING: usize = 100;
 pub struct Speed {
     /// Version and scene.
     pub case: String,
-    /// What moved.
+    /// The way MIMo was moved.
     pub motion: Motion,
     /// CPU time of our step over MuJoCo's: quartiles over batches.
     pub ratio: [f64; 3],

@@ -6,7 +6,7 @@ use super::one_step::Maker;
 use super::{Case, Drive, Motion, parallel};
 use crate::mujoco::{Mujoco, Simulation};
 
-/// Samples are taken every so many steps.
+/// Steps between two samples.
 const EVERY: usize = 5;
 
 /// Steps before the first sample.
@@ -28,7 +28,7 @@ type Samples = [Vec<f64>; QUANTITIES.len()];
 /// Distances between distributions of a quantity: largest difference of the cumulative distribution functions
 /// (Kolmogorov and Smirnov), of a run against all of MuJoCo's runs with other seeds.
 pub struct Spread {
-    /// What.
+    /// Name of the quantity.
     pub quantity: &'static str,
     /// Distances of our runs.
     pub ours: Vec<f64>,

@@ -64,7 +64,7 @@ impl Mujoco {
     /// Loads a library.
     ///
     /// # Errors
-    /// It is no library, or lacks a function.
+    /// It is not a library, or lacks a function.
     pub fn load(path: &Path) -> Result<Self, String> {
         let name = path.display();
         // SAFETY: the initialisers of MuJoCo's library do nothing but register plugins.

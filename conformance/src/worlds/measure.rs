@@ -1,4 +1,4 @@
-//! What both sides make of a document that both take.
+//! Comparison of a document that both sides take.
 
 use babybench::Model;
 use babybench::physics::{Engine, State};

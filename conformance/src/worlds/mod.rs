@@ -21,7 +21,7 @@ use crate::differential::compare::Sides;
 use crate::live::parallel;
 use crate::mujoco::{Mujoco, Simulation};
 
-/// What became of a document.
+/// Result of giving a document to both sides.
 pub enum Outcome {
     /// MuJoCo refuses it, or it is a part of another document: it does not count.
     NoDocument,
@@ -39,7 +39,7 @@ pub struct World {
     pub folder: PathBuf,
     /// Its path in that folder.
     pub path: String,
-    /// What became of it.
+    /// Result of giving it to both sides.
     pub outcome: Outcome,
 }
 

@@ -72,7 +72,7 @@ impl Tally {
     }
 }
 
-/// What differs between a document and its mutation.
+/// Returns where a document and its mutation differ, as text.
 fn change(from: &str, to: &str) -> String {
     let (a, b) = (from.as_bytes(), to.as_bytes());
     let first = a.iter().zip(b).take_while(|(x, y)| x == y).count();

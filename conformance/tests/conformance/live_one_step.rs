@@ -70,7 +70,7 @@ fn steps_from_states_of_mujoco_are_mujocos() {
     assert!(only_print() || missed.is_empty(), "{}", missed.join("\n"));
 }
 
-/// What remains is where Newton's method stops: the tighter its tolerance on both sides, the smaller the errors, down to
+/// The remaining error is where Newton's method stops: the tighter its tolerance on both sides, the smaller the errors, down to
 /// rounding. In the scene where they are largest 90 % were below 1e-6, 3e-9 and 4e-10 when written, and then no smaller.
 fn the_error_falls_with_the_tolerance_of_the_solvers() {
     let api = needed();

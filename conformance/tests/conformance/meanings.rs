@@ -13,7 +13,7 @@ pub fn trials() -> Vec<Trial> {
     trials![needs MUJOCO: each_small_document_moves_as_in_mujoco, what_mujoco_refuses_or_computes_from_rounding_errors_is_refused]
 }
 
-/// What each document is about, and what stands in its `<mujoco>`. A tilted floor or a turned body keeps symmetry from
+/// The subject of each document, and the content of its `<mujoco>`. A tilted floor or a turned body keeps symmetry from
 /// hiding an error.
 const DOCUMENTS: &[(&str, &str)] = &[
     (

@@ -35,7 +35,7 @@ size=".1" fromto="0 0 0 1 1 1"/><geom type="box" size="1 2 3" mass="2"/><site na
 <actuator><motor class="c" joint="j" user="1"/><position joint="k" kp="3"/></actuator>
 <sensor><gyro site="s"/></sensor></mujoco>"#;
 
-/// What loads must be finite, of unit length where it is a direction, and must point backwards along the tree.
+/// Asserts that a loaded model is finite, of unit length where it is a direction, and points backwards along the tree.
 fn assert_sane(model: &Model) {
     let reals = model
         .body_mass

@@ -1,6 +1,6 @@
 //! Distance of the `rapier` engine to recordings of MuJoCo 3.3.0, beside that of the `soft` engine, and its cost.
 //!
-//! What is asserted is generous: that both engines simulate the same thing. The figures are what is printed.
+//! Assertions are generous: both engines simulate the same thing. The figures are printed.
 
 use std::time::Instant;
 

@@ -25,7 +25,7 @@ const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
     }
 });
 
-/// What BabyBench's scenes do not have: transparent geoms, a plane seen from below; meshes; tendons.
+/// Returns a scene of what BabyBench's scenes do not have: transparent geoms and a plane seen from below, meshes, or tendons.
 fn small(name: &str) -> (Model, Scenery) {
     let model = load_str(&data::text(&format!("{name}.xml")), name, &embedded())
         .and_then(compile)

@@ -1,4 +1,4 @@
-//! What follows from a state without advancing it, and one step, against MuJoCo 3.3.0 for all six models.
+//! Quantities that follow from a state without advancing it, and one step, against MuJoCo 3.3.0 for all six models.
 
 use conformance::measure::{line, only_print};
 use conformance::reference::Reference;

@@ -13,7 +13,7 @@ pub fn from(data: &[u8], env: &Env) -> Vec<u8> {
     let mut byte = || bytes.next().unwrap_or(0);
     let kind = byte();
     let steps = usize::from(kind % 3);
-    // every power of ten, and what is no number
+    // every power of ten, and what is not a number
     let mut number = || match byte() {
         0 => 0.0,
         1 => f64::NAN,

@@ -7,7 +7,7 @@ use babybench::env::{
 };
 use babybench::{Blueprint, Config, Env, Model};
 
-/// A step of MIMo costs as much as hundreds of the small scene: he goes on after one input in so many.
+/// A step of MIMo costs as much as hundreds of the small scene: he goes on after one input in this many.
 const RARE: usize = 64;
 
 /// Returns an environment of MIMo without touch and eyes, after a reset.

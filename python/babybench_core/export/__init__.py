@@ -24,9 +24,9 @@ class Format:
     library: str
     """The module that it needs."""
     file: str
-    """What :func:`export` calls the file or folder in its own."""
+    """Name that :func:`export` gives the file or folder in the folder of the export."""
     what: str
-    """What it is, in a line."""
+    """Description, one line."""
 
 
 FORMATS: dict[str, Format] = {

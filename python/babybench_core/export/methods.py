@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Exports:
-    """What :class:`babybench.data.Record` is besides: exports by libraries that are imported when they are needed."""
+    """Exports of :class:`babybench.data.Record` by libraries that are imported when they are needed."""
 
     @property
     def _record(self) -> Record:

@@ -1,4 +1,4 @@
-"""What a record tells of each step, with names and units: the same in every format."""
+"""The signals of a record, step by step, with names and units: the same in every format."""
 
 from __future__ import annotations
 
@@ -73,13 +73,13 @@ class Signal:
     """Numbers over time."""
 
     name: str
-    """What they are, as a name: ``angle``."""
+    """Name of the quantity: ``angle``."""
     unit: str
     """Their unit; ``1`` for numbers without."""
     meaning: str
-    """What they are, in a sentence."""
+    """Description, one sentence."""
     labels: Sequence[str]
-    """What each column is of; one empty label where there is only one."""
+    """Label of each column; one empty label where there is only one."""
     values: npt.NDArray[Any]
     """(T, columns)."""
 

@@ -1,6 +1,6 @@
 """Figures for papers: learning curves with intervals, touch on the body, touches over time.
 
-Each function returns a figure of matplotlib's (``pip install 'babybench[figures]'``), which can be changed before it is
+Each function returns a matplotlib figure (``pip install 'babybench[figures]'``), which can be changed before it is
 saved; :func:`save` writes it as SVG, PDF and PNG with text that stays text::
 
     from babybench import data, figures

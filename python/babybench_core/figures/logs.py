@@ -24,7 +24,7 @@ METRICS = {
     "return": "return",
     "success": "episodes with success, %",
 }
-"""What curves show, and how axes are called."""
+"""Quantities that curves can show, and the labels of their axes."""
 
 
 def find(path: Union[str, Path]) -> Path:

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = ("svg", "pdf", "png")
-"""What figures can be written as."""
+"""Formats of figures."""
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Colours of series, by Okabe and Ito."""
 HANDS = {"right": "#d55e00", "left": "#0072b2"}

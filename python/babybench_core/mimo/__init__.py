@@ -1,1 +1,1 @@
-"""What runs under the names of the Python kit."""
+"""The modules that run under the names of the Python kit."""

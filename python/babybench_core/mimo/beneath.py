@@ -1,4 +1,4 @@
-"""What the model and the state that scripts see need of the engine beneath them."""
+"""The engine as the model and the state that scripts see need it."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ from typing import TypeVar
 
 
 class Moment(Enum):
-    """What is known of the present instant: whether its forces and contacts are computed, sensed, and felt by the skin."""
+    """How far the present instant is computed: whether its forces and contacts are known, sensed, and felt by the skin."""
 
     CLEARED = (False, False, False)
     """The past is forgotten, and nothing computed: after ``mujoco.mj_resetData``."""
@@ -56,7 +56,7 @@ class Moment(Enum):
 
 
 class Copy(Enum):
-    """What the copy of the state that scripts hold shows."""
+    """The instant that the scripts' copy of the state shows."""
 
     LATE = "late"
     """An earlier instant; also while there is no copy, as nobody has asked for one."""
@@ -88,14 +88,14 @@ class Turn(Enum):
 
 
 class Share(Enum):
-    """What of an environment or of a sense is a script's own: fixed when it is made."""
+    """The share of an environment or of a sense that is a script's own: fixed when it is made."""
 
     NOTHING = "nothing"
     """The engine does it all."""
     STEP = "step"
     """Methods between an action and its observation."""
     SENSES = "senses"
-    """What is observed, too."""
+    """The observation, too."""
 
 
 class IllegalChange(RuntimeError):

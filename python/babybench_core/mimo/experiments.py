@@ -24,13 +24,13 @@ _MIMOS_ARGUMENTS = frozenset(
         "done_active",
     }
 )
-"""Arguments of MIMo's constructors that are no keys of a configuration."""
+"""Arguments of MIMo's constructors that are not keys of a configuration."""
 
 _REACH_FOR = "take MIMo's own with " + CHOICE + "=original where MIMo is installed (pip install -e MIMo)"
 
 
 class Experiment(Env):
-    """An experiment of MIMo's as a task of this package: ``babybench.make`` under MIMo's name.
+    """A MIMo experiment as a task of this package: ``babybench.make`` under MIMo's name.
 
     The keys of a configuration take the place of the arguments of MIMo's constructors.
     """
@@ -51,7 +51,7 @@ class Experiment(Env):
         """Builds the environment; arguments and keys are those of :class:`babybench.Env`.
 
         Raises:
-            TypeError: An argument of MIMo's that this package does not have.
+            TypeError: A MIMo argument that this package does not have.
         """
         strange = sorted(_MIMOS_ARGUMENTS & set(keys))
         if strange:
@@ -114,7 +114,7 @@ ELSEWHERE = {
 
 
 def refuse(experiment: str, **_: Any) -> NoReturn:
-    """Tells what to use instead of an experiment that is no task here.
+    """Tells what to use instead of an experiment that is not a task here.
 
     Raises:
         NotImplementedError: Always.

@@ -11,7 +11,7 @@ from .beneath import Beneath
 from .views import DataView
 
 STATE = ("qpos", "qvel", "ctrl", "act", "qfrc_applied")
-"""What can be written to: the bits of ``Parts.differences``."""
+"""Arrays that can be written to: the bits of ``Parts.differences``."""
 
 
 class Live:
@@ -71,7 +71,7 @@ class Live:
 
 
 class ViewLive(Live):
-    """What stands for MuJoCo's state."""
+    """The stand-in for MuJoCo's state."""
 
     def __init__(self, core: Beneath) -> None:
         """Makes a state of the environment's model."""

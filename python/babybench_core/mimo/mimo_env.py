@@ -52,7 +52,7 @@ _DEFAULT_SCENE = Scene(
     place={"pos": [0.0, 0.0, 0.075]},
     servos=False,
 )
-"""What :data:`SCENE_NAME` describes."""
+"""Description of :data:`SCENE_NAME`."""
 
 
 def _known_scene(model_path: str | os.PathLike[str]) -> Scene:

@@ -21,10 +21,10 @@ from .course import Copy
 from .live import STATE, Live
 
 _POSITION = ("mj_comPos", "mj_camlight", "mj_tendon", "mj_crb", "mj_factorM", "mj_transmission", "mj_comVel")
-"""What follows from poses and is cheap."""
+"""Stages that follow from poses and are cheap."""
 
 _CONSTRAINT = ("mj_collision", "mj_makeConstraint", "mj_island", "mj_projectConstraint", "mj_fwdVelocity")
-"""What is not: contacts, constraints, and what follows from them."""
+"""Stages that are not: contacts, constraints, and what follows from them."""
 
 _CONSTRAINED = ("ncon", "contact", "ne", "nf", "nl", "nJ", "nA", "nefc", "nisland", "actuator_velocity", "ten_velocity")
 _PREFIXES = ("efc_", "iefc_", "island_", "map_", "dof_island", "tree_island")

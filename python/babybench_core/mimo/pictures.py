@@ -21,7 +21,7 @@ _HALF_WIDTH = 0.75
 """Half width of what the picture of touch shows, m."""
 
 _CROP = (slice(160, 400), slice(195, 435))
-"""What is shown of a plot of 600 by 600 pixels."""
+"""The part of a plot of 600 by 600 pixels that is shown."""
 
 
 def render(env: Any, camera: str = "corner") -> Image:

@@ -79,7 +79,7 @@ def make_env(config: Mapping[str, Any] | None = None, training: bool = True) -> 
 
     Raises:
         AssertionError: There is no scene to evaluate.
-        TypeError: What is given is no mapping.
+        TypeError: What is given is not a mapping.
         ValueError: A behavior that the kit does not have.
     """
     config = _complete(config)

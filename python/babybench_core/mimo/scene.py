@@ -24,12 +24,12 @@ UNSERVED = (
 
 
 class SceneError(ValueError):
-    """A scene that is none of BabyBench's."""
+    """A scene that is not one of BabyBench's."""
 
 
 @dataclass
 class Scene:
-    """What a ``scene.xml`` says."""
+    """The content of a ``scene.xml``."""
 
     keys: dict[str, Any] = field(default_factory=dict)
     """Keys of a configuration that the scene decides: ``scene``, ``act_*``."""
@@ -83,7 +83,7 @@ def read_scene(path: Path) -> Scene:
 
     Raises:
         FileNotFoundError: There is no such file.
-        SceneError: It is none of BabyBench's.
+        SceneError: It is not one of BabyBench's.
     """
     text = path.read_text(encoding="utf-8")
     body = _COMMENT.sub("", text)

@@ -90,7 +90,7 @@ def vestibular_params() -> dict[str, Any]:
     return {"sensors": ["vestibular_acc", "vestibular_gyro"]}
 
 
-# What BabyBench's environments take where they are given nothing. As in the kit, scripts can change them.
+# Parameters of BabyBench's environments where none are given. As in the kit, scripts can change them.
 PROPRIOCEPTION_PARAMS = proprioception_params()
 VISION_PARAMS = vision_params(64)
 VESTIBULAR_PARAMS = vestibular_params()

@@ -1,1 +1,1 @@
-"""What :mod:`babybench.mujoco` is made of: MuJoCo's names on the engine of this package."""
+"""The implementation of :mod:`babybench.mujoco`: MuJoCo's names on the engine of this package."""

@@ -30,7 +30,7 @@ _JOINT = ("xanchor", "xaxis")
 _DOF = ("qvel", "qacc", "qacc_warmstart", "qacc_smooth", "cdof", "cdof_dot")
 _ROWS = ("type", "id", "pos", "margin", "R", "D", "vel", "aref", "force")
 _COUNTED = {"ne": (0,), "nf": (1, 2), "nl": (3, 4)}
-"""What MuJoCo counts among the rows of constraints, by their types."""
+"""Counts that MuJoCo keeps of the rows of constraints, by their types."""
 
 
 class MjData(Named):

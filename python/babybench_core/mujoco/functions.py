@@ -67,7 +67,7 @@ def _kind(type: int) -> str:
     try:
         kind = mjtObj(int(type))
     except ValueError:
-        raise ValueError(f"{type} is no kind of element: see mjtObj") from None
+        raise ValueError(f"{type} is not a kind of element: see mjtObj") from None
     name = kind.name[len("mjOBJ_") :].lower()
     return "body" if name == "xbody" else name
 
@@ -332,7 +332,7 @@ _STATE = ("time", "qpos", "qvel", "act", "qacc_warmstart", "ctrl", "qfrc_applied
 
 def _parts(d: MjData, spec: int) -> list[NDArray[Any]]:
     if not 0 <= spec < 1 << mjtState.mjNSTATE:
-        raise ValueError(f"{spec} is no sum of parts of a state: see mjtState")
+        raise ValueError(f"{spec} is not a sum of parts of a state: see mjtState")
     arrays: dict[str, NDArray[Any]] = {**d._arrays, "time": d._clock}
     return [arrays[name] for bit, name in enumerate(_STATE) if spec >> bit & 1]
 
@@ -341,7 +341,7 @@ def mj_stateSize(m: MjModel, spec: int) -> int:
     """Returns how many numbers parts of a state have: a sum of ``mjtState``."""
     sizes = (1, m.nq, m.nv, m.na, m.nv, m.nu, m.nv, 6 * m.nbody, m.neq)
     if not 0 <= int(spec) < 1 << mjtState.mjNSTATE:
-        raise ValueError(f"{spec} is no sum of parts of a state: see mjtState")
+        raise ValueError(f"{spec} is not a sum of parts of a state: see mjtState")
     return sum(size for bit, size in enumerate(sizes) if int(spec) >> bit & 1)
 
 

@@ -28,11 +28,11 @@ _SINGLES = frozenset(
     }.items()
     for name in names
 )
-"""What MuJoCo stores in single precision."""
+"""Arrays that MuJoCo stores in single precision."""
 
 _USERS = ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor")
 _OWN = frozenset({"exclude", "pair_geom", "dof_m0", "texture", "material", "text_data"})
-"""What the engine keeps in a form that MuJoCo does not have."""
+"""Arrays that the engine keeps in a form that MuJoCo does not have."""
 _ADDRESSES = {"body_jntadr": "body_jntnum", "body_dofadr": "body_dofnum", "body_geomadr": "body_geomnum"}
 _SIZES = (
     *(

@@ -26,7 +26,7 @@ EXAMPLES = {
 }
 NEEDED = {"intrinsic_handregard_saliency": "scipy"}
 KITS_OWN = ("cv2", "skimage", "trimesh", "matplotlib")
-"""What the kit's `babybench/utils.py` imports."""
+"""Packages that the kit's `babybench/utils.py` imports."""
 
 EPISODE = 6
 

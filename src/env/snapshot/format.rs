@@ -123,7 +123,7 @@ impl Snapshot {
     /// Reads a snapshot from bytes that were kept.
     ///
     /// # Errors
-    /// Bytes that are no snapshot of this version, or were cut or changed.
+    /// Bytes that are not a snapshot of this version, or were cut or changed.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, SnapshotError> {
         if !bytes.starts_with(&MAGIC) {
             return Err(SnapshotError::NotASnapshot);
@@ -152,7 +152,7 @@ impl Snapshot {
         let (rest, length) = bytes.split_last_chunk().ok_or(CUT)?;
         let length = u32::from_le_bytes(*length) as usize;
         let (numbers, keys) = rest.split_at(rest.len().checked_sub(length).ok_or(CUT)?);
-        let keys = std::str::from_utf8(keys).map_err(|_| damaged("its keys are no text"))?;
+        let keys = std::str::from_utf8(keys).map_err(|_| damaged("its keys are not text"))?;
         Ok((numbers, Some(keys)))
     }
 

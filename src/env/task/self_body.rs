@@ -18,7 +18,7 @@ const BONUS: f64 = 500.0;
 const NOTHING: f64 = -1.0;
 /// Physics steps in which the sitting pose settles.
 const SETTLING: u32 = 25;
-/// Bodies that are no targets: the last ones of [`TOUCH`].
+/// Bodies that are not targets: the last ones of [`TOUCH`].
 const OWN: usize = 2;
 
 /// Bodies with touch sensors and the distances between them, m.

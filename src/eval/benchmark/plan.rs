@@ -65,7 +65,7 @@ impl BenchmarkPlan {
     /// Reads a plan.
     ///
     /// # Errors
-    /// A file that cannot be read or is no plan.
+    /// A file that cannot be read or is not a plan.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, BenchmarkError> {
         let path = path.as_ref();
         let bytes = files::read(path, Limits::DEFAULT.config_bytes as u64).map_err(|source| BenchmarkError::Io {
@@ -259,7 +259,7 @@ fn age(text: &str) -> Result<Option<f64>, String> {
     let age = text.parse().ok().filter(|age| (0.0..=MAX_AGE).contains(age));
     age.map(Some).ok_or_else(|| {
         format!(
-            "{:?} is no age: expected none, or months from 0 to {MAX_AGE}",
+            "{:?} is not an age: expected none, or months from 0 to {MAX_AGE}",
             quoted(text)
         )
     })
@@ -283,7 +283,7 @@ mod tests {
             ("configs: [a]\npolicies: [[x]]", 2, "list in a list"),
             ("configs: {a: b}", 1, "mapping in a mapping"),
             ("configs: [a]\nconfigs: [b]", 2, "twice"),
-            ("configs: [a]\npolicies: [x]\nages: [25]", 3, "no age"),
+            ("configs: [a]\npolicies: [x]\nages: [25]", 3, "not an age"),
             ("configs: [a", 1, "not valid YAML"),
             ("- a", 1, "no list in a list"),
         ] {

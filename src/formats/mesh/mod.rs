@@ -105,7 +105,7 @@ pub enum MeshError {
     #[error("line {0} and those before it have polygons of too many corners; cut them into triangles")]
     Polygons(usize),
     /// An index that names nothing.
-    #[error("line {line}: \"{}\" is no index of what stands above", quoted(.word))]
+    #[error("line {line}: \"{}\" is not an index of what stands above", quoted(.word))]
     Index {
         /// Line, from 1.
         line: usize,
@@ -150,7 +150,7 @@ impl Triangles {
     /// Reads a mesh from a file. `lefthanded` says whether it will be mirrored, so that triangles change their sense.
     ///
     /// # Errors
-    /// Bytes that are no mesh, numbers that are not finite, indices of nothing, more elements than
+    /// Bytes that are not a mesh, numbers that are not finite, indices of nothing, more elements than
     /// [`Limits::mesh_elements`].
     pub fn read(bytes: &[u8], format: MeshFormat, lefthanded: bool, limits: &Limits) -> Result<Self, MeshError> {
         let mesh = match format {

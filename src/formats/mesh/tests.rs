@@ -15,12 +15,12 @@ fn polygons_become_triangles() {
     let square = obj(&format!("{SQUARE}f 1 2 3 4\nf -4 -3 -2\nf 1 2\nl 1 2\n")).expect("valid");
     assert_eq!(square.face, [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
     assert!(square.facenormal.is_empty() && square.facetexcoord.is_empty());
-    // the corner between the arms of an arrow is no ear
+    // the corner between the arms of an arrow is not an ear
     let arrow = obj("v 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\nf 1 2 3 4\n").expect("valid");
     assert_eq!(arrow.face, [[1, 2, 3], [0, 1, 3]]);
 }
 
-/// A ring of so many corners, as one polygon.
+/// A ring of `corners` corners, as one polygon.
 fn ring(corners: usize) -> String {
     let angle = |k: usize| k as f64 / corners as f64 * std::f64::consts::TAU;
     let vertices = (0..corners).map(|k| format!("v {:.6} {:.6} 0\n", angle(k).cos(), angle(k).sin()));
@@ -65,9 +65,9 @@ fn broken_text_is_an_error_with_its_line() {
         ("v 0 a 0\n", "line 1: \"a\" is not a number"),
         ("v 0 nan 0\n", "is not a number"),
         ("v 0 1e300 0\n", "is not a number"),
-        ("\nf 0 1 2\n", "line 2: \"0\" is no index"),
-        ("f 1 2 -9\n", "is no index"),
-        ("f 1/2/3/4 1 1\n", "is no index"),
+        ("\nf 0 1 2\n", "line 2: \"0\" is not an index"),
+        ("f 1 2 -9\n", "is not an index"),
+        ("f 1/2/3/4 1 1\n", "is not an index"),
         ("f 1 2 3\n", "face 0 names vertex 0, of which there are 0"),
         (
             "v 0 0 0\nvn 0 0 1\nf 1//2 1//1 1//1\n",

@@ -57,7 +57,7 @@ impl Npz {
     /// Takes an archive from memory; `file_name` only names it in errors.
     ///
     /// # Errors
-    /// When the bytes are no archive, or the header of an array is damaged.
+    /// When the bytes are not an archive, or the header of an array is damaged.
     pub fn from_bytes(bytes: Vec<u8>, file_name: &str) -> Result<Self, NpzError> {
         Self::from_bytes_with(bytes, file_name, &Limits::DEFAULT)
     }
@@ -272,7 +272,7 @@ impl Npz {
     }
 }
 
-/// Decodes a text of NumPy's, which ends where nothing but zeros follows.
+/// Decodes a NumPy text, which ends where nothing but zeros follows.
 fn text(bytes: &[u8], of: usize) -> Option<String> {
     if of == 1 {
         let end = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);

@@ -1,4 +1,4 @@
-//! What a new point sees, and the facets that join it to the border of that.
+//! Facets that a new point sees, and those that join it to their border.
 
 use super::Builder;
 use super::parts::{Id, NONE, Step, Stuck, TAIL, drop_swapping, replace};

@@ -130,7 +130,7 @@ impl<'p> Builder<'p> {
         (builder, extremes.as_flattened().to_vec())
     }
 
-    /// Adds the farthest points, one by one, until none is outside, or until there are so many corners.
+    /// Adds the farthest points, one by one, until none is outside, or until there are `most` corners.
     fn build(&mut self, extremes: &[u32], most: Option<usize>) -> Step {
         self.bound_outside();
         let corners = self.first_hull(extremes)?;
@@ -216,7 +216,7 @@ impl<'p> Builder<'p> {
     }
 }
 
-/// Builds the hull of points, of at most so many corners if a number is given: those that are found first. `None` where Qhull would
+/// Builds the hull of points, of at most `most` corners if it is given: those that are found first. `None` where Qhull would
 /// end with an error, as when the points span no volume.
 pub(crate) fn hull(points: &[Vec3], most: Option<usize>) -> Option<Hull> {
     if points.len() < 4 || points.len() >= (u32::MAX / 8) as usize {

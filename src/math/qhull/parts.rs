@@ -12,14 +12,14 @@ pub(super) const NONE: Id = u32::MAX;
 pub(super) const SHARED: Id = u32::MAX - 1;
 /// Stands there for such an edge once it is known that its facets must be merged (`qh_MERGEridge`).
 pub(super) const FORCED: Id = u32::MAX - 2;
-/// The end of the lists of facets and of vertices: the first entry of either arena is no part of the hull.
+/// The end of the lists of facets and of vertices: the first entry of either arena is not part of the hull.
 pub(super) const TAIL: Id = 0;
 
 /// The hull cannot be built in Qhull's way: what Qhull itself ends with an error for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stuck;
 
-/// What may be stuck.
+/// Result of a step that may be stuck.
 pub(super) type Step<T = ()> = Result<T, Stuck>;
 
 /// Things that are never removed, so that a place keeps its meaning.

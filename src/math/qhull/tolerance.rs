@@ -1,4 +1,4 @@
-//! What counts as equal: bounds on rounding errors that follow from the extent of the points.
+//! Distances that count as equal: bounds on rounding errors that follow from the extent of the points.
 
 use crate::math::Vec3;
 

@@ -36,7 +36,7 @@ const EYEBALL: f64 = 0.01125;
 #[non_exhaustive]
 pub enum GrowthError {
     /// The age is out of range.
-    #[error("`{key}`: {age} is no age that MIMo can have; it must be from 0 to {MAX_AGE} months")]
+    #[error("`{key}`: {age} is not an age that MIMo can have; it must be from 0 to {MAX_AGE} months")]
     Age {
         /// Key of the configuration.
         key: &'static str,

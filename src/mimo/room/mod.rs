@@ -121,7 +121,7 @@ impl<A: AssetSource> Room<A> {
             path: path.clone(),
             reason,
         };
-        // the library's own documents are no rooms: a path that is also one of theirs is a file of the system
+        // the library's own documents are not rooms: a path that is also one of theirs is a file of the system
         let among = resolve("", path).ok();
         let among = among.filter(|path| !embedded().contains(path) && given.contains(path));
         let own = if let Some(path) = among {

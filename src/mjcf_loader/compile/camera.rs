@@ -127,7 +127,7 @@ impl Camera {
     /// Stores the attributes of an element.
     ///
     /// # Errors
-    /// What of its optics is given without what they are relative to.
+    /// A part of its optics is given without the attribute that it is relative to.
     pub(in crate::mjcf_loader) fn look(&mut self, e: &Element) -> Result<(), &'static str> {
         let (focal, principal) = (self.focal, self.principal);
         self.apply(e);

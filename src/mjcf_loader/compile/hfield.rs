@@ -20,7 +20,7 @@ pub(super) fn hfield_name(tree: &Tree, hfield: &HField) -> Result<String, LoadEr
     }
 }
 
-/// Compiles the height fields, whose files are looked up in `source`. All together have so many heights as
+/// Compiles the height fields, whose files are looked up in `source`. All together have as many heights as
 /// the limits allow for elements of meshes.
 pub(super) fn compile_hfields(
     context: &Context,

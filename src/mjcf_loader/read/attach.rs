@@ -31,7 +31,7 @@ fn unknown(tree: &Tree, attach: &Attach, kind: &'static str, name: &str) -> Load
     tree.error(attach.at, ErrorKind::UnknownName { attribute, kind, name })
 }
 
-/// What an `<attach>` takes.
+/// The part of a model that an `<attach>` takes.
 pub(super) struct Taking<'a> {
     prefix: &'a str,
     suffix: &'a str,

@@ -56,7 +56,7 @@ impl Prism {
 /// The other geom, in the frame of the height field.
 struct Other<'a> {
     pos: Vec3,
-    /// What is inside a sphere or capsule, and how far the surface is from it.
+    /// The point or segment inside a sphere or capsule, and the distance of the surface from it.
     core: Option<(&'a dyn Support, f64)>,
     whole: &'a dyn Support,
 }

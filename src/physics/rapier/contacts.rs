@@ -45,7 +45,7 @@ struct TouchingPair {
 pub(super) struct ContactAims {
     /// Pairs that touch, ascending.
     pairs: Vec<TouchingPair>,
-    /// The aim of each contact of the state; `None` where it is no constraint.
+    /// The aim of each contact of the state; `None` where it is not a constraint.
     aims: Vec<Option<ContactAim>>,
     /// Frames of the contacts.
     frames: Vec<Mat3>,

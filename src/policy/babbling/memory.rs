@@ -28,7 +28,7 @@ impl Movement {
     }
 }
 
-/// What a movement led to, once.
+/// Result of one movement.
 #[derive(Clone, Debug)]
 pub(super) struct Outcome {
     /// Joint angles before it, rad.

@@ -27,7 +27,7 @@ fn operator(node: &[u8]) -> String {
     String::from_utf8_lossy(parts(node, 4).first().copied().unwrap_or_default()).into_owned()
 }
 
-/// Multiplies sizes; those below 1, and what is no number, do not make it smaller.
+/// Multiplies sizes; those below 1, and what is not a number, do not make it smaller.
 fn product(sizes: impl IntoIterator<Item = f64>) -> f64 {
     sizes.into_iter().map(|size| size.abs().max(1.0)).product()
 }

@@ -20,7 +20,7 @@ thread_local! {
 /// Calls that are under way in the process.
 static CALLS: AtomicUsize = AtomicUsize::new(0);
 
-/// Calls the runtime for a model whose largest graph has so many operators; what it says when it panics is the error, and nobody
+/// Calls the runtime for a model whose largest graph has `operators` operators; what it says when it panics is the error, and nobody
 /// else hears it.
 pub(super) fn call<T: Send>(operators: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
     let guarded = move || {
@@ -58,7 +58,7 @@ fn silence() {
     ONCE.call_once(|| {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
-            // operators run on threads of the runtime's own
+            // operators run on the runtime's own threads
             let thread = std::thread::current();
             let own = thread.name().is_some_and(|name| name.starts_with("rten-")) && CALLS.load(Ordering::Relaxed) > 0;
             if !own && !INSIDE.get() {

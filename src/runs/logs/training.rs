@@ -177,7 +177,7 @@ impl TrainingLog {
         })?;
         self.resumed = first.is_some();
         let found = first.as_ref().map(|r| r.behavior.name());
-        // a name that is no behavior's is that of a user-defined task, of which a configuration says nothing
+        // a name that is not a behavior's is that of a user-defined task, of which a configuration says nothing
         let other = |name: &&str| Behavior::from_name(name).is_some_and(|behavior| behavior != config.behavior);
         match found.filter(other) {
             Some(found) => Err(LogError::Foreign {

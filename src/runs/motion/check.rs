@@ -1,4 +1,4 @@
-//! What a motion must be like.
+//! Checks of a motion.
 
 use super::{Motion, MotionError};
 use crate::limits::Limits;

@@ -20,7 +20,7 @@ pub enum Playing {
     Tracking,
 }
 
-/// What came of playing a motion.
+/// Outcome of playing a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Played {

@@ -105,7 +105,7 @@ impl Columns {
 /// Parses a number.
 fn number(cell: &str) -> Result<f64, String> {
     let cell = cell.trim().trim_matches('"');
-    cell.parse().map_err(|_| format!("{} is no number", quoted(cell)))
+    cell.parse().map_err(|_| format!("{} is not a number", quoted(cell)))
 }
 
 /// Returns how many frames a second has.

@@ -51,7 +51,7 @@ pub struct Manifest {
     pub episodes: Vec<EpisodeDescription>,
 }
 
-/// A joint of MIMo's.
+/// One of MIMo's joints.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JointDescription {
     /// Its name.

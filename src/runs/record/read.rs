@@ -61,7 +61,10 @@ impl Record {
         // names of files come from outside: they must not lead out of the folder
         let plain = |file: &str| !file.is_empty() && !file.contains(['/', '\\', ':']) && file != "..";
         if let Some(episode) = manifest.episodes.iter().find(|episode| !plain(&episode.file)) {
-            return Err(damaged(format!("{} is no name of a file in this folder", episode.file)));
+            return Err(damaged(format!(
+                "{} is not the name of a file in this folder",
+                episode.file
+            )));
         }
         Ok(Self { dir, manifest })
     }

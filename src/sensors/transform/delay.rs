@@ -254,7 +254,7 @@ impl DelayLine {
     }
 }
 
-/// A delay of a sense by a number of steps of the environment. Until so many have passed, the first values of the episode
+/// A delay of a sense by a number of steps of the environment. Until they have passed, the first values of the episode
 /// are repeated: the k-th observation has the values of step max(1, k - steps).
 #[derive(Clone, Debug)]
 pub struct Delay {

@@ -178,7 +178,7 @@ fn invariant_8_divergence_names_step_and_joint() {
             } => {
                 println!("{what:10} -> step {step}, joint {joint}, {quantity} = {value:e}");
                 assert_eq!(step, steps_before);
-                assert!(model.joint(&joint).is_some(), "{joint:?} is no joint");
+                assert!(model.joint(&joint).is_some(), "{joint:?} is not a joint");
                 if what != "force" {
                     assert_eq!((joint.as_str(), quantity), ("robot:left_elbow", what));
                 }

@@ -99,7 +99,7 @@ fn number_before(text: &str, what: &str) -> usize {
     let (before, _) = text.split_once(what).unwrap_or_else(|| panic!("no {what:?}"));
     let word = before.split_whitespace().last().unwrap_or_default();
     let number = WORDS.iter().position(|w| *w == word);
-    number.unwrap_or_else(|| panic!("{word:?} before {what:?} is no number")) + 1
+    number.unwrap_or_else(|| panic!("{word:?} before {what:?} is not a number")) + 1
 }
 
 #[test]

@@ -124,7 +124,7 @@ fn misfits_say_what_is_expected() {
             "observation, vestibular",
         ],
     );
-    let text = folder.file("text.onnx", "this is no model");
+    let text = folder.file("text.onnx", "this is not a model");
     super::refused(&blueprint, &text.display().to_string(), &["text.onnx", "cannot load"]);
     let folder = Folder::new("misfits_vision");
     let mut config = small(&folder, true).config().clone();

@@ -33,7 +33,7 @@ pub struct Blueprint(babybench::Blueprint);
 #[wasm_bindgen]
 impl Blueprint {
     /// Builds the scene of a configuration in YAML; `name` stands for its file in errors. A custom scene is looked for among
-    /// files of the caller's, by path, which lie over those of the library.
+    /// the caller's files, by path, which lie over those of the library.
     #[wasm_bindgen(constructor)]
     pub fn new(yaml: &str, name: &str, paths: Vec<String>, contents: Vec<Uint8Array>) -> Result<Blueprint, JsValue> {
         let mut config = Config::from_yaml(yaml, name).map_err(|e| js::config_error(&e))?;

@@ -1,4 +1,4 @@
-// What the page is: one world, one stage, one state; the panels look at it and ask it to change.
+// The page: one world, one stage, one state; the panels look at it and ask it to change.
 import { STATES } from "./announce.js";
 import { BEHAVIORS } from "./names.js";
 import { Recordings } from "./recordings.js";

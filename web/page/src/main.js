@@ -143,7 +143,7 @@ function drops(app) {
       else if (/\.ya?ml$/i.test(file.name)) await app.make({}, null, await file.text());
       else if (/\.onnx$/i.test(file.name)) {
         await app.bring({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), url: null });
-      } else throw new Error(`${file.name} is no recording (.npz), model (.onnx), configuration (.yml) or room (.xml, .zip or a folder).`);
+      } else throw new Error(`${file.name} is not a recording (.npz), model (.onnx), configuration (.yml) or room (.xml, .zip or a folder).`);
     });
   });
 }

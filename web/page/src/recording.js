@@ -33,7 +33,7 @@ export async function fromFile(bytes) {
   const doubles = (/** @type {string} */ name) => (a[name] ? Float64Array.from(a[name].data) : null);
   const [qpos0, qvel0, actions] = [doubles("qpos0"), doubles("qvel0"), a.actions];
   if (!qpos0 || !qvel0 || !actions || actions.shape.length !== 2) {
-    throw new Error("The archive is no recording: it needs the arrays qpos0, qvel0 and actions (steps × actuators).");
+    throw new Error("The archive is not a recording: it needs the arrays qpos0, qvel0 and actions (steps × actuators).");
   }
   return {
     qpos0,

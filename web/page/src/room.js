@@ -37,7 +37,7 @@ class Basket {
     const bytes = new Uint8Array(await file.arrayBuffer());
     if (!/\.zip$/i.test(path)) return void this.files.push([path, bytes]);
     const inside = await unzip(bytes, (name, size) => this.wants(name, size), MOST);
-    if (!inside) throw new Error(`${path} is no archive (.zip).`);
+    if (!inside) throw new Error(`${path} is not an archive (.zip).`);
     this.files.push(...inside);
   }
 }

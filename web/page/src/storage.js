@@ -1,4 +1,4 @@
-// What the browser keeps for the next visit: little, and the page works without it.
+// Settings that the browser keeps for the next visit: few, and the page works without them.
 
 /**
  * @param {string} key

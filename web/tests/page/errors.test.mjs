@@ -1,4 +1,4 @@
-// What goes wrong is said in words, and the page goes on.
+// Errors are reported in words, and the page goes on.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { start, steps, tab, until } from "./browser.mjs";

@@ -1,4 +1,4 @@
-// What the page costs: draw calls, script, memory. Times are printed, never asserted.
+// Costs of the page: draw calls, script, memory. Times are printed, never asserted.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { start, steps, until } from "./browser.mjs";

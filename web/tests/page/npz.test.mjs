@@ -26,7 +26,7 @@ test("arrays keep their shapes and bits", async () => {
   assert.deepEqual(back.b.shape, [0, 5]);
 });
 
-test("what is no recording is refused in words", async () => {
+test("what is not a recording is refused in words", async () => {
   await assert.rejects(fromFile(new Uint8Array(100)), /not a NumPy archive/);
   await assert.rejects(fromFile(write({ qpos0: { shape: [1], data: new Float64Array(1) } })), /qpos0, qvel0 and actions/);
   const whole = new Uint8Array(await toFile(recording).arrayBuffer());

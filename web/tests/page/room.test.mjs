@@ -134,7 +134,7 @@ test("what is no room is refused in words, and what is here stays", async () => 
   const page = await host.open();
   const said = (text) => page.locator("#notices .notice", { hasText: text }).waitFor();
   await drop(page, "a.zip", Buffer.from("no archive"));
-  await said("a.zip is no archive");
+  await said("a.zip is not an archive");
   await drop(page, "toys.xml", Buffer.from("<mujoco/>"));
   await said("MIMo is in none of these documents: toys.xml");
   await drop(page, "ball.xml", Buffer.from(bare.replace('type="cylinder"', 'type="ball"')));

@@ -1,4 +1,4 @@
-//! What hangs on bodies: joints, geoms, terrain, meshes, sites.
+//! Elements that hang on bodies: joints, geoms, terrain, meshes, sites.
 
 use super::*;
 

@@ -152,7 +152,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Takes a facet from a vertex; one that has less than two facets left is no corner.
+    /// Takes a facet from a vertex; one that has less than two facets left is not a corner.
     fn leave_facet(&mut self, vertex: Id, facet: Id, into: Id) {
         drop_swapping(&mut self.vertices[vertex].neighbors, facet);
         if self.vertices[vertex].neighbors.len() < 2 {

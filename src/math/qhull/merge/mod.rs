@@ -17,7 +17,7 @@ const MANY_VERTICES: usize = 26;
 const SOME_VERTICES: usize = 18;
 /// How many greatest widths a merge may move a plane before it is an error (`qh_WIDEmaxoutside`).
 const TOO_WIDE: f64 = 100.0;
-/// Up to so many vertices a facet gets a new centre with every merge (`3 + qh_MAXnewcentrum`).
+/// Number of vertices up to which a facet gets a new centre with every merge (`3 + qh_MAXnewcentrum`).
 const FEW_VERTICES: usize = 8;
 /// The greatest number of merges that is counted (`qh_MAXnummerge`).
 const MOST_MERGES: usize = 511;

@@ -4,7 +4,7 @@ use crate::math::{MINVAL, Quat, Vec3, cross, dot};
 use crate::mjcf_loader::compile::geometry::diagonalize;
 use crate::mjcf_loader::mesh::MeshInertia;
 
-/// What a mesh weighs, for a density of one.
+/// Mass properties of a mesh, for a density of one.
 pub(super) struct Solid {
     /// Volume, m^3; of a shell the area, m^2.
     pub volume: f64,

@@ -1,4 +1,4 @@
-//! What a mesh consists of, from its file and from its attributes.
+//! Vertices, faces and texture coordinates of a mesh, from its file and from its attributes.
 
 use crate::assets::AssetSource;
 use crate::formats::mesh::{MeshFormat, Triangles};

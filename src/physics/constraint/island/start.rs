@@ -25,7 +25,7 @@ impl Island {
         }
         self.start_smooth(efc);
         let mut cost = self.evaluate();
-        // a warm start that is no number costs no less
+        // a warm start that is not a number costs no less
         if warm < cost {
             self.start_at(topology, qacc_warmstart, efc);
             cost = self.evaluate();

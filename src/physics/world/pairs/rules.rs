@@ -124,7 +124,7 @@ impl ContactRules {
             .chain(dynamic)
     }
 
-    /// Returns the place in contact order of two geoms that are no explicit pair, if they may touch.
+    /// Returns the place in contact order of two geoms that are not an explicit pair, if they may touch.
     pub(super) fn dynamic_order(&self, a: usize, b: usize) -> Option<Order> {
         self.collide(a, b).then(|| {
             let [lo, hi] = self.bodies(a, b);
@@ -149,7 +149,7 @@ impl ContactRules {
         sorted(self.geoms[a].body as usize, self.geoms[b].body as usize)
     }
 
-    /// Tells whether two geoms may touch that are no explicit pair.
+    /// Tells whether two geoms may touch that are not an explicit pair.
     fn collide(&self, a: usize, b: usize) -> bool {
         let (x, y) = (&self.geoms[a], &self.geoms[b]);
         let flat = |kind: GeomType| matches!(kind, GeomType::Plane | GeomType::HField);

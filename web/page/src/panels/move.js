@@ -1,4 +1,4 @@
-// What moves MIMo: a policy, sliders that one holds, locks, the spring of the pointer.
+// The panel that moves MIMo: a policy, sliders that one holds, locks, the spring of the pointer.
 import { el, say } from "../dom.js";
 import { PARTS, capital, readable, split } from "../names.js";
 import { button, card, choice, drop, slider } from "./controls.js";

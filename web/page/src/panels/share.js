@@ -1,4 +1,4 @@
-// What one takes away: a link, a recording, a picture, a video.
+// The panel of things to take away: a link, a recording, a picture, a video.
 import { seconds } from "../announce.js";
 import { download, el, say } from "../dom.js";
 import { fromFile, toFile } from "../recording.js";

@@ -1,4 +1,4 @@
-// What one watches: both eyes, the score of the behavior, the skin, signals over time.
+// The panel of things to watch: both eyes, the score of the behavior, the skin, signals over time.
 import { el, say } from "../dom.js";
 import { BEHAVIORS, capital, readable, TASKS } from "../names.js";
 import { card, check } from "./controls.js";

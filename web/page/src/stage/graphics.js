@@ -1,4 +1,4 @@
-// What draws here: a graphics card, or the processor in its place.
+// The renderer that draws here: a graphics card, or the processor in its place.
 
 /** What renderers call themselves that compute on the processor. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;

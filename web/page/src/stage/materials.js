@@ -1,4 +1,4 @@
-// Materials from the model's: its colours and images under the page's light.
+// Materials for the model's: its colours and images under the page's light.
 import {
   Color,
   CubeTexture,

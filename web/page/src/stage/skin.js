@@ -1,4 +1,4 @@
-// What MIMo feels: each sensor a small disc on its skin, glowing with the force upon it.
+// MIMo's touch: each sensor a small disc on its skin, glowing with the force upon it.
 import {
   BufferAttribute,
   DataTexture,

@@ -1,4 +1,4 @@
-// What the eyes saw, on its way to being seen: vision may be late.
+// Pictures of the eyes on their way to being seen: vision may be late.
 
 /** Pictures that are kept at most. */
 const KEPT = 256;

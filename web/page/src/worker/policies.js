@@ -1,4 +1,4 @@
-// What moves MIMo when nobody holds a slider: functions of the step, so that a link needs no more than a seed.
+// Policies that move MIMo when nobody holds a slider: functions of the step, so that a link needs no more than a seed.
 
 /** @typedef {{ low: number, high: number }} Range */
 /** @typedef {(step: number, ranges: Range[], out: Float32Array) => void} Policy */

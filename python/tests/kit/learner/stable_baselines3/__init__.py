@@ -1,4 +1,4 @@
-"""What the kit's examples need of Stable-Baselines3, without PyTorch: random actions instead of learning."""
+"""The part of Stable-Baselines3 that the kit's examples need, without PyTorch: random actions instead of learning."""
 
 from __future__ import annotations
 
