@@ -20,6 +20,7 @@ macro_rules! choices {
             }
 
             /// Returns the value with this name; `None` if there is none.
+            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($text => Some(Self::$variant),)* _ => None }
             }

@@ -101,6 +101,7 @@ impl Config {
     ///
     /// # Errors
     /// Fails like [`Config::from_yaml`], and if the name of the folder is needed and is not UTF-8.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn overlay_yaml_in(
         mut self,
         text: &str,
@@ -246,6 +247,7 @@ impl Config {
     }
 
     /// Returns whether touch is observed: it is active and its scale is not 0.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn touch_enabled(&self) -> bool {
         self.touch_active && self.touch_scale > 0.0
     }

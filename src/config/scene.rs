@@ -34,10 +34,13 @@ impl Scene {
     /// The scenes of BabyBench, in the order of the documentation.
     pub const ALL: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
     /// The library's own scenes, each of which has a task: `mobile` and `play`.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const OWN: &'static [Self] = &[Self::Mobile, Self::Playroom];
     /// The names of [`Self::ALL`] and [`Self::OWN`] in a configuration file.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom"];
     /// How the path of a document ends.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const ENDING: &'static str = ".xml";
 
     /// Returns the name in a configuration: that of a scene of the library, or a path.
@@ -54,6 +57,7 @@ impl Scene {
 
     /// Returns the scene of the library with this name, or else the document at this path; `None` if it is neither the one nor ends in
     /// `.xml`.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn from_name(name: &str) -> Option<Self> {
         let known = Self::ALL.iter().chain(Self::OWN).find(|scene| scene.name() == name);
         let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));

@@ -16,6 +16,7 @@ pub struct PerHand<T> {
 
 impl<T> PerHand<T> {
     /// Computes the value of each hand: 0 is the right one, 1 the left one.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn from_fn(mut value: impl FnMut(usize) -> T) -> Self {
         Self {
             right_hand: value(0),
@@ -24,11 +25,13 @@ impl<T> PerHand<T> {
     }
 
     /// Returns the values, right hand first.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn each_ref(&self) -> [&T; 2] {
         [&self.right_hand, &self.left_hand]
     }
 
     /// Returns the values for writing, right hand first.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn each_mut(&mut self) -> [&mut T; 2] {
         [&mut self.right_hand, &mut self.left_hand]
     }
@@ -58,6 +61,7 @@ pub const EYE_HAND_PAIRS: [&str; 4] = [
 
 impl<T> PerEyeAndHand<T> {
     /// Computes the value of each pair from the numbers of its eye and its hand: 0 is right, 1 is left.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn from_fn(mut value: impl FnMut(usize, usize) -> T) -> Self {
         Self {
             right_eye_right_hand: value(0, 0),

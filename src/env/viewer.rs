@@ -185,6 +185,7 @@ impl Viewer {
     ///
     /// # Errors
     /// As [`Viewer::draw`].
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn eyes_rgba(&mut self, env: &Env) -> Result<&[u8], EnvError> {
         let side = env.config().vision_resolution as usize;
         let optics = self.optics.take();

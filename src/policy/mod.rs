@@ -16,7 +16,9 @@ pub use command::CommandPolicy;
 pub use command::answers;
 internals!(use command::DEFAULT_LIMIT);
 #[cfg(feature = "onnx")]
-pub use onnx::{OnnxError, OnnxPolicy};
+internals!(hidden use onnx::OnnxError);
+#[cfg(feature = "onnx")]
+pub use onnx::OnnxPolicy;
 use thiserror::Error;
 pub use watching::Watching;
 

@@ -66,7 +66,7 @@ internals!(use scenery::{Aim, Camera, LightSource});
 use crate::assets::AssetError;
 use crate::text::quoted;
 
-pub use crate::spaces::MAX_IMAGE_SIZE as MAX_SIZE;
+internals!(use crate::spaces::MAX_IMAGE_SIZE as MAX_SIZE);
 
 /// A reason why something cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -27,6 +27,7 @@ impl View {
     ///
     /// # Errors
     /// Fails if the width or height is 0 or above [`MAX_SIZE`].
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn check(&self) -> Result<(), RenderError> {
         let fine = 1..=MAX_SIZE;
         if fine.contains(&self.width) && fine.contains(&self.height) {
@@ -102,14 +103,19 @@ impl FreeCamera {
 #[derive(Clone, Copy, Debug)]
 pub struct Poses<'a> {
     /// Positions of the geoms.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geom_xpos: &'a [Vec3],
     /// Orientations of the geoms.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geom_xmat: &'a [Mat3],
     /// Sizes of the geoms, m, which a program may change: [`Params::geom_size`](crate::physics::Params::geom_size).
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geom_size: &'a [Vec3],
     /// Positions of the sites.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub site_xpos: &'a [Vec3],
     /// Orientations of the sites.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub site_xmat: &'a [Mat3],
     /// First point of each tendon in `wrap_xpos`.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
@@ -124,8 +130,10 @@ pub struct Poses<'a> {
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub wrap_obj: &'a [i32],
     /// Positions of the cameras.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cam_xpos: &'a [Vec3],
     /// Orientations of the cameras.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cam_xmat: &'a [Mat3],
     /// Position and orientation of the free camera, if there is one: [`FreeCamera::pose`].
     pub free: Option<(Vec3, Mat3)>,

@@ -12,6 +12,7 @@ pub use values::Values;
 internals!(use values::{Array, ValuesMut});
 
 /// Largest width and height of an image, pixels.
+#[cfg_attr(not(feature = "internals"), doc(hidden))]
 pub const MAX_IMAGE_SIZE: usize = 4096;
 
 /// A box of single-precision vectors with bounds of their own for each component.

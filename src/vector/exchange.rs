@@ -240,6 +240,7 @@ impl VectorEnv {
     ///
     /// # Errors
     /// Environments in flight.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn start_noises(&mut self, noises: &mut [ActionNoise], mask: Option<&[bool]>) -> Result<(), VectorError> {
         self.check_home()?;
         for (i, (noise, slot)) in noises.iter_mut().zip(self.slots.iter_mut().flatten()).enumerate() {

@@ -70,6 +70,7 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Returns whether to follow the Python code where it disagrees with its description.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn follows_reference(&self) -> bool {
         self.config.compat == Compat::Reference
     }
@@ -196,6 +197,7 @@ impl<'a> TaskScene<'a> {
     ///
     /// # Errors
     /// The simulation diverged.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn relax(&mut self, steps: u32) -> Result<(), EnvError> {
         if self.follows_reference() {
             return self.rest(steps);
@@ -211,6 +213,7 @@ impl<'a> TaskScene<'a> {
     ///
     /// # Errors
     /// The simulation diverged.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn random_step(&mut self) -> Result<(), EnvError> {
         self.with_action(|scene, action| {
             scene.actuation.action_space().sample(scene.rng, action);
@@ -236,6 +239,7 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Lets the actuators rest.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reset_actuators(&mut self) {
         self.actuation.reset(self.model, self.state);
     }

@@ -151,17 +151,22 @@ impl Default for ContactOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quirks {
     /// Box on box face: `dist` is half of the depth. Off: the whole depth.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub half_box_face_depth: bool,
     /// Box edge on box edge: once a corner of the reference face has been looked at, its squared distance stands in for
     /// the determinant by which the remaining corners are located. Off: the determinant is used throughout.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub box_edge_determinant_reuse: bool,
     /// Capsule on box: a box edge whose nearest point moved back off the corner is still treated as that corner when the
     /// second contact is sought. Off: it is treated as an edge.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub stale_box_corner: bool,
     /// Convex pairs: geoms with the same centre do not touch. Off: they are treated like others.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub same_centre_is_no_contact: bool,
     /// Convex pairs: overlapping geoms for which EPA finds no depth do not touch. Off: the least overlap along the
     /// geoms' axes and the line of centres is taken, an upper bound of the depth.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub failed_depth_is_no_contact: bool,
 }
 

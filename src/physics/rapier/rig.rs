@@ -112,6 +112,7 @@ impl Rig {
     ///
     /// # Errors
     /// Fails if the model has elements that Rapier's multibodies cannot represent.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn insert(model: &Model, topology: &Topology, sets: &mut Sets) -> Result<Self, RapierError> {
         check(model, topology)?;
         let nb = model.nbody();

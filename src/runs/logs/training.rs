@@ -73,6 +73,7 @@ pub struct TrainingLog {
 
 impl TrainingLog {
     /// How many records [`TrainingLog::recent`] has at most: as many as scores look at.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const RECENT: usize = 10_001;
 
     /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten. Until the

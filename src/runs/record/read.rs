@@ -70,6 +70,7 @@ impl Record {
     }
 
     /// Returns whether a folder has a record, readable or not.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn is_in(dir: impl AsRef<Path>) -> bool {
         dir.as_ref().join(MANIFEST).is_file()
     }

@@ -140,6 +140,7 @@ impl SkinLayout {
     ///
     /// # Errors
     /// Fails if a distance is not finite and positive, or so small that there are more than [`MAX_SENSORS`].
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn with_spacing(model: &Model, spacing: impl Fn(&str) -> Option<f64>) -> Result<Self, SkinError> {
         Self::place(model, |body| spacing(&model.body_name[body]))
     }
@@ -229,6 +230,7 @@ impl SkinLayout {
     }
 
     /// Returns the body of a sensor and the sensor's index within it.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn locate(&self, sensor: usize) -> Option<(&SkinBody, usize)> {
         let body = self.bodies.partition_point(|b| b.offset + b.len() <= sensor);
         self.bodies.get(body).map(|b| (b, sensor - b.offset))

@@ -236,6 +236,7 @@ impl Touch {
 
     /// Adds `value` (in the frame of the body, N), pressed on the skin of a body at `point` (same frame, m), to what is
     /// felt already; [`Self::contacts`] do not change.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn press(&mut self, body: usize, point: Vec3, value: Vec3) {
         let layout = self.layout.clone();
         if let Some(skin) = layout.body(body) {

@@ -50,6 +50,7 @@ impl SkinValues {
     }
 
     /// Returns the values of a sensor to be changed, which counts as written from now on.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn of_mut(&mut self, sensor: usize) -> &mut [f32] {
         if !self.is_touched[sensor] {
             self.is_touched[sensor] = true;
