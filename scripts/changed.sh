@@ -19,7 +19,8 @@ while read -r file; do
     python/*) concerns=python ;;
     fuzz/*) concerns=fuzz ;;
     examples/checksum/*) concerns='rust web' ;; # whose bits the package has, too
-    cli/* | conformance/* | tests/* | testkit/* | benches/* | examples/*) concerns=rust ;;
+    cli/*) concerns='rust python' ;; # the wheel has it, too
+    conformance/* | tests/* | testkit/* | benches/* | examples/*) concerns=rust ;;
     CHANGELOG.md | CONTRIBUTING.md | SECURITY.md | LICENSE-* | NOTICE | _typos.toml | deny.toml) concerns='' ;;
     docs/* | *.md) concerns=rust ;; # programs in the README run, the guide's tables are compared
     *) concerns=$every ;;

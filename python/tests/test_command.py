@@ -109,6 +109,8 @@ def test_a_training_that_is_interrupted_saves_its_log(folder: Path) -> None:
         cwd=folder,
         stderr=subprocess.PIPE,
         text=True,
+        # what a shell starts in the background ignores interruptions, and so would this
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 60
     while not (folder / "run" / "scene.xml").is_file() and time.monotonic() < deadline:
