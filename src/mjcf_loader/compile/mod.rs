@@ -12,6 +12,7 @@ mod fluid;
 mod geom;
 mod geometry;
 mod hfield;
+mod joint;
 mod mesh;
 mod sensor;
 mod shell;
