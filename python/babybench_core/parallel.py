@@ -103,7 +103,8 @@ class ParallelEnv(pettingzoo.ParallelEnv[str, Observation, npt.NDArray[np.float3
 
         Raises:
             KeyError: There is no action of the learner.
-            ValueError: Actions of another shape, or with numbers that are not finite; nothing has happened then.
+            ValueError: Actions of another shape, or with numbers that are not finite. Nothing has moved then; a valid action of
+                the other is kept for the next step.
             RuntimeError: The simulation diverged, or there was no reset; reset it.
         """
         action = actions[LEARNER]

@@ -140,7 +140,7 @@ impl Learner {
         let shown = self.step.checked_sub(settling + 1).map(|n| (n / moving) as usize);
         if let Some(hand) = shown.filter(|hand| *hand < HANDS && !settled) {
             self.sight.see(env, hand, self.limbs.gaze(env));
-        } else if !settled {
+        } else if !settled && self.step == settling {
             self.sight.look(env);
         }
         if self.step > settling + HANDS as u64 * moving {

@@ -44,7 +44,7 @@ impl Sight {
         let seen = env.observation();
         if seen.eye_left.is_none() || seen.eye_right.is_none() {
             return Err(PolicyError::Other(
-                "watching learns by sight: set vision_active: true".into(),
+                "watching learns by sight in every step: set vision_active: true, and vision_lazy: false".into(),
             ));
         }
         let size = env.config().vision_resolution as usize;
@@ -134,11 +134,10 @@ impl Sight {
     }
 }
 
-/// Returns the pictures of both eyes in shades of grey, 0 to 255.
+/// Iterates over the pictures of both eyes in shades of grey, 0 to 255.
 fn shades(env: &Env) -> impl Iterator<Item = f32> {
     let seen = env.observation();
     let eyes = [seen.eye_left, seen.eye_right].map(Option::unwrap_or_default);
     let grey = |c: &[u8]| c.iter().map(|&v| f32::from(v)).sum::<f32>() / 3.0;
-    let shades: Vec<f32> = eyes.into_iter().flat_map(|eye| eye.chunks_exact(3)).map(grey).collect();
-    shades.into_iter()
+    eyes.into_iter().flat_map(|eye| eye.chunks_exact(3)).map(grey)
 }
