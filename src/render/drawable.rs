@@ -3,7 +3,6 @@
 use crate::math::{Mat3, Vec3};
 use crate::model::{GeomType, Model};
 use crate::render::scenery::single;
-use crate::render::tendon::rope;
 use crate::render::texture::TexturePixels;
 use crate::render::view::Poses;
 
@@ -155,9 +154,6 @@ impl Drawable {
             && kind == GeomType::HField
         {
             drawable.radius = model.geom_rbound[g] as f32;
-        }
-        if let Element::Tendon { tendon, .. } = element {
-            drawable.rope = rope(model, tendon);
         }
         if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
             if drawable.rgba == DEFAULT_RGBA {

@@ -7,7 +7,7 @@ use crate::render::RenderError;
 use crate::render::drawable::{Drawable, Element, Shape, material};
 use crate::render::mesh::Mesh;
 use crate::render::model_mesh::ModelMeshes;
-use crate::render::tendon::pieces;
+use crate::render::tendon::{pieces, ropes};
 use crate::render::texture::{Loader, TexturePixels};
 use crate::render::view::{Poses, View};
 
@@ -164,7 +164,6 @@ impl Scenery {
             textures: Vec::new(),
         };
         let far = model.vis.zfar * model.stat.extent;
-        let mut drawables = Vec::new();
         let mut meshes = vec![
             Mesh::plane(),
             Mesh::sphere(),
@@ -172,22 +171,7 @@ impl Scenery {
             Mesh::cylinder(),
             Mesh::cube(),
         ];
-        let mut model_meshes = ModelMeshes::new(model);
-        for element in visible(model) {
-            let mut drawable = Drawable::new(model, element, far as f32);
-            if drawable.rgba[3] <= 0.0 {
-                continue;
-            }
-            if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
-                drawable.texture = used.texture(texture)?;
-            }
-            if drawable.shape == Shape::Mesh {
-                let parts = model_meshes.parts(model, element, &mut meshes);
-                drawables.extend(parts.map(|mesh| drawable.showing(mesh)));
-                continue;
-            }
-            drawables.push(drawable);
-        }
+        let mut drawables = drawables(model, far as f32, &mut used, &mut meshes)?;
         let sky = model.textures.iter().position(|t| t.kind == TextureType::Skybox);
         let sky = match sky {
             Some(id) => used.texture(id)?,
@@ -293,12 +277,37 @@ impl Scenery {
     }
 }
 
+/// Makes the drawables of what is visible, but for the places of their textures; adds the meshes of the model to `meshes`.
+fn drawables(model: &Model, far: f32, used: &mut Used, meshes: &mut Vec<Mesh>) -> Result<Vec<Drawable>, RenderError> {
+    let (ropes, mut model_meshes) = (ropes(model), ModelMeshes::new(model));
+    let mut drawables = Vec::new();
+    for element in visible(model, &ropes) {
+        let mut drawable = Drawable::new(model, element, far);
+        if drawable.rgba[3] <= 0.0 {
+            continue;
+        }
+        if let Element::Tendon { tendon, .. } = element {
+            drawable.rope = ropes[tendon];
+        }
+        if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
+            drawable.texture = used.texture(texture)?;
+        }
+        if drawable.shape == Shape::Mesh {
+            let parts = model_meshes.parts(model, element, meshes);
+            drawables.extend(parts.map(|mesh| drawable.showing(mesh)));
+        } else {
+            drawables.push(drawable);
+        }
+    }
+    Ok(drawables)
+}
+
 /// Lists the elements of visible groups, in the order in which MuJoCo draws them.
-fn visible(model: &Model) -> impl Iterator<Item = Element> {
+fn visible<'a>(model: &'a Model, ropes: &'a [Vec3]) -> impl Iterator<Item = Element> + 'a {
     let geoms = (0..model.ngeom()).filter(|&g| VISIBLE_GROUPS.contains(&model.geom_group[g]));
     let sites = (0..model.nsite()).filter(|&s| VISIBLE_GROUPS.contains(&model.site_group[s]));
     let tendons = (0..model.ntendon()).filter(|&t| VISIBLE_GROUPS.contains(&model.tendon_group[t]));
-    let tendons = tendons.flat_map(move |tendon| pieces(model, tendon));
+    let tendons = tendons.flat_map(move |tendon| pieces(model, tendon, ropes[tendon]));
     geoms.map(Element::Geom).chain(sites.map(Element::Site)).chain(tendons)
 }
 

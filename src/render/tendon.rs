@@ -15,14 +15,14 @@ const NARROW: f64 = 0.01;
 /// Mark in [`Poses::wrap_obj`] of a pulley, where the path is interrupted.
 const PULLEY: i32 = -2;
 
-/// Lists the elements that may show a tendon.
-pub fn pieces(model: &Model, tendon: usize) -> impl Iterator<Item = Element> {
+/// Lists the elements that may show a tendon; `rope` is that of [`ropes`].
+pub fn pieces(model: &Model, tendon: usize, rope: Vec3) -> impl Iterator<Item = Element> {
     let points = |wrap: &Wrap| match wrap {
         Wrap::Joint { .. } => 0,
         Wrap::Pulley { .. } | Wrap::Site { .. } => 1,
         Wrap::Sphere { .. } | Wrap::Cylinder { .. } => 2,
     };
-    let count = match rope(model, tendon) {
+    let count = match rope {
         [0.0, 0.0, 0.0] => model.tendon_wrap[tendon].iter().map(points).sum::<usize>(),
         _ => HANGING + 1,
     };
@@ -32,12 +32,24 @@ pub fn pieces(model: &Model, tendon: usize) -> impl Iterator<Item = Element> {
     })
 }
 
-/// Returns the upward direction times the greatest length of a tendon that hangs loose between two sites; zeros for others: those that
-/// something pulls, damps or holds.
-pub fn rope(model: &Model, tendon: usize) -> Vec3 {
+/// Returns for each tendon the upward direction times its greatest length, m, if it hangs loose between two sites; zeros for others: those
+/// that something pulls, damps or holds.
+pub fn ropes(model: &Model) -> Vec<Vec3> {
+    let mut pulled = vec![false; model.ntendon()];
+    for (kind, &target) in model.actuator_trntype.iter().zip(&model.actuator_trnid) {
+        if *kind == TrnType::Tendon {
+            pulled[target] = true;
+        }
+    }
+    let tendons = pulled.into_iter().enumerate();
+    tendons
+        .map(|(tendon, pulled)| if pulled { [0.0; 3] } else { rope(model, tendon) })
+        .collect()
+}
+
+/// Returns the rope of a tendon that no actuator pulls.
+fn rope(model: &Model, tendon: usize) -> Vec3 {
     let gravity = model.opt.gravity;
-    let pulled =
-        (0..model.nu()).any(|u| model.actuator_trntype[u] == TrnType::Tendon && model.actuator_trnid[u] == tendon);
     let held = model.tendon_damping[tendon] != 0.0 || model.tendon_frictionloss[tendon] != 0.0;
     let sprung = model.tendon_stiffness[tendon] > 0.0;
     let [least, most] = match (sprung, model.tendon_limited[tendon]) {
@@ -46,7 +58,7 @@ pub fn rope(model: &Model, tendon: usize) -> Vec3 {
         (false, false) => [0.0; 2],
     };
     let between_sites = matches!(model.tendon_wrap[tendon][..], [Wrap::Site { .. }, Wrap::Site { .. }]);
-    let loose = between_sites && least == 0.0 && most > 0.0 && !pulled && !held;
+    let loose = between_sites && least == 0.0 && most > 0.0 && !held;
     if loose && model.opt.flags.gravity && norm(gravity) > MINVAL {
         scale(unit(gravity).0, -most)
     } else {
@@ -90,7 +102,7 @@ fn along([x, y, z]: Vec3) -> Mat3 {
     [1.0 - x * x * turn, mixed, x, mixed, 1.0 - y * y * turn, y, -x, -y, z]
 }
 
-/// Returns the ends of a piece of a rope between two points; `None` if it has fewer. `rope` is as [`rope`] returns it.
+/// Returns the ends of a piece of a rope between two points; `None` if it has fewer. `rope` is that of [`ropes`].
 fn hanging(from: Vec3, to: Vec3, rope: Vec3, piece: usize) -> Option<[Vec3; 2]> {
     let (up, length) = unit(rope);
     let apart = sub(to, from);
