@@ -41,41 +41,13 @@ numbers! {
     usize => i32, |v| v as i32;
     Option<usize> => i32, |v| v.map_or(-1, |v| v as i32);
     // MuJoCo's numbers
-    GeomType => i32, |v| match v {
-        GeomType::Plane => 0,
-        GeomType::HField => 1,
-        GeomType::Sphere => 2,
-        GeomType::Capsule => 3,
-        GeomType::Ellipsoid => 4,
-        GeomType::Cylinder => 5,
-        GeomType::Box => 6,
-        GeomType::Mesh => 7,
-    };
-    JointType => i32, |v| match v {
-        JointType::Free => 0,
-        JointType::Ball => 1,
-        JointType::Slide => 2,
-        JointType::Hinge => 3,
-    };
-    BiasType => i32, |v| match v {
-        BiasType::None => 0,
-        BiasType::Affine => 1,
-        BiasType::Muscle => 2,
-    };
+    GeomType => i32, |v| v.code();
+    JointType => i32, |v| v.code();
+    BiasType => i32, |v| v.code();
     SensorType => i32, |v| v.code();
     ObjType => i32, |v| v.code();
-    DynType => i32, |v| match v {
-        DynType::None => 0,
-        DynType::Integrator => 1,
-        DynType::Filter => 2,
-        DynType::FilterExact => 3,
-        DynType::Muscle => 4,
-    };
-    GainType => i32, |v| match v {
-        GainType::Fixed => 0,
-        GainType::Affine => 1,
-        GainType::Muscle => 2,
-    };
+    DynType => i32, |v| v.code();
+    GainType => i32, |v| v.code();
 }
 
 impl<T: Number> ToArray for [T] {

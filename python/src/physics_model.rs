@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use babybench::Model;
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
 use babybench::mjcf_loader::{LoadError, load, load_str};
-use babybench::model::{Arrays, CamLight, Flags, IntegratorType, Keyframe, SensorType, SolverType, Wrap};
+use babybench::model::{Arrays, Flags, IntegratorType, Keyframe, SensorType, SolverType, Wrap};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
 use babybench::render::{RenderError, Scenery};
 use numpy::{PyArray1, PyArrayMethods};
@@ -183,17 +183,6 @@ fn flags(flags: &mut Flags) -> [&mut bool; 15] {
     ]
 }
 
-/// Returns MuJoCo's number of the mode of a camera or a light.
-fn mode(mode: CamLight) -> i32 {
-    match mode {
-        CamLight::Fixed => 0,
-        CamLight::Track => 1,
-        CamLight::TrackCom => 2,
-        CamLight::TargetBody => 3,
-        CamLight::TargetBodyCom => 4,
-    }
-}
-
 #[pymethods]
 impl PhysicsModel {
     /// Compiles a file; what it includes and its textures lie beside it.
@@ -367,8 +356,8 @@ impl PhysicsModel {
         let m = self.current().model.clone();
         let all = extras(py, &m)?;
         let kinds = |modes: Vec<i32>| PyArray1::from_vec(py, modes);
-        all.set_item("cam_mode", kinds(m.cam_mode.iter().map(|&k| mode(k)).collect()))?;
-        all.set_item("light_mode", kinds(m.lights.iter().map(|l| mode(l.mode)).collect()))?;
+        all.set_item("cam_mode", kinds(m.cam_mode.iter().map(|mode| mode.code()).collect()))?;
+        all.set_item("light_mode", kinds(m.lights.iter().map(|l| l.mode.code()).collect()))?;
         macro_rules! rows {
             ($($name:literal $list:ident $field:ident)*) => {$({
                 let rows: Vec<_> = m.$list.iter().map(|x| x.$field.clone()).collect();

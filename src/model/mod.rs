@@ -7,6 +7,7 @@
 
 mod actuator;
 mod arrays;
+mod code;
 mod complete;
 mod elements;
 mod hfield;

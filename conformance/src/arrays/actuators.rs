@@ -1,17 +1,11 @@
 //! Actuators.
 
 use babybench::Model;
-use babybench::model::{BiasType, DynType, GainType};
 
 use super::{Named, flags, flat, optional};
 
 /// Returns the actuator arrays, reduced to what the model keeps.
 pub fn actuators(m: &Model) -> Named {
-    let bias = |kind: &BiasType| match kind {
-        BiasType::None => 0.0,
-        BiasType::Affine => 1.0,
-        BiasType::Muscle => 2.0,
-    };
     let seconds = m.actuator_trnid.iter().zip(&m.actuator_refid);
     let trnid = seconds.flat_map(|(&id, second)| [id as f64, second.map_or(-1.0, |id| id as f64)]);
     let trnid = trnid.collect();
@@ -23,7 +17,10 @@ pub fn actuators(m: &Model) -> Named {
         ("actuator_forcelimited", flags(&m.actuator_forcelimited)),
         ("actuator_forcerange", flat(&m.actuator_forcerange)),
         ("actuator_gainprm", flat(&m.actuator_gainprm)),
-        ("actuator_biastype", m.actuator_biastype.iter().map(bias).collect()),
+        (
+            "actuator_biastype",
+            m.actuator_biastype.iter().map(|kind| f64::from(kind.code())).collect(),
+        ),
         ("actuator_biasprm", flat(&m.actuator_biasprm)),
         ("actuator_user", m.actuator_user.iter().flatten().copied().collect()),
     ]
@@ -31,29 +28,23 @@ pub fn actuators(m: &Model) -> Named {
 
 /// Returns the arrays of activations and gains, which recordings of scenes without them leave out.
 pub fn activations(m: &Model) -> Named {
-    let dynamics = |kind: &DynType| match kind {
-        DynType::None => 0.0,
-        DynType::Integrator => 1.0,
-        DynType::Filter => 2.0,
-        DynType::FilterExact => 3.0,
-        DynType::Muscle => 4.0,
-    };
-    let gain = |kind: &GainType| match kind {
-        GainType::Fixed => 0.0,
-        GainType::Affine => 1.0,
-        GainType::Muscle => 2.0,
-    };
     let numbers = m.actuator_actadr.iter().map(|adr| f64::from(u8::from(adr.is_some())));
     vec![
         ("na", vec![m.na as f64]),
-        ("actuator_dyntype", m.actuator_dyntype.iter().map(dynamics).collect()),
+        (
+            "actuator_dyntype",
+            m.actuator_dyntype.iter().map(|kind| f64::from(kind.code())).collect(),
+        ),
         ("actuator_dynprm", flat(&m.actuator_dynprm)),
         ("actuator_actadr", optional(&m.actuator_actadr)),
         ("actuator_actnum", numbers.collect()),
         ("actuator_actlimited", flags(&m.actuator_actlimited)),
         ("actuator_actrange", flat(&m.actuator_actrange)),
         ("actuator_actearly", flags(&m.actuator_actearly)),
-        ("actuator_gaintype", m.actuator_gaintype.iter().map(gain).collect()),
+        (
+            "actuator_gaintype",
+            m.actuator_gaintype.iter().map(|kind| f64::from(kind.code())).collect(),
+        ),
         ("actuator_lengthrange", flat(&m.actuator_lengthrange)),
     ]
 }

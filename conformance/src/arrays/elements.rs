@@ -1,10 +1,10 @@
 //! Bodies, joints, geoms, sites and cameras, and what of all elements no recording has.
 
 use babybench::Model;
-use babybench::model::{JointType, Keyframe, ObjType, TrnType};
+use babybench::model::{Keyframe, ObjType};
 
 use super::relations::wrap;
-use super::{Named, addresses, cam_light_code, flags, flat, ids, optional, shapes, users};
+use super::{Named, addresses, flags, flat, ids, optional, shapes, users};
 
 pub(super) fn of_bodies(m: &Model) -> Named {
     vec![
@@ -28,14 +28,11 @@ pub(super) fn of_bodies(m: &Model) -> Named {
 }
 
 pub(super) fn of_joints(m: &Model) -> Named {
-    let joint_code = |kind: &JointType| match kind {
-        JointType::Free => 0.0,
-        JointType::Ball => 1.0,
-        JointType::Slide => 2.0,
-        JointType::Hinge => 3.0,
-    };
     vec![
-        ("jnt_type", m.jnt_type.iter().map(joint_code).collect()),
+        (
+            "jnt_type",
+            m.jnt_type.iter().map(|kind| f64::from(kind.code())).collect(),
+        ),
         ("jnt_bodyid", ids(&m.jnt_bodyid)),
         ("jnt_qposadr", ids(&m.jnt_qposadr)),
         ("jnt_dofadr", ids(&m.jnt_dofadr)),
@@ -94,7 +91,7 @@ pub(super) fn of_sites_and_cameras(m: &Model) -> Named {
         ("site_quat", flat(&m.site_quat)),
         (
             "cam_mode",
-            m.cam_mode.iter().map(|&mode| cam_light_code(mode)).collect(),
+            m.cam_mode.iter().map(|mode| f64::from(mode.code())).collect(),
         ),
         ("cam_targetbodyid", optional(&m.cam_targetbodyid)),
         ("cam_bodyid", ids(&m.cam_bodyid)),
@@ -107,14 +104,6 @@ pub(super) fn of_sites_and_cameras(m: &Model) -> Named {
 
 /// Returns the arrays that recordings do not have: those are compared with MuJoCo alone where it runs.
 pub fn unrecorded(m: &Model) -> Named {
-    let transmission = |kind: &TrnType| match kind {
-        TrnType::Joint => 0.0,
-        TrnType::JointInParent => 1.0,
-        TrnType::SliderCrank => 2.0,
-        TrnType::Tendon => 3.0,
-        TrnType::Site => 4.0,
-        TrnType::Body => 5.0,
-    };
     let kinds = |all: &[ObjType]| all.iter().map(|kind| f64::from(kind.code())).collect();
     let keys = |of: fn(&Keyframe) -> &[f64]| m.keys.iter().flat_map(of).copied().collect();
     let wraps = m.tendon_wrap.iter().flatten();
@@ -136,7 +125,7 @@ pub fn unrecorded(m: &Model) -> Named {
         ("tendon_matid", optional(&m.tendon_matid)),
         (
             "actuator_trntype",
-            m.actuator_trntype.iter().map(transmission).collect(),
+            m.actuator_trntype.iter().map(|kind| f64::from(kind.code())).collect(),
         ),
         ("geom_user", users(&m.geom_user)),
         ("geom_dataid", optional(&m.geom_dataid)),

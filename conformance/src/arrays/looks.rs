@@ -1,9 +1,8 @@
 //! What only changes pictures.
 
 use babybench::Model;
-use babybench::model::TextureType;
 
-use super::{Named, cam_light_code, flat, ids, optional};
+use super::{Named, flat, ids, optional};
 
 /// Returns the arrays that only change what is drawn.
 pub fn looks(m: &Model) -> Named {
@@ -24,7 +23,10 @@ fn of_colours(m: &Model) -> Named {
 fn of_lights(m: &Model) -> Named {
     vec![
         ("light_bodyid", m.lights.iter().map(|l| l.bodyid as f64).collect()),
-        ("light_mode", m.lights.iter().map(|l| cam_light_code(l.mode)).collect()),
+        (
+            "light_mode",
+            m.lights.iter().map(|l| f64::from(l.mode.code())).collect(),
+        ),
         (
             "light_targetbodyid",
             optional(&m.lights.iter().map(|l| l.targetbodyid).collect::<Vec<_>>()),
@@ -55,11 +57,6 @@ fn of_lights(m: &Model) -> Named {
 }
 
 fn of_materials(m: &Model) -> Named {
-    let texture_code = |kind: TextureType| match kind {
-        TextureType::Flat2d => 0.0,
-        TextureType::Cube => 1.0,
-        TextureType::Skybox => 2.0,
-    };
     vec![
         ("mat_rgba", m.materials.iter().flat_map(|x| x.rgba).collect()),
         ("mat_specular", m.materials.iter().map(|x| x.specular).collect()),
@@ -78,7 +75,10 @@ fn of_materials(m: &Model) -> Named {
                 .map(|x| x.texture.map_or(-1.0, |id| id as f64))
                 .collect(),
         ),
-        ("tex_type", m.textures.iter().map(|t| texture_code(t.kind)).collect()),
+        (
+            "tex_type",
+            m.textures.iter().map(|t| f64::from(t.kind.code())).collect(),
+        ),
     ]
 }
 

@@ -7,7 +7,7 @@ mod meshes;
 mod relations;
 
 use babybench::Model;
-use babybench::model::{CamLight, GeomType};
+use babybench::model::GeomType;
 
 pub use actuators::{activations, actuators};
 pub use elements::unrecorded;
@@ -33,33 +33,12 @@ fn optional(values: &[Option<usize>]) -> Vec<f64> {
 }
 
 fn shapes(values: &[GeomType]) -> Vec<f64> {
-    let code = |shape: &GeomType| match shape {
-        GeomType::Plane => 0,
-        GeomType::HField => 1,
-        GeomType::Sphere => 2,
-        GeomType::Capsule => 3,
-        GeomType::Ellipsoid => 4,
-        GeomType::Cylinder => 5,
-        GeomType::Box => 6,
-        GeomType::Mesh => 7,
-    };
-    values.iter().map(|shape| f64::from(code(shape))).collect()
+    values.iter().map(|shape| f64::from(shape.code())).collect()
 }
 
 /// Returns user data, one row after another.
 fn users(values: &[Vec<f64>]) -> Vec<f64> {
     values.iter().flatten().copied().collect()
-}
-
-/// Returns MuJoCo's number of a mode.
-fn cam_light_code(mode: CamLight) -> f64 {
-    match mode {
-        CamLight::Fixed => 0.0,
-        CamLight::Track => 1.0,
-        CamLight::TrackCom => 2.0,
-        CamLight::TargetBody => 3.0,
-        CamLight::TargetBodyCom => 4.0,
-    }
 }
 
 /// Returns the addresses of ranges as MuJoCo stores them: -1 for an empty range.
