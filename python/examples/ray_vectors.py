@@ -73,7 +73,8 @@ def main() -> None:
     if args.address:
         ray.init(address=args.address)
     else:
-        ray.init(num_cpus=args.workers * args.cpus, include_dashboard=False)
+        # not a cluster that happens to run on this machine
+        ray.init(address="local", num_cpus=args.workers * args.cpus, include_dashboard=False)
     remote: Any = ray.remote(num_cpus=args.cpus)(Explorer)
     actors = [remote.remote(2 * args.directions, args.cpus, args.steps) for _ in range(args.workers)]
     policy = np.zeros(ray.get(actors[0].size.remote()))

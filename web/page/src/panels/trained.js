@@ -22,7 +22,7 @@ export function trained(app) {
     });
     return start;
   });
-  return card("Trained", el("p", { className: "soft small" }, "Networks that have learned a task. Each starts its task, with the scene and the body of its own; Next seed in Setup puts him another one."), el("div", { className: "row" }, ...buttons));
+  return card("Trained", el("p", { className: "soft small" }, "Networks that have each learned a task. A button starts the task, in its own scene and with its own body; “Next seed” in Setup sets another goal."), el("div", { className: "row" }, ...buttons));
 }
 
 /**
