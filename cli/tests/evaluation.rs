@@ -8,7 +8,7 @@ mod program;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use babybench::config::{ActuationModel, Behavior, Compat, Config, Scene};
 use babybench::eval::{EpisodeError, Evaluation, Film, FilmError, Plan, run_episodes};
@@ -294,13 +294,25 @@ fn a_closed_pipe_ends_a_command_quietly() {
     }
 }
 
+/// Waits for what a program does, however slow the machine is.
+fn wait_until(what: &str, done: impl Fn() -> bool) {
+    let since = Instant::now();
+    while !done() {
+        assert!(since.elapsed() < Duration::from_secs(300), "never: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 #[test]
 fn a_killed_run_leaves_a_readable_log() {
     let folder = Folder::new("kill");
     let config = short_config(&folder);
     let mut rng = NumpyRng::seed(3);
+    let path = folder.path().join("run/logs/training.pkl");
+    let size = || std::fs::metadata(&path).map_or(0, |file| file.len());
     let (mut found, mut most) = (0, 0);
-    for _ in 0..20 {
+    for round in 0..20 {
+        let before = size();
         let mut child = Command::new(env!("CARGO_BIN_EXE_babybench"))
             .args([
                 "train",
@@ -315,10 +327,13 @@ fn a_killed_run_leaves_a_readable_log() {
             .stdout(std::process::Stdio::null())
             .spawn()
             .expect("the program runs");
-        std::thread::sleep(Duration::from_millis(100 + (rng.uniform() * 200.0) as u64));
+        // one half is killed at some moment of its start, the other after it has written
+        if round % 2 == 1 {
+            wait_until("the log grows", || size() > before);
+        }
+        std::thread::sleep(Duration::from_millis((rng.uniform() * 200.0) as u64));
         child.kill().expect("it still runs");
         child.wait().expect("it ends");
-        let path = folder.path().join("run/logs/training.pkl");
         if path.exists() {
             let records = read_training(folder.path().join("run")).expect("a whole log");
             assert!(records.len() >= most, "episodes were lost");
@@ -327,7 +342,7 @@ fn a_killed_run_leaves_a_readable_log() {
         }
     }
     println!("{found} of 20 killed runs had begun to log; {most} episodes in the end");
-    assert!(found > 10 && most > 10);
+    assert!(found >= 10 && most >= 10);
 }
 
 #[test]
@@ -336,7 +351,8 @@ fn a_killed_evaluation_leaves_whole_logs_and_videos() {
     let config = short_config(&folder);
     let mut rng = NumpyRng::seed(4);
     let mut found = 0;
-    for _ in 0..8 {
+    let run = folder.path().join("run");
+    for round in 0..8 {
         let mut child = Command::new(env!("CARGO_BIN_EXE_babybench"))
             .args([
                 "evaluate",
@@ -352,10 +368,12 @@ fn a_killed_evaluation_leaves_whole_logs_and_videos() {
             .stdout(std::process::Stdio::null())
             .spawn()
             .expect("the program runs");
-        std::thread::sleep(Duration::from_millis(200 + (rng.uniform() * 600.0) as u64));
+        if round == 0 {
+            wait_until("an episode has ended", || evaluation_path(&run, 0).exists());
+        }
+        std::thread::sleep(Duration::from_millis((rng.uniform() * 600.0) as u64));
         child.kill().expect("it still runs");
         child.wait().expect("it ends");
-        let run = folder.path().join("run");
         for k in 0..1000 {
             let path = evaluation_path(&run, k);
             if path.exists() {
