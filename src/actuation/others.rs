@@ -25,8 +25,10 @@ impl WithOthers {
     pub fn new(mimo: Box<dyn Actuation>, model: &Model) -> Self {
         let others: Vec<usize> = (0..model.nu()).filter(|i| !mimo.actuators().contains(i)).collect();
         let bounds = |&i: &usize| {
-            if model.actuator_ctrllimited[i] {
-                model.actuator_ctrlrange[i]
+            let range = model.actuator_ctrlrange[i];
+            // a bound that is infinite limits nothing, and nobody could draw an action from it
+            if model.actuator_ctrllimited[i] && range.iter().all(|v| v.is_finite()) {
+                range
             } else {
                 UNLIMITED
             }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::model::{BiasType, DynType, GainType};
 
 use super::attribute::Sign::{Any, NonNegative};
-use super::attribute::{FLAG, Kind, TEXT, int, real, reals, some};
+use super::attribute::{FLAG, Kind, RANGE, TEXT, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{BIASES, DYNAMICS, GAINS, TRI, Tri};
@@ -33,8 +33,8 @@ table! {
         also inheritrange: f64 = 0.0;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "forcelimited" forcelimited: Tri = Tri::Auto, TRI, "Whether `forcerange` is enforced.";
-        "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the control.";
-        "forcerange" forcerange: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the force.";
+        "ctrlrange" ctrlrange: [f64; 2] = [0.0; 2], RANGE, "Range of the control.";
+        "forcerange" forcerange: [f64; 2] = [0.0; 2], RANGE, "Range of the force.";
         "user" user: Vec<f64> = Vec::new(), Kind::User, "Numbers for programs.";
         "group" group: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Group, which `actuatorgroupdisable` may name.";
     }
@@ -86,7 +86,7 @@ table! {
 table! {
     /// The attribute of actuators whose activation may be limited.
     group Activation {
-        "actrange" range: [f64; 2] = [0.0; 2], reals(2, Any), "Range of the activation.";
+        "actrange" range: [f64; 2] = [0.0; 2], RANGE, "Range of the activation.";
     }
 }
 

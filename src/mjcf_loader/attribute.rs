@@ -30,6 +30,8 @@ pub(super) enum Kind {
         max: usize,
         sign: Sign,
     },
+    /// Lower and upper bound, each of which may be infinite.
+    Range,
     /// Four numbers that are not all zero.
     Quat,
     /// Three letters that name the axes of Euler angles.
@@ -53,6 +55,7 @@ pub(super) enum Kind {
 pub(super) const TEXT: Kind = Kind::Text;
 pub(super) const FLAG: Kind = Kind::Flag;
 pub(super) const INTS: Kind = Kind::Ints;
+pub(super) const RANGE: Kind = Kind::Range;
 pub(super) const fn int(min: i64, max: i64) -> Kind {
     Kind::Int { min, max }
 }
@@ -287,6 +290,7 @@ impl Attr {
                     .map(Value::Int)
             }
             Kind::Reals { min, max, sign } => numbers(attribute, text, min, max, sign, limits.real).map(Value::Reals),
+            Kind::Range => each(attribute, text, 2, 2, |word| bound(attribute, word, limits.real)).map(Value::Reals),
             Kind::Quat => match numbers(attribute, text, 4, 4, Sign::Any, limits.real)? {
                 zero if zero.iter().all(|&v| v == 0.0) => Err(ErrorKind::Invalid(ZERO_QUAT)),
                 quat => Ok(Value::Reals(quat)),
@@ -340,6 +344,17 @@ fn numbers(
     sign: Sign,
     limit: f64,
 ) -> Result<Vec<f64>, ErrorKind> {
+    each(attribute, text, min, max, |word| number(attribute, word, sign, limit))
+}
+
+/// Reads between `min` and `max` words of a text.
+fn each(
+    attribute: &'static str,
+    text: &str,
+    min: usize,
+    max: usize,
+    read: impl Fn(&str) -> Result<f64, ErrorKind>,
+) -> Result<Vec<f64>, ErrorKind> {
     let words = text.split_ascii_whitespace();
     let found = words.clone().count();
     if found < min || found > max {
@@ -350,7 +365,7 @@ fn numbers(
             max,
         });
     }
-    words.map(|word| number(attribute, word, sign, limit)).collect()
+    words.map(read).collect()
 }
 
 /// Returns the beginning of a text, for messages.
@@ -365,6 +380,14 @@ fn word(attribute: &'static str, text: &str, allowed: &'static [&'static str]) -
         text: excerpt(text),
         allowed,
     })
+}
+
+/// Reads a number or an infinity. MuJoCo takes one that is written so, and no digits that amount to it.
+fn bound(attribute: &'static str, text: &str, limit: f64) -> Result<f64, ErrorKind> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_infinite() && !text.contains(|c: char| c.is_ascii_digit()) => Ok(value),
+        _ => number(attribute, text, Sign::Any, limit),
+    }
 }
 
 fn number(attribute: &'static str, text: &str, sign: Sign, limit: f64) -> Result<f64, ErrorKind> {

@@ -92,6 +92,7 @@ fn values(kind: Kind) -> String {
         Kind::Word(words) => words.join(", "),
         Kind::Int { min, max: i64::MAX } => format!("whole number from {min}"),
         Kind::Int { min, max } => format!("whole number, {min} to {max}"),
+        Kind::Range => "2 numbers or infinities".to_owned(),
         Kind::Quat => "4 numbers, not all 0".to_owned(),
         Kind::User | Kind::State | Kind::Poses | Kind::Data => "numbers".to_owned(),
         Kind::Ints => "2 whole numbers".to_owned(),

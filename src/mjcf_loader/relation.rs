@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
-use super::attribute::{FLAG, Kind, Store, TEXT, Value, int, real, reals, some};
+use super::attribute::{FLAG, Kind, RANGE, Store, TEXT, Value, int, real, reals, some};
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{GREY, MAX_GROUP, SOLIMP, SOLREF, TRI, Tri};
@@ -197,7 +197,7 @@ table! {
         also looks: TendonLooks = TendonLooks::initial();
         "name" name: String = String::new(), TEXT, own, "Name.";
         "limited" limited: Tri = Tri::Auto, TRI, "Whether the limit is enforced.";
-        "range" range: [f64; 2] = [0.0; 2], reals(2, Any), "Shortest and longest length.";
+        "range" range: [f64; 2] = [0.0; 2], RANGE, "Shortest and longest length.";
         "margin" margin: f64 = 0.0, real(NonNegative), "Distance to the limit at which it becomes active.";
         "solreflimit" solref_limit: [f64; 2] = SOLREF, some(1, 2, Any), "`solref` of the limit.";
         "solimplimit" solimp_limit: [f64; 5] = SOLIMP, some(1, 5, Any), "`solimp` of the limit.";

@@ -5,6 +5,8 @@
 //! only its own chain, so few tiles are nonzero, and every operation runs on tiles of fixed size, which compilers
 //! unroll into vector instructions.
 
+use crate::math::MINVAL;
+
 /// Four values, of the degrees of freedom in a tile.
 pub type Lanes = [f64; 4];
 
@@ -134,6 +136,12 @@ pub fn total(x: &Lanes) -> f64 {
     (x[0] + x[2]) + (x[1] + x[3])
 }
 
+#[cold]
+#[inline(never)]
+fn least() -> f64 {
+    MINVAL
+}
+
 /// Factors the lower triangle of a diagonal tile as `L' D L`, and returns the inverse of `D`.
 ///
 /// `L` is left below the diagonal.
@@ -142,7 +150,14 @@ pub(super) fn factor_diagonal(h: &mut Tile) -> Lanes {
     let mut inv = [0.0; 4];
     // from the last, like the elimination of rows of tiles
     for k in (0..4).rev() {
-        inv[k] = 1.0 / h[k][k];
+        let mut pivot = h[k][k];
+        // Beside rows with hardly any regularisation, as those of a body that turns about its centre of mass, rounding may leave a
+        // pivot of nothing or less: MuJoCo's least one keeps the step finite, and the line search makes it short enough. A branch that
+        // is never taken costs less than the greater of the two, for which the division would wait.
+        if pivot < MINVAL || pivot.is_nan() {
+            pivot = least();
+        }
+        inv[k] = 1.0 / pivot;
         let row = h[k];
         for i in 0..k {
             let t = row[i] * inv[k];

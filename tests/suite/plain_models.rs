@@ -338,3 +338,54 @@ fn cameras_follow_and_aim() {
         "{mat:?}"
     );
 }
+
+/// The centre of mass is where the body turns, so that nothing moves it and rows that hold it have hardly any regularisation: MuJoCo steps there.
+#[test]
+fn a_body_that_turns_about_its_centre_of_mass_can_be_held() {
+    let mut engine = engine(
+        r#"<mujoco><worldbody><site name="there"/>
+             <body pos=".3 .2 -.2" quat=".5 .5 .5 .5"><joint type="ball" range="0 .9"/><geom size=".06"/><site name="here" pos="-.22 -.2 .086"/></body>
+           </worldbody><equality><weld site1="there" site2="here"/></equality></mujoco>"#,
+    );
+    let mut state = engine.new_state();
+    state.qpos = vec![
+        0.152417120599885,
+        0.6906330860243203,
+        -0.5663480673425142,
+        0.4231368909158866,
+    ];
+    for _ in 0..100 {
+        engine.step(&mut state).expect("steps");
+    }
+}
+
+/// What has one bound or none is as if it had no more: nothing pushes it back, and no control is cut.
+#[test]
+fn bounds_may_be_infinite() {
+    let engine_with = |joint: &str, motor: &str| {
+        engine(&format!(
+            r#"<mujoco><option gravity="0 0 0"/><worldbody><body><joint name="j" {joint}/><geom size=".1" pos=".2 0 0"/></body></worldbody>
+               <actuator><motor joint="j" {motor}/></actuator></mujoco>"#
+        ))
+    };
+    let after = |joint: &str, motor: &str| {
+        let mut engine = engine_with(joint, motor);
+        let mut state = engine.new_state();
+        state.ctrl[0] = 3.0;
+        (0..200).for_each(|_| engine.step(&mut state).expect("steps"));
+        state.qpos[0]
+    };
+    let free = after("", "");
+    assert!(free > 1.0, "{free}");
+    assert_eq!(after("range='-10 inf'", "ctrlrange='-Infinity INF'"), free);
+    assert_eq!(after("actuatorfrcrange='-inf inf'", "forcerange='-inf inf'"), free);
+    assert!(after("range='-inf 10'", "") < 0.5);
+    assert!(after("", "ctrlrange='-inf 1'") < 0.5 * free);
+    let model = engine_with("range='-inf inf'", "");
+    assert_eq!(model.model().jnt_range[0], [f64::NEG_INFINITY, f64::INFINITY]);
+    for wrong in ["-1 nan", "-1 1e999", "-1 infinite"] {
+        let text =
+            format!("<mujoco><worldbody><body><joint range='{wrong}'/><geom size='1'/></body></worldbody></mujoco>");
+        assert!(load_str(&text, "m.xml", &MemoryAssets::new()).is_err(), "{wrong}");
+    }
+}

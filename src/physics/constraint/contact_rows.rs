@@ -72,7 +72,7 @@ fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
         // `impratio` says how many times as stiff friction is as the normal
         let sliding = normal / model.opt.impratio.max(MINVAL);
         for f in c.friction.iter().take(c.dim - 1) {
-            let r = (sliding * c.friction[0] * c.friction[0] / (f * f)).max(MINVAL);
+            let r = sliding * c.friction[0] * c.friction[0] / (f * f);
             rows.push(0.0, 0.0, diag, r, 0.0, damping);
         }
         rows.efc.r[first + 1] = sliding;

@@ -68,17 +68,14 @@ pub(in crate::mjcf_loader) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> 
     stem.rsplit_once('.').map_or(stem, |(name, _)| name)
 }
 
-/// Tells which meshes need a hull: those of geoms that may touch others.
+/// Tells which meshes need a hull: those of geoms that may touch others by their masks. Geoms that touch in a `<pair>` alone do so by all
+/// their vertices, as in MuJoCo.
 fn touching(context: &Context, document: &Document, ids: &Ids) -> Result<Vec<bool>, LoadError> {
     let mut touching = vec![false; document.meshes.len()];
-    let paired = |name: &String| {
-        let mut named = document.pairs.iter().flat_map(|pair| [&pair.geom1, &pair.geom2]);
-        !name.is_empty() && named.any(|other| other == name)
-    };
     for geom in document.bodies.iter().flat_map(|body| &body.geoms) {
         if let Some(name) = &geom.mesh
             && geom.kind == GeomType::Mesh
-            && (geom.contype | geom.conaffinity != 0 || paired(&geom.name))
+            && geom.contype | geom.conaffinity != 0
         {
             touching[ids.mesh.find(context.tree, geom.at, "mesh", name)?] = true;
         }
