@@ -161,69 +161,60 @@ pub enum EqualityKind {
 impl EqualityKind {
     /// Returns MuJoCo's `eq_type`, `eq_objtype`, `eq_obj1id` and `eq_obj2id`, and the row of `eq_data`.
     pub fn numbers(&self) -> ([i32; 4], [f64; 11]) {
-        let id = |of: Option<usize>| of.map_or(-1, |id| id as i32);
         // mjOBJ_BODY or mjOBJ_SITE, and the ids
         let ends = |bodies: [usize; 2], sites: Option<[usize; 2]>| {
-            let [first, second] = sites.unwrap_or(bodies);
-            (if sites.is_some() { 6 } else { 1 }, first as i32, second as i32)
+            let object = if sites.is_some() { 6 } else { 1 };
+            (object, sites.unwrap_or(bodies).map(|id| id as i32))
         };
-        // the scale of torques is there where nothing uses it, too
-        let mut data = [0.0; 11];
-        data[10] = 1.0;
-        let (kind, (object, first, second)) = match *self {
+        let id = |of: Option<usize>| of.map_or(-1, |id| id as i32);
+        let (kind, (object, [first, second])) = match *self {
             Self::Connect {
-                body1,
-                body2,
-                anchor1,
-                anchor2,
-                sites,
-            } => {
-                if sites.is_some() {
-                    data = [0.0; 11];
-                } else {
-                    data[..3].copy_from_slice(&anchor1);
-                    data[3..6].copy_from_slice(&anchor2);
-                }
-                (0, ends([body1, body2], sites))
+                body1, body2, sites, ..
+            } => (0, ends([body1, body2], sites)),
+            Self::Weld {
+                body1, body2, sites, ..
+            } => (1, ends([body1, body2], sites)),
+            Self::Joint { joint1, joint2, .. } => (2, (0, [joint1 as i32, id(joint2)])),
+            Self::Tendon { tendon1, tendon2, .. } => (3, (0, [tendon1 as i32, id(tendon2)])),
+        };
+        ([kind, object, first, second], self.data())
+    }
+
+    /// Returns MuJoCo's row of `eq_data`.
+    fn data(&self) -> [f64; 11] {
+        let mut data = [0.0; 11];
+        // the scale of torques, which is there where nothing uses it, too
+        data[10] = 1.0;
+        match *self {
+            Self::Connect { sites: Some(_), .. } => data[10] = 0.0,
+            Self::Connect { anchor1, anchor2, .. } => {
+                data[..3].copy_from_slice(&anchor1);
+                data[3..6].copy_from_slice(&anchor2);
             }
             Self::Weld {
-                body1,
-                body2,
+                sites: Some(_),
+                torquescale,
+                ..
+            } => {
+                // nothing uses it, and it is what a polynomial begins with
+                data[1] = 1.0;
+                data[10] = torquescale;
+            }
+            Self::Weld {
                 anchor,
                 relpos,
                 relquat,
                 torquescale,
-                sites,
+                ..
             } => {
-                if sites.is_some() {
-                    // nothing uses it, and it is what a polynomial begins with
-                    data[1] = 1.0;
-                } else {
-                    data[..3].copy_from_slice(&anchor);
-                    data[3..6].copy_from_slice(&relpos);
-                    data[6..10].copy_from_slice(&relquat);
-                }
+                data[..3].copy_from_slice(&anchor);
+                data[3..6].copy_from_slice(&relpos);
+                data[6..10].copy_from_slice(&relquat);
                 data[10] = torquescale;
-                (1, ends([body1, body2], sites))
             }
-            Self::Joint {
-                joint1,
-                joint2,
-                polycoef,
-            } => {
-                data[..5].copy_from_slice(&polycoef);
-                (2, (0, joint1 as i32, id(joint2)))
-            }
-            Self::Tendon {
-                tendon1,
-                tendon2,
-                polycoef,
-            } => {
-                data[..5].copy_from_slice(&polycoef);
-                (3, (0, tendon1 as i32, id(tendon2)))
-            }
-        };
-        ([kind, object, first, second], data)
+            Self::Joint { polycoef, .. } | Self::Tendon { polycoef, .. } => data[..5].copy_from_slice(&polycoef),
+        }
+        data
     }
 }
 

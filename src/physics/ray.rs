@@ -1,5 +1,7 @@
 //! Rays against shapes.
 
+use std::ops::Range;
+
 use crate::math::*;
 use crate::model::{GeomType, HField, Mesh, Model};
 use crate::physics::state::State;
@@ -114,67 +116,101 @@ fn ray_hfield(field: &HField, (p, v): (Vec3, Vec3)) -> Option<f64> {
             segment = [enters, found];
         }
     }
-    let (rows, columns) = (field.nrow, field.ncol);
-    let steps = [2.0 * x / (columns - 1) as f64, 2.0 * y / (rows - 1) as f64];
-    let place = |k: usize, at: f64| (p[k] + at * v[k] + field.size[k]) / steps[k];
-    let range = |part: [f64; 2], k: usize, count: usize| {
-        let [a, b] = part.map(|at| place(k, at));
+    let steps = [2.0 * x / (field.ncol - 1) as f64, 2.0 * y / (field.nrow - 1) as f64];
+    let over = OverField { field, p, v, steps };
+    over.surface(segment, &mut nearest);
+    over.sides(&upper, &mut nearest);
+    nearest
+}
+
+/// A ray over the grid of a height field, in the frame of the field.
+struct OverField<'a> {
+    field: &'a HField,
+    p: Vec3,
+    v: Vec3,
+    /// Distances of the columns and of the rows, m.
+    steps: [f64; 2],
+}
+
+impl OverField<'_> {
+    /// Returns the column (`k` = 0) or row (1) over which the ray is at a distance.
+    fn place(&self, k: usize, at: f64) -> f64 {
+        (self.p[k] + at * self.v[k] + self.field.size[k]) / self.steps[k]
+    }
+
+    /// Returns the columns or rows that a part of the ray is over, and one more at each end.
+    fn range(&self, part: [f64; 2], k: usize, count: usize) -> Range<usize> {
+        let [a, b] = part.map(|at| self.place(k, at));
         let last = (count - 1) as f64;
         let first = (a.min(b).floor() - 1.0).clamp(0.0, last) as usize;
         first..(a.max(b).ceil() + 1.0).clamp(0.0, last) as usize
-    };
-    // MuJoCo looks at all squares of the rectangle that the ray crosses; it meets none but those near it, of each row those that it is over
-    // while it is over the row or one beside it
-    let over_row = |r: usize| {
-        let at = |row: f64| (steps[1] * row - y - p[1]) / v[1];
-        let (a, b) = (at(r as f64 - 1.0), at(r as f64 + 2.0));
-        if v[1] == 0.0 {
-            segment
-        } else {
-            [segment[0].max(a.min(b)), segment[1].min(a.max(b))]
-        }
-    };
-    let height = |place: usize| field.data.get(place).copied().map_or(0.0, f64::from);
-    let basis = across(v);
-    for r in range(segment, 1, rows) {
-        let over = over_row(r);
-        if over[0] > over[1] {
-            continue;
-        }
-        for c in range(over, 0, columns) {
-            let corner = |r: usize, c: usize| {
-                let [x, y] = [steps[0] * c as f64 - x, steps[1] * r as f64 - y];
-                sub([x, y, height(r * columns + c) * top], p)
-            };
-            let (near, far) = (corner(r, c), corner(r + 1, c + 1));
-            for third in [corner(r, c + 1), corner(r + 1, c)] {
-                if let Some(x) = ray_triangle([near, far, third], v, &basis) {
-                    keep(&mut nearest, x);
+    }
+
+    fn height(&self, place: usize) -> f64 {
+        self.field.data.get(place).copied().map_or(0.0, f64::from)
+    }
+
+    /// Keeps the nearest triangle that the ray meets in a part of it.
+    ///
+    /// MuJoCo looks at all squares of the rectangle that the ray crosses; it meets none but those near it, of each row those that it is
+    /// over while it is over the row or one beside it.
+    fn surface(&self, segment: [f64; 2], nearest: &mut Option<f64>) {
+        let Self { field, p, v, steps } = *self;
+        let over_row = |r: usize| {
+            let at = |row: f64| (steps[1] * row - field.size[1] - p[1]) / v[1];
+            let (a, b) = (at(r as f64 - 1.0), at(r as f64 + 2.0));
+            if v[1] == 0.0 {
+                segment
+            } else {
+                [segment[0].max(a.min(b)), segment[1].min(a.max(b))]
+            }
+        };
+        let corner = |r: usize, c: usize| {
+            let [x, y] = [steps[0] * c as f64 - field.size[0], steps[1] * r as f64 - field.size[1]];
+            sub([x, y, self.height(r * field.ncol + c) * field.size[2]], p)
+        };
+        let basis = across(v);
+        for r in self.range(segment, 1, field.nrow) {
+            let over = over_row(r);
+            if over[0] > over[1] {
+                continue;
+            }
+            for c in self.range(over, 0, field.ncol) {
+                let (near, far) = (corner(r, c), corner(r + 1, c + 1));
+                for third in [corner(r, c + 1), corner(r + 1, c)] {
+                    if let Some(x) = ray_triangle([near, far, third], v, &basis) {
+                        keep(nearest, x);
+                    }
                 }
             }
         }
     }
-    for (side, found) in upper.iter().take(4).enumerate() {
-        let Some(found) = found.filter(|found| nearest.is_none_or(|x| *found < x)) else {
-            continue;
-        };
-        let (k, count) = if side < 2 { (1, rows) } else { (0, columns) };
-        let at = place(k, found);
-        let before = at.floor().clamp(0.0, count.saturating_sub(2) as f64);
-        let n = before as usize;
-        // MuJoCo takes rows for as long as there are rows
-        let [low, high] = [n, n + 1].map(|n| match side {
-            0 => height(n * rows),
-            1 => height(n * rows + columns - 1),
-            2 => height(n),
-            _ => height((rows - 1) * columns + n),
-        });
-        let edge = low * (before + 1.0 - at) + high * (at - before);
-        if (p[2] + found * v[2]) / top < edge {
-            nearest = Some(found);
+
+    /// Keeps the nearest side that the ray meets below the edge of the surface; `upper` are the distances of the planes of the sides.
+    fn sides(&self, upper: &[Option<f64>; 6], nearest: &mut Option<f64>) {
+        let Self { field, p, v, .. } = *self;
+        let (rows, columns) = (field.nrow, field.ncol);
+        for (side, found) in upper.iter().take(4).enumerate() {
+            let Some(found) = found.filter(|found| nearest.is_none_or(|x| *found < x)) else {
+                continue;
+            };
+            let (k, count) = if side < 2 { (1, rows) } else { (0, columns) };
+            let at = self.place(k, found);
+            let before = at.floor().clamp(0.0, count.saturating_sub(2) as f64);
+            let n = before as usize;
+            // MuJoCo takes rows for as long as there are rows
+            let [low, high] = [n, n + 1].map(|n| match side {
+                0 => self.height(n * rows),
+                1 => self.height(n * rows + columns - 1),
+                2 => self.height(n),
+                _ => self.height((rows - 1) * columns + n),
+            });
+            let edge = low * (before + 1.0 - at) + high * (at - before);
+            if (p[2] + found * v[2]) / field.size[2] < edge {
+                *nearest = Some(found);
+            }
         }
     }
-    nearest
 }
 
 /// Returns the distance at which a ray from the origin meets a triangle; `basis` is across the ray.

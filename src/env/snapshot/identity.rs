@@ -152,12 +152,21 @@ fn fingerprint(model: &Model, config: &Config) -> u64 {
         bytes.extend_from_slice(name.as_bytes());
         bytes.push(0);
     }
+    for key in shaping(config) {
+        bytes.extend_from_slice(key.value(config).to_yaml().as_bytes());
+        bytes.push(0);
+    }
+    checksum(&bytes)
+}
+
+/// Returns the keys that shape an environment's memory.
+fn shaping(config: &Config) -> impl Iterator<Item = &'static Key> {
     let defaults = Config::default();
     // senses that came after the first snapshots tell themselves apart where they are on, so that older snapshots stay readable
     let is_added = |key| !EARLY.contains(&key) && Sense::ALL.iter().any(|sense| sense.switch() == key);
     let rated = config.rates().next().is_some();
     let remembers = config.delays != Delays::default() || config.pain_active || rated;
-    let shapes = |key: &&Key| {
+    let shapes = move |key: &&Key| {
         // rates, too, came later
         if !rated && ["vision_rate", "touch_rate"].contains(&key.name) {
             return false;
@@ -172,11 +181,7 @@ fn fingerprint(model: &Model, config: &Config) -> u64 {
             || is_added(key.name) && key.value(config) != key.value(&defaults)
             || remembers && ["Vision", "Touch"].contains(&key.section)
     };
-    for key in Config::keys().iter().filter(shapes) {
-        bytes.extend_from_slice(key.value(config).to_yaml().as_bytes());
-        bytes.push(0);
-    }
-    checksum(&bytes)
+    Config::keys().iter().filter(shapes)
 }
 
 /// Computes a hash of everything in a model.
