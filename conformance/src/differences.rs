@@ -1,9 +1,11 @@
 //! Prints how documents fare beside MuJoCo: random ones, of which it keeps what differs, and those that people have.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use conformance::differential::reduce::reduce;
-use conformance::differential::{run, write_finding};
+use conformance::differential::{processes, write_finding};
 use conformance::mujoco::reference;
 use conformance::worlds::{compare_all, table};
 
@@ -13,7 +15,13 @@ use conformance::worlds::{compare_all, table};
 /// MuJoCo is missing, a folder cannot be written to, the sides differ.
 pub fn print(count: u64, seed: u64, keep: Option<&Path>) -> Result<(), String> {
     let api = reference()?;
-    let tally = run(api, seed, count)?;
+    let program = std::env::current_exe().map_err(|e| format!("this program: {e}"))?;
+    let tally = processes::run(count, seed, |range: &Range<u64>| {
+        let mut command = Command::new(&program);
+        command.args(["differential", "--seed", &seed.to_string()]);
+        command.args(["--from", &range.start.to_string(), "--to", &range.end.to_string()]);
+        command
+    })?;
     println!("{count} documents of seed {seed}\n\n{tally}");
     for (k, finding) in tally.findings().into_iter().enumerate() {
         println!(
@@ -37,6 +45,14 @@ pub fn print(count: u64, seed: u64, keep: Option<&Path>) -> Result<(), String> {
         0 => Ok(()),
         n => Err(format!("the sides differ in {n} quantities of documents and states")),
     }
+}
+
+/// Compares documents `from..to` of a seed for the process that started this one.
+///
+/// # Errors
+/// MuJoCo is missing, a closed output.
+pub fn print_part(seed: u64, range: Range<u64>) -> Result<(), String> {
+    processes::in_child(reference()?, seed, range)
 }
 
 /// Compares all documents under some folders, prints the tables, and writes everything into `json`.

@@ -66,9 +66,19 @@ fn run(args: &[String]) -> Result<(), String> {
             )?;
         }
         "differential" => {
-            let [count, seed, keep] = values(options, ["--count", "--seed", "--keep"])?;
-            let (count, seed) = (number("--count", count, 1000)?, number("--seed", seed, 1)?);
-            differences::print(count as u64, seed as u64, keep.as_ref().map(Path::new))?;
+            // the last two are between processes of this program, and not in its help
+            let [count, seed, keep, from, to] = values(options, ["--count", "--seed", "--keep", "--from", "--to"])?;
+            let (count, seed) = (
+                number("--count", count, 1000)? as u64,
+                number("--seed", seed, 1)? as u64,
+            );
+            match to {
+                None => differences::print(count, seed, keep.as_ref().map(Path::new))?,
+                to => {
+                    let range = number("--from", from, 0)? as u64..number("--to", to, 0)? as u64;
+                    differences::print_part(seed, range)?;
+                }
+            }
         }
         "worlds" => {
             let at = options

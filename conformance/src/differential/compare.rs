@@ -5,12 +5,12 @@ use std::sync::Arc;
 use babybench::Model;
 use babybench::assets::MemoryAssets;
 use babybench::mjcf_loader::{LoadError, load_str};
-use babybench::model::IntegratorType;
+use babybench::model::{IntegratorType, SolverType};
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
 
 use super::dice::numbers;
 use super::matrix::scaled_condition;
-use super::measured::{Measured, QACC, activations, advanced, measure};
+use super::measured::{Measured, QACC, QPOS, QVEL, activations, advanced, measure};
 use super::state::Recipe;
 use crate::loading::{SINGULAR, deliberate, distances};
 use crate::measure::{max_abs, relative};
@@ -22,11 +22,18 @@ const CONDITION: f64 = 1e8;
 /// Regularisation of a constraint row below which they are, too.
 const REGULARISATION: f64 = 1e-13;
 
+/// Largest entry of a row of the Jacobian below which it is rounding errors, of what moves nothing. MuJoCo leaves out rows of zeros alone.
+const RATE: f64 = 1e-12;
+
 /// Largest position and velocity that MuJoCo goes on from.
 const MAX_VALUE: f64 = 1e10;
 
 /// Times that MuJoCo is stepped from nearly the same state where the sides differ.
 const NUDGES: u64 = 8;
+
+/// Last bits by which positions and velocities change then: one, and where a solver ends at its limit of iterations, far from the
+/// minimum, as many as the rows of both sides are apart, since each iteration makes more of them.
+const BITS: [i32; 2] = [1, 512];
 
 /// Result of giving a document to both sides.
 pub enum Taken {
@@ -46,17 +53,30 @@ pub enum Stepped {
     Diverged,
     /// MuJoCo's own numbers are noise there: an inertia that is nearly singular, hardly any regularisation.
     Noise,
-    /// The quantities of both sides; whether MuJoCo jumps as far by itself, when the last bits of positions and velocities change.
+    /// The quantities of both sides.
     Compared {
         /// All quantities.
         measured: Vec<Measured>,
-        /// Whether what differs is a jump of MuJoCo itself.
-        jump: bool,
+        /// What makes the sides differ where they do.
+        why: Why,
         /// Contacts.
         contacts: usize,
         /// Constraint rows.
         rows: usize,
     },
+}
+
+/// What makes the sides differ.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Why {
+    /// Nothing that MuJoCo does by itself.
+    Ours,
+    /// MuJoCo jumps as far by itself, when the last bits of positions and velocities change.
+    Jump,
+    /// Conjugate gradients end at their limit of iterations, before the minimum, from the same rows: rounding errors have grown in each.
+    Cut,
+    /// MuJoCo's bounding boxes leave out contacts of pairs beyond their margin; without them, what was measured agrees.
+    Boxes,
 }
 
 /// A document that both sides have loaded.
@@ -153,66 +173,116 @@ impl Sides {
 
     /// Steps both sides from a state.
     pub fn step_from(&mut self, start: &State) -> Stepped {
-        let mut state = self.engine.new_state();
-        state.copy_dynamic_from(start);
         // Where a step evaluates several states, what is computed shows at its start: later ones have the rounding errors of the
         // first, as much greater as the forces are stiff.
-        let evaluations = self.model.opt.integrator == IntegratorType::Rk4;
-        let mut computed = None;
-        if evaluations {
-            self.simulation.reset();
-            self.simulation.set_state(&self.model, start);
-            if self.simulation.try_forward().is_ok() && self.engine.forward(&mut state).is_ok() {
-                computed = Some(measure(&self.model, &state, &self.simulation));
-            }
-            state.copy_dynamic_from(start);
-        }
+        let first = (self.model.opt.integrator == IntegratorType::Rk4).then(|| {
+            let mut state = self.copy(start);
+            self.engine.forward(&mut state).is_ok().then_some(state)
+        });
+        let first = first.flatten();
+        let mut state = self.copy(start);
         let ours = self.engine.step(&mut state);
-        if !self.step_mujoco(start) {
+        let Some(computed) = self.advance(start, first.as_ref()) else {
             return Stepped::Diverged;
-        }
+        };
         let theirs = &self.simulation;
         let condition = scaled_condition(&theirs.full_inertia(), self.model.nv);
-        if condition > CONDITION || self.condition > CONDITION {
+        if condition > CONDITION || self.condition > CONDITION || self.has_noisy_rows(&state) {
             return Stepped::Noise;
         }
-        // MuJoCo looks for these at the start of the next step
-        let beyond = |values: &[f64]| values.iter().any(|v| v.abs() > 1e10);
-        if ours.is_err() && (beyond(theirs.qpos()) || beyond(theirs.qvel())) {
-            return Stepped::Diverged;
-        }
+        let (contacts, rows) = (theirs.ncon(), theirs.nefc());
         if let Err(e) = ours {
+            // MuJoCo looks for these at the start of the next step
+            let beyond = |values: &[f64]| values.iter().any(|v| v.abs() > 1e10);
+            if beyond(theirs.qpos()) || beyond(theirs.qvel()) {
+                return Stepped::Diverged;
+            }
             let measured = vec![Measured::new("steps", 1.0, 0.0, format!("ours fails: {e}"))];
-            let (jump, contacts, rows) = (false, theirs.ncon(), theirs.nefc());
             return Stepped::Compared {
+                why: if self.is_cut(&measured) { Why::Cut } else { Why::Ours },
                 measured,
-                jump,
                 contacts,
                 rows,
             };
         }
-        if theirs.efc_R().iter().any(|&r| r < REGULARISATION) {
-            return Stepped::Noise;
-        }
-        let measured = match computed {
-            Some(mut measured) => {
-                if measured.iter().all(Measured::agrees) {
-                    measured.extend(advanced(&state, theirs, 1e-6));
-                    measured.push(activations(&state, theirs));
-                }
-                measured
-            }
-            None => measure(&self.model, &state, theirs),
-        };
-        let (contacts, rows) = (theirs.ncon(), theirs.nefc());
+        let mut measured = self.measured(computed, &state);
+        let mut why = Why::Ours;
         let wrong: Vec<Measured> = measured.iter().filter(|m| !m.agrees()).cloned().collect();
-        let jump = !wrong.is_empty() && self.jumps(start, &wrong);
+        if !wrong.is_empty() {
+            if self.jumps(start, &wrong) {
+                why = Why::Jump;
+            } else if self.is_cut(&wrong) {
+                why = Why::Cut;
+            } else if let Some(whole) = self.without_boxes(start, first.as_ref(), &state) {
+                (measured, why) = (whole, Why::Boxes);
+            }
+        }
         Stepped::Compared {
             measured,
-            jump,
+            why,
             contacts,
             rows,
         }
+    }
+
+    /// Returns a state of ours that continues as another.
+    fn copy(&self, of: &State) -> State {
+        let mut state = self.engine.new_state();
+        state.copy_dynamic_from(of);
+        state
+    }
+
+    /// Steps MuJoCo from a state, and measures what it computes there beside ours, where that is given; nothing where it diverges.
+    fn advance(&mut self, start: &State, first: Option<&State>) -> Option<Option<Vec<Measured>>> {
+        let mut computed = None;
+        if let Some(first) = first {
+            self.simulation.reset();
+            self.simulation.set_state(&self.model, start);
+            if self.simulation.try_forward().is_ok() {
+                computed = Some(measure(&self.model, first, &self.simulation));
+            }
+        }
+        self.step_mujoco(start).then_some(computed)
+    }
+
+    /// Tells whether rows of either side have hardly any regularisation, or a Jacobian of rounding errors.
+    fn has_noisy_rows(&self, state: &State) -> bool {
+        let rounding = |rate: f64| rate > 0.0 && rate < RATE;
+        let ours = (0..state.efc_rows().count()).filter_map(|row| self.engine.efc_j(state, row));
+        self.simulation.efc_R().iter().any(|&r| r < REGULARISATION)
+            || self.simulation.efc_rates().into_iter().any(rounding)
+            || ours.map(|row| max_abs(&row, &vec![0.0; row.len()])).any(rounding)
+    }
+
+    /// Measures a step of both sides; what was computed at its start counts, where it is given, and then where it leads.
+    fn measured(&self, computed: Option<Vec<Measured>>, state: &State) -> Vec<Measured> {
+        let Some(mut measured) = computed else {
+            return measure(&self.model, state, &self.simulation);
+        };
+        if measured.iter().all(Measured::agrees) {
+            measured.extend(advanced(state, &self.simulation, 1e-6));
+            measured.push(activations(state, &self.simulation));
+        }
+        measured
+    }
+
+    /// Tells whether nothing is wrong but what follows from conjugate gradients that end at their limit of iterations.
+    fn is_cut(&self, wrong: &[Measured]) -> bool {
+        let opt = &self.model.opt;
+        let follows = |m: &Measured| [QACC, QVEL, QPOS, "sensordata", "steps"].contains(&m.quantity);
+        opt.solver == SolverType::Cg
+            && self.simulation.solver_iterations() >= opt.iterations
+            && wrong.iter().all(follows)
+    }
+
+    /// Measures a step of MuJoCo's without its tree of bounding boxes, where both sides agree then. Its boxes leave out pairs that are
+    /// farther apart than the margin; its routine for boxes, alone, takes them for nearer where corners face each other.
+    fn without_boxes(&mut self, start: &State, first: Option<&State>, state: &State) -> Option<Vec<Measured>> {
+        let before = self.simulation.disable_midphase();
+        let computed = self.advance(start, first);
+        let measured = computed.map(|computed| self.measured(computed, state));
+        self.simulation.set_flags(before);
+        measured.filter(|measured| measured.iter().all(Measured::agrees))
     }
 
     /// Steps MuJoCo from a state of ours; returns whether it neither gave up nor warned, nor will at the beginning of the next
@@ -234,10 +304,12 @@ impl Sides {
         let (mut moved, mut farther, mut other) = (0.0_f64, 0.0_f64, false);
         let mut rng = fastrand::Rng::with_seed(1);
         let mut nudged = self.engine.new_state();
-        for _ in 0..NUDGES {
+        let limit = self.simulation.solver_iterations() >= self.model.opt.iterations;
+        for k in 0..if limit { 2 * NUDGES } else { NUDGES } {
+            let most = BITS[usize::from(k >= NUDGES)];
             nudged.copy_dynamic_from(start);
             // a coordinate that is 0 is the difference of some that are not
-            let bits = |v: &mut f64| *v += f64::EPSILON * v.abs().max(1.0) * f64::from(rng.i8(-1..=1));
+            let bits = |v: &mut f64| *v += f64::EPSILON * v.abs().max(1.0) * f64::from(rng.i32(-most..=most));
             nudged.qpos.iter_mut().chain(&mut nudged.qvel).for_each(bits);
             if !self.step_mujoco(&nudged) {
                 return true;
@@ -250,7 +322,7 @@ impl Sides {
         }
         wrong.iter().all(|m| match m.quantity {
             QACC => m.error <= 3.0 * moved,
-            "qvel after the step" | "qpos after the step" => m.error <= 30.0 * farther,
+            QVEL | QPOS => m.error <= 30.0 * farther,
             _ => other,
         })
     }

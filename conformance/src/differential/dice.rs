@@ -70,6 +70,16 @@ impl Dice {
         numbers(&ends)
     }
 
+    /// Writes two bounds, of which one is at times infinite.
+    pub fn bounds(&mut self, size: f64) -> String {
+        let range = self.range(size);
+        match (self.rng.u8(..40), range.split_once(' ')) {
+            (0, Some((low, _))) => format!("{low} inf"),
+            (1, Some((_, high))) => format!("-inf {high}"),
+            _ => range,
+        }
+    }
+
     /// Writes the gain or the bias of a muscle.
     pub fn muscle(&mut self) -> String {
         let (low, high) = (self.log(0.3, 0.9), self.log(0.95, 1.5));
@@ -168,12 +178,6 @@ impl Dice {
 
     /// Writes limits of joint coordinates.
     pub fn limits(&mut self) -> String {
-        let mut ends = self
-            .vector(2, 1.0)
-            .into_iter()
-            .map(|v| v * self.angle)
-            .collect::<Vec<_>>();
-        ends.sort_by(f64::total_cmp);
-        numbers(&ends)
+        self.bounds(self.angle)
     }
 }

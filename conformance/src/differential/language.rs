@@ -15,6 +15,8 @@ pub struct Attribute {
     pub how: How,
     /// Its words, for one that has words.
     pub words: Vec<String>,
+    /// Whether its numbers may be infinite.
+    pub infinite: bool,
     /// Whether a default class may give it.
     pub in_default: bool,
 }
@@ -75,6 +77,7 @@ impl Language {
                         name: info.name,
                         how,
                         words: words(info),
+                        infinite: info.values.contains("infinities"),
                         in_default: info.in_default,
                     }),
                 }

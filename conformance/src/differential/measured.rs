@@ -11,6 +11,10 @@ use crate::mujoco::{Contact, Simulation};
 /// Accelerations, measured relative to the largest.
 pub(super) const QACC: &str = "qacc";
 
+/// Where a step leads.
+pub(super) const QVEL: &str = "qvel after the step";
+pub(super) const QPOS: &str = "qpos after the step";
+
 /// A quantity that both sides have.
 #[derive(Clone, Debug)]
 pub struct Measured {
@@ -26,7 +30,8 @@ pub struct Measured {
 
 impl Measured {
     pub(super) fn new(quantity: &'static str, error: f64, limit: f64, place: impl Into<String>) -> Self {
-        let error = if error.is_nan() { f64::INFINITY } else { error };
+        // finite, as JSON has no other numbers
+        let error = if error.is_nan() { f64::MAX } else { error.min(f64::MAX) };
         let place = place.into();
         Self {
             quantity,
@@ -138,8 +143,8 @@ pub(super) fn activations(state: &State, theirs: &Simulation) -> Measured {
 /// Measures where a step leads.
 pub(super) fn advanced(state: &State, theirs: &Simulation, limit: f64) -> [Measured; 2] {
     [
-        Measured::relative("qvel after the step", &state.qvel, theirs.qvel(), limit),
-        Measured::relative("qpos after the step", &state.qpos, theirs.qpos(), limit),
+        Measured::relative(QVEL, &state.qvel, theirs.qvel(), limit),
+        Measured::relative(QPOS, &state.qpos, theirs.qpos(), limit),
     ]
 }
 

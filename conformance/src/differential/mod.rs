@@ -2,7 +2,7 @@
 //!
 //! Documents follow from the loader's own list of elements and attributes ([`language`]) and from a line for each of
 //! them that says how ([`rules`]), so that a new attribute is either drawn or a test fails. [`document`] puts the elements together,
-//! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. [`single`] has one
+//! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. Many documents run in [`processes`] of their own. [`single`] has one
 //! document for each attribute and value.
 
 pub mod compare;
@@ -12,6 +12,7 @@ pub mod language;
 mod matrix;
 pub mod measured;
 pub mod node;
+pub mod processes;
 pub mod reduce;
 pub mod rules;
 pub mod single;
@@ -21,9 +22,11 @@ pub mod table;
 
 pub use document::document;
 
+use std::ops::Range;
+
 use crate::live::parallel;
 use crate::mujoco::Mujoco;
-use compare::{Sides, Stepped, Taken};
+use compare::{Sides, Stepped, Taken, Why};
 use language::Language;
 use measured::Measured;
 use reduce::Finding;
@@ -44,22 +47,24 @@ pub fn seed_of(version: &str) -> u64 {
 /// Attributes without a rule.
 pub fn run(api: &'static Mujoco, seed: u64, count: u64) -> Result<Tally, String> {
     let language = Language::new()?;
-    // enough for a thread to be worth its while, few enough to end together
-    let batches: Vec<Vec<u64>> = (0..count).collect::<Vec<_>>().chunks(50).map(<[u64]>::to_vec).collect();
     let parts = parallel(
-        &batches,
+        &batches(count, 50),
         || (),
         |(), batch| {
             let mut tally = Tally::default();
-            for k in batch {
+            for k in batch.clone() {
                 one(api, &language, hash(seed, &k.to_string()), &mut tally);
             }
             tally
         },
     );
-    let mut all = Tally::default();
-    parts.into_iter().for_each(|part| all.append(part));
-    Ok(all)
+    Ok(Tally::of(parts))
+}
+
+/// Splits documents `0..count` into ranges: long enough for a thread to be worth its while, short enough to end together.
+fn batches(count: u64, length: u64) -> Vec<Range<u64>> {
+    let starts = (0..count).step_by(length as usize);
+    starts.map(|k| k..count.min(k + length)).collect()
 }
 
 /// Compares the document of a seed.
@@ -96,14 +101,20 @@ fn one(api: &'static Mujoco, language: &Language, seed: u64, tally: &mut Tally) 
         match sides.step(&recipe) {
             Stepped::Diverged => tally.count("states in which MuJoCo diverges"),
             Stepped::Noise => tally.count("states in which MuJoCo's own numbers are noise"),
-            Stepped::Compared { jump: true, .. } => tally.count("states in which MuJoCo jumps by itself"),
+            Stepped::Compared { why: Why::Jump, .. } => tally.count("states in which MuJoCo jumps by itself"),
+            Stepped::Compared { why: Why::Cut, .. } => {
+                tally.count("states in which conjugate gradients end early, at the limit of iterations, and apart")
+            }
             Stepped::Compared {
                 measured,
                 contacts,
                 rows,
-                ..
+                why,
             } => {
                 tally.count("states compared");
+                if why == Why::Boxes {
+                    tally.count("states in which MuJoCo's bounding boxes leave out contacts beyond the margin");
+                }
                 tally.count_many("contacts compared", contacts);
                 tally.count_many("rows compared", rows);
                 measured

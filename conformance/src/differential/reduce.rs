@@ -1,12 +1,14 @@
 //! The smallest document that still differs.
 
-use super::compare::{Sides, Stepped, Taken};
+use serde::{Deserialize, Serialize};
+
+use super::compare::{Sides, Stepped, Taken, Why};
 use super::node::Node;
 use super::state::Recipe;
 use crate::mujoco::Mujoco;
 
 /// A difference to keep while a document shrinks: a quantity, far enough apart, in the step from a state.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Finding {
     /// The document.
     pub document: Node,
@@ -31,7 +33,9 @@ fn differs(api: &'static Mujoco, document: &Node, recipe: Option<&Recipe>, quant
         None => sides.arrays(),
         Some(recipe) => match sides.step(recipe) {
             Stepped::Compared {
-                measured, jump: false, ..
+                measured,
+                why: Why::Ours,
+                ..
             } => measured,
             _ => return None,
         },

@@ -1,7 +1,7 @@
 //! One document for each attribute and value that changes physics: a document with all elements, in which one of them gets
 //! the attribute, and the same by a default class where the attribute may stand in one.
 
-use super::compare::{Sides, Stepped, Taken};
+use super::compare::{Sides, Stepped, Taken, Why};
 use super::dice::Dice;
 use super::language::{Attribute, Language};
 use super::measured::Measured;
@@ -65,6 +65,9 @@ fn values(path: &str, attribute: &Attribute) -> Vec<String> {
         How::Drawn(_, draw) => {
             let value = |k| draw(&mut Dice::new(hash(k, &format!("{path}@{}", attribute.name))));
             let mut all: Vec<String> = (0..DRAWN).map(value).collect();
+            if attribute.infinite {
+                all.extend(["-inf inf", "-0.3 inf", "-INFINITY .2"].map(str::to_owned));
+            }
             all.sort();
             all.dedup();
             all
@@ -241,7 +244,9 @@ fn compare(sides: &mut Sides) -> (Meaning, Vec<Measured>, usize) {
         recipe.apart = recipe.apart.min(0.3);
         recipe.speed = recipe.speed.min(2.0);
         if let Stepped::Compared {
-            measured, jump: false, ..
+            measured,
+            why: Why::Ours | Why::Boxes,
+            ..
         } = sides.step(&recipe)
         {
             differences.extend(measured.into_iter().filter(|m| !m.agrees()));

@@ -4,9 +4,10 @@
 use babybench::Model;
 use babybench::physics::State;
 use fastrand::Rng;
+use serde::{Deserialize, Serialize};
 
 /// Ingredients of a random state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
     /// Decides all values.
     pub seed: u64,

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::measured::Measured;
 use super::node::Node;
 use super::reduce::Finding;
@@ -12,7 +14,7 @@ use super::state::Recipe;
 const KEPT: usize = 5;
 
 /// A quantity over all documents.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 struct Quantity {
     compared: usize,
     worst: f64,
@@ -21,22 +23,22 @@ struct Quantity {
 }
 
 /// Counts, worst errors and findings.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct Tally {
-    counts: BTreeMap<&'static str, usize>,
-    quantities: BTreeMap<&'static str, Quantity>,
+    counts: BTreeMap<String, usize>,
+    quantities: BTreeMap<String, Quantity>,
     findings: Vec<Finding>,
 }
 
 impl Tally {
     /// Counts one more.
-    pub fn count(&mut self, what: &'static str) {
+    pub fn count(&mut self, what: &str) {
         self.count_many(what, 1);
     }
 
     /// Counts some more.
-    pub fn count_many(&mut self, what: &'static str, n: usize) {
-        *self.counts.entry(what).or_default() += n;
+    pub fn count_many(&mut self, what: &str, n: usize) {
+        *self.counts.entry(what.to_owned()).or_default() += n;
     }
 
     /// Returns a count.
@@ -46,7 +48,7 @@ impl Tally {
 
     /// Adds a quantity of a document, and of a state of it.
     pub fn add(&mut self, measured: &Measured, document: &Node, recipe: Option<Recipe>) {
-        let quantity = self.quantities.entry(measured.quantity).or_default();
+        let quantity = self.quantities.entry(measured.quantity.to_owned()).or_default();
         quantity.compared += 1;
         quantity.worst = quantity.worst.max(measured.error);
         quantity.limit = quantity.limit.max(measured.limit);
@@ -65,9 +67,16 @@ impl Tally {
         }
     }
 
+    /// Puts tallies together.
+    pub fn of(parts: Vec<Self>) -> Self {
+        let mut all = Self::default();
+        parts.into_iter().for_each(|part| all.append(part));
+        all
+    }
+
     /// Adds another tally.
     pub fn append(&mut self, other: Self) {
-        other.counts.into_iter().for_each(|(what, n)| self.count_many(what, n));
+        other.counts.into_iter().for_each(|(what, n)| self.count_many(&what, n));
         for (name, part) in other.quantities {
             let all = self.quantities.entry(name).or_default();
             all.compared += part.compared;

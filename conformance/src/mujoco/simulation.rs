@@ -111,6 +111,8 @@ data! {
     geom_xmat,
     /// Inertia, sparse.
     qM,
+    /// Jacobian of constraint rows, full or sparse.
+    efc_J,
     /// Constraint violations.
     efc_pos,
     /// Margins of constraint rows.
@@ -249,6 +251,25 @@ impl Simulation {
         // SAFETY: model and data are valid, the vectors have 3 numbers and nv.
         unsafe { (self.api.apply_ft)(self.model, self.data, f, t, p, body as c_int, qfrc.as_mut_ptr()) };
         qfrc
+    }
+
+    /// Returns the largest entry of the Jacobian in each constraint row.
+    pub fn efc_rates(&self) -> Vec<f64> {
+        let (jacobian, rows, nv) = (self.efc_J(), self.nefc(), self.size("nv"));
+        let largest = |row: &[f64]| row.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        // SAFETY: the model is valid.
+        if unsafe { (self.api.is_sparse)(self.model) } == 0 {
+            return jacobian.chunks_exact(nv.max(1)).take(rows).map(largest).collect();
+        }
+        // SAFETY: a sparse Jacobian has both numbers for each row.
+        let (adr, nnz) = unsafe {
+            (
+                array::<c_int>(self.data, const { field(DATA, "efc_J_rowadr").at }, rows),
+                array::<c_int>(self.data, const { field(DATA, "efc_J_rownnz").at }, rows),
+            )
+        };
+        let row = |(&adr, &nnz): (&c_int, &c_int)| largest(&jacobian[adr as usize..][..nnz as usize]);
+        adr.iter().zip(nnz).map(row).collect()
     }
 
     /// Returns the number of contacts.

@@ -7,8 +7,8 @@ use super::Rule;
 pub(super) const ACTUATOR: &[Rule] = &[
     ("name", Placed(&[])),
     ("forcelimited", Placed(&[])),
-    ("ctrlrange", Drawn(0.5, |d| d.range(1.0))),
-    ("forcerange", Drawn(0.4, |d| d.range(2.0))),
+    ("ctrlrange", Drawn(0.5, |d| d.bounds(1.0))),
+    ("forcerange", Drawn(0.4, |d| d.bounds(2.0))),
     ("user", Nothing),
     (
         "group",
@@ -52,7 +52,7 @@ pub(super) const SLIDER_CRANK: &[Rule] = &[
 
 pub(super) const CONTROL: &[Rule] = &[("ctrllimited", Placed(&[]))];
 
-pub(super) const ACTIVATION: &[Rule] = &[("actrange", Drawn(0.3, |d| d.range(1.0)))];
+pub(super) const ACTIVATION: &[Rule] = &[("actrange", Drawn(0.3, |d| d.bounds(1.0)))];
 
 pub(super) const LAW: &[Rule] = &[
     ("dyntype", Word(0.6)),

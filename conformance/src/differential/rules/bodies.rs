@@ -36,7 +36,7 @@ pub(super) const JOINT: &[Rule] = &[
     ("margin", Drawn(0.2, |d| d.log(0.001, 0.3))),
     ("actuatorfrclimited", Placed(&[])),
     ("actuatorgravcomp", Word(0.05)),
-    ("actuatorfrcrange", Drawn(0.15, |d| d.range(2.0))),
+    ("actuatorfrcrange", Drawn(0.15, |d| d.bounds(2.0))),
     (
         "springdamper",
         Drawn(0.08, |d| format!("{} {}", d.log(0.01, 1.0), d.log(0.1, 3.0))),

@@ -75,7 +75,7 @@ pub(super) const WELD: &[Rule] = &[
 pub(super) const TENDON: &[Rule] = &[
     ("name", Placed(&[])),
     ("limited", Placed(&[])),
-    ("range", Drawn(0.5, |d| d.range(0.5))),
+    ("range", Drawn(0.5, |d| d.bounds(0.5))),
     ("margin", Drawn(0.3, |d| d.log(0.001, 0.3))),
     ("solreflimit", Drawn(0.3, Dice::solref)),
     ("solimplimit", Drawn(0.3, Dice::solimp)),

@@ -12,6 +12,7 @@ use super::{Simulation, array_mut, count};
 /// Bits of `mjtDisableBit`.
 const DISABLE_SENSOR: i32 = 1 << 12;
 const DISABLE_CONTACT: i32 = 1 << 4;
+const DISABLE_MIDPHASE: i32 = 1 << 13;
 
 impl Simulation {
     fn option<T: Copy>(&mut self, name: &str, kind: Kind) -> &mut T {
@@ -42,6 +43,18 @@ impl Simulation {
     /// Switches contacts off, or on again.
     pub fn disable_contacts(&mut self, off: bool) {
         self.disable(DISABLE_CONTACT, off);
+    }
+
+    /// Switches the trees of bounding boxes off; returns the switches from before.
+    pub fn disable_midphase(&mut self) -> i32 {
+        let before = *self.option("disableflags", Kind::I32);
+        self.disable(DISABLE_MIDPHASE, true);
+        before
+    }
+
+    /// Sets all switches.
+    pub fn set_flags(&mut self, flags: i32) {
+        *self.option("disableflags", Kind::I32) = flags;
     }
 
     /// Takes over all that a step of ours depends on, switches and parameters included.
