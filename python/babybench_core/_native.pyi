@@ -170,6 +170,8 @@ class Env:
         """Starts an episode at positions (nq) and velocities (nv), without start actions."""
     def set_state(self, qpos: npt.ArrayLike, qvel: npt.ArrayLike) -> dict[str, _Array]:
         """Puts the scene at positions (nq) and velocities (nv) in the middle of an episode and computes everything."""
+    def set_mocap(self, body: str, pos: Sequence[float], quat: Sequence[float]) -> None:
+        """Puts a body with ``mocap="true"`` at a position (m) and an orientation (w, x, y, z), from the next step on."""
     def refresh(self) -> dict[str, _Array]:
         """Computes poses, contacts, forces and senses of the present state, without advancing."""
     def step(self, action: npt.ArrayLike) -> tuple[dict[str, _Array], float, bool, bool]:

@@ -375,6 +375,23 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
         """Puts the scene at positions (nq; m, rad, quaternions) and velocities (nv; m/s, rad/s) and observes it."""
         return self._core.set_state(qpos, qvel)
 
+    def set_mocap(self, body: str, pos: Sequence[float], quat: Sequence[float] = (1.0, 0.0, 0.0, 0.0)) -> None:
+        """Puts a body with ``mocap="true"`` at a position (world, m) and an orientation (w, x, y, z), from the next step on.
+
+        It stays there until it is put elsewhere, and a reset puts it back where the document has it. Bodies of the key
+        ``mocap_motion`` follow their paths instead.
+
+        >>> hand = "<body name='hand' mocap='true' pos='.3 0 .3'><geom size='.03'/></body>"
+        >>> env = Env({"scene_extra": hand, "vision_active": False})
+        >>> _ = env.reset(seed=0)
+        >>> env.set_mocap("hand", [0.2, 0.1, 0.4])
+
+        Raises:
+            KeyError: There is no such body.
+            ValueError: A number is not finite.
+        """
+        self._core.set_mocap(body, list(pos), list(quat))
+
     def lock(self, target: Union[str, int], angle: float = 0.0) -> LockReport:
         """Locks a joint (``"robot:right_elbow"``), or all joints of a part (``"head"``), at an angle in rad.
 

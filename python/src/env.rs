@@ -138,6 +138,12 @@ impl Env {
         self.placed(py, [qpos, qvel], |env, qpos, qvel| env.set_state(qpos, qvel).map(drop))
     }
 
+    fn set_mocap(&self, body: &str, pos: [f64; 3], quat: [f64; 4]) -> PyResult<()> {
+        let mut guard = self.guard()?;
+        let put = guard.open()?.env.by_hand().set_mocap(body, pos, quat);
+        put.map_err(IntoException::into_exception)
+    }
+
     fn refresh<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut guard = self.guard()?;
         let inner = guard.open()?;

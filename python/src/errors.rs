@@ -38,6 +38,7 @@ impl IntoException for EnvError {
             | Self::Render(_)
             | Self::Actuation(_)
             | Self::ModelChange(_)
+            | Self::MocapMotion(_)
             | Self::NoVision
             | Self::SenseOff { .. }
             | Self::Rapier(_)

@@ -10,7 +10,8 @@ use crate::arrays::{ToArray, read};
 use crate::model::table;
 
 table! { ARRAYS, array, State,
-    qpos qvel ctrl act act_dot actuator_target muscle_force muscle_torque qfrc_applied xfrc_applied qacc_warmstart
+    qpos qvel ctrl act act_dot actuator_target muscle_force muscle_torque qfrc_applied xfrc_applied mocap_pos mocap_quat
+    qacc_warmstart
     xpos xquat xmat xipos ximat xanchor xaxis geom_xpos geom_xmat site_xpos site_xmat cam_xpos cam_xmat subtree_com
     cdof cvel qfrc_bias qfrc_passive actuator_force qfrc_actuator qfrc_smooth qacc_smooth qfrc_constraint qacc
     cacc cfrc_ext cfrc_int sensordata

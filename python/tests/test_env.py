@@ -375,3 +375,25 @@ def test_a_restored_environment_has_no_picture_to_draw():
     env.step(env.action_space.sample())
     assert set(env.eyes()) == {"eye_left", "eye_right"}
     check_env(env, skip_render_check=True)
+
+
+HAND = "<body name='hand' mocap='true' pos='.4 0 .4'><geom size='.04'/></body>"
+
+
+def test_a_body_follows_its_path_or_is_put_somewhere():
+    path = "time,hand.x,hand.y,hand.z\n0,1,0,1\n0.5,2,0,1\n"
+    for motion in (path, ""):
+        env = babybench.Env({**SMALL, "behavior": "none", "scene_extra": HAND, "mocap_motion": motion})
+        env.reset(seed=0)
+        env.set_mocap("hand", [0.1, 0.2, 0.3])
+        env.step(np.zeros(env.action_space.shape))
+        x, y, z = env.array("mocap_pos").reshape(-1)
+        if motion:
+            assert 1.0 <= x < 1.2
+            assert (y, z) == (0.0, 1.0)
+        else:
+            assert (x, y, z) == (0.1, 0.2, 0.3)
+    with pytest.raises(KeyError, match="nobody"):
+        env.set_mocap("nobody", [0.0, 0.0, 0.0])
+    with pytest.raises(ValueError, match="line 1"):
+        babybench.Env({**SMALL, "mocap_motion": path})

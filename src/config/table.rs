@@ -76,6 +76,7 @@ config! {
         learner: Learner = Learner::Mimo, Choice(Learner::NAMES), "Which of two infants in a document of one's own learns: the one in `mimo_location` or in `other_location`.";
         other_age: Option<f64> = None, AGE, "The age of the other infant in a document of one's own, months; none for the proportions of the original.";
         scene_extra: String = String::new(), Document, "MJCF that is added to a scene of the library: bodies and what else stands in the world, and whole sections.";
+        mocap_motion: String = String::new(), Document, "The paths of bodies with `mocap=\"true\"`, over and over: a line of names, `time,BODY.x,BODY.y,BODY.z` and, if they turn, `BODY.qw` to `BODY.qz`, then lines of numbers.";
         seed: u64 = 0, SEED, "The seed of all random choices until a reset is given another.";
         facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face, which changes nothing but pictures.";
     }

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Config, EngineKind, FacialExpression, RendererKind};
 use crate::env::engines::Engines;
+use crate::env::paths::Paths;
 use crate::env::pipeline::effective;
 use crate::env::snapshot::Identity;
 use crate::env::task::{TaskSizes, of_config};
@@ -44,6 +45,7 @@ pub struct Blueprint {
     sizes: TaskSizes,
     model: Arc<Model>,
     engines: Arc<Engines>,
+    paths: Option<Arc<Paths>>,
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Arc<Params>,
@@ -138,7 +140,8 @@ impl Blueprint {
     fn settled(config: Config, mut task: Box<dyn Task>, model: Arc<Model>, surface: Surface) -> Result<Self, EnvError> {
         let engines = Arc::new(Engines::new(&config, &model)?);
         let sizes = task.bind(&config, &model)?;
-        let settled = Settled::new(&config, &*task, &engines, &model)?;
+        let paths = Paths::new(&config.mocap_motion, &model)?.map(Arc::new);
+        let settled = Settled::new(&config, &*task, &engines, &model, paths.as_deref())?;
         let identity = Arc::new(Identity::new(&model, &config));
         let params = Arc::new(settled.params);
         let origin = Origin {
@@ -154,6 +157,7 @@ impl Blueprint {
             sizes,
             model,
             engines,
+            paths,
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
             params,
@@ -308,6 +312,11 @@ impl Blueprint {
     /// Returns the compiled scene.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// Returns where bodies that the engine does not move are over time.
+    pub(super) fn paths(&self) -> Option<&Paths> {
+        self.paths.as_deref()
     }
 
     /// Returns what a snapshot must fit to be restored.

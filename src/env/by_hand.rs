@@ -3,6 +3,7 @@
 use super::check_vector;
 use super::outcome::clear;
 use crate::env::{Env, EnvError, Observation, Snapshot};
+use crate::math::{Quat, Vec3};
 
 /// The parts of resets and steps of an environment, one by one: [`Env::by_hand`].
 ///
@@ -220,6 +221,45 @@ impl<'a> Parts<'a> {
         self.forward(qpos, qvel)?;
         self.observe()?;
         self.env.finish_step();
+        Ok(())
+    }
+
+    /// Puts a body with `mocap="true"` at a position (world, m) and an orientation (w, x, y, z, of any length; of zeros it is none), from the next step on
+    /// until it is put elsewhere; a reset puts it back where the document has it. Paths of [`Config::mocap_motion`](crate::Config::mocap_motion)
+    /// go before: they put their bodies where they are in every step.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let scene_extra = "<body name='hand' mocap='true' pos='.3 0 .3'><geom size='.03'/></body>".to_owned();
+    /// let mut env = Env::new(Config { scene_extra, vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let action = vec![0.0; env.action_space().len()];
+    /// for k in 0..100 {
+    ///     env.by_hand().set_mocap("hand", [0.3 - 0.002 * f64::from(k), 0.0, 0.3], [1.0, 0.0, 0.0, 0.0])?;
+    ///     env.step(&action)?;
+    /// }
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No such body, numbers that are not finite: they change nothing.
+    pub fn set_mocap(&mut self, body: &str, pos: Vec3, quat: Quat) -> Result<(), EnvError> {
+        let env = &mut *self.env;
+        let model = env.blueprint.model();
+        let found = model.body(body).and_then(|id| model.body_mocapid[id]);
+        let Some(k) = found else {
+            return Err(EnvError::Missing {
+                what: "body with mocap=\"true\"",
+                name: body.to_string(),
+                purpose: "set_mocap",
+            });
+        };
+        check_vector("pos", &pos, pos.len())?;
+        check_vector("quat", &quat, quat.len())?;
+        env.physics.check_shape()?;
+        env.physics.state.mocap_pos[k] = pos;
+        env.physics.state.mocap_quat[k] = quat;
         Ok(())
     }
 

@@ -59,6 +59,7 @@ impl Env {
             engine,
             base,
             actuation: &*self.actuation,
+            paths: self.blueprint.paths(),
             delay: Some(&mut self.action_delay),
             start: [self.blueprint.init_qpos(), self.blueprint.init_qvel()],
             action: &mut self.action,

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::actuation::ActuationError;
 use crate::config::ConfigError;
-use crate::env::{ModelChangeError, SnapshotError};
+use crate::env::{ModelChangeError, PathError, SnapshotError};
 use crate::mimo::{GrowthError, LockError, RoomError, SceneError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
@@ -27,6 +27,9 @@ pub enum EnvError {
     /// A custom scene is not as it must be.
     #[error(transparent)]
     Room(#[from] RoomError),
+    /// The paths of the configuration cannot be read, or are those of bodies that the scene does not have.
+    #[error(transparent)]
+    MocapMotion(#[from] PathError),
     /// MIMo cannot grow to the age of the configuration.
     #[error(transparent)]
     Growth(#[from] GrowthError),

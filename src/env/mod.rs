@@ -18,6 +18,7 @@ mod notices;
 pub(crate) mod observation;
 mod other;
 mod outcome;
+mod paths;
 mod physics;
 mod pipeline;
 mod placed;
@@ -45,6 +46,7 @@ pub(crate) use info::SCORED_PARTS;
 internals!(use info::Info);
 pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Measures, PerEyeAndHand, PerHand, TaskInfo};
 pub use model_change::ModelChangeError;
+pub use paths::PathError;
 internals!(use model_change::CHANGEABLE);
 internals!(use observation::{Observation, Step});
 #[cfg(feature = "eval")]

@@ -296,6 +296,14 @@ impl State {
         Ok(())
     }
 
+    /// Puts the bodies that a program moves back where the document has them.
+    pub(crate) fn rest_mocap(&mut self, model: &Arrays) {
+        for (k, body) in mocap(model).enumerate() {
+            self.mocap_pos[k] = model.body_pos[body];
+            self.mocap_quat[k] = model.body_quat[body];
+        }
+    }
+
     /// Takes off all forces on bodies: sets [`State::xfrc_applied`] to zero.
     pub fn release_forces(&mut self) {
         self.xfrc_applied.fill([0.0; 6]);

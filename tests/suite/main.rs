@@ -10,6 +10,7 @@ mod common;
 mod actuation;
 mod additions;
 mod batch;
+mod caregiver;
 mod composed;
 mod configurations;
 mod eyes_at_once;

@@ -4,6 +4,7 @@ use crate::actuation;
 use crate::assets::AssetSource;
 use crate::config::{Compat, Config, Part};
 use crate::env::engines::{EngineSource, Engines};
+use crate::env::paths::Paths;
 use crate::env::task::TaskScene;
 use crate::env::{EnvError, Task};
 use crate::mimo::{build_scene, lock};
@@ -51,9 +52,19 @@ pub struct Settled {
 impl Settled {
     /// Lets a task settle the scene, with the locks of the configuration; under `compat: reference` they hold from the first
     /// reset on.
-    pub fn new(config: &Config, task: &dyn Task, engines: &Engines, model: &Model) -> Result<Self, EnvError> {
+    pub fn new(
+        config: &Config,
+        task: &dyn Task,
+        engines: &Engines,
+        model: &Model,
+        paths: Option<&Paths>,
+    ) -> Result<Self, EnvError> {
         let actuation = actuation::build(model, config)?;
         let mut state = engines.reader().new_state();
+        if let Some(paths) = paths {
+            // where they begin, and stay while the rest comes to rest
+            paths.place(&mut state);
+        }
         actuation.prepare(model, &mut state);
         let mut params = state.params.clone();
         for part in Part::ALL {
@@ -73,6 +84,7 @@ impl Settled {
             engine: EngineSource::Shared(engines),
             base: &mut params,
             actuation: &*actuation,
+            paths: None,
             delay: None,
             start: [&model.qpos0, &still],
             action: &mut Vec::new(),

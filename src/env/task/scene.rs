@@ -4,10 +4,11 @@ use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
+use crate::env::paths::Paths;
 use crate::env::{EnvError, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
-use crate::physics::{Params, State};
+use crate::physics::{Engine, Params, State};
 use crate::sensors::Touch;
 use crate::spaces::NumpyRng;
 
@@ -28,6 +29,8 @@ pub struct TaskScene<'a> {
     /// Parameters after a reset.
     pub(in crate::env) base: &'a mut Params,
     pub(in crate::env) actuation: &'a dyn Actuation,
+    /// Where bodies that the engine does not move are over time; nothing while the scene settles.
+    pub(in crate::env) paths: Option<&'a Paths>,
     /// The delay before the actuators; none while the scene settles.
     pub(in crate::env) delay: Option<&'a mut ActionDelay>,
     /// Where episodes start: positions and velocities.
@@ -125,6 +128,10 @@ impl<'a> TaskScene<'a> {
         s.params.clone_from(self.base);
         s.qpos.copy_from_slice(&self.model.qpos0);
         s.qvel.fill(0.0);
+        s.rest_mocap(self.model);
+        if let Some(paths) = self.paths {
+            paths.place(s);
+        }
     }
 
     /// Computes everything that follows from positions, velocities and controls.
@@ -226,10 +233,14 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn steps(&mut self, steps: u32) -> Result<(), EnvError> {
-        let state = &mut *self.state;
-        let stepped = self
-            .engine
-            .lend(|engine| (0..steps).try_for_each(|_| engine.step(state)));
+        let (state, paths) = (&mut *self.state, self.paths);
+        let mut step = |engine: &mut dyn Engine| {
+            if let Some(paths) = paths {
+                paths.place(state);
+            }
+            engine.step(state)
+        };
+        let stepped = self.engine.lend(|engine| (0..steps).try_for_each(|_| step(engine)));
         Ok(stepped?)
     }
 

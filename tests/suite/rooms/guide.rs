@@ -33,18 +33,20 @@ fn the_chapter_of_the_guide_builds_a_room_that_runs_after_every_step() {
         }
         in_room(&config, &document).unwrap_or_else(|e| panic!("after step {}: {e}", number + 1));
     }
-    // what the chapter tells after that: a second infant, and a ball in the crib
-    assert_eq!((second.len(), yaml.len()), (1, 2));
+    // what the chapter tells after that: a second infant, a ball in the crib, and one that strokes him
+    assert_eq!((second.len(), yaml.len()), (1, 3));
     let two = steps[0].replace("</mujoco>", &format!("\n{}</mujoco>", second[0]));
     let pair = in_room(&config, &two).unwrap_or_else(|e| panic!("a second infant: {e}"));
     assert_eq!(pair.env().expect("valid").others().len(), 1);
-    let ball = Config {
-        touch_active: false,
-        vision_active: false,
-        ..Config::from_yaml(&yaml[1], "rooms.md").expect("the configuration")
-    };
-    let ball = Blueprint::new(ball).expect("a ball");
-    assert!(ball.model().body("ball").is_some());
+    for (text, body) in yaml[1..].iter().zip(["ball", "caregiver"]) {
+        let added = Config {
+            touch_active: false,
+            vision_active: false,
+            ..Config::from_yaml(text, "rooms.md").expect("the configuration")
+        };
+        let added = Blueprint::new(added).unwrap_or_else(|e| panic!("{body}: {e}"));
+        assert!(added.model().body(body).is_some());
+    }
     let whole = std::fs::read_to_string(guide.join("rooms/play_room.xml")).expect("the document");
     assert!(
         whole == document,
