@@ -4,25 +4,36 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+#[cfg(unix)]
+use signal_hook::consts::SIGHUP;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
 /// Exit code of a program that was interrupted, as shells have it: 128 and the number of SIGINT.
 pub const EXIT_CODE: u8 = 130;
+
+/// The signals that ask a program to stop; hangups are those of terminals that close.
+#[cfg(unix)]
+const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+#[cfg(not(unix))]
+const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
 
 /// A request by the user to stop.
 #[derive(Clone)]
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Handles Ctrl-C and the signal to terminate as a request to stop, which the command must heed; a second one ends
-    /// the program at once. Signals that are ignored, as under `nohup`, stay ignored.
+    /// Handles Ctrl-C, hangups and the signal to terminate as a request to stop, which the command must heed; a second one ends
+    /// the program at once. Signals that are ignored, as hangups are under `nohup`, stay ignored.
     pub fn watch() -> Self {
         let wish = Arc::new(AtomicBool::new(false));
-        let seen = wish.clone();
-        // fails where signals are ignored
-        let _ = ctrlc::try_set_handler(move || {
-            if seen.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(EXIT_CODE));
+        for signal in SIGNALS {
+            if !ignored(signal) {
+                // in this order: the first signal must not find its own mark; fails for signals that a system does not have
+                let _ = flag::register_conditional_shutdown(signal, i32::from(EXIT_CODE), wish.clone());
+                let _ = flag::register(signal, wish.clone());
             }
-        });
+        }
         Self(wish)
     }
 
@@ -30,6 +41,14 @@ impl Interrupt {
     pub fn wanted(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
+}
+
+/// Tells whether a signal was ignored when the program was started, where the system says so.
+fn ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
 /// The error of a command that was interrupted: what it leaves behind.

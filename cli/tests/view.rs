@@ -36,7 +36,8 @@ impl Viewer {
         let program = program(folder.path(), &[&["view"], arguments].concat());
         let mut command = Command::new("env");
         command
-            .args(["--default-signal=INT", "--"])
+            // as in a terminal, and as under `nohup`
+            .args(["--default-signal=INT", "--ignore-signal=HUP", "--"])
             .arg(program.get_program())
             .args(program.get_args());
         let mut child = command

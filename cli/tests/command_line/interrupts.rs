@@ -24,11 +24,11 @@ fn interrupt(dir: &Path, arguments: &[&str], until: &Path, signal: &str) -> (Opt
     (out.status.code(), text(&out))
 }
 
-/// The program with its signals as they are by default: under nohup they are ignored here, and so by what is started.
+/// The program as `nohup` would start it, which ignores hangups, with other signals as they are by default.
 fn with_signals(program: &Command) -> Command {
     let mut command = Command::new("env");
     command
-        .args(["--default-signal=HUP,INT,TERM", "--"])
+        .args(["--default-signal=INT,TERM", "--ignore-signal=HUP", "--"])
         .arg(program.get_program());
     command.args(program.get_args());
     if let Some(dir) = program.get_current_dir() {
