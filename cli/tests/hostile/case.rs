@@ -17,6 +17,15 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Time from which a case is reported as slow while the answers are written anew.
 const SLOW: Duration = Duration::from_secs(2);
 
+/// What was said, without how long it took.
+fn untimed(said: &str) -> String {
+    let lines = said.lines().map(|line| match line.split_once(" us a step") {
+        Some((before, _)) => before.rsplit_once(' ').map_or(before, |(text, _)| text),
+        None => line,
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
 /// A file of a case.
 #[derive(Clone)]
 pub enum Content {
@@ -145,7 +154,7 @@ impl Case {
             (Some(code), _) => format!("exit {code}"),
             (None, signal) => format!("ended by the signal {}", signal.unwrap_or_default()),
         };
-        let said = if err.is_empty() { out } else { err };
+        let said = untimed(&if err.is_empty() { out } else { err });
         let _ = std::fs::remove_dir_all(folder.path());
         format!("{code}\n{}\n", said.trim_end()).replace(&folder.text(), "DIR")
     }

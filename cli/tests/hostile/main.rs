@@ -15,6 +15,7 @@ mod configurations;
 mod documents;
 mod files;
 mod logs;
+mod meshes;
 mod models;
 mod pictures;
 mod policies;
@@ -37,6 +38,7 @@ fn cases() -> Vec<Case> {
     [
         configurations::cases(),
         documents::cases(),
+        meshes::cases(),
         pictures::cases(),
         archives::cases(),
         logs::cases(),

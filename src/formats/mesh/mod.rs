@@ -55,9 +55,7 @@ impl MeshFormat {
 #[non_exhaustive]
 pub enum MeshError {
     /// The file ends before its content does, or goes on after it.
-    #[error(
-        "the file has {found} bytes where its header asks for {expected}; a text file in STL's format has to be converted to a binary one"
-    )]
+    #[error("the file has {found} bytes where its header asks for {expected}")]
     Length {
         /// Bytes that the header asks for.
         expected: u64,
@@ -82,8 +80,11 @@ pub enum MeshError {
         faces: i32,
     },
     /// A number of triangles that MuJoCo does not take.
-    #[error("the header announces {0} triangles; MuJoCo takes from 1 to 200000, and no text")]
+    #[error("the header announces {0} triangles; MuJoCo takes from 1 to 200000")]
     Triangles(u32),
+    /// STL as text, which MuJoCo does not read.
+    #[error("the file is STL as text; MuJoCo reads binary files alone: convert it")]
+    TextStl,
     /// A coordinate that is not finite or too large.
     #[error("vertex {0} has a coordinate that is not finite or above 2^30")]
     Coordinate(usize),

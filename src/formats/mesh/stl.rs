@@ -9,12 +9,9 @@ const MOST: u32 = 200_000;
 /// The largest coordinate that MuJoCo takes, 2^30.
 const LARGEST: f32 = 1_073_741_824.0;
 
-/// Reads a file; vertices at the same place become one, the first of them.
-pub(super) fn read(bytes: &[u8], lefthanded: bool, most: usize) -> Result<Triangles, MeshError> {
-    let count = match word(bytes, HEADER - 4) {
-        Some(count) => count,
-        None => return Err(MeshError::Header(bytes.len())),
-    };
+/// Returns the number of triangles, and the bytes that they take with the header and that there are, which are as many.
+fn sizes(bytes: &[u8]) -> Result<(usize, u64, u64), MeshError> {
+    let count = word(bytes, HEADER - 4).ok_or(MeshError::Header(bytes.len()))?;
     if count == 0 || count > MOST {
         return Err(MeshError::Triangles(count));
     }
@@ -23,7 +20,16 @@ pub(super) fn read(bytes: &[u8], lefthanded: bool, most: usize) -> Result<Triang
     if expected != found {
         return Err(MeshError::Length { expected, found });
     }
-    let count = count as usize;
+    Ok((count as usize, expected, found))
+}
+
+/// Reads a file; vertices at the same place become one, the first of them.
+pub(super) fn read(bytes: &[u8], lefthanded: bool, most: usize) -> Result<Triangles, MeshError> {
+    // headers of binary files may begin so, too, but then all else fits
+    let (count, expected, found) = sizes(bytes).map_err(|error| {
+        let text = bytes.starts_with(b"solid");
+        if text { MeshError::TextStl } else { error }
+    })?;
     if 4 * count > most {
         return Err(MeshError::TooMuch(most));
     }
