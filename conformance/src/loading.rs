@@ -5,7 +5,7 @@ use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
 use babybench::physics::compile;
 
 use crate::arrays::{
-    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, of_meshes, options, physical,
+    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, needle, of_meshes, options, physical,
     unrecorded,
 };
 use crate::mujoco::{Mujoco, Simulation};
@@ -15,6 +15,9 @@ const TOLERANCE: f64 = 1e-10;
 
 /// The same where masses are sums in single precision over triangles in another order.
 const OF_HULLS: f64 = 1e-5;
+
+/// The same for normals of polygons of such meshes, whose corners are off by digits of single precision: times what [`needle`] tells.
+const OF_NORMALS: f64 = 1e-6;
 
 /// The same for angles of lenses, which MuJoCo takes from the system's arctangent in single precision.
 const OF_LENSES: f64 = 1e-7;
@@ -126,6 +129,7 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
     let lenses = model.cam_sensorsize.iter().any(|size| *size != [0.0; 2]);
     let compiled = compiled.map(|(name, values)| {
         let limit = match name {
+            "mesh_polynormal" if of_hulls => OF_NORMALS * needle(model),
             _ if of_hulls => OF_HULLS,
             "cam_fovy" if lenses => OF_LENSES,
             _ => TOLERANCE,

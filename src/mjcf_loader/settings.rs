@@ -143,7 +143,7 @@ table! {
         "midphase" midphase: bool = true, SWITCH, "Whether contacts of two bodies are listed by the types of the geoms; else by their ids.";
         "eulerdamp" eulerdamp: bool = true, SWITCH, "Whether Euler's method takes joint damping implicitly.";
         "nativeccd" nativeccd: bool = true, SWITCH, "Whether convex collision is MuJoCo's own; off only in models in which it makes no difference.";
-        "multiccd" multiccd: bool = false, SWITCH, "Whether pairs of convex collision may have several contacts; on only in models in which it makes no difference.";
+        "multiccd" multiccd: bool = false, SWITCH, "Whether pairs of convex collision may have several contacts.";
         check "autoreset" | "energy" | "fwdinv" | "invdiscrete", Kind::Word(SWITCH.names), "What changes no motion. Ignored: pairs of geoms are found in one way, and a simulation that diverges is an error.";
         check "override" | "island", Kind::Word(&["disable"]), "What is off by default; only that.";
     }

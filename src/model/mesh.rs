@@ -24,6 +24,9 @@ pub struct Mesh {
     pub facetexcoord: Vec<[u32; 3]>,
     /// The convex hull, which touches; `None` for a mesh that only is drawn (`mesh_graph`).
     pub hull: Option<MeshHull>,
+    /// The polygons of the hull, or of a mesh without one that touches in a `<pair>`; none unless the document enables `multiccd`, as nothing
+    /// else needs them.
+    pub polygons: MeshPolygons,
     /// Scale that the vertices were multiplied with (`mesh_scale`).
     pub scale: Vec3,
     /// Position subtracted from the vertices to centre them, m (`mesh_pos`).
@@ -59,6 +62,73 @@ pub struct MeshHull {
     pub edge: Vec<u32>,
     /// Vertices of the mesh at the corners of each triangle of the hull, counterclockwise from outside.
     pub face: Vec<[u32; 3]>,
+}
+
+/// The polygons of a hull, or of a mesh without one, in MuJoCo's order: its triangles, joined where they are on one plane.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshPolygons {
+    /// Unit normals (`mesh_polynormal`).
+    pub normal: Vec<Vec3>,
+    /// Where in `vert` the corners of each polygon begin (`mesh_polyvertadr`), and at last their number.
+    pub vert_adr: Vec<u32>,
+    /// Vertices of the mesh at the corners, counterclockwise from outside (`mesh_polyvert`).
+    pub vert: Vec<u32>,
+    /// Where in `map` the polygons of each vertex of the mesh begin (`mesh_polymapadr`), and at last their number.
+    pub map_adr: Vec<u32>,
+    /// Polygons, by vertex (`mesh_polymap`).
+    pub map: Vec<u32>,
+}
+
+impl MeshPolygons {
+    /// Returns the number of polygons (`mesh_polynum`).
+    pub(crate) fn len(&self) -> usize {
+        self.vert_adr.len().saturating_sub(1)
+    }
+
+    /// Returns the vertices of a polygon.
+    pub(crate) fn corners(&self, polygon: usize) -> &[u32] {
+        slice(&self.vert_adr, &self.vert, polygon)
+    }
+
+    /// Returns the polygons of a vertex.
+    pub(crate) fn at(&self, vertex: usize) -> &[u32] {
+        slice(&self.map_adr, &self.map, vertex)
+    }
+
+    /// Appends a polygon.
+    pub(crate) fn push(&mut self, corners: &[u32]) {
+        if self.vert_adr.is_empty() {
+            self.vert_adr.push(0);
+        }
+        self.vert.extend(corners);
+        self.vert_adr.push(self.vert.len() as u32);
+    }
+
+    /// Lists the polygons of each of `vertices` vertices.
+    pub(crate) fn index(&mut self, vertices: usize) {
+        let mut of = vec![Vec::new(); vertices];
+        for polygon in 0..self.len() {
+            for &vertex in self.corners(polygon) {
+                of[vertex as usize].push(polygon as u32);
+            }
+        }
+        self.map = of.concat();
+        let ends = of.iter().scan(0, |end, polygons| {
+            *end += polygons.len() as u32;
+            Some(*end)
+        });
+        self.map_adr = std::iter::once(0).chain(ends).collect();
+    }
+}
+
+/// Returns what belongs to one of those whose beginnings stand in `adr`; nothing of one that is not there.
+#[inline(always)]
+fn slice<'a>(adr: &[u32], all: &'a [u32], of: usize) -> &'a [u32] {
+    match (adr.get(of), adr.get(of + 1)) {
+        (Some(&from), Some(&to)) => &all[from as usize..to as usize],
+        _ => &[],
+    }
 }
 
 impl MeshHull {
@@ -120,9 +190,6 @@ impl MeshHull {
     /// Returns the neighbours of a corner.
     #[inline(always)]
     pub(crate) fn neighbours(&self, corner: usize) -> &[u32] {
-        match (self.edge_adr.get(corner), self.edge_adr.get(corner + 1)) {
-            (Some(&from), Some(&to)) => &self.edge[from as usize..to as usize],
-            _ => &[],
-        }
+        slice(&self.edge_adr, &self.edge, corner)
     }
 }

@@ -24,7 +24,7 @@ pub use elements::{GeomType, JointType, Keyframe};
 internals!(hidden use elements::{EqualityKind, SameFrame, Wrap});
 internals!(hidden use hfield::HField);
 internals!(hidden use look::{Builtin, CamLight, Light, Mark, Material, Texture, TextureType, Visual});
-internals!(hidden use mesh::{Mesh, MeshHull});
+internals!(hidden use mesh::{Mesh, MeshHull, MeshPolygons});
 pub use options::{IntegratorType, Options};
 internals!(hidden use options::{ConeType, Flags, JacobianFormat, SolverType, Statistic});
 internals!(hidden use sensor::{DataType, ObjType, SensorType});

@@ -14,8 +14,6 @@ const IDLE_MUSCLE: &str = "the muscle moves nothing at qpos0, so that scale give
 const REDUNDANT: &str = "two joints of one kind along one axis of a body that stands alone, of which MuJoCo lets each move the whole inertia: make them one";
 const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder or \
     a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
-const SEVERAL_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder \
-    or a box), which gives one contact only: remove multiccd=\"enable\"";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
 
 /// Acceleration per unit force below which a muscle moves nothing.
@@ -52,15 +50,13 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
 
 /// Refuses other convex collision than MuJoCo's default where two geoms may touch whose contacts it finds.
 fn check_convex(model: &Model, places: &Places) -> Result<(), LoadError> {
-    let message = match (model.opt.flags.nativeccd, model.opt.flags.multiccd) {
-        (true, false) => return Ok(()),
-        (false, _) => OTHER_CONVEX,
-        (true, true) => SEVERAL_CONVEX,
-    };
+    if model.opt.flags.nativeccd {
+        return Ok(());
+    }
     match ContactRules::new(model).find(needs_convex) {
         Some([a, b]) => {
             let body = model.geom_bodyid[a].max(model.geom_bodyid[b]);
-            Err(places.body_error(body, message))
+            Err(places.body_error(body, OTHER_CONVEX))
         }
         None => Ok(()),
     }
@@ -154,18 +150,14 @@ mod tests {
         const BALL: &str = "<body><freejoint/><geom size='.1'/></body>";
         const BOX: &str = "<body><freejoint/><geom type='box' size='.1 .1 .1'/></body>";
         const GHOST: &str = "<body><freejoint/><geom type='box' size='.1 .1 .1' contype='0' conaffinity='0'/></body>";
-        for flag in ["nativeccd='disable'", "multiccd='enable'"] {
-            for harmless in ["", BALL, GHOST] {
-                assert!(outcome(flag, harmless).is_ok(), "{flag} {harmless}");
-            }
-            let error = outcome(flag, BOX).expect_err("a box and a cylinder");
-            assert!(error.contains("may touch another by convex collision"), "{error}");
-            assert!(
-                error.ends_with(&format!("remove {}", flag.replace('\'', "\""))),
-                "{error}"
-            );
+        const FLAG: &str = "nativeccd='disable'";
+        for harmless in ["", BALL, GHOST] {
+            assert!(outcome(FLAG, harmless).is_ok(), "{harmless}");
         }
-        assert!(outcome("nativeccd='enable' multiccd='disable'", BOX).is_ok());
+        let error = outcome(FLAG, BOX).expect_err("a box and a cylinder");
+        assert!(error.contains("may touch another by convex collision"), "{error}");
+        assert!(error.ends_with("remove nativeccd=\"disable\""), "{error}");
+        assert!(outcome("nativeccd='enable' multiccd='enable'", BOX).is_ok());
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Models without MIMo: integrators, flags, keyframes, sensors, cameras.
 
 mod ball_joints;
+mod several_contacts;
 
 use std::sync::Arc;
 

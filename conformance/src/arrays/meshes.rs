@@ -1,7 +1,7 @@
 //! Meshes, their hulls, and height fields.
 
 use babybench::Model;
-use babybench::model::{Mesh, MeshHull};
+use babybench::model::{Mesh, MeshHull, MeshPolygons};
 
 use super::Named;
 
@@ -9,7 +9,7 @@ use super::Named;
 pub fn of_meshes(m: &Model) -> Named {
     let number = |of: fn(&Mesh) -> usize| -> Vec<f64> { m.meshes.iter().map(|mesh| of(mesh) as f64).collect() };
     let vert = m.meshes.iter().flat_map(|mesh| mesh.vert.as_flattened());
-    vec![
+    let mut all = vec![
         ("mesh_vertnum", number(|mesh| mesh.vert.len())),
         ("mesh_normalnum", number(|mesh| mesh.normal.len())),
         ("mesh_texcoordnum", number(|mesh| mesh.texcoord.len())),
@@ -31,6 +31,64 @@ pub fn of_meshes(m: &Model) -> Named {
         ("mesh_quat", m.meshes.iter().flat_map(|mesh| mesh.quat).collect()),
         ("mesh_graphadr", graph_addresses(m)),
         ("mesh_graph", hulls(m).flatten().flat_map(graph).collect()),
+    ];
+    // of a mesh that does not touch, MuJoCo has polygons that nothing uses
+    if !m.meshes.is_empty() && m.meshes.iter().all(|mesh| !mesh.polygons.vert.is_empty()) {
+        all.extend(of_polygons(m));
+    }
+    all
+}
+
+/// Returns how much a normal magnifies errors of corners: the extent of a mesh by the height of the triangle that a polygon's normal is of, for
+/// the narrowest.
+pub fn needle(m: &Model) -> f64 {
+    let of_mesh = |mesh: &Mesh| {
+        let polygons = &mesh.polygons;
+        let at = |corner: u32| mesh.vert[corner as usize].map(f64::from);
+        let extent = mesh
+            .vert
+            .as_flattened()
+            .iter()
+            .fold(0.0, |most: f64, x| most.max(f64::from(x.abs())));
+        let starts = polygons.vert_adr.iter().take(polygons.normal.len());
+        let heights = starts.filter_map(|&start| match &polygons.vert[start as usize..] {
+            &[a, b, c, ..] => Some(height([at(a), at(b), at(c)])),
+            _ => None,
+        });
+        heights.fold(1.0, |most: f64, height| most.max(extent / height))
+    };
+    m.meshes.iter().map(of_mesh).fold(1.0, f64::max)
+}
+
+/// Returns the least height of a triangle.
+fn height([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let side = |p: [f64; 3], q: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| q[k] - p[k]) };
+    let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let [ab, ac, bc] = [side(a, b), side(a, c), side(b, c)];
+    let across = [1, 2, 0].map(|k: usize| ab[k] * ac[(k + 1) % 3] - ab[(k + 1) % 3] * ac[k]);
+    norm(across) / norm(ab).max(norm(ac)).max(norm(bc))
+}
+
+/// Returns the arrays of polygons.
+fn of_polygons(m: &Model) -> Named {
+    let polygons = || m.meshes.iter().map(|mesh| &mesh.polygons);
+    let sizes = |adr: &[u32]| -> Vec<f64> { adr.windows(2).map(|ends| f64::from(ends[1] - ends[0])).collect() };
+    let numbers = |of: fn(&MeshPolygons) -> &Vec<u32>| -> Vec<f64> {
+        polygons().flat_map(of).map(|&number| f64::from(number)).collect()
+    };
+    vec![
+        ("mesh_polynum", polygons().map(|p| p.normal.len() as f64).collect()),
+        (
+            "mesh_polynormal",
+            polygons().flat_map(|p| p.normal.as_flattened().to_vec()).collect(),
+        ),
+        (
+            "mesh_polyvertnum",
+            polygons().flat_map(|p| sizes(&p.vert_adr)).collect(),
+        ),
+        ("mesh_polyvert", numbers(|p| &p.vert)),
+        ("mesh_polymapnum", polygons().flat_map(|p| sizes(&p.map_adr)).collect()),
+        ("mesh_polymap", numbers(|p| &p.map)),
     ]
 }
 

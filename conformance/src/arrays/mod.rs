@@ -13,7 +13,7 @@ pub use actuators::{activations, actuators};
 pub use elements::unrecorded;
 use elements::{of_bodies, of_geoms, of_joints, of_sites_and_cameras};
 pub use looks::{looks, narrowed};
-pub use meshes::of_meshes;
+pub use meshes::{needle, of_meshes};
 use relations::{of_contacts, of_equalities, of_sensors, of_tendons};
 
 fn ids(values: &[usize]) -> Vec<f64> {

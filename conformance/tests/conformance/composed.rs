@@ -13,7 +13,7 @@ pub fn trials() -> Vec<Trial> {
 fn composed_models_are_those_of_mujoco() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/composed").into();
     let worlds = compare_all(needed(), &[folder]).expect("documents");
-    assert_eq!(worlds.len(), 20, "documents that MuJoCo takes");
+    assert_eq!(worlds.len(), 22, "documents that MuJoCo takes");
     for world in worlds {
         match world.outcome {
             Outcome::Both(figures) => assert!(figures.agrees(), "{}: {:?}", world.path, figures.arrays),

@@ -1,7 +1,7 @@
 //! Pairs without a formula of their own: ellipsoids and meshes with everything but planes, capsules with cylinders, cylinders with
 //! cylinders and cylinders with boxes.
 
-use super::epa::epa;
+use super::epa::{Overlap, epa};
 use super::gjk::{Limits, Simplex, gjk};
 use super::mesh::MeshShape;
 use super::polytope::Polytope;
@@ -10,13 +10,14 @@ use super::{BIG, BareContact, ContactOptions, PlacedGeom, add_scaled, column, do
 use crate::math::{Vec3, add, scale, unit};
 use crate::model::GeomType;
 
-/// Finds the contact of two convex geoms, at most one.
+/// Finds the deepest contact of two convex geoms, and leaves the overlap where it comes from one.
 pub(super) fn convex(
     a: &PlacedGeom,
     b: &PlacedGeom,
     margin: f64,
     options: &ContactOptions,
     polytope: &mut Polytope,
+    overlap: &mut Option<Overlap>,
 ) -> Option<BareContact> {
     use GeomType::{Box, Capsule as Pill, Cylinder as Rod, Ellipsoid as Egg, Mesh};
     let rod = |g| Cylinder::new(g, margin);
@@ -26,6 +27,7 @@ pub(super) fn convex(
         margin,
         options,
         polytope,
+        overlap,
     };
     match (a.kind, b.kind) {
         (Pill, Rod) => find.rounded(Segment::new(a), Capsule::new(a, margin), rod(b)),
@@ -43,6 +45,7 @@ struct Search<'a, 'g> {
     margin: f64,
     options: &'a ContactOptions,
     polytope: &'a mut Polytope,
+    overlap: &'a mut Option<Overlap>,
 }
 
 impl Search<'_, '_> {
@@ -90,7 +93,12 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn deep(&mut self, a: impl Support, b: impl Support) -> Option<BareContact> {
         let shape = Difference { a, b };
-        deep(&shape, self.a, self.b, self.margin, self.options, self.polytope)
+        let found = deep(&shape, self.a, self.b, self.options, self.polytope)?;
+        *self.overlap = found;
+        match found {
+            Some(overlap) => touch(-overlap.depth, overlap.a, overlap.b, self.margin),
+            None => least_overlap_of_axes(&shape, self.a, self.b, self.margin),
+        }
     }
 }
 
@@ -131,15 +139,14 @@ fn shallow<A: Support, B: Support>(
     Shallow::Known(touch(closest.distance - radius, surface, closest.b, margin))
 }
 
-/// Finds the overlap of two shapes, by GJK and EPA.
+/// Finds the overlap of two shapes, by GJK and EPA; `Some(None)` where they overlap and EPA finds no depth, which is a contact all the same.
 fn deep<A: Support, B: Support>(
     shape: &Difference<A, B>,
     a: &PlacedGeom,
     b: &PlacedGeom,
-    margin: f64,
     options: &ContactOptions,
     polytope: &mut Polytope,
-) -> Option<BareContact> {
+) -> Option<Option<Overlap>> {
     let limits = Limits {
         tolerance: options.ccd_tolerance,
         iterations: options.ccd_iterations,
@@ -153,9 +160,8 @@ fn deep<A: Support, B: Support>(
         return None;
     }
     match epa(shape, &simplex, limits.tolerance, limits.iterations, polytope) {
-        Some(overlap) => touch(-overlap.depth, overlap.a, overlap.b, margin),
         None if options.quirks.failed_depth_is_no_contact => None,
-        None => least_overlap_of_axes(shape, a, b, margin),
+        found => Some(found),
     }
 }
 

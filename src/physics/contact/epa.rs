@@ -20,6 +20,8 @@ pub(super) struct Overlap {
     pub(super) a: Vec3,
     /// Deepest point of the second shape, m.
     pub(super) b: Vec3,
+    /// The face of the polytope that it was read from.
+    pub(super) face: u16,
 }
 
 /// Expands the simplex (two to four vertices) until its nearest face is on the surface of the Minkowski difference.
@@ -312,8 +314,8 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
     }
 
     /// Returns the depth and the deepest points from the nearest face.
-    fn witness(&self, face: u16) -> Overlap {
-        let face = &self.polytope.faces[face as usize];
+    fn witness(&self, nearest: u16) -> Overlap {
+        let face = &self.polytope.faces[nearest as usize];
         let [p, q, r] = face.vertices.map(|v| &self.polytope.vertices[v as usize]);
         // points of the difference are differences of points, so one set of weights gives the points of both shapes
         let projection = Projection::of(p.point, q.point, r.point);
@@ -322,6 +324,7 @@ impl<A: Support, B: Support> Expansion<'_, A, B> {
             depth: face.distance,
             a: combine3(weights, p.a, q.a, r.a),
             b: combine3(weights, p.b, q.b, r.b),
+            face: nearest,
         }
     }
 }

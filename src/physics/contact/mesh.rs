@@ -209,7 +209,7 @@ fn more(
 }
 
 /// Returns the radius of the sphere about the origin around the bounds of a mesh, m.
-fn mesh_radius(mesh: &Mesh) -> f64 {
+pub(super) fn mesh_radius(mesh: &Mesh) -> f64 {
     let [low, high] = mesh.bounds;
     let reach: Vec3 = std::array::from_fn(|k| low[k].abs().max(high[k].abs()));
     norm(reach)

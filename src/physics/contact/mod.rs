@@ -18,7 +18,7 @@
 //! | height field with everything but planes and height fields | GJK and EPA with each prism of its grid | up to 50 |
 //! | capsule with capsule, box | nearest points, a second one along the capsule | up to 2 |
 //! | box with box | separating axes, then clipping | up to 24 |
-//! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1 |
+//! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1; with `multiccd` 5 |
 //!
 //! Planes and height fields touch neither planes nor height fields. Of meshes the convex hulls touch. The order of
 //! a hull's edges is that of Qhull, as in MuJoCo: where several corners are equally far in a direction, it decides which is found first, and where more
@@ -46,6 +46,7 @@ mod capsule_box;
 mod convex;
 mod distance;
 mod epa;
+mod faces;
 mod fix_normal;
 pub(crate) mod frame;
 mod gjk;
@@ -55,6 +56,7 @@ mod nearest;
 mod plane;
 mod polytope;
 mod round;
+mod several;
 mod support;
 #[cfg(test)]
 mod tests;
@@ -132,16 +134,19 @@ pub struct ContactOptions {
     pub ccd_tolerance: f64,
     /// Greatest number of iterations of GJK and of EPA (MuJoCo's `ccd_iterations`).
     pub ccd_iterations: usize,
+    /// Whether pairs that GJK and EPA find touching may have several contacts (MuJoCo's flag `multiccd`).
+    pub multiccd: bool,
     /// Peculiarities to keep.
     pub quirks: Quirks,
 }
 
 impl Default for ContactOptions {
-    /// Returns MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, all quirks kept.
+    /// Returns MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, one contact of a convex pair, all quirks kept.
     fn default() -> Self {
         ContactOptions {
             ccd_tolerance: 1e-6,
             ccd_iterations: 50,
+            multiccd: false,
             quirks: Quirks::default(),
         }
     }
@@ -201,6 +206,7 @@ impl Quirks {
 pub struct Scratch {
     polytope: polytope::Polytope,
     box_points: Vec<box_box::BoxPoint>,
+    faces: faces::Faces,
 }
 
 impl Scratch {
@@ -209,6 +215,7 @@ impl Scratch {
         Scratch {
             polytope: polytope::Polytope::new(),
             box_points: Vec::with_capacity(box_box::MAX_POINTS),
+            faces: faces::Faces::default(),
         }
     }
 }
@@ -293,7 +300,7 @@ pub fn collide(
         | (Capsule | Ellipsoid | Cylinder, Cylinder)
         | (Ellipsoid | Cylinder, Box)
         | (Sphere | Capsule | Ellipsoid | Cylinder | Box | Mesh, Mesh) => {
-            push(convex::convex(a, b, margin, options, &mut scratch.polytope), out);
+            several::convex(a, b, margin, options, scratch, out);
         }
         _ => {}
     }

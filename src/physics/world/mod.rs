@@ -18,6 +18,7 @@ pub(super) fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {
     ContactOptions {
         ccd_tolerance: model.opt.ccd_tolerance,
         ccd_iterations: model.opt.ccd_iterations,
+        multiccd: model.opt.flags.multiccd,
         quirks,
     }
 }

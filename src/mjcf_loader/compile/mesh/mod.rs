@@ -6,6 +6,7 @@
 mod fit;
 mod inertia;
 mod normals;
+mod polygons;
 mod source;
 
 pub(super) use fit::fit;
@@ -21,7 +22,7 @@ use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::mesh::{Mesh, MeshInertia};
 use crate::mjcf_loader::xml::Tree;
-use crate::model::{self, Arrays, GeomType, MeshHull};
+use crate::model::{self, Arrays, GeomType, MeshHull, MeshPolygons};
 use inertia::Solid;
 use source::Surface;
 
@@ -42,8 +43,8 @@ pub(super) fn compile_meshes(
             .map(|file| asset_path(context, mesh.at, file, context.meshdir(mesh.at), source))
             .transpose()?;
         let surface = source::read(context, mesh, path.as_deref(), source, &mut left)?;
-        let compiled =
-            compile(mesh, surface, touches, document.mesh_density).map_err(|m| context.invalid(mesh.at, m))?;
+        let options = (touches, document.option.flags.multiccd, document.mesh_density);
+        let compiled = compile(mesh, surface, options).map_err(|m| context.invalid(mesh.at, m))?;
         let name = mesh_name(context.tree, mesh)?;
         arrays.meshes.push(model::Mesh { name, ..compiled });
     }
@@ -86,7 +87,12 @@ fn touching(context: &Context, document: &Document, ids: &Ids) -> Result<Vec<boo
 const NO_HULL: &str = "the mesh has no convex hull: its vertices are on a plane, on a line or at one point";
 const HULL: &str = "rounding errors leave no hull of at most maxhullvert corners: leave maxhullvert out";
 
-fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result<model::Mesh, &'static str> {
+/// Compiles a mesh: one that touches with a hull, and with the hull's polygons where pairs may have several contacts.
+fn compile(
+    mesh: &Mesh,
+    surface: Surface,
+    (touches, several, density): (bool, bool, f64),
+) -> Result<model::Mesh, &'static str> {
     let Surface {
         mut vert,
         normal,
@@ -119,6 +125,11 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
     if !exist(&facenormal, normal.len()) || !exist(&facetexcoord, texcoord.len()) {
         return Err("there must be as many normals and texture coordinates as vertices");
     }
+    let mut polygons = match &hull {
+        _ if !several => MeshPolygons::default(),
+        Some(hull) => polygons::join(&hull.face, &vert),
+        None => polygons::join(&face, &vert),
+    };
     transform(mesh, &mut vert, &mut normal);
     let of_hull = mesh.inertia == MeshInertia::Convex || hull.as_ref().is_some_and(|hull| hull.face == face);
     let counted = match (&hull, mesh.inertia) {
@@ -127,6 +138,7 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
     };
     let solid = Solid::of(&mut vert, &face, counted, mesh.inertia, density)?;
     let bounds = turn(&mut vert, &mut normal, solid.quat);
+    polygons::turn(&mut polygons, &vert);
     Ok(model::Mesh {
         name: String::new(),
         vert,
@@ -136,6 +148,7 @@ fn compile(mesh: &Mesh, surface: Surface, touches: bool, density: f64) -> Result
         facenormal,
         facetexcoord,
         hull,
+        polygons,
         scale: mesh.scale,
         pos: solid.pos,
         quat: solid.quat,

@@ -2,7 +2,7 @@
 
 use crate::math::*;
 use crate::model::{Model, ObjType, SensorType};
-use crate::physics::contact::{ContactOptions, ContactPoint, Quirks, Scratch, distance};
+use crate::physics::contact::{ContactOptions, ContactPoint, Scratch, distance};
 use crate::physics::state::State;
 use crate::physics::world::placed;
 
@@ -29,7 +29,7 @@ impl Between {
         let options = ContactOptions {
             ccd_tolerance: model.opt.ccd_tolerance,
             ccd_iterations: model.opt.ccd_iterations,
-            quirks: Quirks::default(),
+            ..ContactOptions::default()
         };
         let cutoff = model.sensor_cutoff[sensor];
         let (mut dist, mut from, mut to) = (cutoff, [0.0; 3], [0.0; 3]);
