@@ -7,6 +7,7 @@
 
 pub(crate) mod hull;
 mod operations;
+pub(crate) mod order;
 pub(crate) mod qhull;
 
 internals!(use operations::*);

@@ -1,6 +1,6 @@
 //! Triangle meshes.
 
-use crate::math::{Quat, Vec3};
+use crate::math::{Quat, Vec3, order};
 
 /// A mesh that geoms show and touch with, centred and along its principal axes, as MuJoCo keeps it: its entry in each of the
 /// arrays `mesh_*`.
@@ -160,7 +160,7 @@ impl MeshHull {
     pub(crate) fn ordered(vert: Vec<u32>, edges: &[Vec<u32>], face: Vec<[u32; 3]>) -> Option<Self> {
         let plain = Self::new(face);
         let mut corner: Vec<(u32, u32)> = vert.iter().zip(0..).map(|(&vertex, at)| (vertex, at)).collect();
-        corner.sort_unstable();
+        order::sort(&mut corner);
         let sorted: Vec<u32> = corner.iter().map(|&(vertex, _)| vertex).collect();
         if sorted != plain.vert || edges.len() != vert.len() || plain.edge.len() != 3 * plain.face.len() {
             return None;

@@ -1,7 +1,9 @@
 //! The look of a model: everything a renderer needs that does not move.
 
+use std::sync::Arc;
+
 use crate::assets::AssetSource;
-use crate::math::{Vec3, unit};
+use crate::math::{Vec3, order, unit};
 use crate::model::{CamLight, Model, TextureType};
 use crate::render::RenderError;
 use crate::render::drawable::{Drawable, Element, Shape, material};
@@ -233,8 +235,8 @@ impl Scenery {
             })
             .collect();
         // images are shared between textures, and count once
-        faces.sort_by_key(|f| std::sync::Arc::as_ptr(f));
-        faces.dedup_by_key(|f| std::sync::Arc::as_ptr(f));
+        order::sort_by(&mut faces, |a, b| Arc::as_ptr(a).cmp(&Arc::as_ptr(b)));
+        faces.dedup_by_key(|f| Arc::as_ptr(f));
         faces.iter().flat_map(|f| f.iter()).map(|l| 4 * l.pixels.len()).sum()
     }
 

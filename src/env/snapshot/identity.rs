@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::SnapshotError;
 use super::format::checksum;
 use crate::config::{Config, Delays, Key, Scene};
+use crate::math::order;
 use crate::model::Model;
 use crate::sensors::transform::Sense;
 use crate::text::quoted;
@@ -68,7 +69,7 @@ impl Identity {
     pub fn refuse(&self, keys: Option<&str>, otherwise: SnapshotError) -> SnapshotError {
         let Some(keys) = keys else { return otherwise };
         let (then, now) = (lines(keys), lines(&self.keys));
-        let names: std::collections::BTreeSet<&str> = then.keys().chain(now.keys()).copied().collect();
+        let names = order::set(then.keys().chain(now.keys()).copied());
         let differing = names.into_iter().filter(|name| then.get(name) != now.get(name));
         let said: Vec<String> = differing
             .map(|name| difference(name, then.get(name), now.get(name)))

@@ -1,6 +1,7 @@
 //! Compiles contact pairs and excludes.
 
 use super::context::{Context, Ids};
+use crate::math::order;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::LoadError;
 use crate::model::Arrays;
@@ -32,7 +33,7 @@ pub(super) fn compile_contacts(
         pairs.push((bodies, geoms, pair));
         context.within(pair.at, "contact pairs", context.tree.limits.pairs, pairs.len())?;
     }
-    pairs.sort_by_key(|(bodies, ..)| *bodies);
+    order::sort_by(&mut pairs, |a, b| a.0.cmp(&b.0));
     for (_, geoms, pair) in pairs {
         arrays.pair_geom.push(geoms);
         arrays.pair_dim.push(pair.condim);
@@ -51,6 +52,6 @@ pub(super) fn compile_contacts(
         bodies.sort_unstable();
         arrays.exclude.push(bodies);
     }
-    arrays.exclude.sort_unstable();
+    order::sort(&mut arrays.exclude);
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate};
+use crate::math::{Quat, Vec3, add, order, quat_mul, quat_rotate};
 use crate::mjcf_loader::compile::hfield::hfield_name;
 use crate::mjcf_loader::compile::mesh::mesh_name;
 use crate::mjcf_loader::document::{Compiler, Document, Tri};
@@ -44,7 +44,7 @@ impl Names {
 
     /// Looks for names that are others of these with one of `suffixes` behind.
     fn apart(mut self, suffixes: &BTreeSet<String>) -> Names {
-        let lengths: BTreeSet<usize> = suffixes.iter().map(String::len).collect();
+        let lengths = order::set(suffixes.iter().map(String::len));
         for name in self.ids.keys() {
             for length in lengths.iter().take_while(|length| **length < name.len()) {
                 let parts = name.split_at_checked(name.len() - length);

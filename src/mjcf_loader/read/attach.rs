@@ -11,6 +11,7 @@ use super::super::table::Table;
 use super::super::xml::Tree;
 use super::attach_keys::{keep_keys, say};
 use super::content::Spot;
+use crate::math::order;
 
 const ABSENT: &str = "this refers to something that is not attached, by a name that another element of the document has, which MuJoCo 3.3.0 \
      may take for it: rename that, or attach the body that is meant";
@@ -317,7 +318,7 @@ pub(super) fn check_absent(tree: &Tree, document: &Document) -> Result<(), LoadE
         .map(|actuator| (Thing::Actuator, actuator.name.as_str()));
     let hung = document.bodies.iter().flat_map(hanging);
     let hung = hung.map(|(thing, name)| (thing, name.as_str()));
-    let names: BTreeSet<(Thing, &str)> = hung.chain(tendons).chain(actuators).collect();
+    let names = order::set(hung.chain(tendons).chain(actuators));
     match document
         .absent
         .iter()

@@ -57,7 +57,9 @@ fn joint_equality(rows: &mut Rows, s: &State, id: usize, joints: (usize, Option<
     spec.diag += s.params.dof_invweight0[d2];
     rows.block(ConstraintType::Equality, id, 1);
     let mut entries = [(d1, 1.0), (d2, -slope)];
-    entries.sort_unstable_by_key(|e| e.0);
+    if d2 < d1 {
+        entries.reverse();
+    }
     entries.into_iter().for_each(|(d, v)| rows.entry(d, v));
     rows.row(pos, 0.0, pos, spec);
 }

@@ -2,7 +2,7 @@
 
 mod rules;
 
-use crate::math::MINVAL;
+use crate::math::{MINVAL, order};
 use crate::model::Model;
 use crate::physics::state::Contact;
 pub use rules::ContactRules;
@@ -139,7 +139,7 @@ fn list(model: &Model, rules: &ContactRules) -> Vec<Pair> {
             }
         }
     }
-    found.sort_by_key(|f| f.0);
+    order::sort_by(&mut found, |a, b| a.0.cmp(&b.0));
     found.into_iter().map(|f| f.1).collect()
 }
 

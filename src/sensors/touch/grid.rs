@@ -1,6 +1,6 @@
 //! A uniform grid over the sensors of a body, for finding those near a contact point.
 
-use crate::math::{Vec3, sub};
+use crate::math::{Vec3, order, sub};
 
 /// Greatest number of cells along an axis; beyond it cells become larger, which is slower but as exact.
 const MAX_CELLS: f64 = 256.0;
@@ -54,7 +54,7 @@ impl Grid {
             })
             .collect();
         // by cell, then by sensor: the order within a cell is fixed, and so is that in which forces are added up
-        order.sort_unstable();
+        order::sort(&mut order);
         grid.start = vec![0; nx * ny * nz + 1];
         for &(c, i) in &order {
             grid.start[c + 1] += 1;

@@ -135,7 +135,8 @@ impl Builder<'_> {
         self.merge_neighbors(facet, into)?;
         let (ours, theirs) = (self.facets[facet].vertices.clone(), &self.facets[into].vertices);
         let mut both: Vec<Id> = ours.iter().chain(theirs).copied().collect();
-        both.sort_unstable_by(|a, b| b.cmp(a));
+        both.sort_unstable();
+        both.reverse();
         both.dedup();
         self.facets[into].vertices = both;
         self.merge_ridges(facet, into)?;

@@ -2,6 +2,7 @@
 
 use super::super::Builder;
 use super::super::parts::{Id, NONE, Step, Stuck, VertexMerge, drop_sorted, drop_swapping, push_unique};
+use crate::math::order;
 
 /// How many greatest widths apart vertices may be that are merged (`qh_WIDEpinched`).
 const PINCHED: f64 = 100.0;
@@ -74,7 +75,7 @@ impl Builder<'_> {
                 i += 1;
             }
         }
-        counted.sort_by_key(|&(count, _)| count);
+        order::sort_by(&mut counted, |a, b| a.0.cmp(&b.0));
         self.vertex_visit = self.vertex_visit.max(ridges.len() as u32) + 1;
         let rest = |builder: &Self, ridge: Id, without: Id| {
             let vertices = &builder.ridges[ridge].vertices;

@@ -1,6 +1,7 @@
 //! Which geoms may touch, and in which order their contacts stand; linear in the size of the model.
 
 use super::Order;
+use crate::math::order;
 use crate::model::{GeomType, Model};
 
 /// The properties of a geom that decide which others it may touch.
@@ -53,7 +54,7 @@ impl ContactRules {
         excludes.sort_unstable();
         let numbered = model.pair_geom.iter().enumerate();
         let mut explicit: Vec<_> = numbered.map(|(p, &[a, b])| (sorted(a, b), p as u32)).collect();
-        explicit.sort_unstable();
+        order::sort(&mut explicit);
         Self {
             filterparent: model.opt.flags.filterparent,
             midphase: model.opt.flags.midphase,
