@@ -60,11 +60,9 @@ impl Viewer {
         let mut stream = TcpStream::connect(&self.host).expect("a connection");
         stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a limit");
         let length = body.len();
-        write!(
-            stream,
-            "{start} HTTP/1.1\r\n{headers}\r\nContent-Length: {length}\r\n\r\n{body}"
-        )
-        .expect("sent");
+        // at once: what is refused by its first line is answered before the rest is read
+        let request = format!("{start} HTTP/1.1\r\n{headers}\r\nContent-Length: {length}\r\n\r\n{body}");
+        stream.write_all(request.as_bytes()).expect("sent");
         let (mut bytes, mut more) = (Vec::new(), [0; 65536]);
         loop {
             let text = String::from_utf8_lossy(&bytes).into_owned();

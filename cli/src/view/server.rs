@@ -12,6 +12,8 @@ use std::time::Duration;
 /// Bytes of the head of a request and of its body, at most.
 const HEAD: usize = 16 << 10;
 const BODY: usize = 16 << 10;
+/// Bytes of a refused request that are read so that its sender sees the answer.
+const REST: u64 = 1 << 20;
 /// Connections at once: a browser opens six.
 const CONNECTIONS: usize = 24;
 /// How long a browser may take for a request, and how long a question may wait for the program.
@@ -157,7 +159,9 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
             Some(Ok(request)) => request,
             Some(Err((status, text))) => {
                 respond(&mut stream, status, "text/plain; charset=utf-8", text.as_bytes())?;
-                return stream.shutdown(Shutdown::Both);
+                // closed with bytes unread, the connection would be reset, and the answer lost on its way
+                stream.shutdown(Shutdown::Write)?;
+                return io::copy(&mut stream.take(REST), &mut io::sink()).map(|_| ());
             }
             None => return Ok(()),
         };
