@@ -139,3 +139,34 @@ fn mistakes_are_named() {
         }
     }
 }
+
+#[test]
+fn documents_name_files_above_them_and_by_absolute_path() {
+    let folder = Folder::new("above");
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    let part = r#"<mujoco><asset><mesh name="t" file="t.obj"/></asset></mujoco>"#;
+    folder.file("robot/meshes/t.obj", mesh);
+    folder.file("robot/part.xml", part);
+    let absolute = folder.path().join("robot/meshes");
+    let document = |meshdir: &str, asset: &str| {
+        format!(
+            "<mujoco><compiler meshdir='{meshdir}'/>{asset}<worldbody><body><freejoint/><geom type='mesh' mesh='t'/></body></worldbody></mujoco>"
+        )
+    };
+    let above = document("../meshes", r#"<include file="../part.xml"/>"#);
+    let file = format!("<asset><mesh name='t' file='{}/t.obj'/></asset>", absolute.display());
+    for (name, text) in [("above", above), ("absolute", document("nowhere", &file))] {
+        folder.file("robot/rooms/room.xml", text);
+        let printed = said(&folder, &["simulate", "robot/rooms/room.xml", "--steps", "2"], true);
+        assert!(printed.contains("1 geoms"), "{name}: {printed}");
+    }
+    folder.file(
+        "robot/rooms/room.xml",
+        document("../../meshes", r#"<include file="../part.xml"/>"#),
+    );
+    let printed = said(&folder, &["simulate", "robot/rooms/room.xml"], false);
+    assert!(
+        printed.contains("file \"../../meshes/t.obj\" does not exist"),
+        "{printed}"
+    );
+}

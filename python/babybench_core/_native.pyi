@@ -347,10 +347,10 @@ class PhysicsModel:
 
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> PhysicsModel:
-        """Compiles a file; what it includes and its textures lie beside it."""
+        """Compiles a file; what it includes and its textures are where it says, as for MuJoCo."""
     @staticmethod
-    def from_text(text: str, files: Mapping[str, bytes]) -> PhysicsModel:
-        """Compiles a text, with the files that it names."""
+    def from_text(text: str, files: Mapping[str, bytes], folder: str | os.PathLike[str]) -> PhysicsModel:
+        """Compiles a text, with files in place of those in and around a folder that it names."""
     def copy(self) -> PhysicsModel:
         """Returns a model of its own with the same numbers."""
     @property

@@ -10,6 +10,7 @@ mod command_line;
 mod config;
 mod env;
 mod errors;
+mod given_files;
 mod guarded;
 mod info;
 mod model;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use babybench::Model;
-use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
+use babybench::assets::{AssetSource, FileSystem};
 use babybench::mjcf_loader::{LoadError, load, load_str};
 use babybench::model::{Arrays, Flags, IntegratorType, Keyframe, SensorType, SolverType, Wrap};
 use babybench::physics::{Params, SoftModel, SoftOptions, compile};
@@ -17,6 +17,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::ToArray;
 use crate::errors::{IntoException, detached};
+use crate::given_files::GivenFiles;
 use crate::model::{self, table};
 use crate::physics_fields::{model_layout, read_model, write_model};
 use crate::scene::extras;
@@ -185,27 +186,19 @@ fn flags(flags: &mut Flags) -> [&mut bool; 15] {
 
 #[pymethods]
 impl PhysicsModel {
-    /// Compiles a file; what it includes and its textures lie beside it.
+    /// Compiles a file; what it includes and its textures are where it says, as for MuJoCo.
     #[staticmethod]
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let unreadable = || PyValueError::new_err(format!("{}: expected the name of a file", path.display()));
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(unreadable)?;
-        let assets = DirAssets::new(&folder).map_err(|e| PyValueError::new_err(format!("{}: {e}", path.display())))?;
-        let model = detached(py, || load(&assets, name).and_then(compile))?;
+        let (assets, name) =
+            FileSystem::beside(&path).map_err(|e| PyValueError::new_err(format!("{}: {e}", path.display())))?;
+        let model = detached(py, || load(&assets, &name).and_then(compile))?;
         Ok(Self::made(py, model, Arc::new(assets)))
     }
 
-    /// Compiles a text, with the files that it names.
+    /// Compiles a text, with files in place of those in and around a folder that it names.
     #[staticmethod]
-    fn from_text(py: Python<'_>, text: &str, files: HashMap<String, Vec<u8>>) -> PyResult<Self> {
-        let mut assets = MemoryAssets::new();
-        for (name, bytes) in files {
-            assets.insert(&name, bytes).map_err(IntoException::into_exception)?;
-        }
+    fn from_text(py: Python<'_>, text: &str, files: HashMap<String, Vec<u8>>, folder: PathBuf) -> PyResult<Self> {
+        let assets = GivenFiles::new(files, folder)?;
         let model = detached(py, || load_str(text, "model.xml", &assets).and_then(compile))?;
         Ok(Self::made(py, model, Arc::new(assets)))
     }

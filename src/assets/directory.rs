@@ -63,6 +63,18 @@ impl DirAssets {
     }
 }
 
+/// Reads a file of at most so many bytes, which a document names by `path`.
+pub(super) fn read(file: &Path, path: &str, limit: u64) -> Result<Cow<'static, [u8]>, AssetError> {
+    match files::read(file, limit) {
+        Ok(bytes) => Ok(Cow::Owned(bytes)),
+        Err(e) if e.kind() == std::io::ErrorKind::FileTooLarge => Err(AssetError::TooLarge {
+            path: path.to_owned(),
+            limit,
+        }),
+        Err(e) => Err(io_error(path, &e)),
+    }
+}
+
 fn io_error(path: &str, error: &std::io::Error) -> AssetError {
     match error.kind() {
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => AssetError::NotFound(path.to_owned()),
@@ -75,14 +87,7 @@ fn io_error(path: &str, error: &std::io::Error) -> AssetError {
 
 impl AssetSource for DirAssets {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
-        match files::read(&self.locate(path)?, self.limit) {
-            Ok(bytes) => Ok(Cow::Owned(bytes)),
-            Err(e) if e.kind() == std::io::ErrorKind::FileTooLarge => Err(AssetError::TooLarge {
-                path: path.to_owned(),
-                limit: self.limit,
-            }),
-            Err(e) => Err(io_error(path, &e)),
-        }
+        read(&self.locate(path)?, path, self.limit)
     }
 
     fn contains(&self, path: &str) -> bool {

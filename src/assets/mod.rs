@@ -1,6 +1,6 @@
-//! Sources of MJCF documents and textures: directories, memory, files embedded in the program, and layers of them.
+//! Sources of MJCF documents and textures: directories, the file system, memory, files embedded in the program, and layers of them.
 //!
-//! A source maps normalised relative paths to bytes; nothing outside it can be reached. The library's own files are those of
+//! A source maps normalised paths to bytes; nothing outside it can be reached. All but [`FileSystem`] take relative paths alone. The library's own files are those of
 //! [`crate::mimo::embedded`].
 //!
 //! ```
@@ -15,8 +15,10 @@
 //! ```
 
 mod directory;
+mod file_system;
 
 pub use directory::DirAssets;
+pub use file_system::FileSystem;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -78,6 +80,14 @@ pub trait AssetSource: Send + Sync {
     fn contains(&self, path: &str) -> bool {
         self.read(path).is_ok()
     }
+
+    /// Returns the path of a file that a document in the directory `dir` names.
+    ///
+    /// # Errors
+    /// [`AssetError::BadPath`]: a path that this source cannot have.
+    fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
+        resolve(dir, file)
+    }
 }
 
 /// Joins a directory of the source and a relative reference in a document. `..` may climb up to the root, not beyond.
@@ -108,7 +118,16 @@ pub fn resolve(dir: &str, file: &str) -> Result<String, AssetError> {
 
 /// Returns the directory part of a path, without the last `/`.
 pub(crate) fn directory(path: &str) -> &str {
-    path.rsplit_once('/').map_or("", |(dir, _)| dir)
+    match path.rsplit_once('/') {
+        None => "",
+        Some(("", _)) => "/",
+        Some((dir, _)) => dir,
+    }
+}
+
+/// Returns whether a path begins at the root, or at a drive.
+pub(crate) fn is_absolute(path: &str) -> bool {
+    path.starts_with(['/', '\\']) || path.get(1..3).is_some_and(|drive| drive == ":/" || drive == ":\\")
 }
 
 /// A source of files that are in memory.
@@ -211,6 +230,10 @@ impl<A: AssetSource + ?Sized> AssetSource for &A {
     fn contains(&self, path: &str) -> bool {
         (**self).contains(path)
     }
+
+    fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
+        (**self).resolve(dir, file)
+    }
 }
 
 impl<A: AssetSource + ?Sized> AssetSource for Arc<A> {
@@ -220,5 +243,9 @@ impl<A: AssetSource + ?Sized> AssetSource for Arc<A> {
 
     fn contains(&self, path: &str) -> bool {
         (**self).contains(path)
+    }
+
+    fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
+        (**self).resolve(dir, file)
     }
 }

@@ -1,6 +1,6 @@
 //! An MJCF document that a program may still change.
 
-use crate::assets::{AssetSource, resolve};
+use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::GeomType;
@@ -96,7 +96,9 @@ impl Draft {
         source: &dyn AssetSource,
         limits: &Limits,
     ) -> Result<Self, LoadError> {
-        let path = resolve("", virtual_path).map_err(|e| LoadError::in_file(virtual_path, e))?;
+        let path = source
+            .resolve("", virtual_path)
+            .map_err(|e| LoadError::in_file(virtual_path, e))?;
         let (tree, _) = Tree::read(xml, &path, source, limits)?;
         let document = read::read(&tree)?;
         Ok(Self {

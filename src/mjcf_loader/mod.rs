@@ -66,7 +66,7 @@ pub(crate) use spec::Places;
 pub use spec::Spec;
 pub(crate) use xml::{Node, Tree};
 
-use crate::assets::{AssetSource, resolve};
+use crate::assets::AssetSource;
 use crate::limits::Limits;
 
 /// Loads the document at `path` in `source`.
@@ -83,7 +83,7 @@ pub fn load(source: &dyn AssetSource, path: &str) -> Result<Spec, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with(source: &dyn AssetSource, path: &str, limits: &Limits) -> Result<Spec, LoadError> {
-    let path = resolve("", path).map_err(|e| LoadError::in_file(path, e))?;
+    let path = source.resolve("", path).map_err(|e| LoadError::in_file(path, e))?;
     let bytes = source.read(&path).map_err(|e| LoadError::in_file(&path, e))?;
     let text = std::str::from_utf8(&bytes).map_err(|_| LoadError::in_file(&path, ErrorKind::NotUtf8))?;
     load_str_with(text, &path, source, limits)

@@ -6,7 +6,7 @@ mod parser;
 use std::collections::BTreeSet;
 
 use super::error::{ErrorKind, LoadError, Place};
-use crate::assets::{AssetSource, directory, resolve};
+use crate::assets::{AssetSource, directory};
 use crate::limits::Limits;
 use parser::Parser;
 
@@ -240,7 +240,10 @@ impl Reading<'_> {
             let what = "a model is an MJCF document: its file ends with .xml, or content_type is text/xml";
             return Err(self.tree.error(at, ErrorKind::Invalid(what)));
         }
-        let path = resolve(&self.tree.models[within].dir, file).map_err(|e| self.tree.error(at, e))?;
+        let path = self
+            .source
+            .resolve(&self.tree.models[within].dir, file)
+            .map_err(|e| self.tree.error(at, e))?;
         let (mut around, mut depth) = (Some(within), 1);
         while let Some(model) = around {
             if self.tree.models[model].path == path {
@@ -319,7 +322,10 @@ impl Reading<'_> {
                 limit: self.tree.limits.include_depth,
             });
         }
-        let path = resolve(&self.dir, file).map_err(|e| self.tree.error(at, e))?;
+        let path = self
+            .source
+            .resolve(&self.dir, file)
+            .map_err(|e| self.tree.error(at, e))?;
         if self.included.contains(&path) {
             return fail(ErrorKind::RepeatedInclude(path));
         }

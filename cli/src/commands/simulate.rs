@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use babybench::assets::DirAssets;
+use babybench::Model;
+use babybench::assets::FileSystem;
 use babybench::formats::avi::AviWriter;
 use babybench::formats::npz::NpzWriter;
 use babybench::mjcf_loader::load;
 use babybench::physics::{Engine, SoftEngine, SoftOptions, State, compile};
 use babybench::render::{FreeCamera, Poses, RenderRequest, Renderer, Scenery, View};
 use babybench::spaces::NumpyRng;
-use babybench::{Limits, Model};
 use clap::{Args, ValueEnum};
 
 use crate::arguments::{count, number};
@@ -119,16 +119,10 @@ impl Simulate {
     }
 
     /// Reads and compiles the model.
-    fn load(&self) -> Result<(Arc<Model>, DirAssets), Box<dyn Error>> {
-        let folder = match self.model.parent() {
-            Some(folder) if folder != Path::new("") => folder,
-            _ => Path::new("."),
-        };
+    fn load(&self) -> Result<(Arc<Model>, FileSystem), Box<dyn Error>> {
         let named = |e: &dyn Error| format!("{}: {e}", self.model.display());
-        let file = self.model.file_name().and_then(|name| name.to_str());
-        let file = file.ok_or_else(|| format!("{}: expected the name of a file", self.model.display()))?;
-        let assets = DirAssets::with_limits(folder, &Limits::default()).map_err(|e| named(&e))?;
-        let spec = load(&assets, file).map_err(|e| named(&e))?;
+        let (assets, file) = FileSystem::beside(&self.model)?;
+        let spec = load(&assets, &file).map_err(|e| named(&e))?;
         let model = compile(spec).map_err(|e| named(&e))?;
         Ok((Arc::new(model), assets))
     }
@@ -332,7 +326,7 @@ struct Film {
 }
 
 impl Film {
-    fn new(arguments: &Simulate, path: &Path, model: &Model, assets: &DirAssets) -> Result<Self, Box<dyn Error>> {
+    fn new(arguments: &Simulate, path: &Path, model: &Model, assets: &FileSystem) -> Result<Self, Box<dyn Error>> {
         let camera = match &arguments.camera {
             None => None,
             Some(name) => Some(model.camera(name).ok_or_else(|| {

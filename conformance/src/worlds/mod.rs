@@ -10,7 +10,7 @@ pub mod table;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use babybench::assets::DirAssets;
+use babybench::assets::FileSystem;
 use babybench::mjcf_loader::load;
 use babybench::physics::compile;
 
@@ -55,9 +55,9 @@ impl World {
 }
 
 fn outcome(api: &'static Mujoco, folder: &Path, path: &str) -> Outcome {
-    let ours = DirAssets::new(folder)
-        .map_err(|e| e.to_string())
-        .and_then(|assets| load(&assets, path).and_then(compile).map_err(|e| e.to_string()));
+    let ours = load(&FileSystem::new(folder), path)
+        .and_then(compile)
+        .map_err(|e| e.to_string());
     let theirs = Simulation::new(api, &folder.join(path).to_string_lossy(), &[]);
     match (ours, theirs) {
         (Err(_), Err(_)) => Outcome::NoDocument,

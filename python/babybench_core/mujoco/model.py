@@ -168,6 +168,10 @@ class Settings:
         raise AttributeError(_MISSING.format(name=f"{self.__dict__.get('_of', '')}.{name}"))
 
 
+def _contents(assets: Mapping[str, bytes]) -> dict[str, bytes]:
+    return {name: bytes(content) for name, content in assets.items()}
+
+
 class MjModel(Named):
     """A compiled model, under the names and in the shapes of MuJoCo's ``MjModel``.
 
@@ -185,11 +189,11 @@ class MjModel(Named):
 
     @classmethod
     def from_xml_path(cls, filename: str | os.PathLike[str], assets: Mapping[str, bytes] | None = None) -> MjModel:
-        """Compiles an MJCF document; files that it names are found beside it.
+        """Compiles an MJCF document. Files that it names are found as in MuJoCo: beside it, above it, or by absolute path.
 
         Args:
             filename: Path of the document.
-            assets: Contents of files by name, in place of those beside the document.
+            assets: Contents of files by name, in place of those of the file system.
 
         Raises:
             ValueError: The document cannot be read, or has something that the engine does not know, with the place.
@@ -201,22 +205,23 @@ class MjModel(Named):
                     text = file.read()
             except OSError as error:
                 raise ValueError(f"{path}: {error.strerror}") from error
-            return cls.from_xml_string(text, assets)
+            return cls._made(_native.PhysicsModel.from_text(text, _contents(assets), os.path.dirname(path)))
         return cls._made(_native.PhysicsModel.from_file(path))
 
     @classmethod
     def from_xml_string(cls, xml: str, assets: Mapping[str, bytes] | None = None) -> MjModel:
         """Compiles the text of an MJCF document.
 
+        Files that it names are found as in MuJoCo: from the working directory, or by absolute path.
+
         Args:
             xml: The text.
-            assets: Contents of the files that it names.
+            assets: Contents of files by name, in place of those of the file system. Folders and case do not matter in the names.
 
         Raises:
-            ValueError: As :meth:`from_xml_path`.
+            ValueError: As :meth:`from_xml_path`; or two assets of one name.
         """
-        files = {name: bytes(content) for name, content in (assets or {}).items()}
-        return cls._made(_native.PhysicsModel.from_text(xml, files))
+        return cls._made(_native.PhysicsModel.from_text(xml, _contents(assets or {}), ""))
 
     @classmethod
     def from_binary_path(cls, filename: str, assets: Any = None) -> MjModel:

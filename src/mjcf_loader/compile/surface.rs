@@ -1,7 +1,7 @@
 //! Compiles textures and materials.
 
 use super::context::{Context, Ids};
-use crate::assets::{AssetError, AssetSource, resolve};
+use crate::assets::{AssetError, AssetSource, is_absolute};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::settings::single;
 use crate::mjcf_loader::surface;
@@ -99,10 +99,13 @@ pub(super) fn asset_path(
         file
     };
     let file = match folder.trim_end_matches('/') {
+        _ if is_absolute(file) => file.to_owned(),
         "" => file.to_owned(),
         folder => format!("{folder}/{file}"),
     };
-    let path = resolve(context.dir(at), &file).map_err(|e| context.error(at, e))?;
+    let path = source
+        .resolve(context.dir(at), &file)
+        .map_err(|e| context.error(at, e))?;
     if source.contains(&path) {
         Ok(path)
     } else {

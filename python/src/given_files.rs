@@ -1,0 +1,56 @@
+//! Files that a program gives in place of those of the file system.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use babybench::assets::{AssetError, AssetSource, FileSystem};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// Contents by name over the file system. As in MuJoCo's virtual file system, folders do not matter, nor does case.
+pub struct GivenFiles {
+    files: HashMap<String, Vec<u8>>,
+    beside: FileSystem,
+}
+
+impl GivenFiles {
+    /// Lays contents over the file system as seen from a folder.
+    pub fn new(files: HashMap<String, Vec<u8>>, folder: PathBuf) -> PyResult<Self> {
+        let mut named = HashMap::new();
+        for (name, bytes) in files {
+            if named.insert(bare(&name), bytes).is_some() {
+                let name = bare(&name);
+                let what =
+                    format!("assets: two files are called {name:?}; folders and case do not matter in these names");
+                return Err(PyValueError::new_err(what));
+            }
+        }
+        Ok(Self {
+            files: named,
+            beside: FileSystem::new(folder),
+        })
+    }
+}
+
+/// Returns the name of a file without its folder.
+fn bare(path: &str) -> String {
+    path.rsplit(['/', '\\']).next().unwrap_or(path).to_lowercase()
+}
+
+impl AssetSource for GivenFiles {
+    fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
+        match self.files.get(&bare(path)) {
+            Some(bytes) => Ok(Cow::Borrowed(bytes)),
+            None => self.beside.read(path),
+        }
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        self.files.contains_key(&bare(path)) || self.beside.contains(path)
+    }
+
+    fn resolve(&self, dir: &str, file: &str) -> Result<String, AssetError> {
+        self.beside.resolve(dir, file)
+    }
+}
