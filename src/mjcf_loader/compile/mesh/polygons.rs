@@ -8,6 +8,8 @@ use crate::model::MeshPolygons;
 
 /// Cosine up to which two normals are one: of 0.0016 rad (MuJoCo's `mjFACE_TOL`).
 const ONE_PLANE: f64 = 0.99999872;
+/// Twice the area below which a triangle has none, m^2 (MuJoCo's `mjEPS`).
+const NO_AREA: f64 = 1e-14;
 
 /// Joins triangles, each by its corners among `vert`. Their normals are those before the mesh is turned; see [`turn`].
 pub(super) fn join(face: &[[u32; 3]], vert: &[[f32; 3]]) -> MeshPolygons {
@@ -33,17 +35,24 @@ pub(super) fn turn(polygons: &mut MeshPolygons, vert: &[[f32; 3]]) {
         .collect();
 }
 
+/// Returns the normal of a triangle. One without an area has MuJoCo's: infinite, or close to it, so that such triangles are on a plane of their own,
+/// the first.
 fn normal(corners: [u32; 3], vert: &[[f32; 3]]) -> Vec3 {
     let [a, b, c] = corners.map(|k| vert[k as usize].map(f64::from));
-    unit(cross(sub(b, a), sub(c, a))).0
+    let (normal, twice_area) = unit(cross(sub(b, a), sub(c, a)));
+    if twice_area < NO_AREA {
+        [1.0, 0.0, 0.0].map(|x| x / twice_area)
+    } else {
+        normal
+    }
 }
 
 /// The edges of triangles on one plane that no other of them shares, in the order in which they were added.
 #[derive(Default)]
 struct Edges {
     all: Vec<Option<Edge>>,
-    /// Where in `all` an edge is.
-    at: HashMap<[u32; 2], usize>,
+    /// Where in `all` an edge is: in several places where triangles are there twice.
+    at: HashMap<[u32; 2], VecDeque<usize>>,
     /// For each triangle one before it that it hangs together with by edges, or itself.
     island: Vec<usize>,
 }
@@ -60,7 +69,7 @@ impl Edges {
         let triangle = self.island.len();
         self.island.push(triangle);
         let edges = [[a, b], [b, c], [c, a]];
-        let shared = edges.map(|[from, to]| self.at.remove(&[to, from]));
+        let shared = edges.map(|[from, to]| self.at.get_mut(&[to, from]).and_then(VecDeque::pop_front));
         for (ends, shared) in edges.into_iter().zip(shared) {
             match shared {
                 Some(k) => {
@@ -70,7 +79,7 @@ impl Edges {
                     }
                 }
                 None => {
-                    self.at.insert(ends, self.all.len());
+                    self.at.entry(ends).or_default().push_back(self.all.len());
                     self.all.push(Some(Edge { ends, triangle }));
                 }
             }
@@ -86,7 +95,7 @@ impl Edges {
         triangle
     }
 
-    /// Returns a loop of edges for each island, in the order of their first triangles. What is left of an island with a hole, or one that
+    /// Returns a loop of edges for each island, in the order of their first triangles. What is left of an island with a hole, or of one that
     /// touches itself, is lost, as in MuJoCo.
     fn paths(&mut self) -> Vec<Vec<u32>> {
         let left: Vec<Edge> = self.all.iter().copied().flatten().collect();
@@ -94,28 +103,27 @@ impl Edges {
             // in the order of the edges, as in MuJoCo: where more triangles than one leave three edges, the other way round perhaps
             return vec![vec![a.ends[0], b.ends[0], c.ends[0]]];
         }
-        let mut starts = BTreeMap::new();
-        let mut next: HashMap<(usize, u32), VecDeque<u32>> = HashMap::new();
-        for Edge { ends, triangle } in left {
-            let island = self.first(triangle);
+        let (mut starts, mut next) = (BTreeMap::new(), HashMap::new());
+        for Edge { ends, triangle } in &left {
+            let island = self.first(*triangle);
             starts.entry(island).or_insert(ends[0]);
-            next.entry((island, ends[0])).or_default().push_back(ends[1]);
+            next.entry((island, ends[0])).or_insert(ends[1]);
         }
-        let mut paths = Vec::new();
-        for (island, start) in starts {
-            let (mut path, mut at) = (Vec::new(), start);
-            while let Some(to) = next.get_mut(&(island, at)).and_then(VecDeque::pop_front) {
-                path.push(at);
-                at = to;
+        let path = |(&island, &start): (&usize, &u32)| {
+            let (mut path, mut at) = (vec![start], start);
+            loop {
+                at = *next.get(&(island, at))?;
                 if at == start {
-                    break;
+                    return (path.len() >= 3).then_some(path);
                 }
+                // a loop that does not come back to where it began
+                if path.len() == left.len() {
+                    return None;
+                }
+                path.push(at);
             }
-            if path.len() >= 3 {
-                paths.push(path);
-            }
-        }
-        paths
+        };
+        starts.iter().filter_map(path).collect()
     }
 }
 
