@@ -1,5 +1,7 @@
 //! Pictures drawn by wgpu against MuJoCo 3.3.0's own renderer (OSMesa), many in one submission.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use babybench::config::Scene;
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::load_str;
@@ -24,6 +26,12 @@ const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
         _ => Ok(()),
     }
 });
+
+/// Lets one test at a time use a device: Mesa 22.3's llvmpipe has ended the process while two devices were at work.
+fn alone() -> MutexGuard<'static, ()> {
+    static DEVICE: Mutex<()> = Mutex::new(());
+    DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Returns a scene of what BabyBench's scenes do not have: transparent geoms and a plane seen from below, meshes, or tendons.
 fn small(name: &str) -> (Model, Scenery) {
@@ -81,6 +89,7 @@ fn total(parts: &[Difference]) -> Difference {
 }
 
 fn eyes_and_room_cameras_show_what_mujoco_draws() {
+    let _alone = alone();
     for scene in Scene::ALL {
         let config = config(scene.clone());
         let npz = data::npz(&format!("render_{scene}.npz"));
@@ -128,6 +137,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
 }
 
 fn small_scenes_are_what_mujoco_draws() {
+    let _alone = alone();
     for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("strings", 0.05)] {
         let (mut gpu, mut engine) = open(small(name).0);
         let qpos0 = engine.model().qpos0.clone();
