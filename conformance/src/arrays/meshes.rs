@@ -40,7 +40,7 @@ pub fn of_meshes(m: &Model) -> Named {
 }
 
 /// Returns how much a normal magnifies errors of corners: the extent of a mesh by the height of the triangle that a polygon's normal is of, for
-/// the narrowest.
+/// the narrowest of those that have a height; at most 1e4.
 pub fn needle(m: &Model) -> f64 {
     let of_mesh = |mesh: &Mesh| {
         let polygons = &mesh.polygons;
@@ -55,7 +55,8 @@ pub fn needle(m: &Model) -> f64 {
             &[a, b, c, ..] => Some(height([at(a), at(b), at(c)])),
             _ => None,
         });
-        heights.fold(1.0, |most: f64, height| most.max(extent / height))
+        let magnified = heights.map(|height| extent / height).filter(|most| most.is_finite());
+        magnified.fold(1.0, f64::max).min(1e4)
     };
     m.meshes.iter().map(of_mesh).fold(1.0, f64::max)
 }

@@ -268,10 +268,14 @@ impl<'a> Shape<'a> {
                 let local = mat_t_vec(self.geom.mat, sub(point, self.geom.pos));
                 (0..3).map(|k| usize::from(local[k] > 0.0) << k).sum()
             }
-            // supports are vertices, placed in the same way, so that bits are equal
+            // supports are vertices, placed in the same way, so that bits are equal; of two at one place the hull has one, with its polygons
             Some((mesh, _)) => {
-                let mut vertices = 0..mesh.vert.len() as u32;
-                vertices.find(|&v| self.vertex_at(mesh, v) == point).unwrap_or(0) as usize
+                let here = |&vertex: &u32| self.vertex_at(mesh, vertex) == point;
+                let found = match &mesh.hull {
+                    Some(hull) => hull.vert.iter().copied().find(here),
+                    None => (0..mesh.vert.len() as u32).find(here),
+                };
+                found.unwrap_or(0) as usize
             }
         }
     }

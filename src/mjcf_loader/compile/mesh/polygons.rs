@@ -104,26 +104,26 @@ impl Edges {
             return vec![vec![a.ends[0], b.ends[0], c.ends[0]]];
         }
         let (mut starts, mut next) = (BTreeMap::new(), HashMap::new());
-        for Edge { ends, triangle } in &left {
-            let island = self.first(*triangle);
-            starts.entry(island).or_insert(ends[0]);
+        for Edge { ends, triangle } in left {
+            let island = self.first(triangle);
+            starts.entry(island).or_insert((ends[0], 0)).1 += 1;
             next.entry((island, ends[0])).or_insert(ends[1]);
         }
-        let path = |(&island, &start): (&usize, &u32)| {
+        let path = |(island, (start, edges)): (usize, (u32, usize))| {
             let (mut path, mut at) = (vec![start], start);
             loop {
                 at = *next.get(&(island, at))?;
                 if at == start {
                     return (path.len() >= 3).then_some(path);
                 }
-                // a loop that does not come back to where it began
-                if path.len() == left.len() {
+                // after all edges of the island: a loop that does not come back to where it began
+                if path.len() == edges {
                     return None;
                 }
                 path.push(at);
             }
         };
-        starts.iter().filter_map(path).collect()
+        starts.into_iter().filter_map(path).collect()
     }
 }
 
