@@ -83,6 +83,25 @@ pub(super) fn actuators(model: &Arrays, topology: &Topology) -> DofRows {
     DofRows::new((0..model.nu()).map(of))
 }
 
+/// Lists the actuators with a moment of their own.
+pub(super) fn own_moments(model: &Arrays) -> Vec<usize> {
+    let own = |&i: &usize| match model.actuator_trntype[i] {
+        TrnType::Joint | TrnType::JointInParent => model.actuator_turns(i).is_some(),
+        TrnType::Tendon => false,
+        TrnType::SliderCrank | TrnType::Site | TrnType::Body => true,
+    };
+    (0..model.nu()).filter(own).collect()
+}
+
+/// Lists coordinate and degree of freedom of the hinge or slide that each actuator acts on, if it acts on one.
+pub(super) fn actuator_scalar(model: &Arrays) -> Vec<Option<[u32; 2]>> {
+    let scalar = |i: usize| {
+        let joint = model.actuator_joint(i).filter(|&j| model.jnt_type[j].nv() == 1);
+        joint.map(|j| [model.jnt_qposadr[j] as u32, model.jnt_dofadr[j] as u32])
+    };
+    (0..model.nu()).map(scalar).collect()
+}
+
 /// Iterates over the bodies of what follows each other along a spatial tendon.
 fn neighbours(model: &Arrays, t: usize) -> impl Iterator<Item = [usize; 2]> {
     let pairs = model.tendon_wrap[t].windows(2);

@@ -37,6 +37,10 @@ pub struct Topology {
     pub(crate) tendons: DofRows,
     /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
     pub(crate) actuators: DofRows,
+    /// Those actuators, by id.
+    pub(crate) own_moments: Vec<usize>,
+    /// Coordinate and degree of freedom of the hinge or slide that each actuator acts on, if it acts on one.
+    pub(crate) actuator_scalar: Vec<Option<[u32; 2]>>,
 }
 
 impl Topology {
@@ -78,6 +82,8 @@ impl Topology {
             body_tile_adr: Vec::new(),
             tendons: DofRows::default(),
             actuators: DofRows::default(),
+            own_moments: patterns::own_moments(model),
+            actuator_scalar: patterns::actuator_scalar(model),
         };
         topology.deal_tiles(model);
         topology.tendons = patterns::tendons(model, &topology);

@@ -20,6 +20,9 @@ impl LineSearch<'_> {
         for q in &self.island.scalar_rows {
             q.add_slopes(alpha, &mut first, &mut second);
         }
+        // the two sums look alike, and LLVM would keep them in pairs of a first and a second derivative, half as wide as the rows
+        // are: here they meet too late for it
+        let (first, second) = std::hint::black_box((first, second));
         let mut g = self.slope + alpha * self.curvature + total(&first);
         let mut h = self.curvature + total(&second);
         for (c, _) in &self.island.cones {

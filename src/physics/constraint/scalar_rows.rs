@@ -67,7 +67,7 @@ impl ScalarRows {
             let clamped = clamp(pull, self.low[k], self.high[k]);
             // from a bound on the cost is linear: a row that neither pulls nor is pulled, as where nothing moves yet and
             // `aref` is 0, must not stiffen the Hessian, or the first search goes elsewhere than MuJoCo's
-            self.weight[k] = if self.between(k, pull) { self.d[k] } else { 0.0 };
+            self.weight[k] = self.between(k, clamped, self.d[k]);
             self.force[k] = -clamped;
             // d jar^2 / 2 between the bounds and its tangent beyond them (Huber's function) in one expression, as 1 = r d
             cost[k] = clamped * (self.jar[k] - 0.5 * self.r[k] * clamped);
@@ -75,10 +75,13 @@ impl ScalarRows {
         cost
     }
 
-    /// Tells whether a pull is strictly between the bounds of row `k`.
+    /// Returns a value where a clamped pull is strictly between the bounds of row `k`, else 0.
     #[inline(always)]
-    fn between(&self, k: usize, pull: f64) -> bool {
-        (self.low[k] < pull) & (pull < self.high[k])
+    fn between(&self, k: usize, clamped: f64, value: f64) -> f64 {
+        // of the clamped pull, not of the pull: of comparisons shared with `clamp`, LLVM makes branches for single rows,
+        // which are taken at random
+        let inside = (self.low[k] < clamped) & (clamped < self.high[k]);
+        if inside { value } else { 0.0 }
     }
 
     /// Returns the cost at `jar + alpha jv`.
@@ -100,7 +103,7 @@ impl ScalarRows {
             let clamped = clamp(pull, self.low[k], self.high[k]);
             let curvature = self.d[k] * self.jv[k] * self.jv[k];
             first[k] += clamped * self.jv[k];
-            second[k] += if self.between(k, pull) { curvature } else { 0.0 };
+            second[k] += self.between(k, clamped, curvature);
         }
     }
 }

@@ -36,13 +36,12 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
             s.act_dot[k] = activation::rate(model, i, s.act[k], ctrl);
             ctrl = activation::acting(model, i, s.act[k], s.act_dot[k]);
         }
-        let length = transmission::length(model, s, i, gear);
-        let velocity = transmission::velocity(model, topology, s, i, gear);
+        let motion = motion(model, topology, s, i, gear);
         // what is off still has the least force of its range, as in MuJoCo
         let mut force = if model.actuator_disabled(i) {
             0.0
         } else {
-            gain_and_bias(model, i, ctrl, [length, velocity])
+            gain_and_bias(model, i, ctrl, motion)
         };
         if let Some(torque) = muscle {
             force *= torque;
@@ -52,9 +51,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
             force = force.max(lo).min(hi);
         }
         s.actuator_force[i] = force;
-        for (d, arm) in transmission::moment(model, topology, s, i, gear) {
-            forces[d] += arm * force;
-        }
+        transmission::moment(model, topology, s, (i, gear), |d, arm| forces[d] += arm * force);
     }
     s.qfrc_actuator = forces;
     // as in MuJoCo, without actuators nothing compensates gravity, and there is no force that is too small, either
@@ -68,6 +65,18 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
     let mut acc = std::mem::take(&mut s.qacc_smooth);
     bodies.solve(model, s, Damping::Without, &s.qfrc_smooth, &mut acc);
     s.qacc_smooth = acc;
+}
+
+/// Returns the length of an actuator with this gear and its rate, which the velocity stage has left unless its gear was another.
+#[inline(always)]
+fn motion(model: &Model, topology: &Topology, s: &State, i: usize, gear: f64) -> [f64; 2] {
+    if gear == transmission::gear(s, i) {
+        return [s.actuator_length[i], s.actuator_velocity[i]];
+    }
+    [
+        transmission::length(model, topology, s, i, gear),
+        transmission::velocity(model, topology, s, i, gear),
+    ]
 }
 
 /// Adds to the forces of actuators what compensates gravity in their place, and limits the sum on each joint.

@@ -40,7 +40,7 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
         tendon_invweight0: (0..model.ntendon()).map(|t| weights.tendon(t)).collect(),
         actuator_acc0: (0..model.nu()).map(|i| weights.actuator(i)).collect(),
         actuator_length0: (0..model.nu())
-            .map(|i| length(model, &s, i, model.actuator_gear[i]))
+            .map(|i| length(model, &topology, &s, i, model.actuator_gear[i]))
             .collect(),
         actuator_biasprm: (0..model.nu())
             .map(|i| bias(model, &topology, &s, i, &dof_m0))

@@ -59,7 +59,8 @@ impl Derivative {
             let muscle = s.muscle_torque.get(i).is_some() && model.actuator_biastype[i] == BiasType::None;
             let gear = if muscle { 1.0 } else { s.params.actuator_gear[i] };
             self.entries.clear();
-            self.entries.extend(transmission::moment(model, topology, s, i, gear));
+            let entries = &mut self.entries;
+            transmission::moment(model, topology, s, (i, gear), |d, arm| entries.push((d, arm)));
             out.add_square(topology, &self.entries, slope);
         }
     }

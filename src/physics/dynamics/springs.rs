@@ -18,11 +18,13 @@ pub(super) fn bias(model: &Arrays, topology: &Topology, s: &State, actuator: usi
         return bias;
     }
     let gear = model.actuator_gear[actuator];
-    let seen = moment(model, topology, s, actuator, gear).map(|(d, arm)| (dof_m0[d], arm * arm));
-    let mass: f64 = seen
-        .filter(|(_, square)| *square > MINVAL)
-        .map(|(m, square)| m / square)
-        .sum();
+    let mut mass = 0.0;
+    moment(model, topology, s, (actuator, gear), |d, arm| {
+        let square = arm * arm;
+        if square > MINVAL {
+            mass += dof_m0[d] / square;
+        }
+    });
     bias[2] = -(ratio * 2.0 * (k * mass).sqrt());
     bias
 }

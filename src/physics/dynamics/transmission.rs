@@ -1,7 +1,7 @@
 //! Transmission of actuators: their lengths, and how these change with the coordinates.
 
 use crate::math::*;
-use crate::model::{Arrays, JointType, Model, TrnType};
+use crate::model::{Arrays, JointType, TrnType};
 use crate::physics::spatial::{Spatial, angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -17,44 +17,47 @@ pub(super) fn gear(s: &State, actuator: usize) -> f64 {
 
 /// Returns the length of an actuator with a gear on what it acts on.
 #[inline(always)]
-pub(super) fn length(model: &Arrays, s: &State, actuator: usize, gear: f64) -> f64 {
-    let id = model.actuator_trnid[actuator];
-    match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent if model.jnt_type[id].nv() == 1 => gear * s.qpos[model.jnt_qposadr[id]],
-        TrnType::Tendon => gear * s.ten_length[id],
+pub(super) fn length(model: &Arrays, topology: &Topology, s: &State, actuator: usize, gear: f64) -> f64 {
+    match topology.actuator_scalar[actuator] {
+        Some([q, _]) => gear * s.qpos[q as usize],
+        None if model.actuator_trntype[actuator] == TrnType::Tendon => {
+            gear * s.ten_length[model.actuator_trnid[actuator]]
+        }
         // from the position stage, with the gear
-        _ => s.actuator_length[actuator],
+        None => s.actuator_length[actuator],
     }
 }
 
 /// Returns the rate of [`length`].
 #[inline(always)]
-pub(super) fn velocity(model: &Model, topology: &Topology, s: &State, actuator: usize, gear: f64) -> f64 {
-    let moment = moment(model, topology, s, actuator, gear);
-    moment.map(|(d, arm)| arm * s.qvel[d]).sum()
+pub(super) fn velocity(model: &Arrays, topology: &Topology, s: &State, actuator: usize, gear: f64) -> f64 {
+    // what adds nothing to a zero of either sign
+    let mut rate = -0.0;
+    moment(model, topology, s, (actuator, gear), |d, arm| rate += arm * s.qvel[d]);
+    rate
 }
 
-/// Iterates over the degrees of freedom that an actuator acts on, with the derivative of [`length`] by each.
+/// Calls `each` with the degrees of freedom that an actuator with a gear acts on, and the derivative of [`length`] by each.
 #[inline(always)]
-pub(super) fn moment<'a>(
+pub(super) fn moment(
     model: &Arrays,
-    topology: &'a Topology,
-    s: &'a State,
-    actuator: usize,
-    gear: f64,
-) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+    topology: &Topology,
+    s: &State,
+    (actuator, gear): (usize, f64),
+    mut each: impl FnMut(usize, f64),
+) {
+    // nearly all actuators act on a hinge
+    if let Some([_, d]) = topology.actuator_scalar[actuator] {
+        return each(d as usize, gear);
+    }
     let id = model.actuator_trnid[actuator];
-    let (joint, rows, arms, gear): (_, _, &[f64], _) = match model.actuator_trntype[actuator] {
-        TrnType::Joint | TrnType::JointInParent if model.jnt_type[id].nv() == 1 => {
-            (Some(model.jnt_dofadr[id]), None, &[], gear)
-        }
-        TrnType::Tendon => (None, Some((&topology.tendons, id)), &s.ten_j, gear),
-        _ => (None, Some((&topology.actuators, actuator)), &s.actuator_moment, 1.0),
+    let (rows, k, arms, gear) = match model.actuator_trntype[actuator] {
+        TrnType::Tendon => (&topology.tendons, id, &s.ten_j, gear),
+        _ => (&topology.actuators, actuator, &s.actuator_moment, 1.0),
     };
-    let (dofs, arms): (&[u32], &[f64]) =
-        rows.map_or((&[][..], &[][..]), |(rows, k)| (rows.row(k), &arms[rows.range(k)]));
-    let joint = joint.into_iter().map(move |d| (d, gear));
-    joint.chain(dofs.iter().zip(arms).map(move |(&d, &arm)| (d as usize, gear * arm)))
+    for (&d, &arm) in rows.row(k).iter().zip(&arms[rows.range(k)]) {
+        each(d as usize, gear * arm);
+    }
 }
 
 /// Computes the derivative of an actuator's length by the degrees of freedom (nv).
@@ -66,23 +69,16 @@ pub(in crate::physics) fn dense_moment(
     out: &mut [f64],
 ) {
     out.fill(0.0);
-    for (d, arm) in moment(model, topology, s, actuator, s.params.actuator_gear[actuator]) {
-        out[d] += arm;
-    }
+    let gear = s.params.actuator_gear[actuator];
+    moment(model, topology, s, (actuator, gear), |d, arm| out[d] += arm);
 }
 
 /// Computes lengths and moments of actuators on ball joints, free joints, sites, slider-cranks and contacts: `actuator_length`, `actuator_moment`. Poses, `cdof`
 /// and contacts with their rows must be up to date.
 #[inline(always)]
 pub fn transmissions(model: &Arrays, topology: &Topology, s: &mut State) {
-    for i in 0..model.nu() {
-        match model.actuator_trntype[i] {
-            TrnType::Joint | TrnType::JointInParent if model.actuator_turns(i).is_some() => {
-                own(model, topology, s, i);
-            }
-            TrnType::Joint | TrnType::JointInParent | TrnType::Tendon => {}
-            TrnType::SliderCrank | TrnType::Site | TrnType::Body => own(model, topology, s, i),
-        }
+    for &i in &topology.own_moments {
+        own(model, topology, s, i);
     }
 }
 

@@ -53,7 +53,7 @@ fn lengths(model: &Model, topology: &Topology, s: &mut State) {
     let acting = model.opt.flags.actuation;
     for i in 0..model.nu() {
         let gear = transmission::gear(s, i);
-        s.actuator_length[i] = transmission::length(model, s, i, gear);
+        s.actuator_length[i] = transmission::length(model, topology, s, i, gear);
         s.actuator_velocity[i] = if acting {
             transmission::velocity(model, topology, s, i, gear)
         } else {
