@@ -14,7 +14,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 # Elements that MIMo's scenes have none of, and bookkeeping.
-LEFT_OUT = re.compile(r"^n?(flex|skin|tuple|text_|plugin|bvh|tree|fluid|island|wrap_x)")
+LEFT_OUT = re.compile(r"^n?(flex|tuple|text_|plugin|bvh|tree|fluid|island|wrap_x)")
 KINDS = {"mjtNum": "F64", "int": "I32", "mjtByte": "U8", "float": "F32"}
 OPTION = {
     "mjtNum": "timestep impratio tolerance ls_tolerance noslip_tolerance ccd_tolerance gravity",

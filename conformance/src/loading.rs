@@ -5,8 +5,8 @@ use babybench::mjcf_loader::{ErrorKind, LoadError, load_str};
 use babybench::physics::compile;
 
 use crate::arrays::{
-    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, needle, of_meshes, options, physical,
-    unrecorded,
+    activations, actuators, derived, derived_unrecorded, looks, names, narrowed, needle, of_meshes, of_skins, options,
+    physical, unrecorded,
 };
 use crate::mujoco::{Mujoco, Simulation};
 
@@ -79,6 +79,10 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::Invalid(message) if message.starts_with("the muscle moves nothing") => {
             Some("muscles that move nothing, whose force is a quotient of rounding errors")
         }
+        ErrorKind::Invalid("face names a vertex that the skin does not have") => {
+            Some("skins whose faces name vertices that they do not have")
+        }
+        ErrorKind::Invalid("a number of the skin is not finite") => Some("skins with numbers that are not finite"),
         ErrorKind::Twin { .. } => Some("references that MuJoCo multiplies beside copies"),
         ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
         ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),
@@ -89,9 +93,19 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
 /// Loads the document `main` of `files` with both, and compares the compiled models.
 pub fn compare(api: &'static Mujoco, main: &str, files: &[(&str, &str)], assets: &dyn AssetSource) -> Outcome {
     let text = files.iter().find(|f| f.0 == main).map_or("", |f| f.1);
-    let ours = load_str(text, main, assets).and_then(compile);
     let bytes: Vec<(&str, &[u8])> = files.iter().map(|(name, text)| (*name, text.as_bytes())).collect();
-    let theirs = Simulation::new(api, main, &bytes);
+    compare_bytes(api, (main, text), &bytes, assets)
+}
+
+/// Loads a document, of which name and text are given and which is one of `files`, with both, and compares the compiled models.
+pub fn compare_bytes(
+    api: &'static Mujoco,
+    (main, text): (&str, &str),
+    files: &[(&str, &[u8])],
+    assets: &dyn AssetSource,
+) -> Outcome {
+    let ours = load_str(text, main, assets).and_then(compile);
+    let theirs = Simulation::new(api, main, files);
     match (ours, theirs) {
         (Err(_), Err(_)) => Outcome::Rejected,
         (Ok(_), Err(e)) => Outcome::Fault(format!("we load it, MuJoCo does not: {}", e.trim())),
@@ -121,6 +135,7 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
         .into_iter()
         .chain(unrecorded(model))
         .chain(of_meshes(model))
+        .chain(of_skins(model))
         .chain(actuators(model))
         .chain(activations(model))
         .chain(looks(model))
@@ -181,7 +196,8 @@ pub fn distances(model: &babybench::Model, simulation: &Simulation) -> Vec<Dista
 
 /// Describes the first difference between the models; `None` if they agree.
 pub fn difference(model: &babybench::Model, simulation: &Simulation) -> Option<String> {
-    for (kind, ours) in names(model) {
+    let of_skins = ("skin", model.skins.iter().map(|skin| skin.name.clone()).collect());
+    for (kind, ours) in names(model).into_iter().chain([of_skins]) {
         let theirs = simulation.names(kind);
         if ours != theirs {
             return Some(format!("names of {kind}: {ours:?} instead of {theirs:?}"));

@@ -247,6 +247,7 @@ impl PhysicsModel {
         names.set_item("light", list(m.lights.iter().map(|l| &l.name[..]).collect()))?;
         names.set_item("mesh", list(m.meshes.iter().map(|mesh| &mesh.name[..]).collect()))?;
         names.set_item("hfield", list(m.hfields.iter().map(|field| &field.name[..]).collect()))?;
+        names.set_item("skin", list(m.skins.iter().map(|skin| &skin.name[..]).collect()))?;
         names.set_item("key", list(m.keys.iter().map(|k| &k.name[..]).collect()))?;
         names.set_item("numeric", &m.numeric_name)?;
         names.set_item("text", &m.text_name)?;
@@ -263,6 +264,7 @@ impl PhysicsModel {
             ("nexclude", m.exclude.len()),
             ("nmesh", m.nmesh()),
             ("nhfield", m.nhfield()),
+            ("nskin", m.nskin()),
         ] {
             settings.set_item(name, size)?;
         }

@@ -172,6 +172,29 @@ def test_meshes_and_height_fields_have_names_and_numbers() -> None:
     assert 0 < data.body("stone").xpos[2] < 0.3
 
 
+def test_skins_are_drawn_and_bent_by_their_bodies() -> None:
+    model, data = pair("""<mujoco><visual><headlight ambient="1 1 1"/></visual><deformable>
+      <skin name="sheet" rgba="1 0 0 1" vertex="-1 -1 0 1 -1 0 1 1 0 -1 1 0" face="0 1 2 0 2 3">
+        <bone body="left" bindpos="-1 0 0" bindquat="1 0 0 0" vertid="0 3" vertweight="1 1"/>
+        <bone body="right" bindpos="1 0 0" bindquat="1 0 0 0" vertid="1 2" vertweight="1 1"/></skin></deformable>
+      <worldbody><body name="left" pos="-1 0 0"><geom size=".01" rgba="0 0 0 0"/></body>
+        <body name="right" pos="1 0 0"><joint type="slide" axis="1 0 0"/><geom size=".01" rgba="0 0 0 0"/></body>
+        <camera name="above" pos="0 0 6"/></worldbody></mujoco>""")
+    assert model.nskin == 1
+    assert mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SKIN, "sheet") == 0
+
+    def red() -> int:
+        mujoco.mj_forward(model, data)
+        with mujoco.Renderer(model, 60, 80) as renderer:
+            renderer.update_scene(data, camera="above")
+            return int((renderer.render()[..., 0] > 100).sum())
+
+    flat = red()
+    data.qpos[0] = -1
+    assert flat > 100
+    assert red() == pytest.approx(flat / 2, rel=0.1)
+
+
 def test_a_mocap_body_is_moved_by_the_program() -> None:
     text = """<mujoco><worldbody><body name="led" mocap="true" pos="0 0 1"><geom size=".1"/></body>
       <body><freejoint/><geom size=".1"/></body></worldbody><keyframe><key mpos="0 0 3" mquat="0 2 0 0"/></keyframe></mujoco>"""

@@ -1,4 +1,4 @@
-//! File formats that other programs share: NumPy archives, pickles, Motion-JPEG videos, PNG pictures, triangle meshes, heights on a grid.
+//! File formats that other programs share: NumPy archives, pickles, Motion-JPEG videos, PNG pictures, triangle meshes, skins, heights on a grid.
 
 #[cfg(feature = "eval")]
 pub mod avi;
@@ -9,3 +9,4 @@ pub mod npz;
 #[cfg(feature = "eval")]
 pub mod pickle;
 pub mod png;
+pub mod skn;

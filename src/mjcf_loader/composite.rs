@@ -53,14 +53,14 @@ table! {
 }
 
 table! {
-    /// `<skin>` of a composite.
-    group CompositeSkin {
-        check "texcoord", FLAG, "Whether it has texture coordinates. Ignored: skins are not drawn.";
-        check "material", TEXT, "Material. Ignored: skins are not drawn.";
-        check "rgba", reals(4, Any), "Colour and opacity. Ignored: skins are not drawn.";
-        check "inflate", real(Any), "How far it is blown up, m. Ignored: skins are not drawn.";
-        check "subgrid", int(0, 1000), "How finely it is divided. Ignored: skins are not drawn.";
-        check "group", int(0, MAX_GROUP), "Visual group. Ignored: skins are not drawn.";
+    /// `<skin>` of a composite: a cable of boxes has one, with or without it.
+    element CompositeSkin {
+        "texcoord" texcoord: bool = false, FLAG, "Whether it has texture coordinates.";
+        "material" material: Option<String> = None, TEXT, "Material.";
+        "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group; 0 to 2 are drawn.";
+        check "inflate", real(Any), "Ignored, as in MuJoCo: the skin of a cable is blown up by the thickness of its boxes.";
+        check "subgrid", int(0, 1000), "How finely it is divided. Ignored: it is drawn from one box to the next.";
     }
 }
 

@@ -7,7 +7,7 @@
 //! The loader understands what the models of this project and the original BabyBench files use, and of the rest of the language
 //! whatever needs no deformable bodies, with few exceptions; the elements and
 //! attributes are listed by `babybench inspect --mjcf`. Everything else is an error that names the place. Ignored are only the
-//! memory reservations in `size`, the matrix format `jacobian`, skins, which are not drawn, and the colours in `visual/rgba` of what only MuJoCo's
+//! memory reservations in `size`, the matrix format `jacobian`, the skin of a cable, and the colours in `visual/rgba` of what only MuJoCo's
 //! viewer draws: none changes a compiled array of physics. User data (`user` of actuators and cameras, `nuser_*`) are kept
 //! and mean nothing.
 //!

@@ -3,6 +3,7 @@
 mod attach;
 mod attach_keys;
 mod cable;
+mod cable_skin;
 mod content;
 
 use std::collections::BTreeMap;

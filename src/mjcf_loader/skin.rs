@@ -1,23 +1,24 @@
-//! The tables of skins: surfaces that bodies pull along, which are looked through, and not drawn.
+//! The tables of skins: surfaces that bodies pull along.
 
 use super::attribute::Sign::Any;
 use super::attribute::{Kind, TEXT, int, real, reals};
 use super::table::table;
 use super::words::MAX_GROUP;
+use crate::math::{Quat, Vec3};
 
 table! {
     /// `<skin>`.
     element Skin {
         also bones: Vec<Bone> = Vec::new();
         "name" name: String = String::new(), TEXT, own, "Name.";
-        "file" file: Option<String> = None, TEXT, "File, which must be there. Ignored: skins are not drawn.";
-        "material" material: Option<String> = None, TEXT, "Material. Ignored: skins are not drawn.";
-        "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, "Vertices, m, three numbers each. Ignored: skins are not drawn.";
-        "face" face: Vec<f64> = Vec::new(), Kind::Data, "Vertices of each triangle. Ignored: skins are not drawn.";
-        check "texcoord", Kind::Data, "Texture coordinates of the vertices. Ignored: skins are not drawn.";
-        check "rgba", reals(4, Any), "Colour and opacity. Ignored: skins are not drawn.";
-        check "inflate", real(Any), "How far it is blown up, m. Ignored: skins are not drawn.";
-        check "group", int(0, MAX_GROUP), "Visual group. Ignored: skins are not drawn.";
+        "file" file: Option<String> = None, TEXT, "SKN file, which has vertices, faces, texture coordinates and bones.";
+        "material" material: Option<String> = None, TEXT, "Material.";
+        "vertex" vertex: Vec<f64> = Vec::new(), Kind::Data, "Vertices, m, three numbers each.";
+        "face" face: Vec<f64> = Vec::new(), Kind::Data, "Vertices of each triangle, counterclockwise from outside.";
+        "texcoord" texcoord: Vec<f64> = Vec::new(), Kind::Data, "Texture coordinates of the vertices, two numbers each.";
+        "rgba" rgba: [f64; 4] = [0.5, 0.5, 0.5, 1.0], reals(4, Any), "Colour and opacity.";
+        "inflate" inflate: f64 = 0.0, real(Any), "How far vertices are moved along their normals, m.";
+        "group" group: usize = 0, int(0, MAX_GROUP), "Visual group; 0 to 2 are drawn.";
     }
 }
 
@@ -25,8 +26,9 @@ table! {
     /// `<bone>` of a skin.
     element Bone {
         "body" body: String = String::new(), TEXT, required, "Body that pulls.";
-        check "bindpos", reals(3, Any), "Position of the body where the skin is as written, m. Ignored: skins are not drawn.";
-        check "bindquat", reals(4, Any), "Its orientation. Ignored: skins are not drawn.";
-        check "vertid" | "vertweight", Kind::Data, "Vertices that it pulls, and how much. Ignored: skins are not drawn.";
+        "bindpos" bindpos: Vec3 = [0.0; 3], reals(3, Any), required, "Position of the body where the skin is as written, m.";
+        "bindquat" bindquat: Quat = [1.0, 0.0, 0.0, 0.0], reals(4, Any), required, "Its orientation.";
+        "vertid" vertid: Vec<f64> = Vec::new(), Kind::Data, required, "Vertices that it pulls.";
+        "vertweight" vertweight: Vec<f64> = Vec::new(), Kind::Data, required, "How much it pulls each of them; those of all bones are scaled so that they add up to 1.";
     }
 }

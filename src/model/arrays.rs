@@ -266,6 +266,8 @@ arrays! {
     ["internals"] meshes: Vec<Mesh>,
     /// Height fields.
     ["internals"] hfields: Vec<HField>,
+    /// Skins.
+    ["internals"] skins: Vec<Skin>,
 
     /// Lights.
     ["internals"] lights: Vec<Light>,

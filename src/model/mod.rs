@@ -15,6 +15,7 @@ mod look;
 mod mesh;
 mod options;
 mod sensor;
+mod skin;
 
 pub use arrays::Arrays;
 pub use complete::Model;
@@ -28,6 +29,7 @@ internals!(hidden use mesh::{Mesh, MeshHull, MeshPolygons});
 pub use options::{IntegratorType, Options};
 internals!(hidden use options::{ConeType, Flags, JacobianFormat, SolverType, Statistic});
 internals!(hidden use sensor::{DataType, ObjType, SensorType});
+internals!(hidden use skin::{Skin, SkinBone});
 
 macro_rules! lookup {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {
@@ -75,6 +77,7 @@ sizes! {
     nkey keys "keyframes",
     nmesh meshes "meshes",
     nhfield hfields "height fields",
+    nskin skins "skins",
 }
 
 impl Arrays {

@@ -1,7 +1,7 @@
-//! Visible geoms, sites and tendons: shape, size, colour.
+//! Visible geoms, sites, tendons and skins: shape, size, colour.
 
-use crate::math::{Mat3, Vec3};
-use crate::model::{GeomType, Model};
+use crate::math::{MAT3_ID, Mat3, Vec3};
+use crate::model::{GeomType, Model, Skin};
 use crate::render::scenery::single;
 use crate::render::texture::TexturePixels;
 use crate::render::view::Poses;
@@ -27,6 +27,8 @@ pub enum Element {
         /// The piece, from the first on; how many there are changes as the tendon touches geoms and leaves them.
         piece: usize,
     },
+    /// A skin, by id, or a part of a large one.
+    Skin(usize),
 }
 
 /// The mesh that a [`Drawable`] uses.
@@ -42,7 +44,7 @@ pub enum Shape {
     Cylinder,
     /// A box: [`Mesh::cube`](crate::render::Mesh::cube).
     Box,
-    /// A mesh or a height field of the model, or a part of a large one.
+    /// A mesh, a height field or a skin of the model, or a part of a large one.
     Mesh,
 }
 
@@ -51,14 +53,14 @@ impl Shape {
     pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
 }
 
-/// A visible geom or site, or a piece of a tendon.
+/// A visible geom, site or skin, or a piece of a tendon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawable {
     /// Element of the model.
     pub element: Element,
     /// Shape.
     pub shape: Shape,
-    /// Index into [`Scenery::meshes`](crate::render::Scenery::meshes).
+    /// Index into [`Scenery::meshes`](crate::render::Scenery::meshes), after which the parts of all skins are counted.
     pub mesh: usize,
     /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
     /// for a piece of a tendon. Images follow [`Drawable::placed`].
@@ -96,6 +98,7 @@ pub(super) fn material(model: &Model, element: Element) -> Option<usize> {
         Element::Geom(g) => model.geom_matid[g],
         Element::Site(s) => model.site_matid[s],
         Element::Tendon { tendon, .. } => model.tendon_matid[tendon],
+        Element::Skin(skin) => model.skins[skin].material,
     }
 }
 
@@ -128,6 +131,7 @@ impl Drawable {
                 let size = [model.tendon_width[tendon], 1.0, 0.0];
                 (GeomType::Capsule, size, model.tendon_rgba[tendon])
             }
+            Element::Skin(skin) => (GeomType::Mesh, Skin::SIZE, model.skins[skin].rgba),
         };
         let (shape, scale, radius) = dimensions(kind, size, far);
         let mut drawable = Self {
@@ -154,6 +158,11 @@ impl Drawable {
             && kind == GeomType::HField
         {
             drawable.radius = model.geom_rbound[g] as f32;
+        }
+        if let Element::Skin(_) = element {
+            // its vertices are in the world: bands are culled by their boxes
+            drawable.radius = f32::INFINITY;
+            drawable.size = [1.0; 3];
         }
         if let Some(m) = material(model, element).map(|m| &model.materials[m]) {
             if drawable.rgba == DEFAULT_RGBA {
@@ -186,6 +195,7 @@ impl Drawable {
             }
             Element::Site(s) => Some((*self, poses.site_xpos[s], poses.site_xmat[s])),
             Element::Tendon { tendon, piece } => self.strung(poses, tendon, piece),
+            Element::Skin(_) => Some((*self, [0.0; 3], MAT3_ID)),
         }
     }
 
@@ -218,6 +228,13 @@ impl Drawable {
         };
         let m = &model.materials[m];
         let scale = match (self.shape, m.texuniform) {
+            _ if matches!(self.element, Element::Skin(_)) => {
+                if m.texuniform {
+                    single(self.measured)
+                } else {
+                    [1.0; 3]
+                }
+            }
             // its vertices are in metres already
             (Shape::Mesh, false) => single(self.measured).map(|x| 1.0 / x),
             (Shape::Mesh, true) | (_, false) => [1.0; 3],

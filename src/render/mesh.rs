@@ -27,6 +27,9 @@ pub enum MeshPart {
 /// Number of vertices of which the length of each band is a multiple.
 pub const LANES: usize = 8;
 
+/// The most vertices of a mesh: triangles count them in 16 bits, and a mesh is filled up to whole groups.
+pub(super) const MOST: usize = (1 << 16) - LANES;
+
 /// A part of a mesh, or a slice of one, that has its own vertices.
 #[derive(Clone, Debug)]
 pub struct Band {
@@ -224,6 +227,15 @@ impl Mesh {
             if let Some(&coordinates) = self.texcoord.last() {
                 self.texcoord.push(coordinates);
             }
+        }
+    }
+
+    /// Ends a mesh of one band, the triangles of which are in no strip.
+    pub(super) fn end_loose(&mut self) {
+        self.fill();
+        if let Some(band) = self.bands.last_mut() {
+            band.triangles = 0..self.triangles.len();
+            band.loose = self.triangles.len();
         }
     }
 

@@ -4,11 +4,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::drawable::Element;
-use super::mesh::{LANES, Mesh, MeshPart};
+use super::mesh::{MOST, Mesh, MeshPart};
 use crate::model::{self, GeomType, HField, Model};
 
-/// The most vertices of a part: triangles count them in 16 bits, and a part is filled up to whole groups.
-const MOST: usize = (1 << 16) - LANES;
 /// Least cosine between the normal of a vertex and that of a face for the face to be smooth there.
 const SMOOTH: f32 = 0.8;
 
@@ -73,11 +71,7 @@ impl Part {
     }
 
     fn finish(mut self, meshes: &mut Vec<Mesh>) {
-        self.mesh.fill();
-        if let Some(band) = self.mesh.bands.last_mut() {
-            band.triangles = 0..self.mesh.triangles.len();
-            band.loose = self.mesh.triangles.len();
-        }
+        self.mesh.end_loose();
         if !self.mesh.triangles.is_empty() {
             meshes.push(self.mesh);
         }

@@ -9,11 +9,12 @@ use crate::render::RenderError;
 use crate::render::drawable::{Drawable, Element, Shape, material};
 use crate::render::mesh::Mesh;
 use crate::render::model_mesh::ModelMeshes;
+use crate::render::skin::SkinLook;
 use crate::render::tendon::{pieces, ropes};
 use crate::render::texture::{Loader, TexturePixels};
 use crate::render::view::{Poses, View};
 
-/// Groups of geoms, sites and tendons that are visible.
+/// Groups of geoms, sites, tendons and skins that are visible.
 const VISIBLE_GROUPS: std::ops::Range<usize> = 0..3;
 /// Number of lights that fixed-function OpenGL guarantees.
 const MAX_LIGHTS: usize = 8;
@@ -105,12 +106,14 @@ impl Camera {
 #[doc(alias = "mjvScene")]
 #[derive(Clone, Debug)]
 pub struct Scenery {
-    /// Visible geoms, sites and tendons, in the order of the model.
+    /// Visible geoms, sites and tendons, in the order of the model, then the parts of skins.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub drawables: Vec<Drawable>,
     /// Meshes: those of [`Shape::ALL`](crate::render::Shape::ALL) in its order, then those of the model that are visible.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub meshes: Vec<Mesh>,
+    /// Skins that are visible.
+    pub(super) skins: Vec<SkinLook>,
     /// Textures in use.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub textures: Vec<TexturePixels>,
@@ -173,7 +176,8 @@ impl Scenery {
             Mesh::cylinder(),
             Mesh::cube(),
         ];
-        let mut drawables = drawables(model, far as f32, &mut used, &mut meshes)?;
+        let mut skins = Vec::new();
+        let mut drawables = drawables(model, far as f32, &mut used, (&mut meshes, &mut skins))?;
         let sky = model.textures.iter().position(|t| t.kind == TextureType::Skybox);
         let sky = match sky {
             Some(id) => used.texture(id)?,
@@ -181,7 +185,10 @@ impl Scenery {
         };
         let textures = used.textures;
         for drawable in &mut drawables {
-            let explicit = !meshes[drawable.mesh].texcoord.is_empty();
+            let explicit = match drawable.element {
+                Element::Skin(skin) => !model.skins[skin].texcoord.is_empty(),
+                _ => !meshes[drawable.mesh].texcoord.is_empty(),
+            };
             if explicit && matches!(drawable.texture.map(|t| &textures[t]), Some(TexturePixels::Cube(_))) {
                 // to which coordinates in an image say nothing
                 drawable.texture = None;
@@ -193,6 +200,7 @@ impl Scenery {
         Ok(Self {
             drawables,
             meshes,
+            skins,
             textures,
             sky,
             lights,
@@ -211,6 +219,13 @@ impl Scenery {
                 2 * model.nwrap(),
             ],
         })
+    }
+
+    /// Returns the mesh of a drawable; that of a skin is as the model has it, and has no normals: [`Worn`](crate::render::Worn) has those of a moment.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn mesh_of(&self, drawable: &Drawable) -> Option<&Mesh> {
+        let worn = self.skins.iter().flat_map(SkinLook::meshes);
+        self.meshes.iter().chain(worn).nth(drawable.mesh)
     }
 
     /// Returns the vertical field of view of a camera, degrees.
@@ -280,9 +295,14 @@ impl Scenery {
 }
 
 /// Makes the drawables of what is visible, but for the places of their textures; adds the meshes of the model to `meshes`.
-fn drawables(model: &Model, far: f32, used: &mut Used, meshes: &mut Vec<Mesh>) -> Result<Vec<Drawable>, RenderError> {
+fn drawables(
+    model: &Model,
+    far: f32,
+    used: &mut Used,
+    (meshes, skins): (&mut Vec<Mesh>, &mut Vec<SkinLook>),
+) -> Result<Vec<Drawable>, RenderError> {
     let (ropes, mut model_meshes) = (ropes(model), ModelMeshes::new(model));
-    let mut drawables = Vec::new();
+    let (mut drawables, mut worn) = (Vec::new(), Vec::new());
     for element in visible(model, &ropes) {
         let mut drawable = Drawable::new(model, element, far);
         if drawable.rgba[3] <= 0.0 {
@@ -294,12 +314,22 @@ fn drawables(model: &Model, far: f32, used: &mut Used, meshes: &mut Vec<Mesh>) -
         if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
             drawable.texture = used.texture(texture)?;
         }
-        if drawable.shape == Shape::Mesh {
+        if let Element::Skin(skin) = element {
+            worn.push((drawable, skin));
+        } else if drawable.shape == Shape::Mesh {
             let parts = model_meshes.parts(model, element, meshes);
             drawables.extend(parts.map(|mesh| drawable.showing(mesh)));
         } else {
             drawables.push(drawable);
         }
+    }
+    // behind all other meshes, whose number is known now
+    let mut mesh = meshes.len();
+    for (drawable, skin) in worn {
+        let look = SkinLook::new(&model.skins[skin]);
+        drawables.extend((mesh..mesh + look.count()).map(|mesh| drawable.showing(mesh)));
+        mesh += look.count();
+        skins.push(look);
     }
     Ok(drawables)
 }
@@ -310,7 +340,9 @@ fn visible<'a>(model: &'a Model, ropes: &'a [Vec3]) -> impl Iterator<Item = Elem
     let sites = (0..model.nsite()).filter(|&s| VISIBLE_GROUPS.contains(&model.site_group[s]));
     let tendons = (0..model.ntendon()).filter(|&t| VISIBLE_GROUPS.contains(&model.tendon_group[t]));
     let tendons = tendons.flat_map(move |tendon| pieces(model, tendon, ropes[tendon]));
-    geoms.map(Element::Geom).chain(sites.map(Element::Site)).chain(tendons)
+    let skins = (0..model.nskin()).filter(|&s| VISIBLE_GROUPS.contains(&model.skins[s].group));
+    let parts = geoms.map(Element::Geom).chain(sites.map(Element::Site)).chain(tendons);
+    parts.chain(skins.map(Element::Skin))
 }
 
 pub(super) fn single<const N: usize>(v: [f64; N]) -> [f32; N] {

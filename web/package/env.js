@@ -226,7 +226,7 @@ export class Env {
     this.#call((core) => core.update());
     const buffer = memory();
     const view = (/** @type {string} */ name) => /** @type {Float32Array} */ (this.#place(name, buffer));
-    return { poses: view("poses"), bodies: view("bodies"), felt: view("felt"), contacts: view("contacts") };
+    return { poses: view("poses"), bodies: view("bodies"), felt: view("felt"), contacts: view("contacts"), worn: view("worn") };
   }
 
   /** Bodies, joints, geoms, cameras and actions. */

@@ -99,6 +99,7 @@
  * @property {Float32Array} bodies 7 for each body: position, m, and quaternion, w first
  * @property {Float32Array} felt size of the force at each touch sensor, N
  * @property {Float32Array} contacts 8 for each contact: point, m, force on the second body, N, the two bodies
+ * @property {Float32Array} worn for each drawable that is worn, in their order, 6 for each vertex of its mesh: positions of all, m, then their unit normals, in the world
  */
 
 /**
@@ -134,6 +135,7 @@
  * @property {number} body
  * @property {"plane" | "sphere" | "capsule" | "cylinder" | "box" | "mesh"} shape
  * @property {{ id: number, position: Float32Array, normal: Float32Array, texcoord: Float32Array | null, index: Uint16Array } | null} mesh triangles of a mesh, in true size
+ * @property {boolean} worn whether it is a skin, which bodies bend: its mesh is as the scene has it, that of a moment is in `worn` of a frame
  * @property {[number, number, number]} size half sizes, m; a capsule's are radius, radius, half length of its cylinder
  * @property {[number, number, number, number]} rgba
  * @property {number} emission

@@ -41,6 +41,56 @@ fn heights(name: &str, file: &str, content: impl Into<Content>) -> Case {
     .file(file, content)
 }
 
+/// A skin of a file.
+fn skin(name: &str, content: impl Into<Content>) -> Case {
+    let asset = "<skin name='s' file='a.skn'/>";
+    simulated(&format!("skin, {name}"), asset, "").file("a.skn", content)
+}
+
+/// MuJoCo's format of skins: announced sizes, a triangle, and a bone that announces a number of vertices.
+fn skn(sizes: [i32; 4], corners: [i32; 3], body: &[u8], pulls: i32) -> Vec<u8> {
+    let mut out: Vec<u8> = sizes.iter().flat_map(|n| n.to_le_bytes()).collect();
+    let numbers = |out: &mut Vec<u8>, numbers: &[f32]| out.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+    numbers(&mut out, CORNER[..3].as_flattened());
+    out.extend(corners.iter().flat_map(|k| k.to_le_bytes()));
+    out.extend([body, &[0; 40]].concat().iter().take(40));
+    numbers(&mut out, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+    out.extend([pulls, 0, 1, 2].iter().flat_map(|k| k.to_le_bytes()));
+    numbers(&mut out, &[1.0; 3]);
+    out
+}
+
+fn skins() -> Vec<Case> {
+    let sizes = [3, 0, 1, 1];
+    let sound = skn(sizes, [0, 1, 2], b"world", 3);
+    let mut odd = sound.clone();
+    odd[16..20].copy_from_slice(&f32::NAN.to_le_bytes());
+    let end = sound.len();
+    let mut light = sound.clone();
+    light[end - 12..].fill(0);
+    vec![
+        skin("sound", sound.clone()),
+        skin("empty", ""),
+        skin("only sizes", vec![0; 16]),
+        skin("sizes that are negative", skn([3, -1, 1, 1], [0, 1, 2], b"world", 3)),
+        skin("sizes beyond all memory", skn([i32::MAX; 4], [0, 1, 2], b"world", 3)),
+        skin("2 billion bones", skn([3, 0, 1, i32::MAX], [0, 1, 2], b"world", 3)),
+        skin(
+            "a bone of 2 billion vertices",
+            skn(sizes, [0, 1, 2], b"world", i32::MAX),
+        ),
+        skin("a bone of -1 vertices", skn(sizes, [0, 1, 2], b"world", -1)),
+        skin("a corner that is not there", skn(sizes, [0, 1, 3], b"world", 3)),
+        skin("a corner of number -1", skn(sizes, [0, 1, -1], b"world", 3)),
+        skin("a body that is not there", skn(sizes, [0, 1, 2], b"nobody", 3)),
+        skin("a body that is no text", skn(sizes, [0, 1, 2], &[0xff; 40], 3)),
+        skin("a vertex that is not a number", odd),
+        skin("no weights", light),
+        skin("bytes after its end", [sound.clone(), vec![0; 9]].concat()),
+        skin("cut in its bone", &sound[..end - 20]),
+    ]
+}
+
 /// Binary STL that announces a number of triangles.
 fn stl(announced: u32, triangles: &[[f32; 9]]) -> Vec<u8> {
     let mut out = vec![0; 80];
@@ -321,5 +371,5 @@ fn fields() -> Vec<Case> {
 }
 
 pub fn cases() -> Vec<Case> {
-    [files(), documents(), fields()].concat()
+    [files(), documents(), fields(), skins()].concat()
 }

@@ -5,6 +5,7 @@ mod elements;
 mod looks;
 mod meshes;
 mod relations;
+mod skins;
 
 use babybench::Model;
 use babybench::model::GeomType;
@@ -15,6 +16,7 @@ use elements::{of_bodies, of_geoms, of_joints, of_sites_and_cameras};
 pub use looks::{looks, narrowed};
 pub use meshes::{needle, of_meshes};
 use relations::{of_contacts, of_equalities, of_sensors, of_tendons};
+pub use skins::of_skins;
 
 fn ids(values: &[usize]) -> Vec<f64> {
     values.iter().map(|&v| v as f64).collect()

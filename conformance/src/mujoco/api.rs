@@ -9,7 +9,8 @@ use libloading::Library;
 pub(super) type Handle = *mut c_void;
 
 /// Elements that have names, with `mjtObj`'s numbers.
-pub const NAMED: [(&str, i32, &str); 12] = [
+pub const NAMED: [(&str, i32, &str); 13] = [
+    ("skin", 11, "nskin"),
     ("body", 1, "nbody"),
     ("jnt", 3, "njnt"),
     ("geom", 5, "ngeom"),

@@ -26,6 +26,7 @@ mod render_gpu;
 mod replay;
 mod senses;
 mod settling;
+mod skins;
 mod static_quantities;
 mod tasks;
 mod touch;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         replay::trials(),
         senses::trials(),
         settling::trials(),
+        skins::trials(),
         static_quantities::trials(),
         tasks::trials(),
         touch::trials(),

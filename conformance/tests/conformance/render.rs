@@ -1,5 +1,5 @@
 //! Pictures against MuJoCo 3.3.0's own renderer (OSMesa): of the embedded assets from `data/render_*.npz`, which
-//! `scripts/render_goldens.py` writes and describes, of `data/glass.xml`, `meshes.xml` and `strings.xml`, and of the original files from the recordings.
+//! `scripts/render_goldens.py` writes and describes, of `data/glass.xml`, `meshes.xml`, `skins.xml` and `strings.xml`, and of the original files from the recordings.
 
 use babybench::assets::{AssetSource, DirAssets, MemoryAssets};
 use babybench::config::{Config, Scene};
@@ -23,6 +23,7 @@ pub fn trials() -> Vec<Trial> {
             eyes_and_room_cameras_show_what_mujoco_draws,
             transparent_things_look_as_mujoco_draws_them,
             meshes_look_as_mujoco_draws_them,
+            skins_look_as_mujoco_draws_them,
             tendons_look_as_mujoco_draws_them
         ],
         trials![needs KIT: recorded_eyes_with_the_original_files],
@@ -125,6 +126,12 @@ fn transparent_things_look_as_mujoco_draws_them() {
 fn meshes_look_as_mujoco_draws_them() {
     // when written: mean up to 0.046; 17 pixels off by more than 2 at the edge of a glass
     small_scene("meshes", 0.05, 0.1);
+}
+
+/// Skins that several bodies bend, with images and without.
+fn skins_look_as_mujoco_draws_them() {
+    // when written: mean up to 0.034; no pixel off by more than 2
+    small_scene("skins", 0.05, 0.1);
 }
 
 /// Tendons over and within geoms, by pulleys, straight and hanging.

@@ -33,7 +33,7 @@ fn alone() -> MutexGuard<'static, ()> {
     DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns a scene of what BabyBench's scenes do not have: transparent geoms and a plane seen from below, meshes, or tendons.
+/// Returns a scene of what BabyBench's scenes do not have: transparent geoms and a plane seen from below, meshes, skins, or tendons.
 fn small(name: &str) -> (Model, Scenery) {
     let model = load_str(&data::text(&format!("{name}.xml")), name, &embedded())
         .and_then(compile)
@@ -138,7 +138,7 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
 
 fn small_scenes_are_what_mujoco_draws() {
     let _alone = alone();
-    for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("strings", 0.05)] {
+    for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("skins", 0.05), ("strings", 0.05)] {
         let (mut gpu, mut engine) = open(small(name).0);
         let qpos0 = engine.model().qpos0.clone();
         let state = state(&mut engine, &qpos0);

@@ -77,7 +77,7 @@ def _names(m: Any, type: int) -> list[str]:
     if kind in names:
         found: list[str] = names[kind]
         return found
-    if kind in ("skin", "flex", "plugin"):
+    if kind in ("flex", "plugin"):
         return []
     raise ValueError(f"names of {mjtObj(int(type)).name} are not kept here: there are those of {', '.join(names)}")
 

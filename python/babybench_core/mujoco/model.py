@@ -52,7 +52,7 @@ _SIZES = (
         "nsensordata",
         "npair",
     ),
-    *("nkey", "nlight", "nexclude", "nmesh", "nhfield"),
+    *("nkey", "nlight", "nexclude", "nmesh", "nhfield", "nskin"),
 )
 
 

@@ -199,13 +199,13 @@ impl Triangles {
 }
 
 /// Returns four bytes at a place as an unsigned number; `None` beyond the end.
-fn word(bytes: &[u8], at: usize) -> Option<u32> {
+pub(super) fn word(bytes: &[u8], at: usize) -> Option<u32> {
     let four = bytes.get(at..at.checked_add(4)?)?;
     Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))
 }
 
 /// Returns numbers in single precision that follow one another; `None` beyond the end.
-fn floats<const N: usize>(bytes: &[u8], at: usize) -> Option<[f32; N]> {
+pub(super) fn floats<const N: usize>(bytes: &[u8], at: usize) -> Option<[f32; N]> {
     let mut out = [0.0; N];
     for (k, value) in out.iter_mut().enumerate() {
         *value = f32::from_bits(word(bytes, at + 4 * k)?);

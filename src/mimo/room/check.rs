@@ -113,7 +113,7 @@ fn fault(tree: &Tree, at: usize) -> Option<String> {
             let same = text.trim().parse() == Ok(TIMESTEP);
             (!same).then(|| format!("timestep=\"{text}\": physics steps have {TIMESTEP} s; leave timestep out"))
         }
-        "texture" | "mesh" | "hfield" | "model" => {
+        "texture" | "mesh" | "hfield" | "skin" | "model" => {
             let named = node.attributes.iter().filter(|(name, _)| name.starts_with("file"));
             let mut outside = named.filter(|(_, path)| path.split('/').next() == Some(".."));
             let (name, path) = outside.next()?;

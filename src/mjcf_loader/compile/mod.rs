@@ -78,7 +78,7 @@ pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource
     }
     actuator::compile_actuators(&context, document, &ids, &mut arrays)?;
     sensor::compile_sensors(&context, document, &ids, &mut arrays)?;
-    skin::check_skins(&context, document, &ids, source)?;
+    arrays.skins = skin::compile_skins(&context, document, &ids, source)?;
     custom::compile_custom(&context, document, &ids, &mut arrays)?;
     custom::compile_keys(&context, document, &mut arrays)?;
     Ok(arrays)

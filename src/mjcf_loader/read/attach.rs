@@ -258,8 +258,8 @@ fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
     }
     for skin in &from.skins {
         if skin.bones.iter().all(|bone| taking.has(Thing::Body, &bone.body)) {
+            // MuJoCo leaves its name as it is, with which a second copy has none of its own
             let mut skin = skin.clone();
-            taking.rename_asset(&mut skin.name, None);
             taking.refer_asset(&mut skin.material);
             skin.bones.iter_mut().for_each(|bone| taking.refer(&mut bone.body));
             document.skins.push(skin);

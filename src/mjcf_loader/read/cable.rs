@@ -1,6 +1,6 @@
 //! `<composite type="cable">`: its bodies, joints, geoms, sites and excludes.
 
-use super::super::composite::{Composite, CompositeType, Link, Prototypes};
+use super::super::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
 use super::super::custom::Text;
 use super::super::document::{Body, Document, Orientation};
 use super::super::error::{ErrorKind, LoadError};
@@ -8,6 +8,7 @@ use super::super::relation::Exclude;
 use super::super::schema::Element;
 use super::super::table::Table;
 use super::super::xml::Tree;
+use super::cable_skin;
 use super::content::Spot;
 use crate::model::{GeomType, JointType};
 
@@ -72,6 +73,21 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
         suffix: spot.suffix,
         count: links.len(),
     };
+    if like.geom.kind == GeomType::Box {
+        // MuJoCo looks for its bodies under the names of the original, which a copy does not find
+        let names = Names { suffix: "", ..names };
+        let bodies: Vec<_> = (0..links.len()).map(|index| names.of("B", index)).collect();
+        let skin = match e.children.iter().find(|part| part.name == "skin") {
+            Some(skin) => CompositeSkin::read(skin),
+            None => CompositeSkin {
+                at: e.at,
+                ..CompositeSkin::initial()
+            },
+        };
+        document
+            .skins
+            .push(cable_skin::skin(&skin, prefix, &bodies, like.geom.size));
+    }
     for (index, link) in links.iter().enumerate() {
         let parent = if index == 0 {
             spot.body
@@ -97,6 +113,7 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
 }
 
 /// The names of a cable's parts: those of the first and the last body say so.
+#[derive(Clone, Copy)]
 struct Names<'a> {
     prefix: &'a str,
     suffix: &'a str,

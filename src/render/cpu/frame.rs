@@ -9,6 +9,7 @@ use super::target::{Target, Triangle};
 use crate::render::RenderError;
 use crate::render::drawable::{BEHIND, Drawable, OPAQUE, Shape};
 use crate::render::scenery::Scenery;
+use crate::render::skin::Worn;
 use crate::render::view::{Poses, View};
 
 /// The geometry of an image.
@@ -22,6 +23,8 @@ pub struct Frame {
     pub targets: Targets,
     /// Width and height, pixels.
     pub size: [usize; 2],
+    /// The skins.
+    pub worn: Worn,
     /// Projected vertices of everything that is drawn.
     pub vertices: Vec<Vertex>,
     /// Their positions, 1/256 pixels from the lower left, rounded to whole numbers.
@@ -113,6 +116,7 @@ impl Frame {
         scenery.check(poses, view)?;
         let eye = Eye::new(scenery, poses, view);
         self.clear(scenery, view, targets);
+        self.worn.update(scenery, poses);
         for (i, drawable) in scenery.drawables.iter().enumerate() {
             let Some((drawable, pos, mat)) = drawable.placed(poses) else {
                 continue;
@@ -214,7 +218,7 @@ impl Frame {
             mat: mat.map(|v| v as f32),
             rows: eye.model(pos, &mat, drawable.size),
             base: self.vertices.len(),
-            end: self.vertices.len() + scenery.meshes[drawable.mesh].x.len(),
+            end: self.vertices.len() + self.worn.mesh(scenery, drawable).x.len(),
             points: self.points.len(),
             transparent,
             ..self.draws[index]

@@ -16,7 +16,8 @@ use crate::render::scenery::Scenery;
 impl Frame {
     /// Projects and draws a drawable, of which the index is given, too.
     pub fn add(&mut self, scenery: &Scenery, drawable: &Drawable, eye: &Eye, index: usize) {
-        let mesh = &scenery.meshes[drawable.mesh];
+        let worn = std::mem::take(&mut self.worn);
+        let mesh = worn.mesh(scenery, drawable);
         let draw = self.draws[index];
         self.vertices.resize(draw.end, Vertex::default());
         self.x.resize(draw.end, 0.0);
@@ -49,6 +50,7 @@ impl Frame {
             }
         }
         self.flush(index);
+        self.worn = worn;
     }
 
     /// Finds the quadrilaterals of a band that may show their front, and their vertices.

@@ -205,7 +205,7 @@ impl Seen {
                 continue;
             };
             let drawable = &drawable;
-            let mesh = &scenery.meshes[drawable.mesh];
+            let mesh = frame.worn.mesh(scenery, drawable);
             let (mut batch, mut count) = ([0; 4], 0);
             for first in (draw.base..draw.end).step_by(STRIDE) {
                 // bands are filled up with vertices, so that their number is a multiple

@@ -9,6 +9,8 @@ use super::pipelines::Layouts;
 #[derive(Debug)]
 pub struct Buffers {
     pub instances: wgpu::Buffer,
+    /// Vertices of skins.
+    pub worn: wgpu::Buffer,
     /// 0, 1, 2...: indices of views, for the background.
     pub counting: wgpu::Buffer,
     views: wgpu::Texture,
@@ -20,14 +22,7 @@ pub struct Buffers {
 
 impl Buffers {
     pub fn new(gpu: &Gpu, layouts: &Layouts, lights: &wgpu::Buffer, instances: usize, views: usize) -> Self {
-        let buffer = |label, numbers: usize| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: 4 * numbers as u64,
-                usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer = |label, numbers: usize| buffer(gpu, label, 4 * numbers as u64);
         let counting = buffer("counting", views);
         let numbers: Vec<f32> = (0..views).map(|k| k as f32).collect();
         gpu.queue.write_buffer(&counting, 0, bytemuck::cast_slice(&numbers));
@@ -63,6 +58,7 @@ impl Buffers {
         });
         Self {
             instances: buffer("instances", INSTANCE * instances),
+            worn: buffer("skins", 1),
             counting,
             views: texture,
             group,
@@ -94,6 +90,16 @@ impl Buffers {
             *self = Self::new(gpu, layouts, lights, instances, room_for(views.max(self.room)));
         }
         gpu.queue.write_buffer(&self.instances, 0, bytes);
+        let worn: &[u8] = bytemuck::cast_slice(&frame.worn_vertices);
+        fits(
+            "the list of vertices of skins, in bytes,",
+            worn.len() as u64,
+            gpu.device.limits().max_buffer_size,
+        )?;
+        if self.worn.size() < worn.len() as u64 {
+            self.worn = buffer(gpu, "skins", worn.len() as u64);
+        }
+        gpu.queue.write_buffer(&self.worn, 0, worn);
         let [width, height] = views_size(views).map(|n| n as u32);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
@@ -109,6 +115,16 @@ impl Buffers {
         gpu.queue.write_texture(self.views.as_image_copy(), views, layout, size);
         Ok(())
     }
+}
+
+/// Makes a buffer of vertices or instances.
+fn buffer(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// Rounds a number of views up, so that buffers are not reallocated for every submission.

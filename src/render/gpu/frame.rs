@@ -2,11 +2,12 @@
 
 use super::atlas::{Atlas, Tile};
 use super::pipelines::Output;
-use super::scene::{GpuScene, LIGHTS};
+use super::scene::{GpuScene, LIGHTS, VERTEX, add_vertices};
 use crate::render::RenderRequest;
 use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, single};
 use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
 use crate::render::scenery::Scenery;
+use crate::render::skin::Worn;
 
 /// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
 pub const INSTANCE: usize = 44;
@@ -21,6 +22,8 @@ pub struct Call {
     pub class: usize,
     pub first: u32,
     pub count: u32,
+    /// First vertex of a skin in [`Frame::worn_vertices`].
+    pub worn: Option<i32>,
 }
 
 /// The calls for one view, clipped to its image.
@@ -51,6 +54,11 @@ pub struct Frame {
     pub views: Vec<[f32; 4]>,
     pub calls: Vec<Call>,
     pub chunks: Vec<Chunk>,
+    /// Vertices of the skins, view by view.
+    pub worn_vertices: Vec<f32>,
+    /// First vertex of each mesh of the skins, view by view.
+    worn_starts: Vec<i32>,
+    worn: Worn,
     eyes: Vec<Eye>,
     lights: Vec<PlacedLight>,
     /// View and drawable of the opaque drawables inside the view, for each class.
@@ -87,6 +95,7 @@ impl Frame {
         self.calls.clear();
         self.chunks.clear();
         self.eyes.clear();
+        self.wear(r);
         self.inside.resize_with(r.scene.classes.len(), Vec::new);
         let [width, height] = views_size(r.requests.len());
         self.views.clear();
@@ -117,6 +126,22 @@ impl Frame {
                 clear,
             });
             first = end;
+        }
+    }
+
+    /// Moves the skins, for each view as its poses have them.
+    fn wear(&mut self, r: &Submission) {
+        self.worn_vertices.clear();
+        self.worn_starts.clear();
+        if r.scenery.skins.is_empty() {
+            return;
+        }
+        for request in r.requests {
+            self.worn.update(r.scenery, &request.poses);
+            for mesh in self.worn.meshes() {
+                self.worn_starts.push((self.worn_vertices.len() / VERTEX) as i32);
+                add_vertices(mesh, &mut self.worn_vertices);
+            }
         }
     }
 
@@ -244,9 +269,18 @@ impl Frame {
             return;
         };
         let first = self.instances.len() as u32;
+        let worn = r.scene.classes[class].worn.map(|mesh| {
+            let meshes = self.worn_starts.len() / r.requests.len();
+            self.worn_starts[view * meshes + mesh]
+        });
         match self.calls[start..].last_mut() {
-            Some(call) if call.class == class => call.count += 1,
-            _ => self.calls.push(Call { class, first, count: 1 }),
+            Some(call) if (call.class, call.worn) == (class, worn) => call.count += 1,
+            _ => self.calls.push(Call {
+                class,
+                first,
+                count: 1,
+                worn,
+            }),
         }
         self.instances.push(instance);
     }
@@ -284,7 +318,7 @@ fn instance(r: &Submission, eye: &Eye, view: usize, drawable: &Drawable, own: bo
     }
     let id = match drawable.element {
         Element::Geom(g) => (g + 1) as f32,
-        Element::Site(_) | Element::Tendon { .. } => 0.0,
+        Element::Site(_) | Element::Tendon { .. } | Element::Skin(_) => 0.0,
     };
     let [u, v, s] = drawable.texture_scale;
     let (pos, m) = (single(pos), mat.map(|v| v as f32));

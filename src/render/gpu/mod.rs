@@ -381,8 +381,15 @@ impl Pass<'_, '_> {
             if let (Some(texture), true) = (class.texture, style != Style::Measure) {
                 self.texture(texture);
             }
-            self.pass
-                .draw_indexed(class.indices.clone(), 0, call.first..call.first + call.count);
+            let instances = call.first..call.first + call.count;
+            match call.worn {
+                None => self.pass.draw_indexed(class.indices.clone(), 0, instances),
+                Some(first) => {
+                    self.pass.set_vertex_buffer(0, r.buffers.worn.slice(..));
+                    self.pass.draw_indexed(class.indices.clone(), first, instances);
+                    self.pass.set_vertex_buffer(0, r.scene.vertices.slice(..));
+                }
+            }
         }
     }
 

@@ -10,6 +10,7 @@ use super::pipelines::Layouts;
 use crate::render::drawable::{Drawable, Shape};
 use crate::render::mesh::{Mesh, MeshPart};
 use crate::render::scenery::Scenery;
+use crate::render::skin::SkinLook;
 use crate::render::texture::{Face, Level, TexturePixels};
 
 /// Number of lights in the shader.
@@ -30,6 +31,8 @@ pub struct Class {
     pub texture: Option<usize>,
     /// Range in the buffer of indices.
     pub indices: Range<u32>,
+    /// Place among the meshes of skins, which have their vertices elsewhere, and other ones for each view.
+    pub worn: Option<usize>,
 }
 
 /// A scene on the device.
@@ -62,7 +65,7 @@ impl GpuScene {
             Some(TexturePixels::Cube(_)) => ColourSource::Cube,
         };
         let behind = |d: &Drawable| match d.shape {
-            Shape::Plane => scenery.meshes.len(),
+            Shape::Plane => ranges.len() - 1,
             _ => d.mesh,
         };
         // keys in drawing order
@@ -80,6 +83,9 @@ impl GpuScene {
                 paint,
                 texture,
                 indices,
+                worn: mesh
+                    .checked_sub(scenery.meshes.len())
+                    .filter(|_| mesh + 1 < ranges.len()),
             });
         }
         Self {
@@ -98,36 +104,49 @@ impl GpuScene {
     }
 }
 
-/// Lists vertices (position and part, normal, texture coordinates and whether they count), indices, and the range of indices of each mesh: those of
-/// [`Scenery::meshes`], then the plane seen from behind.
+/// Numbers of a vertex.
+pub const VERTEX: usize = 12;
+
+/// Adds the vertices of a mesh: position and part, normal, texture coordinates and whether they count.
+pub fn add_vertices(mesh: &Mesh, vertices: &mut Vec<f32>) {
+    for (i, n) in mesh.normal.iter().enumerate() {
+        let part = match mesh.part_of(i) {
+            MeshPart::Body => 0.0,
+            MeshPart::Top => 1.0,
+            MeshPart::Bottom => 2.0,
+        };
+        vertices.extend([mesh.x[i], mesh.y[i], mesh.z[i], part, n[0], n[1], n[2], 0.0]);
+        vertices.extend(match mesh.texcoord.get(i) {
+            Some([u, v]) => [*u, *v, 1.0, 0.0],
+            None => [0.0; 4],
+        });
+    }
+}
+
+/// Lists vertices, indices, and the range of indices of each mesh: those of [`Scenery::meshes`], those of skins, without vertices, then the
+/// plane seen from behind.
 fn geometry(scenery: &Scenery) -> (Vec<f32>, Vec<u32>, Vec<Range<u32>>) {
     let (mut vertices, mut indices, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
-    let mut first = 0;
-    let mut add = |mesh: &Mesh, flipped: bool| {
-        for (i, n) in mesh.normal.iter().enumerate() {
-            let part = match mesh.part_of(i) {
-                MeshPart::Body => 0.0,
-                MeshPart::Top => 1.0,
-                MeshPart::Bottom => 2.0,
-            };
-            vertices.extend([mesh.x[i], mesh.y[i], mesh.z[i], part, n[0], n[1], n[2], 0.0]);
-            vertices.extend(match mesh.texcoord.get(i) {
-                Some([u, v]) => [*u, *v, 1.0, 0.0],
-                None => [0.0; 4],
-            });
-        }
+    let mut add = |mesh: &Mesh, first: u32, flipped: bool| {
         let start = indices.len() as u32;
         for &[a, b, c] in &mesh.triangles {
             let corners = if flipped { [a, c, b] } else { [a, b, c] };
             indices.extend(corners.map(|i| first + u32::from(i)));
         }
         ranges.push(start..indices.len() as u32);
-        first += mesh.x.len() as u32;
     };
+    let mut first = 0;
     for mesh in &scenery.meshes {
-        add(mesh, false);
+        add(mesh, first, false);
+        add_vertices(mesh, &mut vertices);
+        first += mesh.x.len() as u32;
     }
-    add(&scenery.meshes[Shape::Plane as usize], true);
+    for mesh in scenery.skins.iter().flat_map(SkinLook::meshes) {
+        add(mesh, 0, false);
+    }
+    let plane = &scenery.meshes[Shape::Plane as usize];
+    add(plane, first, true);
+    add_vertices(plane, &mut vertices);
     (vertices, indices, ranges)
 }
 

@@ -106,6 +106,7 @@ impl Core {
             "bodies" => Values::F32(&self.frame.bodies),
             "felt" => Values::F32(&self.frame.felt),
             "contacts" => Values::F32(&self.frame.contacts),
+            "worn" => Values::F32(&self.frame.worn),
             _ => match entry {
                 Some((_, values)) => values,
                 None => of_state(self.env.state(), name)?,
@@ -142,7 +143,7 @@ impl Core {
         self.env.blueprint().dt()
     }
 
-    /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`.
+    /// Brings the views of the frame up to date: `poses`, `bodies`, `felt`, `contacts`, `worn`.
     pub fn update(&mut self) -> Result<(), JsValue> {
         let scenery = self.scenery()?;
         let touch = self.env.senses().touch();

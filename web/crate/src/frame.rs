@@ -3,12 +3,13 @@
 use babybench::math::mat_t_vec;
 use babybench::model::Model;
 use babybench::physics::State;
-use babybench::render::{Poses, Scenery};
+use babybench::render::{Poses, Scenery, Worn};
 use babybench::sensors::Touch;
 
 /// Poses, feelings and contacts of one moment.
 #[derive(Default)]
 pub struct Frame {
+    skins: Worn,
     /// For each thing that is drawn (12): position, m, and rotation matrix, row by row, whose columns are as long as the thing
     /// has grown since it was compiled.
     pub poses: Vec<f32>,
@@ -16,6 +17,8 @@ pub struct Frame {
     pub bodies: Vec<f32>,
     /// For each touch sensor the size of what it feels, N.
     pub felt: Vec<f32>,
+    /// For each drawable that is worn (6 for each vertex of its mesh): positions of all, m, then their unit normals, in the world.
+    pub worn: Vec<f32>,
     /// For each contact (8): point, m, force on the second body, N, the two bodies.
     pub contacts: Vec<f32>,
 }
@@ -36,6 +39,13 @@ impl Frame {
             let grown = |i: usize| if size[i] == d.size[i] { 1.0 } else { size[i] / d.size[i] };
             self.poses
                 .extend(mat.iter().enumerate().map(|(i, &v)| v as f32 * grown(i % 3)));
+        }
+        self.skins.update(scenery, &placed);
+        self.worn.clear();
+        for mesh in self.skins.meshes() {
+            let places = mesh.x.iter().zip(&mesh.y).zip(&mesh.z);
+            self.worn.extend(places.flat_map(|((x, y), z)| [x, y, z]));
+            self.worn.extend(mesh.normal.as_flattened());
         }
         self.bodies.clear();
         for (pos, quat) in s.xpos.iter().zip(&s.xquat) {

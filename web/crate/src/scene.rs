@@ -114,6 +114,7 @@ fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
         Element::Geom(g) => (Some(g), m.geom_bodyid[g], &m.geom_name[g]),
         Element::Site(s) => (None, m.site_bodyid[s], &m.site_name[s]),
         Element::Tendon { tendon, .. } => (None, 0, &m.tendon_name[tendon]),
+        Element::Skin(skin) => (None, 0, &m.skins[skin].name),
     };
     let shape = match d.shape {
         // which the page can stretch, unlike a capsule
@@ -125,13 +126,14 @@ fn drawable(m: &Model, v: &Scenery, d: &Drawable) -> JsValue {
         Shape::Box => "box",
         Shape::Mesh => "mesh",
     };
-    let own = (d.shape == Shape::Mesh).then_some(d.mesh);
+    let own = v.mesh_of(d).filter(|_| d.shape == Shape::Mesh);
     object([
         ("name", name.as_str().into()),
         ("geom", optional(geom, id)),
         ("body", id(body)),
         ("shape", shape.into()),
-        ("mesh", optional(own, |k| mesh(k, &v.meshes[k]))),
+        ("mesh", optional(own, |own| mesh(d.mesh, own))),
+        ("worn", matches!(d.element, Element::Skin(_)).into()),
         ("size", numbers(&d.size)),
         ("rgba", numbers(&d.rgba)),
         ("emission", d.emission.into()),

@@ -7,6 +7,8 @@ export interface Drawable {
   shape: "plane" | "sphere" | "capsule" | "cylinder" | "box" | "mesh";
   /** Triangles of a mesh. */
   mesh: Mesh | null;
+  /** Whether bodies bend the mesh: a frame has its vertices. */
+  worn?: boolean;
   size: [number, number, number];
   rgba: [number, number, number, number];
   specular: number;
@@ -94,6 +96,7 @@ export interface Layout {
   poses: number;
   bodies: number;
   felt: number;
+  worn: number;
   action: number;
   angles: number;
   torques: number;

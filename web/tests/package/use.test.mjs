@@ -101,6 +101,24 @@ test("errors tell key and place", () => {
   env.free();
 });
 
+test("skins are bent by their bodies", () => {
+  const skin = '<skin name="blanket" vertex="-1 0 .1 -1 1 .1 0 0 .4" face="0 2 1"><bone body="world" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1" vertweight="1 1"/><bone body="hip" bindpos="0 0 .3" bindquat="1 0 0 0" vertid="2" vertweight="1"/></skin>';
+  const room = `<mujoco><include file="mimo_settings.xml"/><include file="mimo_actuators.xml"/><deformable>${skin}</deformable><worldbody><body name="mimo_location" pos="0 0 .3"><freejoint name="mimo_location"/><include file="mimo.xml"/></body><geom type="plane" size="2 2 .1"/></worldbody></mujoco>`;
+  const env = new Env({ scene: "mine/room.xml", touch_active: false, vision_active: false }, undefined, { "mine/room.xml": room });
+  env.reset(0);
+  const worn = env.look.drawables.filter((drawable) => drawable.worn);
+  assert.deepEqual(worn.map(({ name, shape }) => [name, shape]), [["blanket", "mesh"]]);
+  const count = worn[0].mesh?.position.length ?? 0;
+  const first = env.update().worn.slice();
+  assert.equal(first.length, 2 * count, "places and normals");
+  for (let k = 0; k < 30; k++) env.step();
+  const then = env.update().worn;
+  assert.deepEqual(first.slice(0, 3), new Float32Array([-1, 0, 0.1]), "where the world holds it");
+  assert.deepEqual(then.slice(0, 3), first.slice(0, 3));
+  const moved = [...then.subarray(0, count)].filter((value, k) => value !== first[k]);
+  assert.ok(moved.length > 0, "where MIMo lies on it");
+});
+
 test("what is described fits the numbers", () => {
   const env = new Env({ behavior: "hand_regard", scene: "cubes" });
   const seen = env.reset(0);

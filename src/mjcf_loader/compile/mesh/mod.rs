@@ -10,6 +10,7 @@ mod polygons;
 mod source;
 
 pub(super) use fit::fit;
+pub(super) use source::{indices, rows};
 
 use super::context::{Context, Ids};
 use super::surface::asset_path;

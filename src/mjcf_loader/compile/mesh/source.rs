@@ -120,7 +120,11 @@ fn fill<T>(into: &mut Vec<T>, from: Vec<T>, twice: &'static str) -> Result<(), &
     Ok(())
 }
 
-fn rows<const N: usize>(numbers: &[f64], wrong: &'static str) -> Result<Vec<[f32; N]>, &'static str> {
+/// Returns numbers in rows of `N`, in single precision.
+pub(in super::super) fn rows<const N: usize>(
+    numbers: &[f64],
+    wrong: &'static str,
+) -> Result<Vec<[f32; N]>, &'static str> {
     let (rows, rest) = numbers.as_chunks::<N>();
     if rest.is_empty() {
         Ok(rows.iter().map(|row| row.map(|x| x as f32)).collect())
@@ -129,7 +133,8 @@ fn rows<const N: usize>(numbers: &[f64], wrong: &'static str) -> Result<Vec<[f32
     }
 }
 
-fn indices(numbers: &[f64]) -> Result<Vec<[u32; 3]>, &'static str> {
+/// Returns the corners of triangles.
+pub(in super::super) fn indices(numbers: &[f64]) -> Result<Vec<[u32; 3]>, &'static str> {
     let (rows, rest) = numbers.as_chunks::<3>();
     let index = |x: &f64| x.fract() == 0.0 && (0.0..f64::from(u32::MAX)).contains(x);
     if !rest.is_empty() || !numbers.iter().all(index) {

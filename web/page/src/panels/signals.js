@@ -27,7 +27,7 @@ function available(scene) {
       group: "Whole body",
       signals: [
         ...(scene.skin.of.length
-          ? [{ key: "touch", title: "Total touch", unit: "N", read: (/** @type {Float32Array} */ f) => f.subarray(l.felt, l.action).reduce((a, b) => a + b, 0) }]
+          ? [{ key: "touch", title: "Total touch", unit: "N", read: (/** @type {Float32Array} */ f) => f.subarray(l.felt, l.worn).reduce((a, b) => a + b, 0) }]
           : []),
         ...AXES.map((a, k) => ({ key: `acceleration ${k}`, title: `Head acceleration, ${a}`, unit: "m/s²", read: (/** @type {Float32Array} */ f) => f[l.balance + k] })),
         ...AXES.map((a, k) => ({ key: `rotation ${k}`, title: `Head rotation about ${a}`, unit: "rad/s", read: (/** @type {Float32Array} */ f) => f[l.balance + 3 + k] })),

@@ -92,6 +92,23 @@ export class Bodies extends Group {
   }
 
   /**
+   * Bends the skins; `worn` has places and normals of the vertices of each.
+   * @param {Float32Array} worn
+   */
+  wear(worn) {
+    let from = 0;
+    for (const { mesh, of } of this.batches) {
+      if (!this.drawables[of[0]].worn) continue;
+      for (const name of ["position", "normal"]) {
+        const attribute = /** @type {import("three").BufferAttribute} */ (mesh.geometry.getAttribute(name));
+        attribute.set(worn.subarray(from, (from += attribute.array.length)));
+        attribute.needsUpdate = true;
+      }
+      mesh.geometry.boundingSphere = null;
+    }
+  }
+
+  /**
    * Finds what a ray meets first.
    * @param {import("three").Raycaster} ray
    * @returns {{ body: number, point: import("three").Vector3 } | null}

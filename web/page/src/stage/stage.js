@@ -139,8 +139,9 @@ export class Stage {
     if (this.bodyPoses.length !== bodyPoses.length) this.bodyPoses = new Float32Array(bodyPoses.length);
     this.bodyPoses.set(bodyPoses);
     bodies.place(poses);
+    bodies.wear(frame.subarray(l.worn, l.action));
     this.placed = true;
-    skin.feel(poses, bodyPoses, frame.subarray(l.felt, l.action), this.jump ? 1e3 : seconds);
+    skin.feel(poses, bodyPoses, frame.subarray(l.felt, l.worn), this.jump ? 1e3 : seconds);
     this.arrows.show(frame.subarray(l.contacts, l.contacts + CONTACT * moment.contacts), moment.contacts);
     this.centre(this.followed);
     this.orbit.track(this.followed, this.jump ? 0 : seconds);

@@ -30,7 +30,8 @@ export class PageEnv {
     this.joints = this.model.joints.map((j) => ({ name: j.name, part: j.part, qpos: j.qposadr, dof: j.dofadr, low: j.range?.[0] ?? -Math.PI, high: j.range?.[1] ?? Math.PI }));
     this.look = env.look;
     this.skin = { at: env.skin.positions.slice(), of: Uint16Array.from(env.skin.bodies) };
-    this.count = { drawables: this.look.drawables.length, bodies: this.bodies.length, sensors: this.skin.of.length, actions: this.actions.length, joints: this.joints.length };
+    const worn = this.look.drawables.reduce((sum, d) => sum + (d.worn && d.mesh ? 2 * d.mesh.position.length : 0), 0);
+    this.count = { worn, drawables: this.look.drawables.length, bodies: this.bodies.length, sensors: this.skin.of.length, actions: this.actions.length, joints: this.joints.length };
     this.seconds = this.model.timestep * this.model.frame_skip;
     this.glances = new Glances(visionDelay(this.settings, this.seconds));
     this.steps = 0;

@@ -345,6 +345,7 @@ export class LiveWorld {
     out.set(drawn.poses, l.poses);
     out.set(drawn.bodies, l.bodies);
     out.set(drawn.felt, l.felt);
+    out.set(drawn.worn, l.worn);
     const contacts = Math.min(CONTACTS, drawn.contacts.length / CONTACT);
     out.set(drawn.contacts.subarray(0, CONTACT * contacts), l.contacts);
     out.set(this.action, l.action);
