@@ -35,7 +35,7 @@ simd='-C target-feature=+simd128'
 module() { # PACKAGE FLAGS
   env RUSTFLAGS="$2" ${RUSTC_WASM:+RUSTC="$RUSTC_WASM"} cargo build --locked --profile web --target "$wasm" --target-dir "$target/wasm" -p "$1"
 }
-module babybench-web "$simd -C llvm-args=-inline-threshold=40"
+module babybench-web "$simd -C llvm-args=-inline-threshold=15"
 module babybench-onnx "$simd"
 
 rm -rf "$package"

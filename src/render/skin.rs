@@ -1,7 +1,5 @@
 //! Skins: meshes whose vertices follow several bodies, and which are therefore made anew for every picture.
 
-use std::collections::BTreeMap;
-
 use super::drawable::Drawable;
 use super::mesh::{LANES, MOST, Mesh, MeshPart};
 use super::scenery::Scenery;
@@ -75,7 +73,8 @@ fn parts(skin: &model::Skin) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut faces = &skin.face[..];
     while !faces.is_empty() {
-        let (mut mesh, mut vertex, mut known) = (Mesh::default(), Vec::new(), BTreeMap::new());
+        let (mut mesh, mut vertex) = (Mesh::default(), Vec::new());
+        let mut known = vec![u16::MAX; skin.vert.len()]; // the place of each vertex in this part
         mesh.band(MeshPart::Body);
         let mut count = 0;
         for face in faces {
@@ -83,12 +82,14 @@ fn parts(skin: &model::Skin) -> Vec<Part> {
                 break;
             }
             let corners = face.map(|v| {
-                *known.entry(v).or_insert_with(|| {
+                let place = &mut known[v as usize];
+                if *place == u16::MAX {
+                    *place = mesh.x.len() as u16;
                     mesh.push((skin.vert[v as usize], [0.0; 3]));
                     mesh.texcoord.extend(skin.texcoord.get(v as usize));
                     vertex.push(v);
-                    (mesh.x.len() - 1) as u16
-                })
+                }
+                *place
             });
             mesh.triangles.push(corners);
             count += 1;

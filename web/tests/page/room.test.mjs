@@ -111,6 +111,45 @@ test("a room is dropped as an archive, goes into a link with its moment, and out
   await page.context().close();
 });
 
+/** A blanket that the floor holds at its rim and MIMo's belly lifts in its middle. */
+function blanket() {
+  const [n, side] = [21, 0.9];
+  const [vertices, faces, rim, belly] = [[], [], [], []];
+  for (let r = 0; r < n; r++) {
+    for (let c = 0; c < n; c++) {
+      const [x, y] = [r, c].map((k) => side * (k / (n - 1) - 0.5));
+      const lift = Math.max(0, 1 - Math.hypot(x, y) / (0.5 * side));
+      vertices.push(x, y, 0.05 + 0.2 * lift);
+      rim.push(1 - lift);
+      belly.push(lift);
+      if (r && c) faces.push((r - 1) * n + c - 1, r * n + c - 1, r * n + c, (r - 1) * n + c - 1, r * n + c, (r - 1) * n + c);
+    }
+  }
+  const ids = rim.map((_, k) => k).join(" ");
+  const bone = (body, z, weights) => `<bone body="${body}" bindpos="0 0 ${z}" bindquat="1 0 0 0" vertid="${ids}" vertweight="${weights.join(" ")}"/>`;
+  return `<deformable><skin name="blanket" rgba=".35 .5 .8 1" vertex="${vertices.join(" ")}" face="${faces.join(" ")}">${bone("world", 0, rim)}${bone("lower_body", 0.15, belly)}</skin></deformable>`;
+}
+
+test("a skin bends with its bodies", async () => {
+  const page = await host.open();
+  await drop(page, "blanket.xml", Buffer.from(bare.replace("<worldbody>", `${blanket()}<worldbody>`)));
+  await until(page, () => mimo.scene.drawables.some((d) => d.worn));
+  const places = () => page.evaluate(() => {
+    const { mesh } = mimo.stage.bodies.batches.find(({ of }) => mimo.scene.drawables[of[0]].worn);
+    return [...mesh.geometry.getAttribute("position").array];
+  });
+  await steps(page, 1);
+  const first = await places();
+  await steps(page, 60);
+  const then = await places();
+  assert.deepEqual(then.slice(0, 3), first.slice(0, 3), "the floor holds the rim");
+  const middle = 3 * 220;
+  assert.ok(Math.hypot(...[0, 1, 2].map((k) => then[middle + k] - first[middle + k])) > 0.001, "MIMo moves the middle");
+  if (process.env.PICTURE) await page.screenshot({ path: process.env.PICTURE });
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
 test("a folder is chosen in the tab Setup, with several rooms", async () => {
   const folder = mkdtempSync(join(tmpdir(), "babybench-room-"));
   try {

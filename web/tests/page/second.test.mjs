@@ -114,7 +114,8 @@ test("he goes away, and leaves no memory, picture or word behind", async () => {
     used.push(await page.evaluate(() => mimo.moment.memory));
   }
   console.log(`memory after each: ${used.map((bytes) => `${(bytes / 1e6).toFixed(1)} MB`).join(", ")}`);
-  assert.equal(used[3], used[1], "what he took is taken again by the next");
+  // an environment takes megabytes; that a piece finds no gap of its size, and memory grows by a page, is chance
+  assert.ok(used[3] - used[1] < 1e6, "what he took is taken again by the next");
   const left = await page.evaluate(() => [document.querySelectorAll("canvas#second, .who, .two").length, mimo.stage.peer, mimo.state.twin, document.getElementById("scene").clientWidth === document.getElementById("stage").clientWidth]);
   assert.deepEqual(left, [0, null, null, true]);
   await assert.rejects(page.evaluate(() => mimo.world.ask("checksum", true)), /MIMo is alone/);
