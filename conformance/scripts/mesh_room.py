@@ -10,7 +10,8 @@ import argparse
 from math import cos, pi, sin, sqrt
 from pathlib import Path
 
-HEAD = """<mujoco model="meshes">
+# What rooms of pictures have in common, and its textures.
+OPENING = """<mujoco model="{name}">
   <statistic extent="2" center="0 0 0"/>
   <visual>
     <headlight active="1"/>
@@ -21,7 +22,8 @@ HEAD = """<mujoco model="meshes">
     <texture name="sky" type="skybox" builtin="gradient" rgb1="0.4 0.6 0.8" rgb2="0.9 0.9 0.7" width="64" height="384"/>
     <texture name="tiles" type="2d" builtin="checker" rgb1="0.8 0.7 0.3" rgb2="0.2 0.3 0.5" width="64" height="64" mark="edge" markrgb="0.9 0.1 0.1"/>
     <texture name="dice" type="cube" builtin="gradient" rgb1="0.9 0.2 0.2" rgb2="0.1 0.1 0.9" width="32" height="192" mark="cross" markrgb="1 1 1"/>
-    <material name="floor" texture="tiles" texrepeat="4 4" specular="0"/>
+"""
+HEAD = OPENING.format(name="meshes") + """    <material name="floor" texture="tiles" texrepeat="4 4" specular="0"/>
     <material name="image" texture="tiles"/>
     <material name="repeated" texture="tiles" texrepeat="3 2" texuniform="true"/>
     <material name="cube" texture="dice" shininess="0.3"/>

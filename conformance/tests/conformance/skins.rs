@@ -209,5 +209,10 @@ fn skins_of_cables_are_taken_alike() {
                 same(&cable(geom, skin, more), &[]);
             }
         }
+        // one body, and a copy of a cable
+        same(&cable(geom, "", "").replace("7 1 1", "2 1 1"), &[]);
+        let copied =
+            cable(geom, "", "").replace("<composite", r#"<replicate count="2" offset="0 1 0"><body><composite"#);
+        same(&copied.replace("</composite>", "</composite></body></replicate>"), &[]);
     }
 }

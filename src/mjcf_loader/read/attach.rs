@@ -258,7 +258,7 @@ fn take_assets(taking: &Taking, from: &Document, document: &mut Document) {
     }
     for skin in &from.skins {
         if skin.bones.iter().all(|bone| taking.has(Thing::Body, &bone.body)) {
-            // MuJoCo leaves its name as it is, with which a second copy has none of its own
+            // MuJoCo 3.3.0 gives the name of a skin no prefix
             let mut skin = skin.clone();
             taking.refer_asset(&mut skin.material);
             skin.bones.iter_mut().for_each(|bone| taking.refer(&mut bone.body));

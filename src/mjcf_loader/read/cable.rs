@@ -6,6 +6,7 @@ use super::super::document::{Body, Document, Orientation};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::relation::Exclude;
 use super::super::schema::Element;
+use super::super::skin::Skin;
 use super::super::table::Table;
 use super::super::xml::Tree;
 use super::cable_skin;
@@ -14,6 +15,8 @@ use crate::model::{GeomType, JointType};
 
 const GONE: &str = "MuJoCo 3.3.0 makes only cables: write particles as <replicate>, ropes as type=\"cable\"; cloth, grids and loops are flexes";
 const LOST: &str = "MuJoCo 3.3.0 loses a composite in a <replicate> that is not in a body there: put a body around it";
+const ONE_BOX: &str =
+    "MuJoCo 3.3.0 cannot make a cable of one box, whose skin it hangs at a last body: give it more points";
 const SHAPE: &str =
     "the geoms of a cable are capsules, cylinders or boxes: give <geom type=\"capsule\" size=\"0.01\"/>";
 
@@ -74,19 +77,7 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
         count: links.len(),
     };
     if like.geom.kind == GeomType::Box {
-        // MuJoCo looks for its bodies under the names of the original, which a copy does not find
-        let names = Names { suffix: "", ..names };
-        let bodies: Vec<_> = (0..links.len()).map(|index| names.of("B", index)).collect();
-        let skin = match e.children.iter().find(|part| part.name == "skin") {
-            Some(skin) => CompositeSkin::read(skin),
-            None => CompositeSkin {
-                at: e.at,
-                ..CompositeSkin::initial()
-            },
-        };
-        document
-            .skins
-            .push(cable_skin::skin(&skin, prefix, &bodies, like.geom.size));
+        document.skins.push(skin(e, names, like.geom.size).map_err(invalid)?);
     }
     for (index, link) in links.iter().enumerate() {
         let parent = if index == 0 {
@@ -110,6 +101,24 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
         }
     }
     Ok(())
+}
+
+/// Makes the skin of a cable of boxes with half lengths `size`.
+fn skin(e: &Element, names: Names, size: [f64; 3]) -> Result<Skin, &'static str> {
+    if names.count == 1 {
+        return Err(ONE_BOX);
+    }
+    // MuJoCo looks for its bodies under the names of the original, which a copy does not find
+    let original = Names { suffix: "", ..names };
+    let bodies: Vec<_> = (0..names.count).map(|index| original.of("B", index)).collect();
+    let like = match e.children.iter().find(|part| part.name == "skin") {
+        Some(skin) => CompositeSkin::read(skin),
+        None => CompositeSkin {
+            at: e.at,
+            ..CompositeSkin::initial()
+        },
+    };
+    Ok(cable_skin::skin(&like, names.prefix, &bodies, size))
 }
 
 /// The names of a cable's parts: those of the first and the last body say so.
