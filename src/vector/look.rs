@@ -54,7 +54,8 @@ impl VectorEnv {
         if !self.lazy {
             return Ok(());
         }
-        let away = self.ids.iter().find(|&&env| self.slots[env].is_none());
+        // rows stand in the order in which environments came back: the lowest number is the same with any number of threads
+        let away = self.ids.iter().filter(|&&env| self.slots[env].is_none()).min();
         if let Some(&env) = away {
             return Err(VectorError::InFlight { env });
         }
@@ -96,18 +97,18 @@ impl VectorEnv {
         });
         self.pool.submit(waiting, true);
         self.in_flight = self.ids.len();
-        let mut outcome = Ok(());
+        let mut first: Option<(usize, VectorError)> = None;
         while let Some(mut slot) = self.pool.next(self.in_flight) {
             self.in_flight -= 1;
             let env = slot.index;
             let failed = slot.failure.take().map(of(env));
             if let Some(error) = panicked(&slot).or(failed)
-                && outcome.is_ok()
+                && first.as_ref().is_none_or(|(known, _)| env < *known)
             {
-                outcome = Err(error);
+                first = Some((env, error));
             }
             self.slots[env] = Some(slot);
         }
-        outcome
+        first.map_or(Ok(()), |(_, error)| Err(error))
     }
 }

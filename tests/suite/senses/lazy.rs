@@ -4,7 +4,7 @@ use babybench::config::{Compat, Delays, NoiseLevels, TouchFunction, VisionOutput
 use babybench::env::draw_eyes;
 use babybench::sensors::transform::{Sense, Signal, Transform};
 use babybench::spaces::NumpyRng;
-use babybench::vector::Buffers;
+use babybench::vector::{Buffers, VectorError};
 use babybench::{AutoresetMode, Config, Env, VectorEnv, VectorOptions};
 
 use super::{everything, seen};
@@ -173,6 +173,23 @@ fn what_a_later_picture_depends_on_is_drawn_in_every_step() {
         random_steps(env, 3);
     }
     assert!(seen(&every) == seen(&some));
+}
+
+#[test]
+fn the_same_environment_is_named_whichever_came_back_first() {
+    let options = VectorOptions {
+        threads: 1,
+        ..VectorOptions::default()
+    };
+    let mut envs = VectorEnv::new(&blueprint(lazy(eager())), 3, options).expect("a vector");
+    envs.reset(0).expect("no divergence");
+    let mut actions = Vec::new();
+    envs.sample_actions(&mut actions).expect("all are at home");
+    envs.send(&actions, &[2, 0, 1]).expect("valid actions");
+    envs.recv(3).expect("three were sent");
+    envs.send(&actions, &[0, 1, 2]).expect("valid actions");
+    let refused = envs.look().map(|_| ());
+    assert!(matches!(refused, Err(VectorError::InFlight { env: 0 })), "{refused:?}");
 }
 
 #[test]
