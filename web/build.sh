@@ -46,6 +46,11 @@ bind() { # MODULE NAME: JavaScript beside a module
 bind babybench_web core
 bind babybench_onnx onnx_core
 
+# Faces that MIMo seldom makes are fetched when they are wanted.
+mkdir "$package/faces"
+cp assets/tex/face_*.png "$package/faces"
+rm "$package/faces/face_default.png"
+
 # The package: its sources, and types from their comments.
 cp web/package/*.js web/package/package.json web/package/README.md LICENSE-MIT LICENSE-APACHE NOTICE "$package"
 web/node_modules/.bin/tsc -p web/package

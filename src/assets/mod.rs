@@ -161,7 +161,8 @@ impl AssetSource for MemoryAssets {
     }
 }
 
-/// A source of files that are embedded in the program, as pairs of path and content.
+/// A source of files that are embedded in the program, as pairs of path and content. A file without content stands for one that this
+/// build leaves out: documents may name it, and reading it is an error.
 #[derive(Clone, Copy, Debug)]
 pub struct EmbeddedAssets(pub &'static [(&'static str, &'static [u8])]);
 
@@ -169,9 +170,18 @@ impl AssetSource for EmbeddedAssets {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         let path = resolve("", path)?;
         match self.0.iter().find(|(name, _)| *name == path) {
+            Some((_, [])) => Err(AssetError::Io {
+                path,
+                message: "this build leaves it out; give it among the assets, or enable the feature that embeds it"
+                    .to_owned(),
+            }),
             Some((_, bytes)) => Ok(Cow::Borrowed(bytes)),
             None => Err(AssetError::NotFound(path)),
         }
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        resolve("", path).is_ok_and(|path| self.0.iter().any(|(name, _)| *name == path))
     }
 }
 

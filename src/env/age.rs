@@ -38,12 +38,16 @@ impl Env {
         }
         let other = self.blueprint.with_facial_expression(face)?.env()?;
         let (snapshot, ready, details) = (self.snapshot(), self.ready(), self.info.details.clone());
-        self.become_grown(other);
+        let mut before = self.become_grown(other);
         // nothing but the pictures is another's, so that its own snapshot fits
         self.restore(&snapshot)?;
         if ready {
             self.by_hand().resume(&snapshot)?;
             self.info.details = details;
+            // a step feels the contacts that it ends with, not those of the state that it leaves
+            if before.senses.known {
+                self.senses.take_felt(&mut before.senses);
+            }
         }
         Ok(())
     }
@@ -53,8 +57,8 @@ impl Env {
         self.blueprint.with_age(age)?.env()
     }
 
-    /// Turns into an environment of another age.
-    pub(crate) fn become_grown(&mut self, mut grown: Self) {
+    /// Turns into an environment of another age. Returns what it was.
+    pub(crate) fn become_grown(&mut self, mut grown: Self) -> Self {
         let (old, new) = (&self.physics.base, &mut grown.physics.base);
         new.eq_active.clone_from(&old.eq_active);
         new.eq_offset.clone_from(&old.eq_offset);
@@ -64,6 +68,6 @@ impl Env {
         grown.senses.vision_deferred = self.senses.vision_deferred;
         grown.senses_mut().set_vision_threads(self.senses.vision_threads());
         grown.senses.take_added(&mut self.senses);
-        *self = grown;
+        std::mem::replace(self, grown)
     }
 }

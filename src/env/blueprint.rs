@@ -235,7 +235,8 @@ impl Blueprint {
     /// Returns a blueprint of the same configuration in which MIMo makes another face. Snapshots of both are exchangeable.
     ///
     /// # Errors
-    /// As [`Blueprint::with`]; assets without the texture of the face, `tex_head_NAME`.
+    /// As [`Blueprint::with`]; assets without the texture of the face, `tex_head_NAME`. Without the feature `faces`, pictures of all faces
+    /// but the default one must be among the assets, as `tex/face_NAME.png`.
     pub fn with_facial_expression(&self, facial_expression: FacialExpression) -> Result<Self, EnvError> {
         let config = Config {
             facial_expression,

@@ -151,6 +151,16 @@ impl Senses {
         self.make_room();
     }
 
+    /// Takes over what the skin of other senses of the same body felt.
+    pub(super) fn take_felt(&mut self, other: &mut Self) {
+        std::mem::swap(&mut self.touch, &mut other.touch);
+        std::mem::swap(&mut self.pain, &mut other.pain);
+        std::mem::swap(&mut self.touch_values, &mut other.touch_values);
+        std::mem::swap(&mut self.pain_values, &mut other.pain_values);
+        let pooled = Sense::TouchPooled as usize;
+        std::mem::swap(&mut self.numbers[pooled], &mut other.numbers[pooled]);
+    }
+
     /// Makes room for touch and pain apart from what the skin feels, where they have transforms.
     fn make_room(&mut self) {
         let like = |felt: Option<&SkinValues>, changed| match felt {

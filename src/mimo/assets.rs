@@ -3,9 +3,13 @@
 use crate::assets::EmbeddedAssets;
 
 macro_rules! embed {
-    ($($path:literal),* $(,)?) => {
+    ($($path:literal),* ; $($face:literal),* $(,)?) => {
         /// Paths and contents of the embedded files.
-        const FILES: &[(&str, &[u8])] = &[$(($path, include_bytes!(concat!("../../assets/", $path)))),*];
+        const FILES: &[(&str, &[u8])] = &[
+            $(($path, include_bytes!(concat!("../../assets/", $path))),)*
+            // the documents name all faces, so that what is left out must be there by name
+            $(($face, if cfg!(feature = "faces") { include_bytes!(concat!("../../assets/", $face)) } else { &[] }),)*
+        ];
     };
 }
 
@@ -58,13 +62,7 @@ embed![
     "babybench/task_world.xml",
     "tex/eye_left.png",
     "tex/eye_right.png",
-    "tex/face_angry.png",
     "tex/face_default.png",
-    "tex/face_disgusted.png",
-    "tex/face_happy.png",
-    "tex/face_sad.png",
-    "tex/face_scared.png",
-    "tex/face_surprised.png",
     "tex/head_back.png",
     "tex/head_left.png",
     "tex/head_right.png",
@@ -94,10 +92,17 @@ embed![
     "toys/rattle_handle.obj",
     "toys/rattle_head.obj",
     "toys/ring_bow.obj",
-    "toys/wedge.obj",
+    "toys/wedge.obj";
+    "tex/face_angry.png",
+    "tex/face_disgusted.png",
+    "tex/face_happy.png",
+    "tex/face_sad.png",
+    "tex/face_scared.png",
+    "tex/face_surprised.png",
 ];
 
-/// Returns the embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`; beside them `toys/*.obj`.
+/// Returns the embedded assets, laid out like the original: `babybench/*.xml`, `tex/*.png`; beside them `toys/*.obj`. Of MIMo's faces,
+/// `tex/face_*.png`, there is only the default one without the feature `faces`.
 pub fn embedded() -> EmbeddedAssets {
     EmbeddedAssets(FILES)
 }
@@ -120,6 +125,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "faces")]
     #[test]
     fn every_asset_is_embedded() {
         let mut found = BTreeSet::new();

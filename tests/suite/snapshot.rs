@@ -324,7 +324,9 @@ fn a_snapshot_of_the_largest_scene_is_small() {
 #[test]
 fn faces_change_pictures_alone() {
     let config = Config {
-        touch_active: false,
+        touch_active: true,
+        touch_pooled: true,
+        pain_active: true,
         ..body_only("self_touch")
     };
     let blueprint = blueprint(config);

@@ -3,11 +3,12 @@ import { Blueprint } from "./blueprint.js";
 import start, { configKeys as coreKeys } from "./core.js";
 import { Env } from "./env.js";
 import { ArgumentError, FreedError, MissingError, ModuleError } from "./errors.js";
+import { loadFace } from "./faces.js";
 import { locate, once } from "./load.js";
 import { guarded, memory, module } from "./module.js";
 import { ActionNoise } from "./noise.js";
 
-export { ActionNoise, ArgumentError, Blueprint, Env, FreedError, MissingError, ModuleError };
+export { ActionNoise, ArgumentError, Blueprint, Env, FreedError, loadFace, MissingError, ModuleError };
 
 /** @typedef {import("./types.js").Settings} Settings */
 /** @typedef {import("./types.js").Assets} Assets */

@@ -2,7 +2,7 @@
 
 export const METHODS = /** @type {const} */ ([
   "reset", "resetTo", "setState", "setActivity", "setGoal", "step", "computeReward", "sampleAction", "seedActionSpace", "update",
-  "texturePixels", "lock", "unlock", "snapshot", "restore", "applyForce", "releaseForces", "draw", "lookThroughEyes", "deferVision",
+  "texturePixels", "lock", "unlock", "swapFacialExpression", "snapshot", "restore", "applyForce", "releaseForces", "draw", "lookThroughEyes", "deferVision",
   "drawEyes", "checksum", "view", "free",
 ]);
 export const PROPERTIES = /** @type {const} */ ([

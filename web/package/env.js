@@ -3,6 +3,7 @@
 import { Blueprint } from "./blueprint.js";
 import * as check from "./check.js";
 import { ArgumentError, FreedError } from "./errors.js";
+import { checkFace } from "./faces.js";
 import { guarded, memory } from "./module.js";
 
 /** @typedef {import("./types.js").Observation} Observation */
@@ -296,6 +297,20 @@ export class Env {
   unlock(target) {
     check.text("target", target);
     return this.#call((core) => core.unlock(target));
+  }
+
+  /**
+   * Lets MIMo make another face, at any moment: pictures change, and nothing else. All but the default one are fetched by {@link loadFace}
+   * first.
+   * @param {string} expression such as `happy`
+   */
+  swapFacialExpression(expression) {
+    checkFace("expression", expression);
+    this.#yaml = this.#call((core) => core.swapFacialExpression(expression));
+    this.#config = { ...this.#config, facial_expression: expression };
+    this.#look = undefined;
+    this.#views.clear();
+    return this.observation;
   }
 
   /** The locked joints, by number. */

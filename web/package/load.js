@@ -28,7 +28,7 @@ export function once(start) {
   /** @type {Promise<T> | undefined} */
   let started;
   return async (source) => {
-    if (source !== undefined && !isSource(source)) refuse("source", source, "an address, a Request, a Response, bytes or a WebAssembly.Module");
+    checkSource(source, [WebAssembly.Module], "an address, a Request, a Response, bytes or a WebAssembly.Module");
     started ??= start(source).catch((/** @type {unknown} */ error) => {
       started = undefined;
       throw error;
@@ -37,8 +37,13 @@ export function once(start) {
   };
 }
 
-/** @param {unknown} source */
-function isSource(source) {
-  const kinds = [URL, Request, Response, ArrayBuffer, WebAssembly.Module];
-  return (typeof source === "string" && source !== "") || ArrayBuffer.isView(source) || kinds.some((kind) => source instanceof kind);
+/**
+ * @param {unknown} source
+ * @param {Function[]} more classes that it may be of, beside those of a file
+ * @param {string} expected
+ */
+export function checkSource(source, more, expected) {
+  const kinds = [URL, Request, Response, ArrayBuffer, ...more];
+  const right = (typeof source === "string" && source !== "") || ArrayBuffer.isView(source) || kinds.some((kind) => source instanceof kind);
+  if (source !== undefined && !right) refuse("source", source, expected);
 }

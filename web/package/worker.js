@@ -1,5 +1,5 @@
 // A worker that holds environments, so that no step freezes the page. `remote.js` is its other end.
-import init, { Env } from "./babybench.js";
+import init, { Blueprint, Env, loadFace } from "./babybench.js";
 import { METHODS, PROPERTIES } from "./calls.js";
 import { FreedError } from "./errors.js";
 
@@ -38,7 +38,10 @@ function copied(value, moved) {
 async function answer({ env: id, what, args }) {
   if (what === "create") {
     await init();
-    environments.set(next, new Env(args[0], args[1], args[2]));
+    const blueprint = new Blueprint(args[0], args[1], args[2]);
+    await loadFace(String(blueprint.config.facial_expression));
+    environments.set(next, new Env(blueprint));
+    blueprint.free();
     return next++;
   }
   const env = environments.get(/** @type {number} */ (id));
@@ -47,6 +50,7 @@ async function answer({ env: id, what, args }) {
     environments.delete(/** @type {number} */ (id));
     return env.free();
   }
+  if (what === "swapFacialExpression") await loadFace(args[0]);
   const any = /** @type {any} */ (env);
   if (methods.has(what)) return any[what](...args);
   if (properties.has(what)) return any[what];

@@ -5,7 +5,8 @@ import { createHash } from "node:crypto";
 import { copyFileSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
-import { gzipSync } from "node:zlib";
+import { promisify } from "node:util";
+import { brotliCompress, constants, gzipSync } from "node:zlib";
 import { lean } from "./lean.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -52,11 +53,19 @@ writeFileSync(join(out, "LICENSES.txt"), texts.join("\n\n----\n\n"));
 const files = readdirSync(out, { recursive: true, withFileTypes: true })
   .filter((f) => f.isFile())
   .map((f) => relative(out, join(f.parentPath, f.name)).replaceAll("\\", "/"))
-  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|room\.xml|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$|^policies\/\w+\.onnx$/.test(f))
+  .filter((f) => /^(index\.html|page\.css|main\.js|worker\.js|inter\.woff2|icon\.svg|room\.xml|page\.webmanifest)$|^babybench\/\w+\.(js|wasm)$|^babybench\/faces\/\w+\.png$|^policies\/\w+\.onnx$/.test(f))
   .sort();
-const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, { hash: createHash("sha256").update(readFileSync(join(out, f))).digest("hex"), wanted: !/onnx|remote|babybench\/worker/.test(f) }]));
+const table = Object.fromEntries(files.map((f) => [f === "index.html" ? "" : f, { hash: createHash("sha256").update(readFileSync(join(out, f))).digest("hex"), wanted: !/onnx|remote|babybench\/(worker|faces)/.test(f) }]));
 const sw = readFileSync(join(here, "src/sw.js"), "utf8").replace("const FILES = {};", `const FILES = ${JSON.stringify(table)};`);
 await build({ stdin: { contents: sw }, outfile: join(out, "sw.js"), minify: true, logLevel: "warning" });
+
+// as small as Brotli makes them, for hosts that serve what lies beside a file: it takes too long to be done at each request
+const pack = promisify(brotliCompress);
+const packed = readdirSync(out, { recursive: true, withFileTypes: true }).filter((f) => f.isFile() && /\.(html|js|css|wasm|onnx)$/.test(f.name));
+await Promise.all(packed.map(async (f) => {
+  const bytes = readFileSync(join(f.parentPath, f.name));
+  writeFileSync(join(f.parentPath, `${f.name}.br`), await pack(bytes, { params: { [constants.BROTLI_PARAM_LGWIN]: constants.BROTLI_MAX_WINDOW_BITS, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } }));
+}));
 
 const scripts = ["main.js", "worker.js", "sw.js"].map((name) => ({ name, raw: statSync(join(out, name)).size, gzip: gzipSync(readFileSync(join(out, name)), { level: 9 }).length }));
 for (const s of scripts) console.log(`${s.name}: ${s.raw} bytes, ${s.gzip} gzip`);

@@ -1,4 +1,5 @@
-// Serves a folder on this machine, compressed, with validators: `node serve.mjs DIR [PORT]`. Any static host does as well.
+// Serves a folder on this machine, compressed, with validators: `node serve.mjs DIR [PORT]`. Any static host does as well; the smallest
+// answers are those of one that serves FILE.br, which the build leaves beside FILE.
 import { createHash } from "node:crypto";
 import { readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";
@@ -54,7 +55,9 @@ function files(root, under) {
     if (known.get(target)?.version !== version) {
       const bytes = readFileSync(target);
       const etag = `"${createHash("sha256").update(bytes).digest("base64url").slice(0, 22)}"`;
-      known.set(target, { name, version, bytes, etag, type: TYPES[extname(target)] ?? "application/octet-stream", shrinks: !PACKED.has(extname(target)), packed: {} });
+      const beside = statSync(`${target}.br`, { throwIfNoEntry: false });
+      const packed = beside && beside.mtimeMs >= stat.mtimeMs ? { br: readFileSync(`${target}.br`) } : {};
+      known.set(target, { name, version, bytes, etag, type: TYPES[extname(target)] ?? "application/octet-stream", shrinks: !PACKED.has(extname(target)), packed });
     }
     return known.get(target);
   };

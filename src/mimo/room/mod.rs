@@ -175,6 +175,11 @@ impl<A: AssetSource> Room<A> {
         }
     }
 
+    /// Returns whether the library names a file, which this build may leave out, or the assets give it.
+    fn has_library(&self, path: &str) -> bool {
+        self.given.contains(path) || embedded().contains(path)
+    }
+
     /// Reads a file from the folder of the document.
     fn read_own(&self, name: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         let shown = || self.shown(name);
@@ -284,6 +289,11 @@ impl<A: AssetSource> AssetSource for Room<A> {
                 None => self.read_library(&path),
             },
         }
+    }
+
+    fn contains(&self, path: &str) -> bool {
+        let beside = |path: &String| BESIDE.iter().any(|folder| path.starts_with(folder));
+        resolve("", path).is_ok_and(|path| beside(&path) && self.has_library(&path)) || self.read(path).is_ok()
     }
 }
 

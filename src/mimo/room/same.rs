@@ -20,6 +20,10 @@ impl<A: AssetSource> AssetSource for Library<'_, A> {
     fn read(&self, path: &str) -> Result<Cow<'_, [u8]>, AssetError> {
         self.0.read_library(path)
     }
+
+    fn contains(&self, path: &str) -> bool {
+        self.0.has_library(path)
+    }
 }
 
 impl<A: AssetSource> Room<A> {

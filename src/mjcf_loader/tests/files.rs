@@ -97,7 +97,11 @@ fn includes_splice_and_are_bounded() {
 
 #[test]
 fn layers_and_embedded_files_are_found() {
-    static FILES: &[(&str, &[u8])] = &[("kit/a.xml", b"<mujoco model='embedded'/>"), ("b.xml", b"\xff")];
+    static FILES: &[(&str, &[u8])] = &[
+        ("kit/a.xml", b"<mujoco model='embedded'/>"),
+        ("b.xml", b"\xff"),
+        ("out.png", b""),
+    ];
     let below = EmbeddedAssets(FILES);
     let above = source(&[("kit/c.xml", "<mujoco model='above'/>")]);
     let both = Overlay::new(below).with(above);
@@ -109,6 +113,9 @@ fn layers_and_embedded_files_are_found() {
         "d.xml: file \"d.xml\" does not exist"
     );
     assert!(both.contains("b.xml") && !both.contains("d.xml"));
+    assert!(both.contains("out.png"));
+    let left_out = both.read("out.png").unwrap_err().to_string();
+    assert!(left_out.contains("this build leaves it out"), "{left_out}");
 }
 
 #[cfg(unix)]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use babybench::Env;
-use babybench::config::Part;
+use babybench::config::{FacialExpression, Part};
 use babybench::env::{Snapshot, ViewFrom, Viewer, draw_eyes};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
@@ -275,6 +275,15 @@ impl Core {
     pub fn unlock(&mut self, target: &str) -> Result<JsValue, JsValue> {
         let report = self.env.unlock(lock_target(target));
         report.map(|r| self.report(&r)).map_err(|e| js::env_error(&e))
+    }
+
+    /// Lets MIMo make another face. Returns the configuration as YAML.
+    #[wasm_bindgen(js_name = swapFacialExpression)]
+    pub fn swap_facial_expression(&mut self, name: &str) -> Result<String, JsValue> {
+        let face = FacialExpression::from_name(name).ok_or_else(|| js::error("there is no such face"))?;
+        done(self.env.swap_facial_expression(face))?;
+        (self.scenery, self.viewer) = (None, None);
+        Ok(self.env.config().to_yaml())
     }
 
     /// Lists the locked joints by id.

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod env;
+mod faces;
 #[path = "../../../examples/checksum/fold.rs"]
 mod fold;
 mod frame;
@@ -17,6 +18,7 @@ use babybench::Config;
 use babybench::assets::{MemoryAssets, Overlay};
 use babybench::env::BlueprintOptions;
 use babybench::mimo::embedded;
+use faces::Faces;
 use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 
@@ -43,7 +45,7 @@ impl Blueprint {
         for (path, bytes) in paths.iter().zip(contents) {
             files.insert(path, bytes.to_vec()).map_err(js::error)?;
         }
-        let options = BlueprintOptions::default().with_assets(Overlay::new(embedded()).with(files));
+        let options = BlueprintOptions::default().with_assets(Overlay::new(embedded()).with(Faces).with(files));
         babybench::Blueprint::with(config, options)
             .map(Self)
             .map_err(|e| js::env_error(&e))

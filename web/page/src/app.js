@@ -210,13 +210,9 @@ export class App {
     }
     if (!snapshot) this.state.held = {};
     if (!this.scene) performance.mark("scene");
-    this.scene = scene;
     this.state.settings = scene.settings;
     this.state.locks = scene.joints.filter((j) => j.locked).map((j) => j.name);
-    this.second.show(scene.twin ?? null);
-    this.stage.build(scene);
-    this.emit("scene", scene);
-    this.emit("state");
+    this.show(scene);
     await this.world.ask("look");
   }
 
@@ -383,6 +379,28 @@ export class App {
   setLocked(locked) {
     this.scene?.joints.forEach((j, i) => (j.locked = locked[i]));
     this.state.locks = this.scene?.joints.filter((j) => j.locked).map((j) => j.name) ?? [];
+    this.emit("state");
+  }
+
+  /**
+   * Lets MIMo make a face, and him beside him; time goes on.
+   * @param {string} name
+   */
+  async face(name) {
+    await this.inTurn(async () => {
+      const { scene, twin } = await this.world.ask("face", name);
+      this.state.settings = scene.settings;
+      this.show({ .../** @type {Scene} */ (this.scene), ...scene, twin: twin && { .../** @type {Scene} */ (this.second.scene), ...twin } });
+      await this.world.ask("look");
+    });
+  }
+
+  /** @param {Scene} scene */
+  show(scene) {
+    this.scene = scene;
+    this.second.show(scene.twin ?? null);
+    this.stage.build(scene);
+    this.emit("scene", scene);
     this.emit("state");
   }
 

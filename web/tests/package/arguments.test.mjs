@@ -48,6 +48,7 @@ const ENV = {
   texturePixels: [["texture", "whole"], ["face", "whole"]],
   lock: [["target", "text"], ["angle", "finite"]],
   unlock: [["target", "text"]],
+  swapFacialExpression: [["expression", "text"]],
   snapshot: [],
   restore: [["bytes", "bytes"]],
   applyForce: [["body", "whole"], ["force", "numbers"], ["torque", "numbers"], ["point", "numbers"]],
@@ -67,7 +68,7 @@ const methods = (/** @type {Function} */ kind) => Object.getOwnPropertyNames(kin
 const right = (env) => ({
   seed: 0, qpos: env.view("qpos")?.slice(), qvel: env.view("qvel")?.slice(), activity: env.view("act")?.slice(), action: env.action.slice(),
   desired: Array.from(env.observation.desired_goal ?? []), achieved: [Array.from(env.observation.achieved_goal ?? [])], infos: [env.info],
-  name: "qpos", texture: 0, face: 0, target: "hands", angle: 0, bytes: env.snapshot(), body: 3, force: [0, 0, 1], torque: [0, 0, 0], point: [0, 0, 0],
+  name: "qpos", expression: "default", texture: 0, face: 0, target: "hands", angle: 0, bytes: env.snapshot(), body: 3, force: [0, 0, 1], torque: [0, 0, 0], point: [0, 0, 0],
   camera: "closeup", width: 8, height: 8, deferred: false, env,
 });
 
@@ -122,6 +123,10 @@ test("every other export names the argument that is wrong", async () => {
   for (const start of [init, initOnnx]) {
     for (const wrong of WRONG.source) await assert.rejects(start(/** @type {any} */ (wrong)), { name: "ArgumentError", argument: "source" });
   }
+  for (const wrong of WRONG.text) await assert.rejects(babybench.loadFace(/** @type {any} */ (wrong)), { name: "ArgumentError", argument: "name" });
+  for (const wrong of WRONG.source.filter((value) => value !== undefined)) {
+    await assert.rejects(babybench.loadFace("happy", /** @type {any} */ (wrong)), { name: "ArgumentError", argument: "source" });
+  }
   // what a worker is asked is checked before it goes there
   const sent = [];
   const worker = new remote.Connection(/** @type {any} */ ({ postMessage: (/** @type {unknown} */ d) => sent.push(d), terminate: nothing }));
@@ -137,7 +142,7 @@ test("every other export names the argument that is wrong", async () => {
   await assert.rejects(far.call("reset"), /the worker was closed/);
   assert.throws(() => remote.connect(), { name: "MissingError", message: /Worker/ });
   // functions without arguments, and classes of errors: nothing can be wrong with them
-  const known = ["default", "ActionNoise", "Env", "Blueprint", "configKeys", "memoryBytes", "ArgumentError", "FreedError", "MissingError", "ModuleError", "OnnxPolicy", "Connection", "RemoteEnv", "connect"];
+  const known = ["default", "ActionNoise", "Env", "Blueprint", "configKeys", "memoryBytes", "loadFace", "ArgumentError", "FreedError", "MissingError", "ModuleError", "OnnxPolicy", "Connection", "RemoteEnv", "connect"];
   assert.deepEqual([babybench, onnx, remote].flatMap((m) => Object.keys(m)).filter((name) => !known.includes(name)), []);
   env.free();
 });

@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 import { setFlagsFromString } from "node:v8";
 import { runInNewContext } from "node:vm";
 import { gzipSync } from "node:zlib";
-import init, { Blueprint, configKeys, Env, memoryBytes } from "../../dist/babybench/babybench.js";
+import init, { Blueprint, configKeys, Env, loadFace, memoryBytes } from "../../dist/babybench/babybench.js";
 
 const folder = fileURLToPath(new URL("../../dist/babybench", import.meta.url));
 const crib = { behavior: "self_touch", scene: "crib", vision_active: false };
@@ -17,8 +17,8 @@ const crib = { behavior: "self_touch", scene: "crib", vision_active: false };
 before(() => init());
 
 test("the modules are small", () => {
-  // the environments are about 3.30 MB, 1.44 gzip
-  for (const [name, most, packed] of /** @type {const} */ ([["core_bg.wasm", 3.32e6, 1.46e6], ["onnx_core_bg.wasm", 3.8e6, 1.5e6]])) {
+  // the environments are about 3.21 MB, 1.34 gzip
+  for (const [name, most, packed] of /** @type {const} */ ([["core_bg.wasm", 3.25e6, 1.36e6], ["onnx_core_bg.wasm", 3.8e6, 1.5e6]])) {
     const bytes = readFileSync(join(folder, name));
     const gzip = gzipSync(bytes, { level: 9 }).length;
     console.log(`${name}: ${bytes.length} bytes, ${gzip} gzip`);
@@ -83,6 +83,30 @@ test("a room of one's own is made of files in memory", () => {
   assert.throws(() => new Env({ scene: "mine/mimo.xml" }, undefined, { "mine/mimo.xml": parts["mine/room.xml"] }), /mimo.xml/);
   for (const e of [env, other, mine]) e.free();
   blueprint.free();
+});
+
+test("faces are fetched when they are wanted, and change nothing but pictures", async () => {
+  const seen = { ...crib, scene: "base", touch_active: false };
+  const env = new Env(seen);
+  env.reset(0);
+  const pixels = () => env.look.textures.flatMap((faces, t) => faces.map((_, f) => Buffer.from(env.texturePixels(t, f)).toString("base64"))).join();
+  const [calm, checksum, snapshot] = [pixels(), env.checksum(), env.snapshot()];
+  assert.throws(() => new Env({ ...seen, facial_expression: "scared", vision_active: true }), /await loadFace\("scared"\)/);
+  await assert.rejects(loadFace("sad", new Response("", { status: 404 })), { name: "MissingError", message: /answered 404/ });
+  for (const { name, options } of configKeys()) if (name === "facial_expression") for (const face of options ?? []) await loadFace(face);
+  env.swapFacialExpression("happy");
+  assert.equal(env.config.facial_expression, "happy");
+  assert.match(env.yaml, /facial_expression: happy/);
+  assert.notEqual(pixels(), calm);
+  assert.equal(env.checksum(), checksum);
+  env.restore(snapshot);
+  env.step();
+  env.swapFacialExpression("default");
+  assert.equal(pixels(), calm);
+  const scared = new Env({ ...seen, facial_expression: "scared", vision_active: true });
+  scared.reset(0);
+  scared.free();
+  env.free();
 });
 
 test("errors tell key and place", () => {

@@ -18,6 +18,9 @@ const BODIES = [["v1", "Mitten hands (v1)"], ["v2", "Five fingers (v2)"]];
 /** @type {[string, string][]} */
 const ACTUATION = [["spring_damper", "Torque"], ["muscle", "Muscles"], ["positional", "Angles"]];
 
+/** @type {[string, string][]} */
+const FACES = [["default", "Calm"], ["happy", "Happy"], ["sad", "Sad"], ["surprised", "Surprised"], ["angry", "Angry"], ["disgusted", "Disgusted"], ["scared", "Scared"]];
+
 /** The age whose proportions are nearest to the original's, months. */
 const ORIGINAL = 18;
 
@@ -70,8 +73,10 @@ function scene(app) {
   const original = button("Original", () => change({ age: null }), "tiny");
   const age = slider("Months", { min: 0, max: 24, step: 0.5, value: ORIGINAL, format: String, label: "Age of the body" }, () => {});
   age.input.addEventListener("change", () => change({ age: age.input.valueAsNumber }));
+  const face = el("select", { "aria-label": "Face", onchange: () => attempt(() => app.face(face.value)) }, ...FACES.map(([value, text]) => el("option", { value }, text)));
   app.on("state", () => {
     const s = app.settings;
+    face.value = String(s.facial_expression ?? "default");
     age.set(typeof s.age === "number" ? s.age : ORIGINAL);
     original.disabled = typeof s.age !== "number";
     for (const part of [place, body]) part.hidden = isTask(s.behavior);
@@ -98,6 +103,7 @@ function scene(app) {
     place,
     body,
     line("Growth", el("div", { className: "age" }, age, original), "Size, mass and strength at an age. The original is measured as a child of 18 months."),
+    line("Face", face, "At any moment; nothing else changes."),
     line("Actuation", actuation, "Torques, pairs of opposing muscles, or desired angles."),
     error,
   );

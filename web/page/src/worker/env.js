@@ -1,5 +1,5 @@
 // The environment as the page uses it: the package's, with what a page needs put in order.
-import init, { Env, configKeys, memoryBytes } from "babybench/babybench.js";
+import init, { Blueprint, Env, configKeys, loadFace, memoryBytes } from "babybench/babybench.js";
 import { Glances } from "./glances.js";
 
 /** @typedef {import("../types").Settings} Settings */
@@ -9,6 +9,29 @@ const PARTS = 34;
 
 /** Loads the module. */
 export const load = () => init();
+
+/**
+ * Fetches the face that settings ask for, which an environment needs before it is made.
+ * @param {Settings | string} settings
+ * @param {Record<string, Uint8Array>} [assets]
+ */
+export async function fetchFace(settings, assets) {
+  const name = (typeof settings === "string" ? read(settings, assets) : settings).facial_expression;
+  // what is not a face is refused with the settings, by their key
+  if (configKeys().some((key) => key.name === "facial_expression" && key.options?.includes(String(name)))) await loadFace(String(name));
+}
+
+/**
+ * Reads the text of a file.
+ * @param {string} text
+ * @param {Record<string, Uint8Array>} [assets]
+ */
+function read(text, assets) {
+  const blueprint = new Blueprint(text, "configuration", assets);
+  const { config } = blueprint;
+  blueprint.free();
+  return config;
+}
 
 export class PageEnv {
   /**
@@ -189,6 +212,16 @@ export class PageEnv {
       else this.env.unlock(j.name);
     }
     return this.locked();
+  }
+
+  /** @param {string} name of the face that he makes from now on */
+  async face(name) {
+    await loadFace(name);
+    this.env.swapFacialExpression(name);
+    this.settings = { ...this.env.config };
+    this.yaml = this.env.yaml;
+    this.look = this.env.look;
+    return this.scene();
   }
 
   snapshot() {

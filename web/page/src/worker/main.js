@@ -1,6 +1,6 @@
 // The worker: it owns the world, and answers the page.
 import { inMilliseconds } from "../delays.js";
-import { load, PageEnv } from "./env.js";
+import { fetchFace, load, PageEnv } from "./env.js";
 import { Model } from "./model.js";
 import { LiveWorld } from "./world.js";
 
@@ -110,6 +110,7 @@ const answers = {
   /** @param {{ settings: import("../types").Settings | string, assets?: Record<string, Uint8Array>, locks: string[], snapshot: Uint8Array | null, network?: Uint8Array, twin?: import("../types").Twin | null, second?: Uint8Array | null } & Movement} d */
   async make(d) {
     await load();
+    await fetchFace(d.settings, d.assets);
     live?.clock.play(false);
     const last = live && { settings: live.env.yaml, assets: live.env.assets, snapshot: live.env.snapshot(), seed: 0, locks: [] };
     live?.stay();
@@ -167,6 +168,11 @@ const answers = {
     of(second).hold(held);
   },
   lock: (/** @type {string} */ part, /** @type {boolean} */ on) => world().lock(part, on),
+  /** @param {string} name of a face, for both */
+  async face(name) {
+    const { env, twin } = world();
+    return { scene: await env.face(name), twin: (await twin?.env.face(name)) ?? null };
+  },
   snapshot: (/** @type {boolean} */ second) => (second && !world().twin ? null : of(second).env.snapshot()),
   eyes: (/** @type {boolean} */ second) => of(second).env.eyes(),
   keys: () => PageEnv.keys(),
