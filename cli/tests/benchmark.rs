@@ -64,17 +64,28 @@ fn runs_are_recorded_repeated_and_measured() {
     assert_eq!(json["steps"], 60);
     let error = fail(&["run", "--config", &config, "--record", &record, "--quiet"]);
     assert!(error.contains("there is a record in this folder already"), "{error}");
-    let error = fail(&[
-        "run",
-        "--config",
-        &config,
-        "--record",
-        "elsewhere",
-        "--envs",
-        "2",
-        "--quiet",
-    ]);
-    assert!(error.contains("leave --envs out"), "{error}");
+}
+
+#[test]
+fn many_environments_are_recorded_by_any_number_of_threads() {
+    let mut found = Vec::new();
+    for threads in ["1", "2"] {
+        let folder = Folder::new("cli_record_many");
+        let (config, record) = (config(&folder), folder.path().join("record").display().to_string());
+        let many = ["--envs", "3", "--episodes", "2", "--threads", threads, "--seed", "4"];
+        let out = succeed(&[&["run", "--config", &config, "--record", &record, "--quiet"][..], &many].concat());
+        assert!(out.contains("babybench measure"), "{out}");
+        let out = succeed(&["replay", "--recording", &record]);
+        for episode in 0..6 {
+            let said = format!("episode {episode}: the same bits in all 60 steps");
+            assert!(out.contains(&said), "{out}");
+        }
+        let bytes =
+            |k: usize| std::fs::read(folder.path().join(format!("record/episode_{k}.npz"))).expect("an archive");
+        found.push([0, 1, 2, 3, 4, 5].map(bytes));
+    }
+    assert!(found[0] == found[1], "archives depend on the number of threads");
+    assert!(found[0][0] != found[0][1] && found[0][0] != found[0][3]);
 }
 
 #[test]

@@ -63,7 +63,7 @@ pub use many::RunVector;
 #[cfg(feature = "npz")]
 internals!(hidden use motion::{Motion, MotionError, Played, Playing, play_motion});
 #[cfg(feature = "npz")]
-pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed};
+pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed, VectorRecorder};
 #[cfg(feature = "npz")]
 internals!(use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest});
 #[cfg(feature = "npz")]

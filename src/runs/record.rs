@@ -11,6 +11,7 @@
 
 mod describe;
 mod manifest;
+mod many;
 mod read;
 mod rows;
 
@@ -19,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub use manifest::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
+pub use many::VectorRecorder;
 pub use read::{Record, Replayed};
 use rows::Rows;
 use thiserror::Error;
@@ -27,6 +29,7 @@ use crate::env::{Detailed, Env, EnvError, SnapshotError};
 use crate::files::replace_file;
 use crate::formats::npz::NpzError;
 use crate::json;
+use crate::vector::VectorError;
 
 /// The name of the description in the folder of a record.
 const MANIFEST: &str = "manifest.json";
@@ -47,9 +50,17 @@ pub enum RecordError {
     /// Steps are to be recorded before an episode began.
     #[error("no episode is being recorded: call Recorder::begin after the reset of the environment")]
     NotBegun,
+    /// The environments of a vector are to be recorded that resets them by itself.
+    #[error(
+        "a step of this vector resets environments before their end can be recorded: make it with AutoresetMode::Disabled"
+    )]
+    Autoreset,
     /// The environment fails.
     #[error(transparent)]
     Env(#[from] EnvError),
+    /// An environment of a vector fails.
+    #[error(transparent)]
+    Vector(#[from] VectorError),
     /// An archive cannot be written or read.
     #[error(transparent)]
     Npz(#[from] NpzError),
@@ -230,11 +241,19 @@ impl Recorder {
     /// # Errors
     /// As [`Env::step`]; no episode was begun.
     pub fn step(&mut self, env: &mut Env, action: &[f32]) -> Result<(), RecordError> {
-        let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
+        if self.rows.is_none() {
+            return Err(RecordError::NotBegun);
+        }
         let drawn = env.drawn();
         env.step(action)?;
         // checksums are of images, too
         env.look()?;
+        self.push(env, action, drawn)
+    }
+
+    /// Records a step that was made; `drawn` is how many numbers the generator had drawn before it.
+    fn push(&mut self, env: &Env, action: &[f32], drawn: u64) -> Result<(), RecordError> {
+        let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
         rows.push(env, action, drawn, &self.shared.options);
         Ok(())
     }
@@ -246,10 +265,8 @@ impl Recorder {
     /// # Errors
     /// No episode was begun; an action of wrong length or with numbers that are not finite.
     pub fn note(&mut self, env: &Env, action: &[f32]) -> Result<(), RecordError> {
-        let (_, rows) = self.rows.as_mut().ok_or(RecordError::NotBegun)?;
         env.check_action(action)?;
-        rows.push(env, action, env.drawn(), &self.shared.options);
-        Ok(())
+        self.push(env, action, env.drawn())
     }
 
     /// Ends the episode, before the next reset: writes its archive and brings the description up to date. Without steps nothing is

@@ -142,10 +142,7 @@ impl Evaluate {
             dir = save_dir.display(),
             word = word(save_dir.display())
         )?;
-        if let Some(folder) = self.recording.folder() {
-            let word = word(folder.display());
-            say!("recorded; babybench replay --recording {word} repeats it, babybench measure {word} measures it")?;
-        }
+        self.recording.say_next()?;
         Ok(())
     }
 

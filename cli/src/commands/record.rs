@@ -1,12 +1,14 @@
 //! Arguments of commands that record what they run.
 
+use std::io;
 use std::path::PathBuf;
 
-use babybench::Env;
-use babybench::runs::{RecordError, RecordOptions, Recorder};
+use babybench::runs::{RecordError, RecordOptions, Recorder, VectorRecorder};
+use babybench::{Env, VectorEnv};
 use clap::Args;
 
-use crate::arguments::count;
+use crate::arguments::{count, word};
+use crate::print::say;
 
 /// The contents of a recording, and its place.
 #[derive(Args)]
@@ -31,12 +33,32 @@ impl Recording {
 
     /// Makes the recorder, if anything is recorded; `policy` says what acts.
     pub fn recorder(&self, env: &Env, policy: &str) -> Result<Option<Recorder>, RecordError> {
-        let options = RecordOptions {
+        let folder = self.record.as_ref();
+        folder
+            .map(|folder| Recorder::create(folder, env, self.options(policy)))
+            .transpose()
+    }
+
+    /// Makes the recorder of a vector, if anything is recorded; `policy` says what acts.
+    pub fn recorder_of_many(&self, envs: &VectorEnv, policy: &str) -> Result<Option<VectorRecorder>, RecordError> {
+        let folder = self.record.as_ref();
+        folder
+            .map(|folder| VectorRecorder::create(folder, envs, self.options(policy)))
+            .transpose()
+    }
+
+    fn options(&self, policy: &str) -> RecordOptions {
+        RecordOptions {
             senses: self.record_senses,
             eyes_every: self.record_eyes,
             policy: policy.to_string(),
-        };
-        let folder = self.record.as_ref();
-        folder.map(|folder| Recorder::create(folder, env, options)).transpose()
+        }
+    }
+
+    /// Says what can be done with what was recorded, if anything was.
+    pub fn say_next(&self) -> io::Result<()> {
+        let Some(folder) = &self.record else { return Ok(()) };
+        let word = word(folder.display());
+        say!("recorded; babybench replay --recording {word} repeats it, babybench measure {word} measures it")
     }
 }

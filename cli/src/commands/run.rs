@@ -16,7 +16,7 @@ use indicatif::ProgressBar;
 use super::many::{Babbling, Many, say_threads};
 use super::record::Recording;
 use super::{Source, progress_bar};
-use crate::arguments::{count, number, word};
+use crate::arguments::{count, number};
 use crate::print::say;
 
 /// Arguments of `run`.
@@ -84,9 +84,6 @@ impl Run {
         let started = Instant::now();
         let blueprint = self.source.blueprint(Compat::Api)?;
         if let Some(envs) = self.many.envs() {
-            if self.recording.folder().is_some() {
-                return Err("--record records one environment at a time: leave --envs out".into());
-            }
             return self.many_envs(&blueprint, envs, started);
         }
         let mut env = blueprint.env()?;
@@ -124,10 +121,7 @@ impl Run {
         bar.finish_and_clear();
         say!("construction {:.0} ms", construction.as_secs_f64() * 1e3)?;
         tally.print(blueprint.dt(), &lock(&clock).spent)?;
-        if let Some(folder) = self.recording.folder() {
-            let word = word(folder.display());
-            say!("recorded; babybench replay --recording {word} repeats it, babybench measure {word} measures it")?;
-        }
+        self.recording.say_next()?;
         say_peak_memory()
     }
 
@@ -148,14 +142,21 @@ impl Run {
         )?;
         envs.seed_action_spaces(self.seed.unwrap_or(config.seed))?;
         let (mut babbling, mut actions) = (self.babbling.many(&envs)?, Vec::new());
+        let mut recorder = self.recording.recorder_of_many(&envs, &self.babbling.name())?;
         let (mut steps, mut stepping) = (0, Duration::ZERO);
         for episode in 0..self.episodes {
             envs.reset(None)?;
             babbling.begin(&mut envs, None)?;
+            if let Some(recorder) = &mut recorder {
+                recorder.begin(&envs, episode)?;
+            }
             for k in 1..=length {
                 babbling.sample(&mut envs, &mut actions)?;
                 let before = Instant::now();
-                let batch = envs.step(&actions)?;
+                let batch = match &mut recorder {
+                    Some(recorder) => recorder.step(&mut envs, &actions)?,
+                    None => envs.step(&actions)?,
+                };
                 stepping += before.elapsed();
                 steps += n as u64;
                 if k % 16 == 0 {
@@ -164,6 +165,9 @@ impl Run {
                 if let Some(failure) = batch.failures.first() {
                     return Err(format!("environment {}: {}", failure.env, failure.error).into());
                 }
+            }
+            if let Some(recorder) = &mut recorder {
+                recorder.end(&envs)?;
             }
             for i in 0..n {
                 let info = envs.env(i)?.info().to_json();
@@ -181,6 +185,7 @@ impl Run {
             per_second * blueprint.dt()
         )?;
         say!("environment steps per second: {per_second:.0}")?;
+        self.recording.say_next()?;
         say_peak_memory()
     }
 }
