@@ -33,13 +33,7 @@ pub(super) fn complete(model: Model, settings: &LengthRange, places: &Places) ->
     let limit = places.limits().lengthrange_steps;
     let mut steps = 0.0;
     for i in asked {
-        let (id, kind) = (model.actuator_trnid[i], model.actuator_trntype[i]);
-        let limited = match kind {
-            TrnType::Joint | TrnType::JointInParent if model.jnt_limited[id] => Some(model.jnt_range[id]),
-            TrnType::Tendon if model.tendon_limited[id] => Some(model.tendon_range[id]),
-            _ => None,
-        };
-        if let Some(range) = limited.filter(|_| settings.uselimit) {
+        if let Some(range) = own_limit(&model, i).filter(|_| settings.uselimit) {
             ranges[i] = range;
             continue;
         }
@@ -63,6 +57,23 @@ fn is_asked(model: &Model, settings: &LengthRange, i: usize) -> bool {
     };
     let [shortest, longest] = model.actuator_lengthrange[i];
     wanted && !(settings.useexisting && shortest < longest)
+}
+
+/// Returns the limit that `uselimit` gives an actuator.
+fn own_limit(model: &Model, i: usize) -> Option<[f64; 2]> {
+    // MuJoCo has two ids for each actuator, one after the other, and 3.3.0 looks here at the i-th of all: at the target of another
+    // actuator, or at its second id. Most models with more than one muscle are simulated for that reason, and so they are here
+    let pair = i / 2;
+    let id = match i % 2 {
+        0 => model.actuator_trnid[pair],
+        _ => model.actuator_refid[pair]?,
+    };
+    let (limited, ranges) = match model.actuator_trntype[i] {
+        TrnType::Joint | TrnType::JointInParent => (&model.jnt_limited, &model.jnt_range),
+        TrnType::Tendon => (&model.tendon_limited, &model.tendon_range),
+        _ => return None,
+    };
+    (limited.get(id) == Some(&true)).then(|| ranges[id])
 }
 
 /// The simulation.

@@ -143,8 +143,8 @@ pub fn singles(language: &Language) -> Result<Vec<Single>, String> {
         k += 1;
     });
     let mut all = Vec::new();
-    // MuJoCo hangs where the simulations diverge that look for lengths of muscles, so here all lengths are given; the tests of the library have
-    // muscles whose lengths are found
+    // MuJoCo hangs where the simulations diverge that look for lengths of muscles, so here all lengths are given; `length_ranges` of the suite
+    // compares these settings
     let compared = |path: &str| path != "compiler/lengthrange";
     for (path, attributes) in language.elements().filter(|(path, _)| compared(path)) {
         for attribute in attributes {

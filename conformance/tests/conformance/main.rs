@@ -11,6 +11,7 @@ mod differential;
 mod growth;
 mod hulls;
 mod kit;
+mod length_ranges;
 mod live_loader;
 mod live_mujoco;
 mod live_one_step;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         growth::trials(),
         hulls::trials(),
         kit::trials(),
+        length_ranges::trials(),
         live_loader::trials(),
         live_mujoco::trials(),
         live_one_step::trials(),
