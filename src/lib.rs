@@ -69,7 +69,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `eval` (default) | [`runs`], [`policy`], [`eval`]: logs, policies, scores, evaluation |
-//! | `faces` (default) | the pictures of the six faces that MIMo does not make by default, 117 kB |
+//! | `faces` (with `eval`) | the pictures of the six faces that MIMo does not make by default, 117 kB |
 //! | `rapier` (default) | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
 //! | `serde` (in `eval`) | configurations, information and scores are serialised |
 //! | `parallel` | threads in vectors of environments, and for the second eye |

@@ -1,4 +1,5 @@
-//! Messages about parts that a build lacks say how to build them: with `--no-default-features --features eval` alone all of these run.
+//! Builds without all parts: messages about parts that a build lacks say how to build them, and what is left is whole. With
+//! `--no-default-features --features eval` alone all of these run.
 
 /// Checks that a configuration is refused with an error that has all of `words`.
 #[cfg(not(all(feature = "wgpu", feature = "rapier")))]
@@ -42,4 +43,16 @@ fn without_onnx_a_model_says_how_to_build() {
         ["some/model.onnx", "--features onnx"].iter().all(|w| error.contains(w)),
         "{error}"
     );
+}
+
+/// The folder of a run has the whole scene, all faces included.
+#[test]
+fn the_scene_of_a_run_is_whole() {
+    let folder = std::env::temp_dir().join(format!("babybench-without-{}", std::process::id()));
+    babybench::runs::write_scene(&babybench::Config::default(), &folder).expect("all that it names is there");
+    let images = std::fs::read_dir(folder.join("tex")).expect("its images");
+    let names = images.map(|entry| entry.expect("a file").file_name());
+    let faces = names.filter(|name| name.to_string_lossy().starts_with("face_")).count();
+    assert_eq!(faces, babybench::config::FacialExpression::ALL.len());
+    std::fs::remove_dir_all(folder).expect("its own folder");
 }

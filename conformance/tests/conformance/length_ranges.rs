@@ -12,7 +12,7 @@ pub fn trials() -> Vec<Trial> {
     trials![needs MUJOCO: settings_of_lengthrange_mean_the_same]
 }
 
-/// Two segments, one of which has a limit: muscles on a joint, and on a tendon over a ball; a motor on each; one range that is given.
+/// Two segments with limits: muscles on a joint, and on a tendon over a ball; a motor on each; one range that is given.
 fn document(settings: &str, steps: &str) -> String {
     format!(
         r#"<mujoco><compiler><lengthrange {settings}/></compiler><option {steps}/>
@@ -29,8 +29,8 @@ fn document(settings: &str, steps: &str) -> String {
     )
 }
 
-/// The simulations end where the solver's tolerance leaves them.
-const LIMIT: f64 = 1e-7;
+/// The simulations end where the solver's tolerance leaves them: the worst was 1.1e-9 when written.
+const LIMIT: f64 = 1e-8;
 
 /// Compares the compiled arrays. Returns whether both take it.
 fn taken(settings: &str, steps: &str, worst: &mut f64) -> bool {
