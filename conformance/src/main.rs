@@ -1,6 +1,8 @@
 //! Prints how far babybench is from MuJoCo 3.3.0.
 
 mod differences;
+#[cfg(feature = "wgpu")]
+mod gpu_speed;
 mod kit_speed;
 mod picture_speed;
 mod plot;
@@ -19,10 +21,13 @@ const USAGE: &str = "usage: conformance report [--out FILE] [--plots FOLDER] [--
        conformance speed --kit FOLDER [--pictures no] [--filter TEXT] [--batches N]
        conformance differential [--count N] [--seed N] [--keep FOLDER]
        conformance worlds FOLDER... [--json FILE]
+       conformance gpu [--environments N,N...]
 With --kit everything is measured: physics steps, pictures, and whole steps beside the Python kit in FOLDER; with a filter
 only the physics steps and whole steps whose name has that text.
 `differential` puts N random documents beside MuJoCo; the smallest documents that differ go into FOLDER. Exits with 1 where some do.
-`worlds` puts every document under the folders beside MuJoCo. Exits with 1 where the sides mean something else by one.";
+`worlds` puts every document under the folders beside MuJoCo. Exits with 1 where the sides mean something else by one.
+`gpu` (feature wgpu) times the eyes of many environments on a GPU beside MuJoCo's renderer, and beside MuJoCo Warp's where the
+variable MJWARP_PYTHON names a Python that has it.";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -89,10 +94,31 @@ fn run(args: &[String]) -> Result<(), String> {
             let [json] = values(options, ["--json"])?;
             differences::print_worlds(folders, json.as_ref().map(Path::new))?;
         }
+        "gpu" => {
+            let [environments] = values(options, ["--environments"])?;
+            let environments = environments.unwrap_or_else(|| "1,64,1024".into());
+            let environments = environments
+                .split(',')
+                .map(|n| number("--environments", Some(n.into()), 1));
+            eyes_on_gpu(&environments.collect::<Result<Vec<_>, _>>()?)?;
+        }
         "-h" | "--help" => println!("{USAGE}"),
         _ => return Err(USAGE.to_string()),
     }
     Ok(())
+}
+
+#[cfg(feature = "wgpu")]
+fn eyes_on_gpu(environments: &[usize]) -> Result<(), String> {
+    gpu_speed::print(environments)
+}
+
+#[cfg(not(feature = "wgpu"))]
+fn eyes_on_gpu(_: &[usize]) -> Result<(), String> {
+    Err(
+        "this program was built without the feature wgpu: cargo run --release -p conformance --features wgpu -- gpu"
+            .into(),
+    )
 }
 
 /// Prints the tables of speeds: without a kit the physics or the pictures, with a kit all of them.

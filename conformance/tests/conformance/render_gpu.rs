@@ -1,6 +1,5 @@
-//! Pictures drawn by wgpu against MuJoCo 3.3.0's own renderer (OSMesa), many in one submission.
-
-use std::sync::{Mutex, MutexGuard, PoisonError};
+//! Pictures drawn by wgpu against MuJoCo 3.3.0's own renderer (OSMesa), many in one submission. The bounds are those of a device in
+//! software; a GPU filters textures and places samples in its own way, and so does MuJoCo's renderer on it.
 
 use babybench::config::Scene;
 use babybench::mimo::{build_model, embedded};
@@ -26,12 +25,6 @@ const GPU: Need = Need::new("GPU", Some("BABYBENCH_GPU"), || {
         _ => Ok(()),
     }
 });
-
-/// Lets one test at a time use a device: Mesa 22.3's llvmpipe has ended the process while two devices were at work.
-fn alone() -> MutexGuard<'static, ()> {
-    static DEVICE: Mutex<()> = Mutex::new(());
-    DEVICE.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// Returns a scene of what BabyBench's scenes do not have: transparent geoms and a plane seen from below, meshes, skins, or tendons.
 fn small(name: &str) -> (Model, Scenery) {
@@ -89,7 +82,6 @@ fn total(parts: &[Difference]) -> Difference {
 }
 
 fn eyes_and_room_cameras_show_what_mujoco_draws() {
-    let _alone = alone();
     for scene in Scene::ALL {
         let config = config(scene.clone());
         let npz = data::npz(&format!("render_{scene}.npz"));
@@ -111,12 +103,15 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
             if only_print() {
                 continue;
             }
-            // when written, lavapipe: mean 0.020, 0.015, 0.038 of 255, max 2; in one pass single samples at silhouettes differ
-            assert!(all.least_ssim() >= 0.999, "{all}");
+            // when written, lavapipe: mean 0.020, 0.015, 0.038 of 255, max 2; in one pass single samples at silhouettes differ;
+            // H200: 0.070, 0.095, 0.135, where MuJoCo's own renderer is 0.169, 0.521, 0.436 from the reference
+            let [mean, ssim] = if gpu.is_software() { [0.1, 0.999] } else { [0.25, 0.995] };
+            assert!(
+                all.least_ssim() >= ssim && all.mean() <= mean && all.off()[1] <= 0.1,
+                "{all}"
+            );
             if apart && like_the_reference(&gpu) {
                 assert!(all.mean() <= 0.05 && all.max <= 3, "{all}");
-            } else {
-                assert!(all.mean() <= 0.1 && all.off()[1] <= 0.1, "{all}");
             }
         }
 
@@ -137,7 +132,6 @@ fn eyes_and_room_cameras_show_what_mujoco_draws() {
 }
 
 fn small_scenes_are_what_mujoco_draws() {
-    let _alone = alone();
     for (name, mean) in [("glass", 0.4), ("meshes", 0.05), ("skins", 0.05), ("strings", 0.05)] {
         let (mut gpu, mut engine) = open(small(name).0);
         let qpos0 = engine.model().qpos0.clone();
@@ -147,9 +141,11 @@ fn small_scenes_are_what_mujoco_draws() {
         let shots: Vec<_> = (0..theirs.len()).map(|k| shot(&state, k, size)).collect();
         for apart in [true, false] {
             gpu.draw_apart(apart);
+            // on H200 up to 0.37 and 5.4 % for what is transparent, 0.30 and 5.4 % for textures seen from near
+            let [mean, off] = if gpu.is_software() { [mean, 0.2] } else { [0.5, 8.0] };
             for (one, shot) in differences(&mut gpu, &shots, &theirs).iter().zip(&shots) {
                 show!("{name} {:10} {one}", engine.model().cam_name[shot.view.camera]);
-                let fine = one.mean() <= mean && one.off()[0] <= 0.2 && one.least_ssim() >= 0.999;
+                let fine = one.mean() <= mean && one.off()[0] <= off && one.least_ssim() >= 0.999;
                 assert!(only_print() || fine, "{one}");
             }
         }

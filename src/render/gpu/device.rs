@@ -1,6 +1,8 @@
 //! The graphics device: how it is chosen, and the errors it reports.
 
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
 
 use super::GpuError;
 
@@ -18,17 +20,43 @@ pub struct Gpu {
 
 #[derive(Debug, Default)]
 struct Faults {
-    /// The first error since the last check.
-    first: Option<GpuError>,
+    /// The first error since the last check of each thread: several may share the device, and errors come up in the thread that
+    /// caused them.
+    first: HashMap<ThreadId, GpuError>,
     lost: Option<String>,
 }
 
 impl Gpu {
     /// Opens the best adapter: a GPU before software, OpenGL last among equals. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` narrow the choice.
+    ///
+    /// All that open one in a process share it, until it is lost. Not to save time alone: NVIDIA's drivers (580.159) wait for ever when a device
+    /// is closed while another thread that has used Vulkan ends, and Mesa 22.3's llvmpipe has ended the process while two devices were
+    /// at work.
+    #[cfg(not(target_arch = "wasm32"))]
     pub async fn open() -> Result<Self, GpuError> {
+        static SHARED: Mutex<Option<(Option<String>, Gpu)>> = Mutex::new(None);
+        let wanted = std::env::var("WGPU_ADAPTER_NAME").ok();
+        let mut shared = lock(&SHARED);
+        match &*shared {
+            Some((name, gpu)) if *name == wanted && lock(&gpu.faults).lost.is_none() => Ok(gpu.clone()),
+            _ => {
+                // those who wait for the same device wait for all of this; outside of browsers nothing in it is put off
+                let gpu = pollster::block_on(Self::open_own(wanted.as_deref()))?;
+                Ok(shared.insert((wanted, gpu)).1.clone())
+            }
+        }
+    }
+
+    /// As above. Browsers give each its own.
+    #[cfg(target_arch = "wasm32")]
+    pub async fn open() -> Result<Self, GpuError> {
+        Self::open_own(None).await
+    }
+
+    async fn open_own(wanted: Option<&str>) -> Result<Self, GpuError> {
         let (instance, backends) = instance();
         let mut tried = vec![format!("looked for {}", names(backends))];
-        for adapter in adapters(&instance, backends).await {
+        for adapter in adapters(&instance, backends, wanted).await {
             let name = describe(&adapter.get_info());
             match Self::from_adapter(&adapter).await {
                 Ok(gpu) => return Ok(gpu),
@@ -67,7 +95,7 @@ impl Gpu {
                 wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory,
                 other => GpuError::Device(other.to_string()),
             };
-            lock(&seen).first.get_or_insert(error);
+            lock(&seen).first.entry(thread::current().id()).or_insert(error);
         }));
         let seen = faults.clone();
         device.set_device_lost_callback(move |reason, message| {
@@ -87,10 +115,10 @@ impl Gpu {
         }
     }
 
-    /// Returns the first error reported since the last call; a lost device stays lost.
+    /// Returns the first error of this thread reported since its last call; a lost device stays lost.
     pub fn check(&self) -> Result<(), GpuError> {
         let mut faults = lock(&self.faults);
-        let first = faults.first.take();
+        let first = faults.first.remove(&thread::current().id());
         match (&faults.lost, first) {
             (Some(message), _) => Err(GpuError::Lost(message.clone())),
             (None, Some(e)) => Err(e),
@@ -125,8 +153,11 @@ fn new_instance() -> (wgpu::Instance, wgpu::Backends) {
     (wgpu::Instance::new(description), backends)
 }
 
-/// Lists all adapters, the best first.
-async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+/// Lists the adapters in whose name is `wanted`, the best first.
+async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends, wanted: Option<&str>) -> Vec<wgpu::Adapter> {
+    #[cfg(not(target_arch = "wasm32"))]
+    let mut found = enumerated(instance, backends);
+    #[cfg(target_arch = "wasm32")]
     let mut found = instance.enumerate_adapters(backends).await;
     if found.is_empty() {
         // browsers do not list their adapters
@@ -136,8 +167,7 @@ async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wg
         };
         found.extend(instance.request_adapter(&best).await.ok());
     }
-    #[cfg(not(target_arch = "wasm32"))]
-    if let Ok(wanted) = std::env::var("WGPU_ADAPTER_NAME") {
+    if let Some(wanted) = wanted {
         let wanted = wanted.to_lowercase();
         found.retain(|a| a.get_info().name.to_lowercase().contains(&wanted));
     }
@@ -146,6 +176,24 @@ async fn adapters(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wg
         rank(info.device_type, info.backend)
     });
     found
+}
+
+/// Lists the adapters of this process, those of OpenGL only where nothing else has a GPU.
+///
+/// They are looked for once: each time that wgpu looks, it wraps the same context of OpenGL in a lock of its own, and it panics
+/// where the driver, as NVIDIA's, refuses a context that is at work in another thread.
+#[cfg(not(target_arch = "wasm32"))]
+fn enumerated(instance: &wgpu::Instance, backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    static FOUND: Mutex<Vec<wgpu::Adapter>> = Mutex::new(Vec::new());
+    let mut found = lock(&FOUND);
+    if found.is_empty() {
+        let look = |backends| pollster::block_on(instance.enumerate_adapters(backends));
+        found.extend(look(backends - wgpu::Backends::GL));
+        if found.iter().all(|a| a.get_info().device_type == wgpu::DeviceType::Cpu) {
+            found.extend(look(backends & wgpu::Backends::GL));
+        }
+    }
+    found.clone()
 }
 
 /// Ranks an adapter: the lower the better.

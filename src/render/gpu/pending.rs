@@ -2,7 +2,7 @@
 
 use std::future::Future;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::task::{Context, Poll, Waker};
 
 use super::device::Gpu;
@@ -52,6 +52,9 @@ struct Transfer {
     #[cfg_attr(target_arch = "wasm32", allow(dead_code))] // browsers cannot wait
     submission: wgpu::SubmissionIndex,
     arrival: Arc<Mutex<Arrival>>,
+    /// Told when the arrival is there.
+    #[cfg_attr(target_arch = "wasm32", allow(dead_code))] // browsers cannot wait
+    told: Arc<Condvar>,
     pool: Pool,
 }
 
@@ -116,10 +119,12 @@ impl<C: Channel> Pending<C> {
         pool: &Pool,
     ) -> Self {
         let arrival = Arc::new(Mutex::new(Arrival::default()));
-        let told = arrival.clone();
+        let told = Arc::new(Condvar::new());
+        let (of_device, waiting) = (arrival.clone(), told.clone());
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            let mut arrival = told.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut arrival = of_device.lock().unwrap_or_else(PoisonError::into_inner);
             arrival.mapped = Some(result);
+            waiting.notify_all();
             if let Some(waker) = arrival.waker.take() {
                 waker.wake();
             }
@@ -128,6 +133,7 @@ impl<C: Channel> Pending<C> {
             buffer,
             submission,
             arrival,
+            told,
             pool: pool.clone(),
         });
         Self {
@@ -187,7 +193,7 @@ impl<C: Channel> Pending<C> {
         let polled = self.gpu.device.poll(wait);
         self.gpu.check()?;
         polled.map_err(|e| GpuError::Device(e.to_string()))?;
-        match transfer.mapped() {
+        match transfer.arrived() {
             Some(result) => result.map_err(|e| GpuError::Device(e.to_string())),
             None => Err(GpuError::Device("it finished without giving its pictures".to_string())),
         }
@@ -237,9 +243,13 @@ impl<C: Channel> Pending<C> {
 
 #[cfg(not(target_arch = "wasm32"))]
 impl Transfer {
-    fn mapped(&self) -> Option<Result<(), wgpu::BufferAsyncError>> {
+    /// Returns the device's answer once it has finished the submission. Another thread that polls the same device may have taken the
+    /// answer before us, and be about to deliver it.
+    fn arrived(&self) -> Option<Result<(), wgpu::BufferAsyncError>> {
+        const LONGEST: std::time::Duration = std::time::Duration::from_secs(10);
         let arrival = self.arrival.lock().unwrap_or_else(PoisonError::into_inner);
-        arrival.mapped.clone()
+        let waited = self.told.wait_timeout_while(arrival, LONGEST, |a| a.mapped.is_none());
+        waited.unwrap_or_else(PoisonError::into_inner).0.mapped.clone()
     }
 }
 
