@@ -27,6 +27,20 @@ Indices = Union[None, int, Iterable[int]]
 _OUTCOME = ("is_success", "is_failure", "reward_terms")
 """Keys by which a task judges a step."""
 _KEYS = ("steps", "touches", "regards", "page_regards", "kit_regards", *_OUTCOME)
+_PAIRS = ("right_eye_right_hand", "right_eye_left_hand", "left_eye_right_hand", "left_eye_left_hand")
+
+
+def _ended(key: str, last: dict[str, Any], running: Any) -> Any:
+    """Returns what a vector would say under a key of an episode that has ended; `running` is what it says of the next one."""
+    if key == "touches":
+        touches = np.zeros_like(running)
+        for hand, geoms in enumerate((last["right_hand_touches"], last["left_hand_touches"])):
+            touches[hand, geoms] = 1
+        return touches
+    if key.endswith("regards"):
+        counters = last if key == "regards" else last[key]
+        return np.array([counters[pair] for pair in _PAIRS], dtype=running.dtype)
+    return last.get(key, running)
 
 
 class VecEnv(BaseVecEnv):
@@ -83,7 +97,7 @@ class VecEnv(BaseVecEnv):
         split: list[dict[str, Any]] = [{key: infos[key][env] for key in keys} for env in range(self.num_envs)]
         for env in np.flatnonzero(dones):
             last = infos["final_info"][env]
-            split[env].update({key: last[key] for key in _OUTCOME if key in last})
+            split[env] = {key: _ended(key, last, value) for key, value in split[env].items()}
             split[env]["TimeLimit.truncated"] = bool(cut[env])
             split[env]["terminal_observation"] = infos["final_obs"][env]
             split[env]["final_info"] = last

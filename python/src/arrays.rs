@@ -106,8 +106,9 @@ pub fn read<T: Element + Copy>(
     let array = array.try_readonly()?;
     out.clear();
     match array.as_slice() {
-        Ok(values) => out.extend_from_slice(values),
-        Err(_) => out.extend(array.as_array().iter().copied()),
+        // rust-numpy hands over slices of arrays in Fortran's order, too, whose values stand in another one
+        Ok(values) if array.is_c_contiguous() => out.extend_from_slice(values),
+        _ => out.extend(array.as_array().iter().copied()),
     }
     Ok(())
 }

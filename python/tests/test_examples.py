@@ -111,6 +111,42 @@ def test_ppo_of_stable_baselines3(tmp_path):
     assert (tmp_path / "ppo_selftouch.zip").exists()
 
 
+def test_goal_babbling_in_pytorch(tmp_path):
+    pytest.importorskip("torch", reason="PyTorch is not installed")
+    said = run("babbling_torch.py", "--seeds", 1, "--steps", 16_000, cwd=tmp_path)
+    measures = dict(re.findall(r"^([a-z, ]+): ([0-9.]+) \(", said, re.MULTILINE))
+    assert set(measures) == {
+        "score",
+        "parts per episode",
+        "score, evaluated",
+        "parts per episode, evaluated",
+        "minutes",
+    }
+    assert float(measures["parts per episode"]) > 1
+
+
+def test_looking_at_hands_as_an_algorithm_of_stable_baselines3(tmp_path):
+    pytest.importorskip("stable_baselines3", reason="Stable-Baselines3 is not installed: it needs PyTorch")
+    script = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import numpy as np
+import babybench
+from watching_sb3 import REGARD, Body, Watching
+envs = babybench.sb3.VecEnv(REGARD, 2, max_episode_steps=500)
+model = Watching(env=envs, seed=0, body=Body(babybench.make(REGARD))).learn(2_000)
+model.policy.posture.copy_(model.policy.posture * 0 + 0.25)
+model.save("watching")
+again = Watching.load("watching", env=envs)
+observation = envs.reset()
+one, two = model.predict(observation), again.predict(observation)
+print(np.array_equal(one[0], two[0]), again.archive.lists.keys() == {0, 1, None}, model.num_timesteps)
+"""
+    (tmp_path / "script.py").write_text(script)
+    said = run(tmp_path / "script.py", EXAMPLES, cwd=tmp_path)
+    assert said == "True True 2000\n"
+
+
 def test_recordings_are_compared(tmp_path):
     config = tmp_path / "config.yml"
     config.write_text("behavior: self_touch\nscene: crib\nvision_active: False\ntouch_function: force_vector\n"

@@ -46,6 +46,7 @@ def test_a_vector_is_many_environments():
         if step == 5:
             assert flags_a[1].all()
             for one, other in zip(infos_a, infos_b):
+                assert one["steps"] == other["steps"] == 6
                 assert one["TimeLimit.truncated"] == other["TimeLimit.truncated"] is True
                 for key, value in other["terminal_observation"].items():
                     np.testing.assert_array_equal(one["terminal_observation"][key], value)
@@ -119,3 +120,32 @@ def test_hindsight_stores_what_was_before_and_after():
         )
     sample = buffer.sample(64)
     assert np.isfinite(sample.rewards.numpy()).all()
+
+
+def test_the_last_information_is_that_of_the_episode_that_ended():
+    rng = np.random.default_rng(0)
+    for config, key in [("self_touch", "touches"), (SEEING, "regards")]:
+        envs = babybench.sb3.VecEnv(config, 4, max_episode_steps=160)
+        envs.seed(1)
+        envs.reset()
+        counts = [np.zeros(4)]
+        for step in range(160):
+            if step % 40 == 0:
+                actions = rng.uniform(-1, 1, (4, *envs.action_space.shape)).astype(np.float32)
+            _, _, dones, infos = envs.step(actions)
+            assert [info["steps"] for info in infos] == [step + 1] * 4
+            counts.append(np.array([info[key].sum() for info in infos]))
+        assert dones.all()
+        assert (np.diff(counts, axis=0) >= 0).all()
+        if key == "regards":
+            final = [sum(info["final_info"]["page_regards"].values()) for info in infos]
+            np.testing.assert_array_equal(infos[0]["page_regards"], infos[0]["regards"])
+        else:
+            touches = [[info["final_info"][f"{hand}_hand_touches"] for hand in ("right", "left")] for info in infos]
+            final = [len(right) + len(left) for right, left in touches]
+            assert sum(final) > 0
+            for info, hands in zip(infos, touches):
+                for row, geoms in zip(info["touches"], hands):
+                    assert set(np.flatnonzero(row)) == set(geoms)
+        np.testing.assert_array_equal(counts[-1], final)
+        envs.close()

@@ -53,6 +53,17 @@ def test_each_environment_goes_as_if_it_were_alone(config, threads):
     envs.close()
 
 
+@pytest.mark.parametrize("order", [np.asfortranarray, lambda a: a[::-1, ::-1].copy()[::-1, ::-1], np.ndarray.tolist])
+def test_actions_mean_the_same_in_any_order_of_memory(order):
+    envs, others = (babybench.VectorEnv(SMALL, 3) for _ in range(2))
+    for vector in (envs, others):
+        vector.reset(seed=5)
+    for actions in actions_of(envs, 3):
+        expected, found = envs.step(actions)[0], others.step(order(actions))[0]
+        for key, values in expected.items():
+            np.testing.assert_array_equal(found[key], values)
+
+
 def test_copies_stay_with_who_holds_them():
     envs, views = babybench.VectorEnv(SMALL, 3), babybench.VectorEnv(SMALL, 3, copy=False)
     kept = []
