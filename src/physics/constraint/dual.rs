@@ -4,16 +4,19 @@
 //! another, each within the bounds of its force. They converge slowly, so that models that ask for them show where they stop: sweeps,
 //! their order and the criteria are those of MuJoCo.
 
+use std::ops::Range;
+
 use crate::limits::Limits;
 use crate::math::MINVAL;
 use crate::model::Model;
 use crate::physics::constraint::cone::Cone;
 use crate::physics::constraint::friction::Quadratic;
 use crate::physics::constraint::{Block, ConstraintType, Efc};
-use crate::physics::dynamics::{Articulated, Damping};
+use crate::physics::dynamics::{Articulated, Damping, Four};
 use crate::physics::engine::{EngineError, within};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
+use crate::physics::vectorize::vectorized;
 
 mod noslip;
 
@@ -28,11 +31,20 @@ const CONE_ROWS: usize = 6;
 pub struct Dual {
     /// `J` (nefc x nv), row by row.
     jac: Vec<f64>,
-    /// `A` (nefc x nefc).
+    /// `A`: nefc rows of nefc numbers, each filled up with zeros to whole vectors of four.
     a: Vec<f64>,
+    /// Length of such a row.
+    stride: usize,
     b: Vec<f64>,
-    /// `M^-1` times a row (nv).
+    /// `M^-1` times the forces on the joints (nv).
     column: Vec<f64>,
+    /// Four rows (nv), and `M^-1` times each.
+    sides: Vec<Four>,
+    columns: Vec<Four>,
+    /// The degrees of freedom between which each row has its numbers.
+    reaches: Vec<Range<usize>>,
+    /// One over the diagonal of `A`.
+    inverse: Vec<f64>,
 }
 
 /// Returns the least and greatest force of a row that is none of an elliptic cone.
@@ -64,8 +76,10 @@ impl Dual {
             let mut efc = std::mem::take(&mut s.efc);
             let prepared = self.prepare(model, topology, bodies, &efc, s);
             if prepared.is_ok() {
+                efc.force.resize(self.stride, 0.0);
                 self.start(model, &mut efc, s);
-                s.solver_iterations = self.sweep(model, &mut efc);
+                s.solver_iterations = vectorized!(self.sweep(model, &mut efc));
+                efc.force.truncate(efc.nefc());
                 self.finish(model, bodies, &efc, s);
             }
             s.efc = efc;
@@ -94,33 +108,83 @@ impl Dual {
         )?;
         self.jac.clear();
         self.jac.resize(n * nv, 0.0);
+        self.stride = n.next_multiple_of(4);
         self.a.clear();
-        self.a.resize(n * n, 0.0);
+        self.a.resize(n * self.stride, 0.0);
         self.column.resize(nv, 0.0);
         for block in &efc.blocks {
             for (row, dof, value) in efc.entries(topology, block) {
                 self.jac[(block.row + row) * nv + dof] = value;
             }
         }
-        for i in 0..n {
-            let row = &self.jac[i * nv..(i + 1) * nv];
-            bodies.solve(model, s, Damping::Without, row, &mut self.column);
-            for k in 0..=i {
-                let value = product(&self.jac[k * nv..(k + 1) * nv], &self.column);
-                self.a[i * n + k] = value;
-                self.a[k * n + i] = value;
-            }
-            self.a[i * n + i] += efc.r[i];
-        }
+        vectorized!(self.fill(model, topology, bodies, efc, s));
         self.b.clear();
         let smooth = |i: usize| product(&self.jac[i * nv..(i + 1) * nv], &s.qacc_smooth) - efc.aref[i];
         self.b.extend((0..n).map(smooth));
         Ok(())
     }
 
+    /// Computes `A` from `J`, four of its columns at a time.
+    #[inline(always)]
+    fn fill(&mut self, model: &Model, topology: &Topology, bodies: &mut Articulated, efc: &Efc, s: &State) {
+        let (n, nv) = (efc.nefc(), model.nv);
+        self.sides.resize(nv, [0.0; 4]);
+        self.columns.resize(nv, [0.0; 4]);
+        let reach = |row: &[f64]| {
+            let first = row.iter().position(|v| *v != 0.0).unwrap_or(0);
+            first..row.iter().rposition(|v| *v != 0.0).map_or(first, |last| last + 1)
+        };
+        self.reaches.clear();
+        self.reaches.extend(self.jac.chunks_exact(nv.max(1)).map(reach));
+        for first in (0..n).step_by(4) {
+            let lanes = 4.min(n - first);
+            let dofs = whole_trees(topology, &self.reaches[first..first + lanes]);
+            if dofs.is_empty() {
+                continue;
+            }
+            for d in dofs.clone() {
+                self.sides[d] = std::array::from_fn(|l| if l < lanes { self.jac[(first + l) * nv + d] } else { 0.0 });
+            }
+            let moved = model.dof_bodyid[dofs.start]..model.dof_bodyid[dofs.end - 1] + 1;
+            bodies.solve_four(model, s, moved, &self.sides, &mut self.columns);
+            for (k, reach) in self.reaches[..first + lanes].iter().enumerate() {
+                let common = reach.start.max(dofs.start)..reach.end.min(dofs.end);
+                if common.is_empty() {
+                    continue;
+                }
+                let row = &self.jac[k * nv..][common.clone()];
+                let mut sums = [0.0; 4];
+                for (v, column) in row.iter().zip(&self.columns[common]) {
+                    for (sum, c) in sums.iter_mut().zip(column) {
+                        *sum += v * c;
+                    }
+                }
+                // of these rows, those that come after this column have their own turn
+                let later = k.saturating_sub(first);
+                for (l, &value) in sums[..lanes].iter().enumerate().skip(later) {
+                    let i = first + l;
+                    self.a[i * self.stride + k] = value;
+                    self.a[k * self.stride + i] = value;
+                }
+            }
+        }
+        self.inverse.clear();
+        for i in 0..n {
+            let diagonal = &mut self.a[i * self.stride + i];
+            *diagonal += efc.r[i];
+            self.inverse.push(1.0 / *diagonal);
+        }
+    }
+
+    /// Returns a row of `A`.
+    #[inline(always)]
+    fn row(&self, i: usize) -> &[f64] {
+        &self.a[i * self.stride..(i + 1) * self.stride]
+    }
+
     /// Sets the forces that the last acceleration asks for, or none if those cost less.
     fn start(&self, model: &Model, efc: &mut Efc, s: &State) {
-        let (n, nv) = (efc.nefc(), model.nv);
+        let nv = model.nv;
         if !model.opt.flags.warmstart {
             efc.force.fill(0.0);
             return;
@@ -140,7 +204,7 @@ impl Dual {
                 }
             }
         }
-        let rows = self.a.chunks_exact(n).zip(&self.b).zip(&efc.force);
+        let rows = self.a.chunks_exact(self.stride).zip(&self.b).zip(&efc.force);
         let cost: f64 = rows.map(|((a, b), f)| f * (b + 0.5 * product(a, &efc.force))).sum();
         if cost > 0.0 {
             efc.force.fill(0.0);
@@ -148,22 +212,22 @@ impl Dual {
     }
 
     /// Sweeps over the rows until a sweep improves the cost by less than the tolerance; returns the number of sweeps.
+    #[inline(always)]
     fn sweep(&self, model: &Model, efc: &mut Efc) -> usize {
-        let n = efc.nefc();
         let scale = scale(model);
         for sweep in 0..model.opt.iterations {
             let mut improvement = 0.0;
             for block in &efc.blocks {
                 if block.kind == ConstraintType::ContactElliptic {
-                    improvement -= self.cone(n, block, &mut efc.force);
+                    improvement -= self.cone(block, &mut efc.force);
                     continue;
                 }
                 let [low, high] = bounds(block);
                 for i in block.row..block.row + block.dim {
-                    let row = &self.a[i * n..(i + 1) * n];
+                    let row = self.row(i);
                     let residual = self.b[i] + product(row, &efc.force);
                     let old = efc.force[i];
-                    let force = (old - residual * (1.0 / row[i])).max(low).min(high);
+                    let force = (old - residual * self.inverse[i]).max(low).min(high);
                     let moved = force - old;
                     let change = 0.5 * moved * moved * row[i] + moved * residual;
                     if change > RISE {
@@ -182,18 +246,19 @@ impl Dual {
 
     /// Improves the forces of a contact with an elliptic cone: along the ray on which they are, then friction at that normal force.
     /// Returns the change of the cost.
-    fn cone(&self, n: usize, block: &Block, force: &mut [f64]) -> f64 {
+    #[inline(always)]
+    fn cone(&self, block: &Block, force: &mut [f64]) -> f64 {
         let (first, dim) = (block.row, block.dim);
-        let entry = |r: usize, c: usize| self.a[(first + r) * n + first + c];
+        let entry = |r: usize, c: usize| self.row(first + r)[first + c];
         let mut residual = [0.0; CONE_ROWS];
         let mut old = [0.0; CONE_ROWS];
         for r in 0..dim {
-            residual[r] = self.b[first + r] + product(&self.a[(first + r) * n..(first + r + 1) * n], force);
+            residual[r] = self.b[first + r] + product(self.row(first + r), force);
             old[r] = force[first + r];
         }
         let own = &mut force[first..first + dim];
         if own[0] < MINVAL {
-            own[0] = (own[0] - residual[0] * (1.0 / entry(0, 0))).max(0.0);
+            own[0] = (own[0] - residual[0] * self.inverse[first]).max(0.0);
             own[1..].fill(0.0);
         } else {
             let along = |r: usize| (0..dim).map(|c| entry(r, c) * old[c]).sum::<f64>();
@@ -244,6 +309,19 @@ impl Dual {
     }
 }
 
+/// Returns the degrees of freedom of the trees from the first that rows reach to the last.
+fn whole_trees(topology: &Topology, reaches: &[Range<usize>]) -> Range<usize> {
+    let reached = reaches.iter().filter(|reach| !reach.is_empty());
+    let ends = reached.fold(None, |ends: Option<[usize; 2]>, reach| {
+        let [first, last] = ends.unwrap_or([reach.start, reach.end - 1]);
+        Some([first.min(reach.start), last.max(reach.end - 1)])
+    });
+    ends.map_or(0..0, |ends| {
+        let [first, last] = ends.map(|dof| topology.dof_tree[dof]);
+        topology.tree_adr[first]..topology.tree_adr[last + 1]
+    })
+}
+
 /// Returns what costs are scaled by before they are compared with a tolerance.
 fn scale(model: &Model) -> f64 {
     1.0 / (model.stat.meaninertia * model.nv.max(1) as f64)
@@ -251,6 +329,7 @@ fn scale(model: &Model) -> f64 {
 
 /// Returns the change of the cost from `old` forces to new ones, of `n` rows with the matrix `a` and the `residual` at the old ones.
 /// Where it rises, the old ones are put back.
+#[inline(always)]
 fn settle(
     n: usize,
     a: impl Fn(usize, usize) -> f64,
@@ -270,9 +349,18 @@ fn settle(
     change
 }
 
-/// Returns the sum of the products of two vectors' elements.
+/// Returns the sum of the products of two vectors' elements, in four partial sums: one sum would wait for each of its additions.
+#[inline(always)]
 fn product(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (x, y) in a.iter().zip(b) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
 }
 
 #[cfg(test)]

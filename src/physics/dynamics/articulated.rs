@@ -1,10 +1,14 @@
 //! Solving `M x = b` by articulated bodies: linear in the number of degrees of freedom (Featherstone 2008, chapter 7).
 
+mod four;
+
 use std::ops::Range;
 
 use crate::model::Arrays;
 use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::physics::state::State;
+
+pub use four::Four;
 
 /// One value for the inertia, one for the inertia with implicit damping: side by side, one vector instruction does both.
 type Pair = [f64; 2];
@@ -30,6 +34,7 @@ pub struct Articulated {
     force: Vec<Spatial>,
     acc: Vec<Spatial>,
     rest: Vec<f64>,
+    four: four::Memory,
 }
 
 /// A degree of freedom of an articulated body.
@@ -235,6 +240,20 @@ mod tests {
         bodies.solve(model, &s, Damping::Without, &b, &mut found);
         let worst = |found: &[f64]| x.iter().zip(found).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         assert!(worst(&found) < 1e-11, "{:e}", worst(&found));
+        // four at once: the same bits as one after the other
+        let sides: Vec<Four> = b.iter().map(|v| [*v, 2.0 * v, v - 1.0, 0.0]).collect();
+        let mut four = vec![[0.0; 4]; model.nv];
+        bodies.solve_four(model, &s, 1..model.nbody(), &sides, &mut four);
+        for lane in 0..4 {
+            let side: Vec<f64> = sides.iter().map(|v| v[lane]).collect();
+            let mut alone = vec![0.0; model.nv];
+            bodies.solve(model, &s, Damping::Without, &side, &mut alone);
+            assert!(
+                four.iter()
+                    .zip(&alone)
+                    .all(|(four, alone)| four[lane].to_bits() == alone.to_bits())
+            );
+        }
         for d in 0..model.nv {
             b[d] += model.opt.timestep * s.params.dof_damping[d] * x[d];
         }

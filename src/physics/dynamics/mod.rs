@@ -25,7 +25,7 @@ mod velocity;
 mod wrap;
 
 pub use actuation::fwd_actuation;
-pub use articulated::{Articulated, Damping};
+pub use articulated::{Articulated, Damping, Four};
 pub(in crate::physics) use constants::{MAX_WEIGHT, constants};
 pub use inertia::crb;
 #[cfg(any(test, feature = "rapier"))]

@@ -9,6 +9,7 @@ use crate::physics::dynamics::Articulated;
 use crate::physics::engine::EngineError;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
+use crate::physics::vectorize::vectorized;
 
 /// Least diagonal entry of the matrix of a contact's friction, 1/kg, as in MuJoCo.
 const LEAST: f64 = 1e-10;
@@ -32,7 +33,9 @@ impl Dual {
         let mut efc = std::mem::take(&mut s.efc);
         let prepared = self.prepare(model, topology, bodies, &efc, s);
         if prepared.is_ok() {
-            s.solver_iterations += self.sweep_friction(model, &mut efc);
+            efc.force.resize(self.stride, 0.0);
+            s.solver_iterations += vectorized!(self.sweep_friction(model, &mut efc));
+            efc.force.truncate(efc.nefc());
             self.finish(model, bodies, &efc, s);
         }
         s.efc = efc;
@@ -40,6 +43,7 @@ impl Dual {
     }
 
     /// Sweeps over friction until a sweep improves the cost by less than the tolerance; returns the number of sweeps.
+    #[inline(always)]
     fn sweep_friction(&self, model: &Model, efc: &mut Efc) -> usize {
         for sweep in 0..model.opt.noslip_iterations {
             let mut improvement = 0.0;
@@ -65,26 +69,29 @@ impl Dual {
     }
 
     /// Returns an entry of the matrix without regularisation.
+    #[inline(always)]
     fn rigid(&self, efc: &Efc, row: usize, col: usize) -> f64 {
-        let value = self.a[row * efc.nefc() + col];
+        let value = self.row(row)[col];
         if row == col { value - efc.r[row] } else { value }
     }
 
     /// Returns an entry of the matrix of a contact's friction. Directions in which nothing can move count as MuJoCo counts them: what it
     /// finds to be singular, where forces stay as they are, depends on it.
+    #[inline(always)]
     fn of_contact(&self, efc: &Efc, row: usize, col: usize) -> f64 {
         let value = self.rigid(efc, row, col);
         if row == col { value.max(LEAST) } else { value }
     }
 
     /// Returns the derivative of the cost without regularisation by the force of a row.
+    #[inline(always)]
     fn residual(&self, efc: &Efc, row: usize) -> f64 {
-        let n = efc.nefc();
-        let soft = self.b[row] + product(&self.a[row * n..(row + 1) * n], &efc.force);
+        let soft = self.b[row] + product(self.row(row), &efc.force);
         soft - efc.r[row] * efc.force[row]
     }
 
     /// Improves dry friction; returns the change of the cost.
+    #[inline(always)]
     fn slide(&self, efc: &mut Efc, block: &Block) -> f64 {
         let (i, loss) = (block.row, block.frictionloss);
         let (residual, old) = (self.residual(efc, i), efc.force[i]);
@@ -95,6 +102,7 @@ impl Dual {
     }
 
     /// Improves the friction of a pyramid: opposite edges, whose sum stays. Returns the change of the cost.
+    #[inline(always)]
     fn pyramid(&self, efc: &mut Efc, block: &Block) -> f64 {
         let mut change = 0.0;
         for j in (block.row..block.row + block.dim).step_by(2) {
@@ -125,6 +133,7 @@ impl Dual {
     }
 
     /// Improves the friction of an elliptic cone; returns the change of the cost.
+    #[inline(always)]
     fn ellipsoid(&self, efc: &mut Efc, block: &Block) -> f64 {
         let (first, n) = (block.row + 1, block.dim - 1);
         let normal = efc.force[block.row];
