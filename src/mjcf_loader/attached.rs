@@ -324,7 +324,11 @@ impl Amount {
             .iter()
             .map(of_mesh)
             .chain(from.hfields.iter().map(|field| field.elevation.len()))
-            .chain(from.skins.iter().map(|skin| skin.vertex.len() + skin.face.len()))
+            .chain(
+                from.skins
+                    .iter()
+                    .map(|skin| skin.vertex.len() + skin.face.len() + skin.elements()),
+            )
             .chain(from.numerics.iter().map(|numeric| numeric.data.len()))
             .sum();
         let said = &model.said;

@@ -59,8 +59,8 @@ table! {
         "material" material: Option<String> = None, TEXT, "Material.";
         "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";
         "group" group: usize = 0, int(0, MAX_GROUP), "Visual group; 0 to 2 are drawn.";
+        "subgrid" subgrid: i32 = 0, int(i32::MIN as i64, i32::MAX as i64), "Vertices between one end of a box and the other, on cubics through the ends; with any, there are as many on both sides of the middle line. Below 0 counts as 0.";
         check "inflate", real(Any), "Ignored, as in MuJoCo: the skin of a cable is blown up by the thickness of its boxes.";
-        check "subgrid", int(0, 1000), "How finely it is divided. Ignored: it is drawn from one box to the next.";
     }
 }
 

@@ -22,6 +22,17 @@ table! {
     }
 }
 
+/// What a limit on the elements of skins counts.
+pub(super) const SKIN_ELEMENTS: &str = "vertices, texture coordinates, faces and weights of skins";
+
+impl Skin {
+    /// Returns the number of elements that the document itself gives it.
+    pub fn elements(&self) -> usize {
+        let weights: usize = self.bones.iter().map(|bone| bone.vertid.len()).sum();
+        self.vertex.len() / 3 + self.texcoord.len() / 2 + self.face.len() / 3 + weights
+    }
+}
+
 table! {
     /// `<bone>` of a skin.
     element Bone {

@@ -202,6 +202,55 @@ fn a_cable_is_a_chain_of_bodies() {
     assert!(error.contains("put a body around it"), "{error}");
 }
 
+/// A skin that is divided has vertices on curves through the ends of the boxes, and is no larger than the limits allow.
+#[test]
+fn the_skin_of_a_cable_is_divided() {
+    let cable = |subgrid: &str| {
+        let skin = format!("<skin texcoord=\"true\" subgrid=\"{subgrid}\"/></composite>");
+        let boxes = CABLE.replace(r#"type="capsule" size=".02""#, r#"type="box" size=".1 .02 .02""#);
+        boxes.replace("</composite>", &skin)
+    };
+    for (subgrid, vertices) in [("-1", 20), ("0", 20), ("1", 2 * 9 * 5), ("2", 2 * 13 * 7)] {
+        let model = made(&cable(subgrid), "").expect(subgrid);
+        let skin = &model.skins[0];
+        assert_eq!(
+            (skin.vert.len(), skin.texcoord.len()),
+            (vertices, vertices),
+            "{subgrid}"
+        );
+        // it is closed
+        assert_eq!(skin.face.len(), 2 * vertices - 4, "{subgrid}");
+        let mut total = vec![0.0; vertices];
+        for bone in &skin.bones {
+            for (&vertex, weight) in bone.vertid.iter().zip(&bone.vertweight) {
+                total[vertex as usize] += weight;
+            }
+        }
+        assert!(
+            total.iter().all(|sum| (sum - 1.0_f32).abs() < 1e-6),
+            "{subgrid}: {total:?}"
+        );
+    }
+    for subgrid in ["2000", "2147483647"] {
+        let error = made(&cable(subgrid), "").expect_err(subgrid);
+        assert!(
+            error.ends_with("more than 4194304 vertices, texture coordinates, faces and weights of skins"),
+            "{error}"
+        );
+    }
+    let few = Limits {
+        mesh_elements: 3000,
+        ..Limits::default()
+    };
+    let text = format!(
+        "<mujoco><worldbody>{}{}</worldbody></mujoco>",
+        cable("2"),
+        cable("2").replace("prefix=\"c\"", "prefix=\"d\"")
+    );
+    let error = load_str_with(&text, "m.xml", &assets(), &few).expect_err("two skins");
+    assert!(error.to_string().ends_with("weights of skins"), "{error}");
+}
+
 #[test]
 fn shells_weigh_by_their_area_and_free_bodies_can_be_aligned() {
     let shell = r#"<body pos="0 0 1"><freejoint/><geom size=".1" pos=".3 0 0" shellinertia="true"/><site/></body>"#;

@@ -1,6 +1,9 @@
 //! Skins beside MuJoCo 3.3.0: what is taken, and the compiled arrays.
 
+use babybench::Model;
 use babybench::assets::MemoryAssets;
+use babybench::mjcf_loader::load_str;
+use babybench::physics::compile;
 use conformance::data;
 use conformance::loading::{Outcome, compare_bytes};
 use conformance::mujoco::{MUJOCO, needed};
@@ -9,7 +12,14 @@ use testkit::mutation::mutate_document;
 use testkit::{Rng, show, trials};
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs MUJOCO: skins_of_documents_are_taken_alike, skins_of_files_are_taken_alike, attached_skins_are_taken_alike, skins_of_cables_are_taken_alike]
+    trials![needs MUJOCO: skins_of_documents_are_taken_alike, skins_of_files_are_taken_alike, attached_skins_are_taken_alike, skins_of_cables_are_taken_alike, divided_skins_of_cables_are_equal]
+}
+
+/// Compiles a document without files.
+fn model(text: &str) -> Model {
+    load_str(text, "m.xml", &MemoryAssets::new())
+        .and_then(compile)
+        .expect("it is taken")
 }
 
 /// Compares a document with the files beside it.
@@ -214,5 +224,44 @@ fn skins_of_cables_are_taken_alike() {
         let copied =
             cable(geom, "", "").replace("<composite", r#"<replicate count="2" offset="0 1 0"><body><composite"#);
         same(&copied.replace("</composite>", "</composite></body></replicate>"), &[]);
+    }
+}
+
+/// What MuJoCo takes is equal in all arrays: which vertices a bone pulls, too, though some weights are nothing but rounding.
+fn divided_skins_of_cables_are_equal() {
+    let cable = |count: usize, curve: &str, size: &str, skin: &str| {
+        format!(
+            r#"<mujoco><worldbody><composite prefix="p" type="cable" curve="{curve}" count="{count} 1 1" size="1 0.2 2">
+            <geom type="box" size="{size}"/><skin {skin}/></composite></worldbody></mujoco>"#
+        )
+    };
+    let mut vertices = 0;
+    let mut equal = |text: &str| match outcome(text, &[]) {
+        Outcome::Equal => vertices += model(text).skins[0].vert.len(),
+        Outcome::Fault(fault) => panic!("{fault}\n{text}"),
+        Outcome::Rejected | Outcome::Stricter(_) => panic!("refused: {text}"),
+    };
+    for subgrid in [0, 1, 2, 3, 4, 5, 6, 9, 12] {
+        for count in [4, 5, 8, 13] {
+            for curve in ["s", "s cos(s) sin(s)", "cos(s) sin(s) 0"] {
+                for size in ["0.01 0.02 0.03", "0.05 0.3 0.004"] {
+                    equal(&cable(count, curve, size, &format!(r#"subgrid="{subgrid}""#)));
+                }
+            }
+            equal(&cable(
+                count,
+                "s",
+                "0.07 0.01 0.1",
+                &format!(r#"subgrid="{subgrid}" texcoord="true" inflate="3""#),
+            ));
+        }
+    }
+    for subgrid in ["-1", "-2147483648", "+2"] {
+        equal(&cable(4, "s", "0.01 0.02 0.03", &format!(r#"subgrid="{subgrid}""#)));
+    }
+    show!("divided skins of cables: {vertices} vertices are pulled alike");
+    for (count, subgrid) in [(3, "1"), (4, "1.5"), (4, "2147483648"), (4, "x"), (4, "")] {
+        let text = cable(count, "s", "0.01 0.02 0.03", &format!(r#"subgrid="{subgrid}""#));
+        assert!(matches!(outcome(&text, &[]), Outcome::Rejected), "{text}");
     }
 }

@@ -8,7 +8,7 @@ use crate::formats::skn::{BoneFile, SkinFile};
 use crate::math::MINVAL;
 use crate::mjcf_loader::document::Document;
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::skin::Skin;
+use crate::mjcf_loader::skin::{SKIN_ELEMENTS, Skin};
 use crate::model::{self, SkinBone};
 
 const NO_DATA: &str = "a skin needs a file, or vertices, faces and bones";
@@ -38,7 +38,7 @@ pub(super) fn compile_skins(
         let file = read(context, skin, source)?;
         left = left.checked_sub(file.elements()).ok_or_else(|| {
             let limit = context.tree.limits.mesh_elements;
-            let what = "vertices, texture coordinates, faces and weights of skins";
+            let what = SKIN_ELEMENTS;
             context.error(skin.at, ErrorKind::TooMuch { what, limit })
         })?;
         skins.push(compile(context, skin, file, ids)?);

@@ -6,10 +6,10 @@ use super::super::document::{Body, Document, Orientation};
 use super::super::error::{ErrorKind, LoadError};
 use super::super::relation::Exclude;
 use super::super::schema::Element;
-use super::super::skin::Skin;
+use super::super::skin::{SKIN_ELEMENTS, Skin};
 use super::super::table::Table;
 use super::super::xml::Tree;
-use super::cable_skin;
+use super::cable_skin::{self, Band};
 use super::content::Spot;
 use crate::model::{GeomType, JointType};
 
@@ -77,7 +77,13 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
         count: links.len(),
     };
     if like.geom.kind == GeomType::Box {
-        document.skins.push(skin(e, names, like.geom.size).map_err(invalid)?);
+        let taken = document.skins.iter().map(Skin::elements).sum();
+        let left = tree.limits.mesh_elements.saturating_sub(taken);
+        let skin = skin(e, names, like.geom.size, left).map_err(invalid)?;
+        let (what, limit) = (SKIN_ELEMENTS, tree.limits.mesh_elements);
+        document
+            .skins
+            .push(skin.ok_or_else(|| tree.error(e.at, ErrorKind::TooMuch { what, limit }))?);
     }
     for (index, link) in links.iter().enumerate() {
         let parent = if index == 0 {
@@ -103,8 +109,8 @@ pub(super) fn cable(e: &Element, spot: Spot, tree: &Tree, document: &mut Documen
     Ok(())
 }
 
-/// Makes the skin of a cable of boxes with half lengths `size`.
-fn skin(e: &Element, names: Names, size: [f64; 3]) -> Result<Skin, &'static str> {
+/// Makes the skin of a cable of boxes with half lengths `size`; none where it has more vertices, texture coordinates and faces than are `left`.
+fn skin(e: &Element, names: Names, size: [f64; 3], left: usize) -> Result<Option<Skin>, &'static str> {
     if names.count == 1 {
         return Err(ONE_BOX);
     }
@@ -118,7 +124,9 @@ fn skin(e: &Element, names: Names, size: [f64; 3]) -> Result<Skin, &'static str>
             ..CompositeSkin::initial()
         },
     };
-    Ok(cable_skin::skin(&like, names.prefix, &bodies, size))
+    let band = Band::new(bodies.len(), like.subgrid);
+    let fits = band.elements(like.texcoord) <= left;
+    Ok(fits.then(|| cable_skin::skin(&like, band, names.prefix, &bodies, size)))
 }
 
 /// The names of a cable's parts: those of the first and the last body say so.
