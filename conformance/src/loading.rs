@@ -83,6 +83,12 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
             Some("skins whose faces name vertices that they do not have")
         }
         ErrorKind::Invalid("a number of the skin is not finite") => Some("skins with numbers that are not finite"),
+        ErrorKind::Invalid(message) if message.starts_with("MuJoCo 3.3.0 scrambles") => {
+            Some("textures of four channels that MuJoCo draws as noise")
+        }
+        ErrorKind::Invalid(message) if message.starts_with("MuJoCo 3.3.0 draws textures of three") => {
+            Some("textures of other than three or four channels, which MuJoCo cannot draw")
+        }
         ErrorKind::Twin { .. } => Some("references that MuJoCo multiplies beside copies"),
         ErrorKind::BadWord { .. } => Some("kinds that are not supported"),
         ErrorKind::TooMuch { .. } => Some("limits on untrusted text"),

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::files::replace_file;
 
-pub(crate) use read::decode_png;
+pub(crate) use read::{decode_png, is_opaque};
 
 /// An error in writing a picture.
 #[derive(Debug, Error)]

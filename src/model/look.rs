@@ -72,6 +72,8 @@ pub struct Texture {
     pub gridlayout: Vec<Option<usize>>,
     /// Whether images are mirrored from left to right, and from top to bottom.
     pub flip: [bool; 2],
+    /// Numbers of a pixel (`tex_nchannel`): 3, or 4 with an opacity.
+    pub channels: usize,
     /// Paths of the cube faces: right, left, up, down, front, back.
     pub cube_files: [Option<String>; 6],
 }

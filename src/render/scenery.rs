@@ -6,7 +6,7 @@ use crate::assets::AssetSource;
 use crate::math::{Vec3, order, unit};
 use crate::model::{CamLight, Model, TextureType};
 use crate::render::RenderError;
-use crate::render::drawable::{Drawable, Element, Shape, material};
+use crate::render::drawable::{Drawable, Element, OPAQUE, Shape, material};
 use crate::render::mesh::Mesh;
 use crate::render::model_mesh::ModelMeshes;
 use crate::render::skin::SkinLook;
@@ -313,6 +313,9 @@ fn drawables(
         }
         if let Some(texture) = material(model, element).and_then(|m| model.materials[m].texture) {
             drawable.texture = used.texture(texture)?;
+            if drawable.rgba[3] < OPAQUE || drawable.shape == Shape::Plane {
+                used.blended(texture)?;
+            }
         }
         if let Element::Skin(skin) = element {
             worn.push((drawable, skin));
@@ -429,5 +432,13 @@ impl Used<'_> {
             self.index[id] = Some(self.textures.len() - 1);
         }
         Ok(self.index[id])
+    }
+
+    /// Checks a texture of what is blended, at least from some sides.
+    fn blended(&self, id: usize) -> Result<(), RenderError> {
+        match (self.model.textures.get(id), &self.loader) {
+            (Some(recipe), Some(loader)) => loader.blended(recipe),
+            _ => Ok(()),
+        }
     }
 }

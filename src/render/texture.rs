@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::assets::AssetSource;
-use crate::formats::png::decode_png;
+use crate::formats::png::{decode_png, is_opaque};
 use crate::limits::Limits;
 use crate::model::{Builtin, Texture as Recipe, TextureType};
 use crate::render::{RenderError, plain};
@@ -204,6 +204,30 @@ impl<'a> Loader<'a> {
         };
         let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
         Ok(TexturePixels::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
+    }
+
+    /// Checks a texture of what is blended with what lies behind.
+    ///
+    /// # Errors
+    /// Its image is read with opacities, by which MuJoCo multiplies there, and has some.
+    pub fn blended(&self, recipe: &Recipe) -> Result<(), RenderError> {
+        let (4, Some(path)) = (recipe.channels, &recipe.file) else {
+            return Ok(());
+        };
+        let opaque = is_opaque(&self.assets.read(path)?, &Limits::DEFAULT).map_err(|message| RenderError::Image {
+            path: path.clone(),
+            message,
+        })?;
+        if opaque {
+            return Ok(());
+        }
+        Err(RenderError::Texture {
+            name: recipe.name.clone(),
+            message: format!(
+                "\"{path}\" has opacities, by which MuJoCo multiplies on planes seen from below and on what is transparent, and this \
+                 renderer does not: leave nchannel=\"4\" out, or show it on an opaque geom that is not a plane"
+            ),
+        })
     }
 
     /// Creates a cube from a single image: a square for all faces, or a grid of squares.

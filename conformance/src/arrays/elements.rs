@@ -108,6 +108,7 @@ pub fn unrecorded(m: &Model) -> Named {
     let keys = |of: fn(&Keyframe) -> &[f64]| m.keys.iter().flat_map(of).copied().collect();
     let wraps = m.tendon_wrap.iter().flatten();
     vec![
+        ("tex_nchannel", m.textures.iter().map(|t| t.channels as f64).collect()),
         ("wrap_type", wraps.map(|along| wrap(along)[0]).collect()),
         ("actuator_cranklength", m.actuator_cranklength.clone()),
         ("body_user", users(&m.body_user)),

@@ -30,6 +30,7 @@ mod settling;
 mod skins;
 mod static_quantities;
 mod tasks;
+mod textures;
 mod touch;
 
 use std::process::ExitCode;
@@ -66,6 +67,7 @@ fn main() -> ExitCode {
         skins::trials(),
         static_quantities::trials(),
         tasks::trials(),
+        textures::trials(),
         touch::trials(),
     ];
     testkit::harness::run(all.concat())

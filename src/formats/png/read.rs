@@ -17,6 +17,19 @@ const INDEXED: u8 = 3;
 /// The decoder gets the chunks that make the pixels and no others: texts, profiles and animations have no effect on
 /// them. The error says what is wrong with the picture, without its name.
 pub(crate) fn decode_png(bytes: &[u8], limits: &Limits) -> Result<RgbImage, String> {
+    Ok(decoded(bytes, limits)?.into_rgb8())
+}
+
+/// Tells whether nothing shows through a PNG picture: each pixel of it has all of its opacity. One with a transparent colour (chunk tRNS) is
+/// taken for one that something shows through.
+pub(crate) fn is_opaque(bytes: &[u8], limits: &Limits) -> Result<bool, String> {
+    let picture = decoded(bytes, limits)?;
+    let keyed = bytes.windows(4).any(|name| name == b"tRNS");
+    let alpha = picture.color().has_alpha();
+    Ok(!keyed && (!alpha || picture.into_rgba8().pixels().all(|pixel| pixel[3] == u8::MAX)))
+}
+
+fn decoded(bytes: &[u8], limits: &Limits) -> Result<DynamicImage, String> {
     let pixels = essential(bytes, limits)?;
     let broken = |e: image::ImageError| e.to_string();
     let mut bounds = image::Limits::default();
@@ -24,7 +37,7 @@ pub(crate) fn decode_png(bytes: &[u8], limits: &Limits) -> Result<RgbImage, Stri
     let mut decoder = PngDecoder::with_limits(std::io::Cursor::new(pixels), bounds.clone()).map_err(broken)?;
     bounds.reserve(decoder.total_bytes()).map_err(broken)?;
     decoder.set_limits(bounds).map_err(broken)?;
-    Ok(DynamicImage::from_decoder(decoder).map_err(broken)?.into_rgb8())
+    DynamicImage::from_decoder(decoder).map_err(broken)
 }
 
 /// A chunk of a picture, and where it begins.

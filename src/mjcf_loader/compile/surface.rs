@@ -30,6 +30,7 @@ pub(super) fn compile_texture(
     } else if texture.width == 0 || flat && texture.height == 0 {
         return invalid("a builtin texture needs a width, and if it is flat a height");
     }
+    let channels = channels(texture).map_err(|message| context.invalid(texture.at, message))?;
     let (gridsize, gridlayout) = grid(context, texture)?;
     Ok(model::Texture {
         name: texture_name(context, texture)?,
@@ -50,9 +51,28 @@ pub(super) fn compile_texture(
         gridsize,
         gridlayout,
         flip: [texture.hflip, texture.vflip],
+        channels,
         cube_files,
     })
 }
+
+/// Returns the numbers of a pixel, where MuJoCo 3.3.0 draws them as what they are.
+fn channels(texture: &surface::Texture) -> Result<usize, &'static str> {
+    let flat = texture.kind == TextureType::Flat2d;
+    match (texture.channels, texture.builtin != Builtin::None) {
+        (3, _) => Ok(3),
+        (4, builtin) if builtin != flat => Ok(4),
+        (4, true) => Err(PACKED),
+        (4, false) => Err(FACES),
+        _ => Err(CHANNELS),
+    }
+}
+
+const CHANNELS: &str =
+    "MuJoCo 3.3.0 draws textures of three channels, or four: leave nchannel out, with which grey images are drawn grey";
+// the pattern has three numbers for each pixel wherever it is, and is read by four, or the images have four and are read by three
+const PACKED: &str = "MuJoCo 3.3.0 scrambles a flat pattern of four channels: leave nchannel out";
+const FACES: &str = "MuJoCo 3.3.0 scrambles images of four channels on a cube: leave nchannel out";
 
 /// The most squares of a grid.
 const SQUARES: usize = 12;

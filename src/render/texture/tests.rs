@@ -57,6 +57,75 @@ fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
     );
 }
 
+/// Four channels change nothing but what is blended, which is refused.
+#[test]
+fn four_channels_look_like_three() {
+    let picture = |opacity: u8| {
+        let image = image::RgbaImage::from_fn(4, 4, |x, y| image::Rgba([40 * x as u8, 50 * y as u8, 7, opacity]));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).expect("a picture");
+        bytes.into_inner()
+    };
+    let mut assets = crate::assets::MemoryAssets::new();
+    assets.insert("clear.png", picture(100)).expect("a path");
+    assets.insert("full.png", picture(255)).expect("a path");
+    let recipe = |texture: &str, channels: usize| {
+        let text = format!("<mujoco><asset><texture name='t' {texture} nchannel='{channels}'/></asset></mujoco>");
+        let spec = crate::mjcf_loader::load_str(&text, "t.xml", &assets);
+        spec.map(|spec| spec.into_parts().0.textures.remove(0))
+            .map_err(|e| e.to_string())
+    };
+    for texture in [
+        "type='2d' file='clear.png'",
+        "type='2d' file='full.png'",
+        "builtin='gradient' width='8' mark='random'",
+        "type='skybox' builtin='flat' width='8'",
+    ] {
+        let (four, three) = (recipe(texture, 4).expect(texture), recipe(texture, 3).expect(texture));
+        assert_eq!((four.channels, three.channels), (4, 3));
+        let mut loader = Loader::new(&assets);
+        assert_eq!(
+            loader.texture(&four).expect(texture),
+            loader.texture(&three).expect(texture),
+            "{texture}"
+        );
+        assert!(loader.blended(&three).is_ok(), "{texture}");
+        let error = loader.blended(&four).err().map(|e| e.to_string()).unwrap_or_default();
+        assert_eq!(
+            error.contains("clear.png") && error.contains("has opacities"),
+            texture.contains("clear"),
+            "{error}"
+        );
+    }
+    for (texture, channels, expected) in [
+        (
+            "type='2d' file='full.png'",
+            1,
+            "leave nchannel out, with which grey images are drawn grey",
+        ),
+        ("type='2d' file='full.png'", 2, "three channels, or four"),
+        (
+            "type='2d' builtin='flat' width='4' height='4'",
+            5,
+            "three channels, or four",
+        ),
+        (
+            "type='2d' builtin='flat' width='4' height='4'",
+            4,
+            "scrambles a flat pattern",
+        ),
+        ("file='full.png'", 4, "scrambles images of four channels on a cube"),
+        (
+            "type='skybox' fileup='full.png'",
+            4,
+            "scrambles images of four channels on a cube",
+        ),
+    ] {
+        let error = recipe(texture, channels).expect_err(texture);
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
 #[test]
 fn all_textures_together_have_a_limit() {
     let none = crate::assets::MemoryAssets::new();
