@@ -76,9 +76,9 @@ impl Plan {
         match behavior {
             Behavior::Reach => plan.reach(&drives),
             Behavior::SelfBody => plan.self_body(&drives, env)?,
-            Behavior::Standup => plan.postures(&drives, 250, 20, 1),
-            Behavior::RollOver => plan.postures(&drives, 60, 20, 1),
-            Behavior::Catch => plan.postures(&drives, 80, 16, 3),
+            Behavior::Standup => plan.postures(&drives, &[], 250, 20, 1),
+            Behavior::RollOver => plan.postures(&drives, &turned(), 150, 24, 1),
+            Behavior::Catch => plan.postures(&drives, &[], 80, 16, 3),
             other => return Err(format!("{other} has no plan").into()),
         }
         Ok(plan)
@@ -161,19 +161,31 @@ impl Plan {
         Ok(())
     }
 
-    /// Every number of the action depends on its own joint.
-    fn postures(&mut self, drives: &[Drive], generations: usize, size: usize, trials: usize) {
+    /// Every number of the action depends on its own joint, and on what all have in common.
+    fn postures(&mut self, drives: &[Drive], common: &[Feature], generations: usize, size: usize, trials: usize) {
         let design = &mut self.design;
-        let one = design.feature(Feature::one());
+        let mut features = vec![design.feature(Feature::one())];
+        features.extend(common.iter().map(|feature| design.feature(feature.clone())));
         for drive in drives {
             let angle = design.feature(Feature::of("observation", drive.angle, 1.0));
             let velocity = design.feature(Feature::of("observation", drive.velocity, 0.1));
-            for feature in [one, angle, velocity] {
+            for &feature in features.iter().chain(&[angle, velocity]) {
                 design.term(drive.action, feature, 0.3);
             }
         }
         self.all_free(0.0, generations, size, trials, 0.5);
     }
+}
+
+/// Returns how far he has turned, -1 to 1, and in which direction he feels his weight, m/s^2 times 0.1: what brought him onto his side does not bring
+/// him onto his belly.
+fn turned() -> Vec<Feature> {
+    let way = Feature {
+        offset: -1.0,
+        parts: vec![("achieved_goal", 0, 2.0)],
+    };
+    let weight = |axis| Feature::of("vestibular", axis, 0.1);
+    vec![way, weight(0), weight(1), weight(2)]
 }
 
 /// Finds the joint of each number of an action; muscles have a block of numbers after another.

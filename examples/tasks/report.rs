@@ -57,16 +57,16 @@ fn page(table: &str) -> String {
     format!(
         "# Policies of the tasks\n\n\
          A trained policy for each of MIMo's tasks, as an ONNX model: its action is a linear function of the angles and velocities of\n\
-         his joints, and of the goal. `babybench evaluate` takes them with `--policy`, and the page has them in a list.\n\n\
+         his joints, of the goal, and in `roll_over` of how he lies. `babybench evaluate` takes them with `--policy`, and the page has them in a list.\n\n\
          ```sh\n\
          cargo run --release --features onnx -- evaluate --config configs/config_reach.yml --policy policies/reach.onnx\n\
          ```\n\n\
          Mean return of {EPISODES} episodes with seeds 0 to {}, which training has not seen, in the configuration of the task, and in brackets the\n\
-         interval that holds 95 % of the means of samples drawn from them with replacement; then the share of successes. `held` holds a random action for half a second.\n\n\
-         | policy | steps trained | its return | random | zero | held | its successes | random | zero | held |\n\
-         |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n{table}\n\
+         interval that holds 95 % of the means of samples drawn from them with replacement; then the share of successes, and how long the policy took for one on average. `held` holds a random action for half a second.\n\n\
+         | policy | steps trained | its return | random | zero | held | its successes | random | zero | held | seconds |\n\
+         |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n{table}\n\
          ![Return over steps of training](curves.svg)\n\n\
-         Return over steps of training: blue that of the policy, grey the mean of the candidates that are tried, dashed a random policy. `roll_over` brings him onto his side, not yet onto his belly. In `selfbody` one part of the body is learned after\n\
+         Return over steps of training: blue that of the policy, grey the mean of the candidates that are tried, dashed a random policy. `roll_over_N` is learned in the body of N months, with its strength. In `selfbody` one part of the body is learned after\n\
          another, and the curve has a piece for each. Training is separable CMA-ES ([`examples/tasks`](../examples/tasks)), the same bits for the same seed, whatever the number of threads:\n\n\
          ```sh\n\
          cargo run --release --features onnx,npz --example tasks -- reach --seed 0    # or selfbody, standup, roll_over, catch; --age 3\n\
@@ -118,35 +118,51 @@ fn row(folder: &Path, entry: &Entry) -> Result<Row, Error> {
         Box::new(NoisePolicy::new(Noise::Held { seconds: 0.5 })),
     ];
     let steps = curve(folder, entry)?.last().map_or(0.0, |point| point[1]);
-    let (mut returns, mut successes, mut random) = (String::new(), String::new(), 0.0);
+    let (mut returns, mut successes, mut times, mut random) = (String::new(), String::new(), Vec::new(), 0.0);
     for (k, mut policy) in policies.into_iter().enumerate() {
-        let (mut all, mut reached) = (Vec::new(), 0);
+        let (mut all, mut reached) = (Vec::new(), Vec::new());
         for seed in 0..EPISODES {
             let (reward, success) = episode(&mut env, policy.as_mut(), seed)?;
             all.push(reward);
-            reached += u64::from(success);
+            reached.extend(success);
         }
         let Interval { mean, low, high, .. } = Interval::of(&all).ok_or("no episodes")?;
         if k == 1 {
             random = mean;
         }
         write!(returns, " {mean:.1} ({low:.1} to {high:.1}) |")?;
-        write!(successes, " {:.2} |", reached as f64 / EPISODES as f64)?;
+        write!(successes, " {:.2} |", reached.len() as f64 / EPISODES as f64)?;
+        if k == 0 {
+            times = reached;
+        }
     }
-    let text = format!("| `{}.onnx` | {:.1} M |{returns}{successes}", entry.name, steps / 1e6);
+    let seconds = times.iter().sum::<f64>() / times.len() as f64;
+    let seconds = if times.is_empty() {
+        String::new()
+    } else {
+        format!("{seconds:.1}")
+    };
+    let text = format!(
+        "| `{}.onnx` | {:.1} M |{returns}{successes} {seconds} |",
+        entry.name,
+        steps / 1e6
+    );
     Ok(Row { text, random })
 }
 
-fn episode(env: &mut Env, policy: &mut dyn Policy, seed: u64) -> Result<(f64, bool), Error> {
+/// Returns the return of an episode, and the time until the first success, s.
+fn episode(env: &mut Env, policy: &mut dyn Policy, seed: u64) -> Result<(f64, Option<f64>), Error> {
     env.reset(Some(seed))?;
     policy.begin(env, seed)?;
     let (mut action, mut reward) = (Vec::new(), 0.0);
-    let mut success = false;
+    let (dt, mut success) = (env.blueprint().dt(), None);
     while !env.over() {
         policy.act(env, &mut action)?;
         let step = env.step(&action)?;
         reward += step.reward;
-        success |= step.info.behavior.task().is_some_and(|task| task.outcome.is_success);
+        if success.is_none() && step.info.behavior.task().is_some_and(|task| task.outcome.is_success) {
+            success = Some(dt * step.info.steps as f64);
+        }
     }
     Ok((reward, success))
 }
@@ -177,7 +193,10 @@ fn panel(folder: &Path, entry: &Entry, random: f64, at: [f64; 2]) -> Result<Stri
     let x = |steps: f64| at[0] + left + inner[0] * steps / most;
     let y = |value: f64| at[1] + top + inner[1] * (1.0 - (value - low) / (high - low));
     let mut out = String::new();
-    let age = entry.age.map_or_else(String::new, |age| format!(", {age} months"));
+    let months = |age| if age == 1.0 { "month" } else { "months" };
+    let age = entry
+        .age
+        .map_or_else(String::new, |age| format!(", {age} {}", months(age)));
     writeln!(
         out,
         "<text class=\"title\" x=\"{:.0}\" y=\"{:.0}\">{}{age}</text>",

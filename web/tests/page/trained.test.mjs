@@ -7,28 +7,34 @@ let host;
 before(async () => (host = await start()));
 after(() => host.stop());
 
-/** What each policy does, its task, and steps within which this one reaches its goal, or earns more than nothing would. */
+/** What each policy does, its file, and for how many steps it goes on here: 300 reach the goal. */
 const ALL = [
   ["Reaches for the ball", "reach", 300],
   ["Touches a part of himself", "selfbody", 20],
   ["Stands up", "standup", 20],
-  ["Rolls to his side", "roll_over", 20],
+  ["Rolls over", "roll_over", 300],
+  ["Rolls over at 9 months", "roll_over_9", 300],
+  ["Rolls over at 6 months", "roll_over_6", 20],
   ["Catches the ball", "catch", 20],
 ];
 
-test("each trained policy starts its task and moves him; the first one reaches the ball", async () => {
+test("each trained policy starts its task and moves him; the first one reaches the ball, and he rolls over at two ages", async () => {
   const page = await host.open();
   await tab(page, "Move");
-  for (const [title, behavior, n] of ALL) {
-    await page.getByRole("button", { name: title }).click();
-    await until(page, (b) => mimo.scene?.settings.behavior === b && mimo.state.policy === "model" && mimo.model?.name === `${b}.onnx` && (mimo.playing || mimo.moment?.over), behavior); // one that is quick has ended before it is seen
-    assert.equal(await page.getByRole("button", { name: title }).getAttribute("aria-pressed"), "true");
+  for (const [title, file, n] of ALL) {
+    const [, behavior, age] = /** @type {RegExpMatchArray} */ (file.match(/^(.+?)(?:_(\d+))?$/));
+    const start = page.getByRole("button", { name: title, exact: true });
+    await start.click();
+    await until(page, ([b, f]) => mimo.scene?.settings.behavior === b && mimo.state.policy === "model" && mimo.model?.name === `${f}.onnx` && (mimo.playing || mimo.moment?.over), [behavior, file]); // one that is quick has ended before it is seen
+    assert.equal(await start.getAttribute("aria-pressed"), "true");
+    assert.equal(Number((await page.evaluate(() => mimo.scene.settings.age)) ?? 18), Number(age ?? 18));
     await page.evaluate(() => mimo.play(false));
     await page.evaluate(() => mimo.reset(0));
     await steps(page, n);
     const action = await page.evaluate(() => [...mimo.frame.subarray(mimo.scene.layout.action, mimo.scene.layout.angles)]);
     assert.ok(action.some((v) => v !== 0), title);
     if (behavior === "reach") assert.ok(await page.evaluate(() => mimo.moment.over), "the episode ends where the ball is reached");
+    if (n === 300) assert.ok(await page.evaluate(() => mimo.moment.score.success), title);
   }
   assert.deepEqual(page.errors, []);
   await page.context().close();

@@ -2,19 +2,21 @@
 import { el } from "../dom.js";
 import { button, card } from "./controls.js";
 
-/** What each one does, its task, its file. @type {[string, string, string][]} */
+/** What each one does, its task, its file, his age where it is another one than 18 months. @type {[string, string, string, number?][]} */
 export const TRAINED = [
   ["Reaches for the ball", "reach", "policies/reach.onnx"],
   ["Touches a part of himself", "selfbody", "policies/selfbody.onnx"],
   ["Stands up", "standup", "policies/standup.onnx"],
-  ["Rolls to his side", "roll_over", "policies/roll_over.onnx"],
+  ["Rolls over", "roll_over", "policies/roll_over.onnx"],
+  ["Rolls over at 9 months", "roll_over", "policies/roll_over_9.onnx", 9],
+  ["Rolls over at 6 months", "roll_over", "policies/roll_over_6.onnx", 6],
   ["Catches the ball", "catch", "policies/catch.onnx"],
 ];
 
 /** @param {import("../app.js").App} app */
 export function trained(app) {
-  const buttons = TRAINED.map(([title, behavior, url]) => {
-    const start = button(title, () => app.attempt(() => begin(app, behavior, url)));
+  const buttons = TRAINED.map(([title, behavior, url, age]) => {
+    const start = button(title, () => app.attempt(() => begin(app, behavior, url, age)));
     app.on("state", () => {
       const on = app.state.policy === "model" && app.model?.url === url;
       start.classList.toggle("on", on);
@@ -29,13 +31,14 @@ export function trained(app) {
  * @param {import("../app.js").App} app
  * @param {string} behavior
  * @param {string} url
+ * @param {number} [age]
  */
-async function begin(app, behavior, url) {
+async function begin(app, behavior, url, age) {
   const bytes = await app.sharing.fetched(url, (answer) => answer.arrayBuffer());
   if (!bytes) return;
   const { policy } = app.state;
   app.state.policy = "zero"; // the network that is there was made for another task
-  if (!(await app.begin({ behavior, vision_active: false }))) {
+  if (!(await app.begin({ behavior, vision_active: false, ...(age && { age }) }))) {
     app.state.policy = policy;
     return;
   }
