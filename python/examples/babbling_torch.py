@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from typing import Any
 
 import numpy as np
 import torch
@@ -166,13 +167,18 @@ def run(policy: Babbling, envs: babybench.VectorEnv, settled: bool = False, seed
     touched = pairs()
     for row in touched if not settled else []:
         policy.shares += FORGETTING * (row.float() - policy.shares)
-    return touched.numpy()
+    return np.asarray(touched)
 
 
 def train(config: str, seed: int, steps: int) -> dict[str, float]:
     """Trains one policy; returns its measures."""
     torch.manual_seed(seed)
-    options = {"autoreset_mode": "Disabled", "copy": False, "vision_active": False, "max_episode_steps": EPISODE}
+    options: dict[str, Any] = {
+        "autoreset_mode": "Disabled",
+        "copy": False,
+        "vision_active": False,
+        "max_episode_steps": EPISODE,
+    }
     envs = babybench.VectorEnv(config, INFANTS, **options)
     geoms = envs.reset()[1]["touches"].shape[2]
     names = babybench.make(config).actuator_names
@@ -193,7 +199,7 @@ def train(config: str, seed: int, steps: int) -> dict[str, float]:
     return {
         "score": score(union),
         "parts per episode": float(np.mean(parts)),
-        "score, evaluated": score(touched.any(0)),
+        "score, evaluated": score(np.asarray(touched.any(0))),
         "parts per episode, evaluated": float(touched.sum(1).mean()),
         "minutes": seconds / 60,
     }

@@ -53,7 +53,8 @@ class Body:
         slices, names = env.proprioception.slices, env.actuator_names
         joints = env.array("actuator_trnid") - 1  # the first joint places MIMo, and has no angle
         self.angles, self.velocities = joints + slices["angles"].start, joints + slices["velocities"].start
-        self.low, self.high = env.array("jnt_range")[joints + 1].T
+        ranges: np.ndarray = env.array("jnt_range")[joints + 1]
+        self.low, self.high = ranges[:, 0], ranges[:, 1]
         self.dt = env.dt
 
         def of(*words: str) -> np.ndarray:
@@ -80,7 +81,7 @@ class Posture(BasePolicy):
             moves = (step >= SETTLING) & ((step - SETTLING) // MOVING == hand)
             goals += np.where(moves, swing, 0.0)[:, None] * wrist
         effort = STIFFNESS * (goals - felt[:, body.angles]) - DAMPING * felt[:, body.velocities]
-        return np.clip(effort, self.action_space.low, self.action_space.high).astype(np.float32)
+        return np.asarray(np.clip(effort, self.action_space.low, self.action_space.high), np.float32)
 
     def predict(
         self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = False
@@ -142,7 +143,7 @@ class Archive:
         body, rng = self.body, self.rng
         if self.lists[None] and rng.uniform() < AGAIN:
             return self.lists[None][0].posture
-        posture = rng.uniform(body.low, body.high)
+        posture: np.ndarray = rng.uniform(body.low, body.high)
         parents = [self.some(None)] * 2 if rng.uniform() < TOGETHER else [self.some(0), self.some(1)]
         if rng.uniform() < RANDOM:
             return posture
@@ -201,17 +202,20 @@ class Sight:
         area = np.maximum(moved.sum((3, 4)), AREA * self.weights.size)
         eyes = (moved * self.weights).sum((3, 4)) / area
         turned = (self.gaze[:, 1] - self.gaze[:, 0]).max(2, initial=0.0)
-        return (0.5 * (eyes.mean(2) + eyes.min(2)) / (1 + (turned / TURN) ** 2)).T
+        seen: np.ndarray = 0.5 * (eyes.mean(2) + eyes.min(2)) / (1 + (turned / TURN) ** 2)
+        return np.asarray(seen.T)
 
 
 class Watching(BaseAlgorithm):
     """Learns to look at hands: ``Watching(env=envs, body=Body(env)).learn(100_000)``."""
 
+    _last_obs: Any
+
     def __init__(
         self,
         policy: type[Posture] = Posture,
         env: Any = None,
-        body: Body | None = None,
+        body: Any = None,
         seed: int | None = None,
         verbose: int = 0,
         device: str = "cpu",
