@@ -100,7 +100,11 @@ fn run(args: &[String]) -> Result<(), String> {
             let environments = environments
                 .split(',')
                 .map(|n| number("--environments", Some(n.into()), 1));
-            eyes_on_gpu(&environments.collect::<Result<Vec<_>, _>>()?)?;
+            let environments = environments.collect::<Result<Vec<_>, _>>()?;
+            if environments.contains(&0) {
+                return Err("--environments: each number is at least 1".into());
+            }
+            eyes_on_gpu(&environments)?;
         }
         "-h" | "--help" => println!("{USAGE}"),
         _ => return Err(USAGE.to_string()),
