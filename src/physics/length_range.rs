@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::math::MINVAL;
 use crate::mjcf_loader::{LengthRange, LengthRangeMode, LoadError, Places};
 use crate::model::{BiasType, GainType, IntegratorType, Model, TrnType};
-use crate::physics::dynamics::{Articulated, Damping, com_pos, dense_moment, kinematics, tendons, transmissions};
+use crate::physics::dynamics::once::{com_pos, crb, kinematics, solve, update};
+use crate::physics::dynamics::{Articulated, dense_moment, tendons, transmissions};
 use crate::physics::engine::Engine;
 use crate::physics::soft::{SoftEngine, SoftOptions};
 use crate::physics::state::State;
@@ -120,8 +121,8 @@ impl<'a> Search<'a> {
         let nv = model.nv;
         Self {
             settings,
+            bodies: Articulated::new(&model),
             engine: SoftEngine::new(Arc::new(model), SoftOptions::default()),
-            bodies: Articulated::default(),
             moment: vec![0.0; nv],
             response: vec![0.0; nv],
         }
@@ -169,10 +170,10 @@ impl<'a> Search<'a> {
         com_pos(&model, s);
         tendons(&model, topology, s);
         transmissions(&model, topology, s);
-        self.bodies.update(&model, s);
+        crb(&model, topology, s);
+        update(&mut self.bodies, &model, s);
         dense_moment(&model, topology, s, i, &mut self.moment);
-        self.bodies
-            .solve(&model, s, Damping::Without, &self.moment, &mut self.response);
+        solve(&mut self.bodies, s, &self.moment, &mut self.response);
         let norm = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
         let scale = side * self.settings.accel / norm(&self.response).max(MINVAL);
         for (force, arm) in s.qfrc_applied.iter_mut().zip(&self.moment) {

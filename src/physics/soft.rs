@@ -92,7 +92,7 @@ impl SoftModel {
             stages: RungeKutta::default(),
             sensor_scratch: SensorScratch::default(),
             bias: BiasScratch::default(),
-            bodies: Articulated::default(),
+            bodies: Articulated::new(model),
             probe: None,
             topology: topology.clone(),
             pairs: pairs.clone(),

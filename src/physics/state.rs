@@ -105,6 +105,8 @@ table! {
     }
     computed {
         // position stage
+        /// Whether bodies, geoms and sites that never move have their poses.
+        pub(crate) fixed_placed: (bool) = false;
         /// Body positions (nbody), world, m.
         pub xpos: [Vec3; model.nbody()] = [0.0; 3];
         /// Body orientations (nbody).
@@ -182,6 +184,8 @@ table! {
         /// Rates of the motion axes (nv): rotation, translation, 1/s.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
+        /// Wrench on each body (nbody) that its velocity alone asks for: `cvel x I cvel`.
+        pub(crate) gyroscopic: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Lengths of the actuators (nu): the coordinate of the joint or the length of the tendon, rad or m, times the gear; of a site
         /// its displacement from the reference site along the gears; of a slider-crank that of the slider.
         pub actuator_length: [f64; model.nu()] = 0.0;

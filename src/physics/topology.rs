@@ -3,6 +3,7 @@
 use crate::model::Arrays;
 use crate::physics::params::Params;
 use crate::physics::patterns::{self, DofRows};
+use crate::physics::strings::Strings;
 use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 
 /// The structure of the tree of a [`crate::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
@@ -35,6 +36,8 @@ pub struct Topology {
     body_tile_adr: Vec<usize>,
     /// Degrees of freedom that can change the length of each tendon.
     pub(crate) tendons: DofRows,
+    /// The paths of spatial tendons.
+    pub(crate) strings: Strings,
     /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
     pub(crate) actuators: DofRows,
     /// Those actuators, by id.
@@ -81,12 +84,14 @@ impl Topology {
             body_tiles: Vec::new(),
             body_tile_adr: Vec::new(),
             tendons: DofRows::default(),
+            strings: Strings::default(),
             actuators: DofRows::default(),
             own_moments: patterns::own_moments(model),
             actuator_scalar: patterns::actuator_scalar(model),
         };
         topology.deal_tiles(model);
         topology.tendons = patterns::tendons(model, &topology);
+        topology.strings = Strings::new(model, &topology, &topology.tendons);
         topology.actuators = patterns::actuators(model, &topology);
         topology
     }

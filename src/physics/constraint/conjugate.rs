@@ -47,7 +47,7 @@ impl Conjugate {
         self.gradient.resize(model.nv, 0.0);
         self.solution.resize(model.nv, 0.0);
         topology.read_lanes(&island.gradient, &mut self.gradient);
-        bodies.solve(model, s, Damping::Without, &self.gradient, &mut self.solution);
+        bodies.solve(s, Damping::Without, &self.gradient, &mut self.solution);
         self.descent.clear();
         self.descent.resize(island.gradient.len(), [0.0; 4]);
         topology.to_lanes(&self.solution, &mut self.descent);

@@ -6,18 +6,18 @@
 
 use std::ops::Range;
 
-use crate::limits::Limits;
 use crate::math::MINVAL;
 use crate::model::Model;
 use crate::physics::constraint::cone::Cone;
 use crate::physics::constraint::friction::Quadratic;
 use crate::physics::constraint::{Block, ConstraintType, Efc};
 use crate::physics::dynamics::{Articulated, Damping, Four};
-use crate::physics::engine::{EngineError, within};
+use crate::physics::engine::EngineError;
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 use crate::physics::vectorize::vectorized;
 
+mod matrix;
 mod noslip;
 
 /// A change of forces that would raise the cost by more than this is taken back.
@@ -36,12 +36,19 @@ pub struct Dual {
     /// Length of such a row.
     stride: usize,
     b: Vec<f64>,
+    /// `A f + b` at the present forces, which follows each of their changes: most rows do not change any more after a few sweeps, and then
+    /// cost nothing. Filled up as rows of `A` are.
+    gradient: Vec<f64>,
     /// `M^-1` times the forces on the joints (nv).
     column: Vec<f64>,
-    /// Four rows (nv), and `M^-1` times each.
+    /// Half of `M^-1` times each row (nefc x nv): products of two, divided by the inertia that each degree of freedom feels, are `A`.
+    halves: Vec<f64>,
+    /// Four rows (nv), and half of `M^-1` times each.
     sides: Vec<Four>,
     columns: Vec<Four>,
-    /// The degrees of freedom between which each row has its numbers.
+    /// Where those have numbers, with these divided by the inertia that the degree of freedom feels.
+    support: Vec<(usize, Four)>,
+    /// The degrees of freedom between which the half of each row has its numbers.
     reaches: Vec<Range<usize>>,
     /// One over the diagonal of `A`.
     inverse: Vec<f64>,
@@ -89,104 +96,17 @@ impl Dual {
         Ok(())
     }
 
-    /// Computes the matrix and the right side.
-    fn prepare(
-        &mut self,
-        model: &Model,
-        topology: &Topology,
-        bodies: &mut Articulated,
-        efc: &Efc,
-        s: &State,
-    ) -> Result<(), EngineError> {
-        let (n, nv) = (efc.nefc(), model.nv);
-        let what = "numbers in the matrices of solver=\"PGS\" or noslip_iterations";
-        within(
-            Limits::DEFAULT.dual_numbers,
-            n.saturating_mul(n.saturating_add(nv)),
-            what,
-            s.step,
-        )?;
-        self.jac.clear();
-        self.jac.resize(n * nv, 0.0);
-        self.stride = n.next_multiple_of(4);
-        self.a.clear();
-        self.a.resize(n * self.stride, 0.0);
-        self.column.resize(nv, 0.0);
-        for block in &efc.blocks {
-            for (row, dof, value) in efc.entries(topology, block) {
-                self.jac[(block.row + row) * nv + dof] = value;
-            }
-        }
-        vectorized!(self.fill(model, topology, bodies, efc, s));
-        self.b.clear();
-        let smooth = |i: usize| product(&self.jac[i * nv..(i + 1) * nv], &s.qacc_smooth) - efc.aref[i];
-        self.b.extend((0..n).map(smooth));
-        Ok(())
-    }
-
-    /// Computes `A` from `J`, four of its columns at a time.
-    #[inline(always)]
-    fn fill(&mut self, model: &Model, topology: &Topology, bodies: &mut Articulated, efc: &Efc, s: &State) {
-        let (n, nv) = (efc.nefc(), model.nv);
-        self.sides.resize(nv, [0.0; 4]);
-        self.columns.resize(nv, [0.0; 4]);
-        let reach = |row: &[f64]| {
-            let first = row.iter().position(|v| *v != 0.0).unwrap_or(0);
-            first..row.iter().rposition(|v| *v != 0.0).map_or(first, |last| last + 1)
-        };
-        self.reaches.clear();
-        self.reaches.extend(self.jac.chunks_exact(nv.max(1)).map(reach));
-        for first in (0..n).step_by(4) {
-            let lanes = 4.min(n - first);
-            let dofs = whole_trees(topology, &self.reaches[first..first + lanes]);
-            if dofs.is_empty() {
-                continue;
-            }
-            for d in dofs.clone() {
-                self.sides[d] = std::array::from_fn(|l| if l < lanes { self.jac[(first + l) * nv + d] } else { 0.0 });
-            }
-            let moved = model.dof_bodyid[dofs.start]..model.dof_bodyid[dofs.end - 1] + 1;
-            bodies.solve_four(model, s, moved, &self.sides, &mut self.columns);
-            for (k, reach) in self.reaches[..first + lanes].iter().enumerate() {
-                let common = reach.start.max(dofs.start)..reach.end.min(dofs.end);
-                if common.is_empty() {
-                    continue;
-                }
-                let row = &self.jac[k * nv..][common.clone()];
-                let mut sums = [0.0; 4];
-                for (v, column) in row.iter().zip(&self.columns[common]) {
-                    for (sum, c) in sums.iter_mut().zip(column) {
-                        *sum += v * c;
-                    }
-                }
-                // of these rows, those that come after this column have their own turn
-                let later = k.saturating_sub(first);
-                for (l, &value) in sums[..lanes].iter().enumerate().skip(later) {
-                    let i = first + l;
-                    self.a[i * self.stride + k] = value;
-                    self.a[k * self.stride + i] = value;
-                }
-            }
-        }
-        self.inverse.clear();
-        for i in 0..n {
-            let diagonal = &mut self.a[i * self.stride + i];
-            *diagonal += efc.r[i];
-            self.inverse.push(1.0 / *diagonal);
-        }
-    }
-
     /// Returns a row of `A`.
     #[inline(always)]
     fn row(&self, i: usize) -> &[f64] {
         &self.a[i * self.stride..(i + 1) * self.stride]
     }
 
-    /// Sets the forces that the last acceleration asks for, or none if those cost less.
-    fn start(&self, model: &Model, efc: &mut Efc, s: &State) {
+    /// Sets the forces that the last acceleration asks for, or none if those cost less, and the gradient at them.
+    fn start(&mut self, model: &Model, efc: &mut Efc, s: &State) {
         let nv = model.nv;
         if !model.opt.flags.warmstart {
-            efc.force.fill(0.0);
+            self.rest(efc);
             return;
         }
         for k in 0..efc.blocks.len() {
@@ -204,16 +124,44 @@ impl Dual {
                 }
             }
         }
-        let rows = self.a.chunks_exact(self.stride).zip(&self.b).zip(&efc.force);
-        let cost: f64 = rows.map(|((a, b), f)| f * (b + 0.5 * product(a, &efc.force))).sum();
+        self.differentiate(efc);
+        let rows = self.gradient.iter().zip(&self.b).zip(&efc.force);
+        let cost: f64 = rows.map(|((g, b), f)| 0.5 * f * (b + g)).sum();
         if cost > 0.0 {
-            efc.force.fill(0.0);
+            self.rest(efc);
+        }
+    }
+
+    /// Sets no forces.
+    fn rest(&mut self, efc: &mut Efc) {
+        efc.force.fill(0.0);
+        self.gradient.clone_from(&self.b);
+        self.gradient.resize(self.stride, 0.0);
+    }
+
+    /// Computes the gradient at the forces.
+    fn differentiate(&mut self, efc: &Efc) {
+        self.gradient.clear();
+        let rows = self.a.chunks_exact(self.stride.max(1)).zip(&self.b);
+        self.gradient.extend(rows.map(|(a, b)| b + product(a, &efc.force)));
+        self.gradient.resize(self.stride, 0.0);
+    }
+
+    /// Takes note of the change of the force of a row.
+    #[inline(always)]
+    fn shift(&mut self, row: usize, moved: f64) {
+        let column = &self.a[row * self.stride..(row + 1) * self.stride];
+        let (sums, _) = self.gradient.as_chunks_mut::<4>();
+        for (sum, a) in sums.iter_mut().zip(column.as_chunks::<4>().0) {
+            for (sum, a) in sum.iter_mut().zip(a) {
+                *sum += moved * a;
+            }
         }
     }
 
     /// Sweeps over the rows until a sweep improves the cost by less than the tolerance; returns the number of sweeps.
     #[inline(always)]
-    fn sweep(&self, model: &Model, efc: &mut Efc) -> usize {
+    fn sweep(&mut self, model: &Model, efc: &mut Efc) -> usize {
         let scale = scale(model);
         for sweep in 0..model.opt.iterations {
             let mut improvement = 0.0;
@@ -224,16 +172,18 @@ impl Dual {
                 }
                 let [low, high] = bounds(block);
                 for i in block.row..block.row + block.dim {
-                    let row = self.row(i);
-                    let residual = self.b[i] + product(row, &efc.force);
-                    let old = efc.force[i];
+                    let (residual, old) = (self.gradient[i], efc.force[i]);
                     let force = (old - residual * self.inverse[i]).max(low).min(high);
                     let moved = force - old;
-                    let change = 0.5 * moved * moved * row[i] + moved * residual;
+                    if moved == 0.0 {
+                        continue;
+                    }
+                    let change = 0.5 * moved * moved * self.row(i)[i] + moved * residual;
                     if change > RISE {
                         continue;
                     }
                     efc.force[i] = force;
+                    self.shift(i, moved);
                     improvement -= change;
                 }
             }
@@ -247,15 +197,13 @@ impl Dual {
     /// Improves the forces of a contact with an elliptic cone: along the ray on which they are, then friction at that normal force.
     /// Returns the change of the cost.
     #[inline(always)]
-    fn cone(&self, block: &Block, force: &mut [f64]) -> f64 {
+    fn cone(&mut self, block: &Block, force: &mut [f64]) -> f64 {
         let (first, dim) = (block.row, block.dim);
         let entry = |r: usize, c: usize| self.row(first + r)[first + c];
         let mut residual = [0.0; CONE_ROWS];
         let mut old = [0.0; CONE_ROWS];
-        for r in 0..dim {
-            residual[r] = self.b[first + r] + product(self.row(first + r), force);
-            old[r] = force[first + r];
-        }
+        residual[..dim].copy_from_slice(&self.gradient[first..first + dim]);
+        old[..dim].copy_from_slice(&force[first..first + dim]);
         let own = &mut force[first..first + dim];
         if own[0] < MINVAL {
             own[0] = (own[0] - residual[0] * self.inverse[first]).max(0.0);
@@ -287,7 +235,19 @@ impl Dual {
             let friction = cost.within_ellipsoid(&block.friction, own[0]);
             own[1..].copy_from_slice(&friction[..dim - 1]);
         }
-        settle(dim, entry, own, &old, &residual)
+        let change = settle(dim, entry, own, &old, &residual);
+        self.follow(first, own, &old);
+        change
+    }
+
+    /// Takes note of the changes of forces from `first` on.
+    #[inline(always)]
+    fn follow(&mut self, first: usize, force: &[f64], old: &[f64]) {
+        for (r, (force, old)) in force.iter().zip(old).enumerate() {
+            if force != old {
+                self.shift(first + r, force - old);
+            }
+        }
     }
 
     /// Computes what the forces do to the joints.
@@ -302,24 +262,11 @@ impl Dual {
                 *sum += j * force;
             }
         }
-        bodies.solve(model, s, Damping::Without, &s.qfrc_constraint, &mut self.column);
+        bodies.solve(s, Damping::Without, &s.qfrc_constraint, &mut self.column);
         for ((acc, smooth), change) in s.qacc.iter_mut().zip(&s.qacc_smooth).zip(&self.column) {
             *acc = change + smooth;
         }
     }
-}
-
-/// Returns the degrees of freedom of the trees from the first that rows reach to the last.
-fn whole_trees(topology: &Topology, reaches: &[Range<usize>]) -> Range<usize> {
-    let reached = reaches.iter().filter(|reach| !reach.is_empty());
-    let ends = reached.fold(None, |ends: Option<[usize; 2]>, reach| {
-        let [first, last] = ends.unwrap_or([reach.start, reach.end - 1]);
-        Some([first.min(reach.start), last.max(reach.end - 1)])
-    });
-    ends.map_or(0..0, |ends| {
-        let [first, last] = ends.map(|dof| topology.dof_tree[dof]);
-        topology.tree_adr[first]..topology.tree_adr[last + 1]
-    })
 }
 
 /// Returns what costs are scaled by before they are compared with a tolerance.

@@ -63,7 +63,7 @@ pub fn fwd_actuation(model: &Model, topology: &Topology, bodies: &mut Articulate
     }
     xfrc_accumulate(model, s);
     let mut acc = std::mem::take(&mut s.qacc_smooth);
-    bodies.solve(model, s, Damping::Without, &s.qfrc_smooth, &mut acc);
+    bodies.solve(s, Damping::Without, &s.qfrc_smooth, &mut acc);
     s.qacc_smooth = acc;
 }
 

@@ -24,17 +24,39 @@ pub enum Damping {
 
 /// The articulated inertias of all bodies, without damping and with that of the integrator; both are computed at
 /// once.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Articulated {
-    /// The inertia of each body: lower triangle of the symmetric 6 by 6 matrix, row by row.
+    /// The links, ascending by body.
+    links: Vec<Link>,
+    /// Bodies without joints that carry none either, as rigid parts of links: the last ones first.
+    loads: Vec<Load>,
+    /// The inertia of each link: lower triangle of the symmetric 6 by 6 matrix, row by row.
     inertia: Vec<[Pair; 21]>,
     /// One for each degree of freedom.
     released: Vec<Released>,
-    /// Working memory of a solution: bodies, bodies, degrees of freedom.
+    /// Working memory of a solution: links, links, degrees of freedom.
     force: Vec<Spatial>,
     acc: Vec<Spatial>,
     rest: Vec<f64>,
-    four: four::Memory,
+    /// Working memory of four right sides: links.
+    forces: Vec<four::Four6>,
+}
+
+/// A body that joints move, and which has joints or carries some.
+#[derive(Clone, Debug)]
+struct Link {
+    body: usize,
+    /// Its own degrees of freedom.
+    dofs: Range<usize>,
+    /// The link next to it on the way to the world, if there is one.
+    parent: Option<usize>,
+}
+
+/// A body that is fixed to a link, with all that it carries.
+#[derive(Clone, Copy, Debug)]
+struct Load {
+    body: usize,
+    link: usize,
 }
 
 /// A degree of freedom of an articulated body.
@@ -65,18 +87,60 @@ fn matrix(i: &Inertia) -> [f64; 21] {
 }
 
 impl Articulated {
-    /// Computes the inertias from `cinert`, `cdof`, armature and damping.
+    /// Makes room for the bodies of `model`.
+    pub fn new(model: &Arrays) -> Self {
+        let nb = model.nbody();
+        let mut bears: Vec<bool> = model.body_dofnum.iter().map(|&n| n > 0).collect();
+        for b in (1..nb).rev() {
+            bears[model.body_parentid[b]] |= bears[b];
+        }
+        // what is fixed to the world takes no part
+        let (mut links, mut loads) = (Vec::new(), Vec::new());
+        let mut link_of = vec![None; nb];
+        for b in 1..nb {
+            let parent = link_of[model.body_parentid[b]];
+            if bears[b] && (parent.is_some() || model.body_dofnum[b] > 0) {
+                link_of[b] = Some(links.len());
+                links.push(Link {
+                    body: b,
+                    dofs: model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b],
+                    parent,
+                });
+            } else if let Some(link) = parent {
+                loads.push(Load { body: b, link });
+            }
+        }
+        loads.reverse();
+        Self {
+            inertia: vec![[[0.0; 2]; 21]; links.len()],
+            released: vec![Released::default(); model.nv],
+            force: vec![[0.0; 6]; links.len()],
+            acc: vec![[0.0; 6]; links.len()],
+            rest: vec![0.0; model.nv],
+            forces: Vec::new(),
+            links,
+            loads,
+        }
+    }
+
+    /// Computes the inertias from `cinert`, `crb`, `cdof`, armature and damping.
     #[inline(always)]
     pub fn update(&mut self, model: &Arrays, s: &State) {
-        self.inertia.clear();
-        self.inertia.extend(s.cinert.iter().map(|i| matrix(i).map(|v| [v; 2])));
-        self.released.resize(model.nv, Released::default());
+        for (link, inertia) in self.links.iter().zip(&mut self.inertia) {
+            *inertia = matrix(&s.cinert[link.body]).map(|v| [v; 2]);
+        }
         let h = model.opt.timestep;
-        // children have higher ids than their parents, so each body is complete when its turn comes
-        for b in (1..model.nbody()).rev() {
-            let (head, tail) = self.inertia.split_at_mut(b);
+        let mut loads = self.loads.iter().peekable();
+        // children have higher ids than their parents, so each link is complete when its turn comes
+        for (k, link) in self.links.iter().enumerate().rev() {
+            while let Some(load) = loads.next_if(|load| load.body > link.body) {
+                for (a, v) in self.inertia[load.link].iter_mut().zip(matrix(&s.crb[load.body])) {
+                    *a = [a[0] + v, a[1] + v];
+                }
+            }
+            let (head, tail) = self.inertia.split_at_mut(k);
             let inertia = &mut tail[0];
-            for d in (model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b]).rev() {
+            for d in link.dofs.clone().rev() {
                 // armature is inertia of the motor's rotor, felt along the joint alone; h D is what implicit damping
                 // adds to the diagonal
                 let extra = [
@@ -86,9 +150,8 @@ impl Articulated {
                 // from the joint next to the body to the one next to its parent: each moves all behind it
                 self.released[d] = release(inertia, &s.cdof[d], extra);
             }
-            let p = model.body_parentid[b];
             // the world cannot be accelerated: what it would feel is of no consequence
-            if p > 0 {
+            if let Some(p) = link.parent {
                 for (a, c) in head[p].iter_mut().zip(inertia) {
                     for k in 0..2 {
                         a[k] += c[k];
@@ -100,62 +163,56 @@ impl Articulated {
 
     /// Solves `M x = b` (nv), or with damping `(M + h D) x = b`.
     #[inline(always)]
-    pub fn solve(&mut self, model: &Arrays, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
-        let bodies = 1..model.nbody();
+    pub fn solve(&mut self, s: &State, damping: Damping, b: &[f64], x: &mut [f64]) {
+        let links = 0..self.links.len();
         match damping {
-            Damping::Without => self.solve_lane::<0>(model, s, bodies, b, x),
-            Damping::Implicit => self.solve_lane::<1>(model, s, bodies, b, x),
+            Damping::Without => self.solve_lane::<0>(s, links, b, x),
+            Damping::Implicit => self.solve_lane::<1>(s, links, b, x),
         }
     }
 
     /// Solves `M x = b` for the degrees of freedom of some bodies that hold whole trees; the rest of `x` stays as it is.
-    pub(super) fn solve_trees(&mut self, model: &Arrays, s: &State, bodies: Range<usize>, b: &[f64], x: &mut [f64]) {
-        self.solve_lane::<0>(model, s, bodies, b, x);
+    pub(super) fn solve_trees(&mut self, s: &State, bodies: Range<usize>, b: &[f64], x: &mut [f64]) {
+        self.solve_lane::<0>(s, self.links_of(bodies), b, x);
+    }
+
+    /// Returns the links of a range of bodies, by their places.
+    fn links_of(&self, bodies: Range<usize>) -> Range<usize> {
+        let place = |body: usize| self.links.partition_point(|link| link.body < body);
+        place(bodies.start)..place(bodies.end)
     }
 
     #[inline(always)]
-    fn solve_lane<const LANE: usize>(
-        &mut self,
-        model: &Arrays,
-        s: &State,
-        bodies: Range<usize>,
-        b: &[f64],
-        x: &mut [f64],
-    ) {
-        let nb = model.nbody();
-        self.force.resize(nb, [0.0; 6]);
-        self.force[bodies.clone()].fill([0.0; 6]);
-        self.acc.resize(nb, [0.0; 6]);
-        self.rest.resize(model.nv, 0.0);
+    fn solve_lane<const LANE: usize>(&mut self, s: &State, links: Range<usize>, b: &[f64], x: &mut [f64]) {
+        let (force, acc) = (&mut self.force[..links.end], &mut self.acc[..links.end]);
+        force[links.clone()].fill([0.0; 6]);
         // The second and third pass of the articulated-body algorithm (Featherstone 2008, table 7.1), without its
         // velocity terms: those are in `b`. Inwards, each joint keeps what its own inertia takes of the force and
         // passes on the rest.
-        for body in bodies.clone().rev() {
-            let mut f = self.force[body];
-            let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
+        for k in links.clone().rev() {
+            let Link { dofs, parent, .. } = &self.links[k];
+            let mut f = force[k];
             let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
-            let lanes = self.rest[dofs.clone()].iter_mut().zip(&b[dofs]);
+            let lanes = self.rest[dofs.clone()].iter_mut().zip(&b[dofs.clone()]);
             for ((axis, d), (rest, b)) in values.zip(lanes).rev() {
                 *rest = b - dot6(axis, &f);
                 axpy6(&mut f, *rest * d.inverse[LANE], &d.unit_force.map(|v| v[LANE]));
             }
-            let p = model.body_parentid[body];
-            if p > 0 {
-                axpy6(&mut self.force[p], 1.0, &f);
+            if let Some(p) = *parent {
+                axpy6(&mut force[p], 1.0, &f);
             }
         }
         // outwards, each joint answers to the acceleration of its parent, which is known by then
-        for body in bodies {
-            let p = model.body_parentid[body];
-            let mut a = if p > 0 { self.acc[p] } else { [0.0; 6] };
-            let dofs = model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
+        for k in links {
+            let Link { dofs, parent, .. } = &self.links[k];
+            let mut a = parent.map_or([0.0; 6], |p| acc[p]);
             let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
-            let lanes = self.rest[dofs.clone()].iter().zip(&mut x[dofs]);
+            let lanes = self.rest[dofs.clone()].iter().zip(&mut x[dofs.clone()]);
             for ((axis, d), (rest, x)) in values.zip(lanes) {
                 *x = (rest - dot6(&d.unit_force.map(|v| v[LANE]), &a)) * d.inverse[LANE];
                 axpy6(&mut a, *x, axis);
             }
-            self.acc[body] = a;
+            acc[k] = a;
         }
     }
 }
@@ -204,21 +261,25 @@ mod tests {
     use crate::physics::dynamics::mul_m;
     use crate::physics::{Engine, SoftEngine, SoftOptions, Topology, compile};
 
-    /// A free trunk with limbs that branch, of joints with and without damping, and two bodies beside it.
+    /// A free trunk with limbs that branch, of joints with and without damping, and with rigid parts; bodies beside it, one of them on a
+    /// base that is fixed.
     const BRANCHES: &str = r#"<mujoco><option gravity="0 0 -9.81"/><default><joint armature=".01"/></default><worldbody>
         <body name="trunk" pos="0 0 1"><freejoint/><geom type="capsule" size=".1 .2"/>
           <body pos=".2 0 .1"><joint axis="0 1 0" damping=".3"/><joint axis="1 0 0"/><geom type="capsule" size=".04 .1"/>
             <body pos=".2 0 0"><joint axis="0 0 1" damping="2"/><geom size=".05" pos=".1 0 0"/>
               <body pos=".2 0 0"><joint axis="0 1 0"/><geom type="box" size=".05 .02 .01" pos=".05 0 0"/></body>
               <body pos=".2 .1 0"><joint axis="1 1 0" damping=".1"/><geom type="box" size=".05 .02 .01"/></body>
+              <body pos="0 .1 0"><geom size=".03"/><body pos="0 .1 .1"><geom size=".02"/></body></body>
             </body>
+            <body pos=".1 .1 0"><geom size=".03"/><body pos="0 .1 .1"><joint axis="1 0 0"/><geom size=".02" pos="0 .1 0"/></body></body>
           </body>
           <body pos="-.2 0 .1"><joint type="slide" axis="1 0 0" damping="5"/><geom type="cylinder" size=".03 .1"/>
             <body pos="-.1 0 0"><joint axis="0 0 1"/><joint axis="0 1 0"/><joint axis="1 0 0"/><geom size=".02" pos="-.1 0 0"/></body>
           </body>
         </body>
         <body pos="2 0 1"><freejoint/><geom type="box" size=".1 .2 .3"/></body>
-        <body pos="4 0 1"><joint axis="0 1 0" pos="0 0 1" damping=".01"/><geom size=".1"/></body>
+        <body pos="4 0 1"><geom size=".1"/><body><joint axis="0 1 0" pos="0 0 1" damping=".01"/><geom size=".1"/></body>
+          <body pos="0 1 0"><geom size=".2"/></body></body>
         </worldbody></mujoco>"#;
 
     #[test]
@@ -232,32 +293,28 @@ mod tests {
             *q += 0.3 * (k % 5) as f64 - 0.6;
         }
         engine.forward(&mut s).expect("finite");
-        let mut bodies = Articulated::default();
+        let mut bodies = Articulated::new(model);
         bodies.update(model, &s);
         let x: Vec<f64> = (0..model.nv).map(|d| (d % 7) as f64 - 3.0).collect();
         let (mut b, mut found) = (vec![0.0; model.nv], vec![0.0; model.nv]);
         mul_m(&Topology::new(model), &s.qm, &x, &mut b);
-        bodies.solve(model, &s, Damping::Without, &b, &mut found);
+        bodies.solve(&s, Damping::Without, &b, &mut found);
         let worst = |found: &[f64]| x.iter().zip(found).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         assert!(worst(&found) < 1e-11, "{:e}", worst(&found));
-        // four at once: the same bits as one after the other
+        // b' M^-1 c from halves, of four at once
         let sides: Vec<Four> = b.iter().map(|v| [*v, 2.0 * v, v - 1.0, 0.0]).collect();
-        let mut four = vec![[0.0; 4]; model.nv];
-        bodies.solve_four(model, &s, 1..model.nbody(), &sides, &mut four);
+        let mut halves = vec![[0.0; 4]; model.nv];
+        bodies.half_solve_four(&s, 0..model.nv, &sides, &mut halves);
         for lane in 0..4 {
-            let side: Vec<f64> = sides.iter().map(|v| v[lane]).collect();
-            let mut alone = vec![0.0; model.nv];
-            bodies.solve(model, &s, Damping::Without, &side, &mut alone);
-            assert!(
-                four.iter()
-                    .zip(&alone)
-                    .all(|(four, alone)| four[lane].to_bits() == alone.to_bits())
-            );
+            let whole: f64 = sides.iter().zip(&found).map(|(side, x)| side[lane] * x).sum();
+            let half = |d: usize| halves[d][lane] * bodies.inverse(d) * halves[d][0];
+            let product: f64 = (0..model.nv).map(half).sum();
+            assert!((whole - product).abs() < 1e-9, "{lane}: {whole} {product}");
         }
         for d in 0..model.nv {
             b[d] += model.opt.timestep * s.params.dof_damping[d] * x[d];
         }
-        bodies.solve(model, &s, Damping::Implicit, &b, &mut found);
+        bodies.solve(&s, Damping::Implicit, &b, &mut found);
         assert!(worst(&found) < 1e-11, "{:e}", worst(&found));
     }
 }

@@ -8,9 +8,10 @@ use crate::model::{
 };
 use crate::physics::MAXVAL;
 use crate::physics::dynamics::kinematics::local_to_global;
+use crate::physics::dynamics::once::{com_pos, crb, kinematics, solve, update};
 use crate::physics::dynamics::springs::{bias, slack, springs};
 use crate::physics::dynamics::transmission::{dense_moment, length, transmissions};
-use crate::physics::dynamics::{Articulated, Damping, com_pos, crb, kinematics, tendons};
+use crate::physics::dynamics::{Articulated, tendons};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -118,8 +119,8 @@ struct Weights<'a> {
 
 impl<'a> Weights<'a> {
     fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State) -> Self {
-        let mut bodies = Articulated::default();
-        bodies.update(model, s);
+        let mut bodies = Articulated::new(model);
+        update(&mut bodies, model, s);
         let first = |tree: usize| model.jnt_bodyid[model.dof_jntid[topology.tree_adr[tree]]];
         let below = |b: usize| (b + 1..model.nbody()).find(|&c| model.body_parentid[c] < b);
         let range = |b: usize| b..below(b).unwrap_or(model.nbody());
@@ -144,8 +145,7 @@ impl<'a> Weights<'a> {
         trees.dedup();
         for tree in trees {
             let bodies = self.tree_bodies[tree].clone();
-            self.bodies
-                .solve_trees(self.model, self.s, bodies, &self.b, &mut self.x);
+            self.bodies.solve_trees(self.s, bodies, &self.b, &mut self.x);
         }
         jac.iter().for_each(|&(d, _)| self.b[d] = 0.0);
         jac.iter().map(|&(d, v)| v * self.x[d]).sum()
@@ -210,8 +210,7 @@ impl<'a> Weights<'a> {
     /// Computes the norm of the acceleration per unit of an actuator's force.
     fn actuator(&mut self, i: usize) -> f64 {
         dense_moment(self.model, self.topology, self.s, i, &mut self.b);
-        self.bodies
-            .solve(self.model, self.s, Damping::Without, &self.b, &mut self.x);
+        solve(&mut self.bodies, self.s, &self.b, &mut self.x);
         self.b.fill(0.0);
         self.x.iter().map(|a| a * a).sum::<f64>().sqrt()
     }

@@ -39,7 +39,7 @@ impl Integrator {
                 self.force.clear();
                 let forces = s.qfrc_smooth.iter().zip(&s.qfrc_constraint);
                 self.force.extend(forces.map(|(a, b)| a + b));
-                bodies.solve(model, s, Damping::Implicit, &self.force, &mut self.acc);
+                bodies.solve(s, Damping::Implicit, &self.force, &mut self.acc);
                 true
             }
             _ => false,

@@ -8,83 +8,137 @@ use crate::model::{Arrays, CamLight, JointType, Model, SameFrame};
 use crate::physics::spatial::spatial;
 use crate::physics::state::State;
 
-/// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`.
+/// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`. What never moves is placed in the first call
+/// for a state.
 #[doc(alias = "mj_kinematics")]
 #[inline(always)]
 pub fn kinematics(model: &Arrays, s: &mut State) {
-    for b in 1..model.nbody() {
-        let (mut pos, mut quat);
-        let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
-        if joints.len() == 1 && model.jnt_type[joints.start] == JointType::Free {
-            let j = joints.start;
-            let q = &s.qpos[model.jnt_qposadr[j]..];
-            pos = [q[0], q[1], q[2]];
-            quat = quat_normalize([q[3], q[4], q[5], q[6]]);
-            s.xanchor[j] = pos;
-            s.xaxis[j] = model.jnt_axis[j];
-        } else {
-            let p = model.body_parentid[b];
-            if p == 0 {
-                (pos, quat) = match model.body_mocapid[b] {
-                    Some(k) => (s.mocap_pos[k], quat_normalize(s.mocap_quat[k])),
-                    None => (model.body_pos[b], model.body_quat[b]),
-                };
-            } else {
-                pos = add(mat_vec(&s.xmat[p], model.body_pos[b]), s.xpos[p]);
-                quat = quat_mul(s.xquat[p], model.body_quat[b]);
-            }
-            for j in joints {
-                let (jpos, jaxis) = (model.jnt_pos[j], model.jnt_axis[j]);
-                let axis = quat_rotate(quat, jaxis);
-                let anchor = add(quat_rotate(quat, jpos), pos);
-                let adr = model.jnt_qposadr[j];
-                let displacement = s.qpos[adr] - model.qpos0[adr];
-                match model.jnt_type[j] {
-                    JointType::Slide => pos = add_scaled(pos, axis, displacement),
-                    kind => {
-                        let turn = match kind {
-                            JointType::Ball => quat_normalize(quat_at(&s.qpos, adr)),
-                            _ => axis_angle_to_quat(jaxis, displacement),
-                        };
-                        quat = quat_mul(quat, turn);
-                        pos = sub(anchor, quat_rotate(quat, jpos));
-                    }
-                }
-                s.xanchor[j] = anchor;
-                s.xaxis[j] = axis;
-            }
+    // geoms and sites have the order of their bodies
+    let (mut geom, mut site) = (0, 0);
+    for b in 0..model.nbody() {
+        let first = (geom, site);
+        geom += model.body_geomnum[b];
+        while model.site_bodyid.get(site) == Some(&b) {
+            site += 1;
         }
-        quat = quat_normalize(quat);
-        s.xpos[b] = pos;
-        s.xquat[b] = quat;
-        s.xmat[b] = quat_to_mat(quat);
-        let (p, q) = (model.body_ipos[b], model.body_iquat[b]);
-        (s.xipos[b], s.ximat[b]) = local_to_global(s, b, p, q, model.body_sameframe[b]);
+        if s.fixed_placed && !model.moves(b) {
+            continue;
+        }
+        if b > 0 {
+            body(model, s, b);
+        }
+        // borrowed field by field, so that what is placed can be written beside it
+        let frame = Frame {
+            pos: &s.xpos[b],
+            quat: &s.xquat[b],
+            mat: &s.xmat[b],
+            ipos: &s.xipos[b],
+            imat: &s.ximat[b],
+        };
+        let (geom_xpos, geom_xmat) = (&mut s.geom_xpos[..], &mut s.geom_xmat[..]);
+        for g in first.0..geom {
+            let (p, q) = (model.geom_pos[g], model.geom_quat[g]);
+            (geom_xpos[g], geom_xmat[g]) = frame.carry(p, q, model.geom_sameframe[g]);
+        }
+        let (site_xpos, site_xmat) = (&mut s.site_xpos[..], &mut s.site_xmat[..]);
+        for i in first.1..site {
+            let (p, q) = (model.site_pos[i], model.site_quat[i]);
+            (site_xpos[i], site_xmat[i]) = frame.carry(p, q, model.site_sameframe[i]);
+        }
     }
-    for g in 0..model.ngeom() {
-        let (b, p, q) = (model.geom_bodyid[g], model.geom_pos[g], model.geom_quat[g]);
-        (s.geom_xpos[g], s.geom_xmat[g]) = local_to_global(s, b, p, q, model.geom_sameframe[g]);
+    s.fixed_placed = true;
+}
+
+/// Places a body and its joints; its parent is placed.
+#[inline(always)]
+fn body(model: &Arrays, s: &mut State, b: usize) {
+    let (mut pos, mut quat);
+    let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
+    if joints.len() == 1 && model.jnt_type[joints.start] == JointType::Free {
+        let j = joints.start;
+        let q = &s.qpos[model.jnt_qposadr[j]..];
+        pos = [q[0], q[1], q[2]];
+        quat = quat_normalize([q[3], q[4], q[5], q[6]]);
+        s.xanchor[j] = pos;
+        s.xaxis[j] = model.jnt_axis[j];
+    } else {
+        let p = model.body_parentid[b];
+        if p == 0 {
+            (pos, quat) = match model.body_mocapid[b] {
+                Some(k) => (s.mocap_pos[k], quat_normalize(s.mocap_quat[k])),
+                None => (model.body_pos[b], model.body_quat[b]),
+            };
+        } else {
+            pos = add(mat_vec(&s.xmat[p], model.body_pos[b]), s.xpos[p]);
+            quat = quat_mul(s.xquat[p], model.body_quat[b]);
+        }
+        for j in joints {
+            let (jpos, jaxis) = (model.jnt_pos[j], model.jnt_axis[j]);
+            let axis = quat_rotate(quat, jaxis);
+            let anchor = add(quat_rotate(quat, jpos), pos);
+            let adr = model.jnt_qposadr[j];
+            let displacement = s.qpos[adr] - model.qpos0[adr];
+            match model.jnt_type[j] {
+                JointType::Slide => pos = add_scaled(pos, axis, displacement),
+                kind => {
+                    let turn = match kind {
+                        JointType::Ball => quat_normalize(quat_at(&s.qpos, adr)),
+                        _ => axis_angle_to_quat(jaxis, displacement),
+                    };
+                    quat = quat_mul(quat, turn);
+                    pos = sub(anchor, quat_rotate(quat, jpos));
+                }
+            }
+            s.xanchor[j] = anchor;
+            s.xaxis[j] = axis;
+        }
     }
-    for i in 0..model.nsite() {
-        let (b, p, q) = (model.site_bodyid[i], model.site_pos[i], model.site_quat[i]);
-        (s.site_xpos[i], s.site_xmat[i]) = local_to_global(s, b, p, q, model.site_sameframe[i]);
+    quat = quat_normalize(quat);
+    s.xpos[b] = pos;
+    s.xquat[b] = quat;
+    s.xmat[b] = quat_to_mat(quat);
+    let (p, q) = (model.body_ipos[b], model.body_iquat[b]);
+    (s.xipos[b], s.ximat[b]) = local_to_global(s, b, p, q, model.body_sameframe[b]);
+}
+
+/// The frame of a body, and that of its principal axes.
+struct Frame<'a> {
+    pos: &'a Vec3,
+    quat: &'a Quat,
+    mat: &'a Mat3,
+    ipos: &'a Vec3,
+    imat: &'a Mat3,
+}
+
+impl Frame<'_> {
+    /// Returns the world pose of something fixed in the body. A frame that is known already is copied.
+    #[inline(always)]
+    fn carry(&self, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
+        let world_pos = match same {
+            SameFrame::Body => *self.pos,
+            SameFrame::Inertia => *self.ipos,
+            _ => add(mat_vec(self.mat, pos), *self.pos),
+        };
+        let world_mat = match same {
+            SameFrame::Body | SameFrame::BodyRot => *self.mat,
+            SameFrame::Inertia | SameFrame::InertiaRot => *self.imat,
+            SameFrame::None => quat_to_mat(quat_mul(*self.quat, quat)),
+        };
+        (world_pos, world_mat)
     }
 }
 
 /// Returns the world pose of something fixed in a body. A frame that is known already is copied.
 #[inline(always)]
 pub(super) fn local_to_global(s: &State, body: usize, pos: Vec3, quat: Quat, same: SameFrame) -> (Vec3, Mat3) {
-    let world_pos = match same {
-        SameFrame::Body => s.xpos[body],
-        SameFrame::Inertia => s.xipos[body],
-        _ => add(mat_vec(&s.xmat[body], pos), s.xpos[body]),
+    let frame = Frame {
+        pos: &s.xpos[body],
+        quat: &s.xquat[body],
+        mat: &s.xmat[body],
+        ipos: &s.xipos[body],
+        imat: &s.ximat[body],
     };
-    let world_mat = match same {
-        SameFrame::Body | SameFrame::BodyRot => s.xmat[body],
-        SameFrame::Inertia | SameFrame::InertiaRot => s.ximat[body],
-        SameFrame::None => quat_to_mat(quat_mul(s.xquat[body], quat)),
-    };
-    (world_pos, world_mat)
+    frame.carry(pos, quat, same)
 }
 
 /// Computes `cam_xpos, cam_xmat` from body poses and centres of mass. A camera that aims at something has its -z towards it
@@ -118,27 +172,33 @@ fn aimed(pos: Vec3, target: Vec3) -> (Vec3, Mat3) {
 #[inline(always)]
 pub fn com_pos(model: &Arrays, s: &mut State) {
     let nb = model.nbody();
-    s.subtree_com.fill([0.0; 3]);
+    let (com, xipos) = (&mut s.subtree_com[..nb], &s.xipos[..nb]);
+    com.fill([0.0; 3]);
     for b in (0..nb).rev() {
-        let com = add_scaled(s.subtree_com[b], s.xipos[b], s.params.body_mass[b]);
+        let weighted = add_scaled(com[b], xipos[b], s.params.body_mass[b]);
         if b > 0 {
             let p = model.body_parentid[b];
-            s.subtree_com[p] = add(s.subtree_com[p], com);
+            com[p] = add(com[p], weighted);
         }
         let mass = s.params.body_subtreemass[b];
-        s.subtree_com[b] = if mass < MINVAL {
-            s.xipos[b]
+        com[b] = if mass < MINVAL {
+            xipos[b]
         } else {
-            scale(com, 1.0 / mass)
+            scale(weighted, 1.0 / mass)
         };
     }
-    for b in 1..nb {
-        let d = sub(s.xipos[b], s.subtree_com[model.body_rootid[b]]);
-        let (r, i, m) = (&s.ximat[b], s.params.body_inertia[b], s.params.body_mass[b]);
+    let bodies = xipos
+        .iter()
+        .zip(&s.ximat)
+        .zip(&s.params.body_inertia)
+        .zip(&s.params.body_mass);
+    let all = bodies.zip(&model.body_rootid).zip(&mut s.cinert);
+    for (((((xipos, r), i), &m), &root), cinert) in all.skip(1) {
+        let d = sub(*xipos, com[root]);
         let rotated = |a: usize, c: usize| {
             r[3 * a] * i[0] * r[3 * c] + r[3 * a + 1] * i[1] * r[3 * c + 1] + r[3 * a + 2] * i[2] * r[3 * c + 2]
         };
-        s.cinert[b] = [
+        *cinert = [
             rotated(0, 0) + m * (d[1] * d[1] + d[2] * d[2]),
             rotated(1, 1) + m * (d[0] * d[0] + d[2] * d[2]),
             rotated(2, 2) + m * (d[0] * d[0] + d[1] * d[1]),

@@ -15,6 +15,7 @@ mod inertia;
 mod integrate;
 mod kinematics;
 mod muscle;
+pub mod once;
 mod post_constraint;
 mod sensor;
 mod springs;

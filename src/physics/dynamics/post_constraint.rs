@@ -7,8 +7,8 @@ use crate::physics::dynamics::applied::applied;
 use crate::physics::spatial::*;
 use crate::physics::state::State;
 
-/// Computes `cacc, cfrc_ext, cfrc_int` from `qacc` and the constraint forces (recursive Newton-Euler with the joint
-/// accelerations known).
+/// Computes `cacc, cfrc_ext, cfrc_int` from `qacc`, the constraint forces and what the velocity stage left (recursive Newton-Euler with
+/// the joint accelerations known).
 ///
 /// `cfrc_ext` holds contacts, connections, welds and the forces that a caller applies to bodies; joint limits, friction loss, springs and actuators act inside joints and so show
 /// in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
@@ -39,25 +39,23 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
     let g = s.params.gravity;
     s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     s.cfrc_int[0] = [0.0; 6];
+    let (cacc, cfrc_int) = (&mut s.cacc[..nb], &mut s.cfrc_int[..nb]);
+    let (cinert, gyroscopic, cfrc_ext) = (&s.cinert[..nb], &s.gyroscopic[..nb], &s.cfrc_ext[..nb]);
     for b in 1..nb {
-        let mut a = s.cacc[model.body_parentid[b]];
+        let mut a = cacc[model.body_parentid[b]];
         for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
             axpy6(&mut a, s.qvel[d], &s.cdof_dot[d]);
             axpy6(&mut a, s.qacc[d], &s.cdof[d]);
         }
-        s.cacc[b] = a;
-        let mut f = inertia_mul(&s.cinert[b], &a);
-        axpy6(
-            &mut f,
-            1.0,
-            &cross_force(&s.cvel[b], &inertia_mul(&s.cinert[b], &s.cvel[b])),
-        );
-        axpy6(&mut f, -1.0, &s.cfrc_ext[b]);
-        s.cfrc_int[b] = f;
+        cacc[b] = a;
+        let mut f = inertia_mul(&cinert[b], &a);
+        axpy6(&mut f, 1.0, &gyroscopic[b]);
+        axpy6(&mut f, -1.0, &cfrc_ext[b]);
+        cfrc_int[b] = f;
     }
     for b in (1..nb).rev() {
-        let f = s.cfrc_int[b];
-        axpy6(&mut s.cfrc_int[model.body_parentid[b]], 1.0, &f);
+        let f = cfrc_int[b];
+        axpy6(&mut cfrc_int[model.body_parentid[b]], 1.0, &f);
     }
 }
 

@@ -2,8 +2,9 @@
 
 use crate::math::MINVAL;
 use crate::model::Arrays;
+use crate::physics::dynamics::once::{com_pos, kinematics};
+use crate::physics::dynamics::tendons;
 use crate::physics::dynamics::transmission::moment;
-use crate::physics::dynamics::{com_pos, kinematics, tendons};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 

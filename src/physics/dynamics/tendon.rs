@@ -1,12 +1,11 @@
 //! Tendons: their lengths, the Jacobians of these, and the points that spatial tendons pass.
 
-use std::ops::Range;
-
 use crate::math::*;
 use crate::model::{Arrays, Wrap};
 use crate::physics::dynamics::wrap::{Round, wrap};
-use crate::physics::spatial::velocity_at;
+use crate::physics::spatial::{Spatial, angular, linear};
 use crate::physics::state::State;
+use crate::physics::strings::{Between, Moved, Span};
 use crate::physics::topology::Topology;
 
 /// Computes lengths, Jacobians and rates of all tendons, and the points of spatial ones: `ten_length, ten_j, ten_velocity,
@@ -17,7 +16,7 @@ pub fn tendons(model: &Arrays, topology: &Topology, s: &mut State) {
     for t in 0..model.ntendon() {
         s.ten_wrapadr[t] = points;
         if model.tendon_is_spatial(t) {
-            spatial(model, topology, s, t, &mut points);
+            spatial(topology, s, t, &mut points);
         } else {
             fixed(model, topology, s, t);
         }
@@ -42,131 +41,85 @@ fn fixed(model: &Arrays, topology: &Topology, s: &mut State, t: usize) {
     (s.ten_length[t], s.ten_velocity[t]) = (length, velocity);
 }
 
-/// Geom, side site and whether it is a cylinder, of what a tendon may wrap around.
-type Wrapped = (usize, Option<usize>, bool);
-
-/// Returns the geom that a tendon may wrap around after a site, and how many entries of its path on the next site is; `None` where the
-/// path ends at the site.
-fn after_site(next: &Wrap) -> Option<(Option<Wrapped>, usize)> {
-    match *next {
-        Wrap::Pulley { .. } | Wrap::Joint { .. } => None,
-        Wrap::Site { .. } => Some((None, 1)),
-        Wrap::Sphere { geom, side } => Some((Some((geom, side, false)), 2)),
-        Wrap::Cylinder { geom, side } => Some((Some((geom, side, true)), 2)),
-    }
-}
-
 /// Computes a spatial tendon; kept out of the code that is compiled twice.
 #[inline(never)]
-fn spatial(model: &Arrays, topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
-    let row = topology.tendons.range(t);
-    s.ten_j[row.clone()].fill(0.0);
-    s.ten_entries[t] = false;
-    let (path, mut length, mut divisor) = (&model.tendon_wrap[t], 0.0, 1.0);
-    let mut pass = |s: &mut State, point: Vec3, object: i32| {
-        (s.wrap_xpos[*points], s.wrap_obj[*points]) = (point, object);
-        *points += 1;
+fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
+    let strings = &topology.strings;
+    let sites = &s.site_xpos[..];
+    let mut passed = s.wrap_xpos[*points..].iter_mut().zip(&mut s.wrap_obj[*points..]);
+    let mut pass = |point: Vec3, object: i32| {
+        if let Some((xpos, obj)) = passed.next() {
+            (*xpos, *obj) = (point, object);
+            *points += 1;
+        }
     };
-    let mut k = 0;
-    while k + 1 < path.len() {
-        if let Wrap::Pulley { divisor: next } = path[k] {
-            divisor = next;
-            pass(s, [0.0; 3], PULLEY);
-        }
-        let Wrap::Site { site: first } = path[k] else {
-            k += 1;
+    let row = &mut s.ten_j[topology.tendons.range(t)];
+    row.fill(0.0);
+    let (mut length, mut has_entries) = (0.0, false);
+    for leg in strings.path(t) {
+        let Some(stretch) = leg else {
+            pass([0.0; 3], PULLEY);
             continue;
         };
-        let Some((round, step)) = after_site(&path[k + 1]) else {
-            k += 1;
-            continue;
+        let [a, b] = [sites[stretch.sites[0]], sites[stretch.sites[1]]];
+        let mut add = |span: &Span, a: Vec3, b: Vec3| {
+            has_entries |= span.moves;
+            let (direction, length) = unit(sub(b, a));
+            let along = scale(direction, stretch.share);
+            let [first, second] = strings.apart(span);
+            add_end(row, &s.cdof, s.subtree_com[span.roots[0]], first, a, scale(along, -1.0));
+            add_end(row, &s.cdof, s.subtree_com[span.roots[1]], second, b, along);
+            length
         };
-        // the compiler put geoms between sites
-        let Some(&Wrap::Site { site: second }) = path.get(k + step) else {
-            break;
-        };
-        k += step;
-        let ends = [first, second].map(|site| (model.site_bodyid[site], s.site_xpos[site]));
-        let wrapped = round.and_then(|(geom, side, cylinder)| {
-            let round = Round {
-                pos: s.geom_xpos[geom],
-                mat: s.geom_xmat[geom],
-                radius: s.params.geom_size[geom][0],
-                cylinder,
+        pass(a, SITE);
+        length += stretch.share
+            * match &stretch.between {
+                Between::Nothing => add(&stretch.straight, a, b),
+                Between::Constant(length) => {
+                    has_entries |= stretch.straight.moves;
+                    *length
+                }
+                Between::Geom(obstacle) => {
+                    let geom = obstacle.geom;
+                    let round = Round {
+                        pos: s.geom_xpos[geom],
+                        mat: &s.geom_xmat[geom],
+                        radius: s.params.geom_size[geom][0],
+                        cylinder: obstacle.cylinder,
+                    };
+                    match wrap([a, b], &round, obstacle.side.map(|site| sites[site])) {
+                        None => add(&stretch.straight, a, b),
+                        Some(wrapped) => {
+                            let [on, off] = wrapped.points;
+                            pass(on, geom as i32);
+                            pass(off, geom as i32);
+                            let [before, behind] = &obstacle.spans;
+                            add(before, a, on) + wrapped.length + add(behind, off, b)
+                        }
+                    }
+                }
             };
-            let side = side.map(|site| s.site_xpos[site]);
-            wrap(ends.map(|end| end.1), &round, side).map(|wrapped| (geom, wrapped))
-        });
-        let add = |s: &mut State, a: (usize, Vec3), b: (usize, Vec3)| {
-            add_segment(model, topology, s, (t, row.clone()), [a, b], 1.0 / divisor);
-            norm(sub(b.1, a.1))
-        };
-        pass(s, ends[0].1, SITE);
-        match wrapped {
-            None => length += add(s, ends[0], ends[1]) / divisor,
-            Some((geom, wrapped)) => {
-                let [on, off] = wrapped.points.map(|point| (model.geom_bodyid[geom], point));
-                pass(s, on.1, geom as i32);
-                pass(s, off.1, geom as i32);
-                length += (add(s, ends[0], on) + wrapped.length + add(s, off, ends[1])) / divisor;
-            }
-        }
-        if !matches!(path.get(k + 1), Some(along) if !matches!(along, Wrap::Pulley { .. })) {
-            pass(s, ends[1].1, SITE);
+        if stretch.ends {
+            pass(b, SITE);
         }
     }
-    s.ten_length[t] = length;
-    s.ten_velocity[t] = rate(topology, s, t);
-}
-
-/// Returns the rate of the length of a tendon.
-fn rate(topology: &Topology, s: &State, t: usize) -> f64 {
-    let entries = topology.tendons.row(t).iter().zip(&s.ten_j[topology.tendons.range(t)]);
-    entries.map(|(&d, v)| v * s.qvel[d as usize]).sum()
+    let dofs = topology.tendons.row(t);
+    s.ten_velocity[t] = dofs.iter().zip(&*row).map(|(&d, v)| v * s.qvel[d as usize]).sum();
+    (s.ten_length[t], s.ten_entries[t]) = (length, has_entries);
 }
 
 /// Marks in `wrap_obj` of a tendon's points that are not on a geom.
 const SITE: i32 = -1;
 const PULLEY: i32 = -2;
 
-/// Adds the derivative of the distance of two points of bodies to the Jacobian of a tendon.
-fn add_segment(
-    model: &Arrays,
-    topology: &Topology,
-    s: &mut State,
-    (t, row): (usize, Range<usize>),
-    [(a, point_a), (b, point_b)]: [(usize, Vec3); 2],
-    scale: f64,
-) {
-    if a == b {
-        return;
-    }
-    s.ten_entries[t] |= [a, b].iter().any(|&body| !topology.body_chain(body).is_empty());
-    let direction = unit(sub(point_b, point_a)).0;
-    let (mut chain_a, mut chain_b) = topology.apart(a, b);
-    let offset = |body: usize, point: Vec3| sub(point, s.subtree_com[model.body_rootid[body]]);
-    let (offset_a, offset_b) = (offset(a, point_a), offset(b, point_b));
-    let dofs = topology.tendons.row(t);
-    let (cdof, entries) = (&s.cdof, &mut s.ten_j[row]);
-    let mut place = 0;
-    loop {
-        let next = |chain: &[u32]| chain.first().copied().unwrap_or(u32::MAX);
-        let (next_a, next_b) = (next(chain_a), next(chain_b));
-        let d = next_a.min(next_b);
-        if d == u32::MAX {
-            return;
-        }
-        let along = |offset| dot(velocity_at(&cdof[d as usize], offset), direction);
-        let value = if next_a < next_b {
-            chain_a = &chain_a[1..];
-            -along(offset_a)
-        } else {
-            chain_b = &chain_b[1..];
-            along(offset_b)
-        };
-        while dofs[place] < d {
-            place += 1;
-        }
-        entries[place] += scale * value;
+/// Adds to the row of a tendon what a point of a body, which `moved` moves, has to do with its length: the velocity of the point along
+/// a direction.
+#[inline(always)]
+fn add_end(row: &mut [f64], cdof: &[Spatial], com: Vec3, moved: &[Moved], point: Vec3, along: Vec3) {
+    // as a wrench about the centre of mass to which `cdof` refers
+    let turn = cross(sub(point, com), along);
+    for &Moved { dof, place } in moved {
+        let axis = &cdof[dof as usize];
+        row[place as usize] += dot(angular(axis), turn) + dot(linear(axis), along);
     }
 }

@@ -74,25 +74,30 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
     let g = s.params.gravity;
     scratch.acc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     scratch.force[0] = [0.0; 6];
+    let (acc, force) = (&mut scratch.acc[..nb], &mut scratch.force[..nb]);
+    let (cinert, cvel, gyroscopic) = (&s.cinert[..nb], &s.cvel[..nb], &mut s.gyroscopic[..nb]);
     for b in 1..nb {
-        let mut a = scratch.acc[model.body_parentid[b]];
+        // what no joint moves has no velocity, and its weight is borne by the world
+        if topology.body_last_dof[b].is_none() {
+            acc[b] = acc[0];
+            continue;
+        }
+        let mut a = acc[model.body_parentid[b]];
         for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {
             axpy6(&mut a, s.qvel[d], &s.cdof_dot[d]);
         }
-        scratch.acc[b] = a;
-        let mut f = inertia_mul(&s.cinert[b], &a);
-        axpy6(
-            &mut f,
-            1.0,
-            &cross_force(&s.cvel[b], &inertia_mul(&s.cinert[b], &s.cvel[b])),
-        );
-        scratch.force[b] = f;
+        acc[b] = a;
+        let mut f = inertia_mul(&cinert[b], &a);
+        let turning = cross_force(&cvel[b], &inertia_mul(&cinert[b], &cvel[b]));
+        axpy6(&mut f, 1.0, &turning);
+        gyroscopic[b] = turning;
+        force[b] = f;
     }
     for b in (1..nb).rev() {
         let p = model.body_parentid[b];
         if p > 0 {
-            let f = scratch.force[b];
-            axpy6(&mut scratch.force[p], 1.0, &f);
+            let f = force[b];
+            axpy6(&mut force[p], 1.0, &f);
         }
     }
     for d in 0..model.nv {

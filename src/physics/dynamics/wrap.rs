@@ -12,9 +12,9 @@ use crate::math::*;
 type Vec2 = [f64; 2];
 
 /// A shape to wrap around.
-pub(super) struct Round {
+pub(super) struct Round<'a> {
     pub pos: Vec3,
-    pub mat: Mat3,
+    pub mat: &'a Mat3,
     pub radius: f64,
     pub cylinder: bool,
 }
@@ -55,21 +55,22 @@ fn unit2(a: Vec2) -> Vec2 {
 /// Wraps a string between two points around a shape, on the side of a third one if there is one, world, m. A third one that is nearer
 /// to the centre than the radius makes it pass inside. Returns nothing where the string is straight.
 pub(super) fn wrap(ends: [Vec3; 2], round: &Round, side: Option<Vec3>) -> Option<Wrapped> {
-    let local = |p: Vec3| mat_t_vec(&round.mat, sub(p, round.pos));
-    let p = ends.map(local);
-    if p.iter().any(|&p| norm(p) < MINVAL) {
+    let local = |p: Vec3| mat_t_vec(round.mat, sub(p, round.pos));
+    let p = [local(ends[0]), local(ends[1])];
+    if norm(p[0]) < MINVAL || norm(p[1]) < MINVAL {
         return None;
     }
     let axes = plane(p, round.cylinder);
     let flat = |p: Vec3| [dot(p, axes[0]), dot(p, axes[1])];
-    let d = p.map(flat);
+    let d = [flat(p[0]), flat(p[1])];
     let side = side.map(local);
     let (touch, mut length) = match side {
         Some(side) if norm(side) < round.radius => (inside(d, round.radius)?, 0.0),
         Some(side) => outside(d, Some(scale2(unit2(flat(side)), round.radius)), round.radius)?,
         None => outside(d, None, round.radius)?,
     };
-    let mut points = touch.map(|t| add(scale(axes[0], t[0]), scale(axes[1], t[1])));
+    let raised = |t: Vec2| add(scale(axes[0], t[0]), scale(axes[1], t[1]));
+    let mut points = [raised(touch[0]), raised(touch[1])];
     if round.cylinder {
         // it climbs the cylinder as a helix does, in proportion to the way
         let way = |k: usize| norm2(sub2([p[k][0], p[k][1]], [points[k][0], points[k][1]]));
@@ -80,7 +81,8 @@ pub(super) fn wrap(ends: [Vec3; 2], round: &Round, side: Option<Vec3>) -> Option
         let height = (points[1][2] - points[0][2]).abs();
         length = (length * length + height * height).sqrt();
     }
-    let points = points.map(|point| add(mat_vec(&round.mat, point), round.pos));
+    let placed = |point: Vec3| add(mat_vec(round.mat, point), round.pos);
+    let points = [placed(points[0]), placed(points[1])];
     Some(Wrapped { points, length })
 }
 
@@ -120,9 +122,9 @@ fn meet([p1, p2]: [Vec2; 2], [p3, p4]: [Vec2; 2]) -> bool {
 
 /// Returns the points where a string touches a circle about the origin from outside, and the length of the arc between them.
 fn outside(d: [Vec2; 2], side: Option<Vec2>, radius: f64) -> Option<([Vec2; 2], f64)> {
-    let square = d.map(|p| dot2(p, p));
+    let square = [dot2(d[0], d[0]), dot2(d[1], d[1])];
     let square_radius = radius * radius;
-    if square.iter().any(|&s| s < square_radius) || radius < MINVAL {
+    if square[0] < square_radius || square[1] < square_radius || radius < MINVAL {
         return None;
     }
     let apart = sub2(d[1], d[0]);
@@ -143,10 +145,10 @@ fn outside(d: [Vec2; 2], side: Option<Vec2>, radius: f64) -> Option<([Vec2; 2], 
             (d[k][1] * square_radius - sign * radius * d[k][0] * root) / square[k],
         ]
     };
-    let ways = [1.0, -1.0].map(|sign| [tangent(0, sign), tangent(1, -sign)]);
+    let ways = [[tangent(0, 1.0), tangent(1, -1.0)], [tangent(0, -1.0), tangent(1, 1.0)]];
     let crosses = |way: [Vec2; 2]| meet([d[0], way[0]], [d[1], way[1]]);
     // the way on the given side, or the shorter one
-    let good = ways.map(|way| {
+    let good = |way: [Vec2; 2]| {
         if crosses(way) {
             return -10000.0;
         }
@@ -160,8 +162,8 @@ fn outside(d: [Vec2; 2], side: Option<Vec2>, radius: f64) -> Option<([Vec2; 2], 
                 -dot2(chord, chord)
             }
         }
-    });
-    let best = if good[0] > good[1] { 0 } else { 1 };
+    };
+    let best = if good(ways[0]) > good(ways[1]) { 0 } else { 1 };
     let way = ways[best];
     if crosses(way) {
         return None;
@@ -185,17 +187,27 @@ fn sine_at_touch([a, b]: [f64; 2], seen: f64) -> Option<f64> {
     const STEPS: usize = 20;
     const START: f64 = 1.0 - 1e-7;
     const TOLERANCE: f64 = 1e-6;
-    let asin = pxfm::f_asin;
-    let excess = |z: f64| asin(a * z) + asin(b * z) - 2.0 * asin(z) + seen;
+    // The left side of the equation, and the cosines of its angles, which the slope needs, too. The sum of the angles is the argument of
+    // a product of complex numbers: one arc function does for three.
+    let at = |z: f64| {
+        let cosine = |r: f64| (1.0 - z * z * r * r).sqrt();
+        let (ca, cb, c) = (cosine(a), cosine(b), cosine(1.0));
+        let (sa, sb) = (a * z, b * z);
+        let (re, im) = (ca * cb - sa * sb, ca * sb + sa * cb);
+        // turned back by twice the angle of z
+        let (cos, sin) = (c * c - z * z, 2.0 * z * c);
+        let excess = pxfm::f_atan2(im * cos - re * sin, re * cos + im * sin) + seen;
+        (excess, [ca, cb, c])
+    };
     let mut z = START;
-    let mut f = excess(z);
+    let (mut f, mut cosines) = at(z);
     if f > 0.0 {
         return None;
     }
     let mut step = 0;
     while step < STEPS && f.abs() > TOLERANCE {
-        let part = |r: f64| r / (1.0 - z * z * r * r).sqrt().max(MINVAL);
-        let slope = part(a) + part(b) - 2.0 / (1.0 - z * z).sqrt().max(MINVAL);
+        let [ca, cb, c] = cosines;
+        let slope = a / ca.max(MINVAL) + b / cb.max(MINVAL) - 2.0 / c.max(MINVAL);
         if slope > -MINVAL {
             return None;
         }
@@ -204,7 +216,7 @@ fn sine_at_touch([a, b]: [f64; 2], seen: f64) -> Option<f64> {
             return None;
         }
         z = next;
-        f = excess(z);
+        (f, cosines) = at(z);
         if f > TOLERANCE {
             return None;
         }
@@ -219,10 +231,11 @@ fn sine_at_touch([a, b]: [f64; 2], seen: f64) -> Option<f64> {
 /// the distances of the ends, the angles of the triangles add up to `asin(A z) + asin(B z) - 2 asin(z) + G = 0`, `G` the angle
 /// between the ends seen from the centre; Newton's method solves it from `z = 1` downwards.
 fn inside(d: [Vec2; 2], radius: f64) -> Option<[Vec2; 2]> {
-    let length = d.map(norm2);
+    let length = [norm2(d[0]), norm2(d[1])];
     let apart = sub2(d[1], d[0]);
     let distance = dot2(apart, apart);
-    if radius < MINVAL || length.iter().any(|&l| l <= radius || l < MINVAL) {
+    let reached = |l: f64| l <= radius || l < MINVAL;
+    if radius < MINVAL || reached(length[0]) || reached(length[1]) {
         return None;
     }
     if distance > MINVAL {
@@ -235,7 +248,7 @@ fn inside(d: [Vec2; 2], radius: f64) -> Option<[Vec2; 2]> {
     // where no solution is found
     let middle = unit2([0.5 * (d[0][0] + d[1][0]), 0.5 * (d[0][1] + d[1][1])]);
     let middle = Some([scale2(middle, radius); 2]);
-    let [a, b] = length.map(|l| radius / l);
+    let [a, b] = [radius / length[0], radius / length[1]];
     let cosine = (length[0] * length[0] + length[1] * length[1] - distance) / (2.0 * length[0] * length[1]);
     if cosine < -1.0 + MINVAL {
         return None;
@@ -264,10 +277,10 @@ fn inside(d: [Vec2; 2], radius: f64) -> Option<[Vec2; 2]> {
 mod tests {
     use super::*;
 
-    fn ball(radius: f64) -> Round {
+    fn ball(radius: f64) -> Round<'static> {
         Round {
             pos: [0.0; 3],
-            mat: MAT3_ID,
+            mat: &MAT3_ID,
             radius,
             cylinder: false,
         }

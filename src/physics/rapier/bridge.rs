@@ -87,7 +87,7 @@ impl Bridge {
             bias: BiasScratch::default(),
             sensor_scratch: SensorScratch::default(),
             builder: RowBuilder::new(&model, &topology),
-            inertia: Articulated::default(),
+            inertia: Articulated::new(&model),
             force: Vec::with_capacity(model.nv),
             velocity: vec![0.0; model.nv],
             stranger: (0..model.ngeom()).find(|&g| model.geom_bodyid[g] == 0),

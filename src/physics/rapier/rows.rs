@@ -138,7 +138,7 @@ impl RapierRows {
             let free = s.qvel[link.dof] + h * s.qacc_smooth[link.dof];
             // softness is relative to the effective mass
             let inverse_inertia = if rows.lock.is_some() || rows.limit.is_some() {
-                self.quadratic(model, inertia, s, &[(link.dof, 1.0)])
+                self.quadratic(inertia, s, &[(link.dof, 1.0)])
             } else {
                 1.0
             };
@@ -160,12 +160,12 @@ impl RapierRows {
     }
 
     /// Computes `J M^-1 J'` of a row with the given entries.
-    fn quadratic(&mut self, model: &Model, inertia: &mut Articulated, s: &State, row: &[(usize, f64)]) -> f64 {
+    fn quadratic(&mut self, inertia: &mut Articulated, s: &State, row: &[(usize, f64)]) -> f64 {
         self.column.fill(0.0);
         for &(d, v) in row {
             self.column[d] += v;
         }
-        inertia.solve(model, s, Damping::Without, &self.column, &mut self.response);
+        inertia.solve(s, Damping::Without, &self.column, &mut self.response);
         row.iter().map(|&(d, v)| v * self.response[d]).sum()
     }
 
@@ -182,7 +182,7 @@ impl RapierRows {
         let h = model.opt.timestep;
         let aim = Aim::of(s, block.row, h);
         let free: f64 = row.iter().map(|&(d, v)| v * (s.qvel[d] + h * s.qacc_smooth[d])).sum();
-        let effective = self.quadratic(model, inertia, s, &row);
+        let effective = self.quadratic(inertia, s, &row);
         let impulse = (aim.velocity - free) / (effective + aim.compliance);
         let acts = block.kind == ConstraintType::Equality || impulse > 0.0;
         acts.then_some(aim.velocity - aim.compliance * impulse)

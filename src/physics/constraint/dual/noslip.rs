@@ -44,7 +44,8 @@ impl Dual {
 
     /// Sweeps over friction until a sweep improves the cost by less than the tolerance; returns the number of sweeps.
     #[inline(always)]
-    fn sweep_friction(&self, model: &Model, efc: &mut Efc) -> usize {
+    fn sweep_friction(&mut self, model: &Model, efc: &mut Efc) -> usize {
+        self.differentiate(efc);
         for sweep in 0..model.opt.noslip_iterations {
             let mut improvement = 0.0;
             if sweep == 0 {
@@ -86,24 +87,27 @@ impl Dual {
     /// Returns the derivative of the cost without regularisation by the force of a row.
     #[inline(always)]
     fn residual(&self, efc: &Efc, row: usize) -> f64 {
-        let soft = self.b[row] + product(self.row(row), &efc.force);
-        soft - efc.r[row] * efc.force[row]
+        self.gradient[row] - efc.r[row] * efc.force[row]
     }
 
     /// Improves dry friction; returns the change of the cost.
     #[inline(always)]
-    fn slide(&self, efc: &mut Efc, block: &Block) -> f64 {
+    fn slide(&mut self, efc: &mut Efc, block: &Block) -> f64 {
         let (i, loss) = (block.row, block.frictionloss);
         let (residual, old) = (self.residual(efc, i), efc.force[i]);
         let inverse = 1.0 / self.rigid(efc, i, i).max(MINVAL);
         efc.force[i] = (old - residual * inverse).max(-loss).min(loss);
         let moved = efc.force[i] - old;
+        if moved == 0.0 {
+            return 0.0;
+        }
+        self.shift(i, moved);
         0.5 * moved * moved / inverse + moved * residual
     }
 
     /// Improves the friction of a pyramid: opposite edges, whose sum stays. Returns the change of the cost.
     #[inline(always)]
-    fn pyramid(&self, efc: &mut Efc, block: &Block) -> f64 {
+    fn pyramid(&mut self, efc: &mut Efc, block: &Block) -> f64 {
         let mut change = 0.0;
         for j in (block.row..block.row + block.dim).step_by(2) {
             let mut residual = [0.0; CONE_ROWS];
@@ -128,13 +132,14 @@ impl Dual {
             let own = &mut efc.force[j..j + 2];
             own.copy_from_slice(&[middle + apart, middle - apart]);
             change += settle(2, |r, c| a[r][c], own, &old, &residual);
+            self.follow(j, own, &old);
         }
         change
     }
 
     /// Improves the friction of an elliptic cone; returns the change of the cost.
     #[inline(always)]
-    fn ellipsoid(&self, efc: &mut Efc, block: &Block) -> f64 {
+    fn ellipsoid(&mut self, efc: &mut Efc, block: &Block) -> f64 {
         let (first, n) = (block.row + 1, block.dim - 1);
         let normal = efc.force[block.row];
         let mut cost = Quadratic {
@@ -160,6 +165,8 @@ impl Dual {
         };
         let own = &mut efc.force[first..first + n];
         own.copy_from_slice(&friction[..n]);
-        settle(n, |r, c| cost.a[r][c], own, &old, &residual)
+        let change = settle(n, |r, c| cost.a[r][c], own, &old, &residual);
+        self.follow(first, own, &old);
+        change
     }
 }

@@ -1,70 +1,51 @@
-//! Four right sides at once: what one lane computes is what [`Articulated::solve`] does, to the bit.
+//! Half of the inverse inertia, for four right sides at once.
 
 use std::ops::Range;
 
-use super::Articulated;
-use crate::model::Arrays;
+use super::{Articulated, Link};
 use crate::physics::spatial::Spatial;
 use crate::physics::state::State;
 
 /// A number of each of four right sides, or solutions.
 pub type Four = [f64; 4];
 
-/// A force or a motion of each.
-type Four6 = [Four; 6];
-
-/// Working memory: bodies, bodies, degrees of freedom.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Memory {
-    force: Vec<Four6>,
-    acc: Vec<Four6>,
-    rest: Vec<Four>,
-}
+/// A force of each.
+pub(super) type Four6 = [Four; 6];
 
 impl Articulated {
-    /// Solves `M x = b` for four right sides (nv each), without damping, for the degrees of freedom of some bodies that hold whole
-    /// trees; the rest of `x` stays as it is.
+    /// Computes half of `M^-1` for four right sides (nv each), for some degrees of freedom, which begin with those of a tree: `h` with
+    /// `b' M^-1 c = sum_d h_d(b) h_d(c) / D_d`, the inward pass of [`Articulated::solve`] alone. `D_d^-1` is
+    /// [`Articulated::inverse`]. `h_d` is zero where `b` is zero for `d` and all that `d` moves.
     #[inline(always)]
-    pub fn solve_four(&mut self, model: &Arrays, s: &State, bodies: Range<usize>, b: &[Four], x: &mut [Four]) {
-        let nb = model.nbody();
-        let Memory { force, acc, rest } = &mut self.four;
-        force.resize(nb, [[0.0; 4]; 6]);
-        force[bodies.clone()].fill([[0.0; 4]; 6]);
-        acc.resize(nb, [[0.0; 4]; 6]);
-        rest.resize(model.nv, [0.0; 4]);
-        let dofs = |body: usize| model.body_dofadr[body]..model.body_dofadr[body] + model.body_dofnum[body];
-        for body in bodies.clone().rev() {
-            let mut f = force[body];
-            for d in dofs(body).rev() {
+    pub fn half_solve_four(&mut self, s: &State, dofs: Range<usize>, b: &[Four], h: &mut [Four]) {
+        let end = |link: &Link| link.dofs.end;
+        let first = self.links.partition_point(|link| end(link) <= dofs.start);
+        let last = self.links.partition_point(|link| link.dofs.start < dofs.end);
+        self.forces.resize(self.links.len(), [[0.0; 4]; 6]);
+        let forces = &mut self.forces[..last];
+        forces[first..].fill([[0.0; 4]; 6]);
+        for (k, link) in self.links[..last].iter().enumerate().skip(first).rev() {
+            let mut f = forces[k];
+            for d in (link.dofs.start..link.dofs.end.min(dofs.end)).rev() {
                 let released = &self.released[d];
                 let moved = power(&s.cdof[d], &f);
-                let share = std::array::from_fn(|l| b[d][l] - moved[l]);
-                rest[d] = share;
-                add(
-                    &mut f,
-                    share.map(|v| v * released.inverse[0]),
-                    &released.unit_force.map(|v| v[0]),
-                );
+                let share: Four = std::array::from_fn(|l| b[d][l] - moved[l]);
+                h[d] = share;
+                let taken = share.map(|v| v * released.inverse[0]);
+                add(&mut f, taken, &released.unit_force.map(|v| v[0]));
             }
-            let p = model.body_parentid[body];
-            // what is below a tree does not move
-            if bodies.contains(&p) {
-                for (sum, v) in force[p].as_flattened_mut().iter_mut().zip(f.as_flattened()) {
+            if let Some(p) = link.parent {
+                for (sum, v) in forces[p].as_flattened_mut().iter_mut().zip(f.as_flattened()) {
                     *sum += v;
                 }
             }
         }
-        for body in bodies.clone() {
-            let p = model.body_parentid[body];
-            let mut a = if bodies.contains(&p) { acc[p] } else { [[0.0; 4]; 6] };
-            for d in dofs(body) {
-                let released = &self.released[d];
-                let carried = power(&released.unit_force.map(|v| v[0]), &a);
-                x[d] = std::array::from_fn(|l| (rest[d][l] - carried[l]) * released.inverse[0]);
-                add(&mut a, x[d], &s.cdof[d]);
-            }
-            acc[body] = a;
-        }
+    }
+
+    /// Returns the inverse of the inertia that a degree of freedom feels, without damping.
+    #[inline(always)]
+    pub fn inverse(&self, dof: usize) -> f64 {
+        self.released[dof].inverse[0]
     }
 }
 

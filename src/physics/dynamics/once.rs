@@ -1,0 +1,38 @@
+//! Parts of a step for those who want them once. A step has all of its parts in one function; here each is a function of its own, so that
+//! programs have them only once more.
+
+use super::{Articulated, Damping};
+use crate::model::Arrays;
+use crate::physics::state::State;
+use crate::physics::topology::Topology;
+
+/// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`.
+#[doc(alias = "mj_kinematics")]
+#[inline(never)]
+pub fn kinematics(model: &Arrays, s: &mut State) {
+    super::kinematics(model, s);
+}
+
+/// Computes `subtree_com, cinert, cdof` from poses.
+#[inline(never)]
+pub fn com_pos(model: &Arrays, s: &mut State) {
+    super::com_pos(model, s);
+}
+
+/// Computes `crb` and `qm` from `cinert` and `cdof`.
+#[inline(never)]
+pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
+    super::crb(model, topology, s);
+}
+
+/// Computes the articulated inertias from `cinert`, `crb` and `cdof`.
+#[inline(never)]
+pub fn update(bodies: &mut Articulated, model: &Arrays, s: &State) {
+    bodies.update(model, s);
+}
+
+/// Solves `M x = b` (nv).
+#[inline(never)]
+pub fn solve(bodies: &mut Articulated, s: &State, b: &[f64], x: &mut [f64]) {
+    bodies.solve(s, Damping::Without, b, x);
+}
