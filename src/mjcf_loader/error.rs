@@ -92,12 +92,18 @@ pub enum ErrorKind {
     /// An element that is unknown, unsupported or in the wrong place.
     #[error("unknown element \"{}\"", quoted(.0))]
     UnknownElement(String),
+    /// An element that MuJoCo has since a version after 3.3.0.
+    #[error("element \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
+    LaterElement(String),
     /// An element that may stand here once only.
     #[error("element \"{}\" is given twice", quoted(.0))]
     RepeatedElement(&'static str),
     /// An attribute that is unknown or unsupported.
     #[error("unknown attribute \"{}\"", quoted(.0))]
     UnknownAttribute(String),
+    /// An attribute that MuJoCo has since a version after 3.3.0, with a value that changes something.
+    #[error("attribute \"{}\" is of a later MuJoCo than 3.3.0, whose language this is: remove it", quoted(.0))]
+    LaterAttribute(String),
     /// An attribute given twice.
     #[error("attribute \"{}\" is given twice", quoted(.0))]
     DuplicateAttribute(String),

@@ -36,6 +36,7 @@ mod document;
 mod draft;
 mod elements;
 mod error;
+mod later;
 #[cfg(test)]
 mod limit_tests;
 mod listing;

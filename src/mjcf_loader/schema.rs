@@ -2,7 +2,8 @@
 
 use super::attribute::{Attr, Rivals, Value};
 use super::error::{ErrorKind, LoadError};
-use super::xml::Tree;
+use super::later::{self, Later};
+use super::xml::{Node, Tree};
 
 /// The content allowed in an element: the attributes of its tables, and child elements.
 pub(super) struct Rule {
@@ -79,9 +80,41 @@ fn once(parent: &str, child: &str) -> bool {
 fn child_rule(tree: &Tree, child: usize, rule: &'static Rule) -> Result<&'static Rule, LoadError> {
     let name = &tree.nodes[child].name;
     let found = rule.children.iter().find(|rule| rule.name == name);
-    found
-        .copied()
-        .ok_or_else(|| tree.error(child, ErrorKind::UnknownElement(name.clone())))
+    found.copied().ok_or_else(|| {
+        let later = later::element(rule.name, name);
+        let kind = if later {
+            ErrorKind::LaterElement
+        } else {
+            ErrorKind::UnknownElement
+        };
+        tree.error(child, kind(name.clone()))
+    })
+}
+
+/// Returns the attribute that is meant by one of a node, with its value; `None` where it is of a later version and changes nothing.
+fn meant<'a>(
+    node: &Node,
+    rule: &'static Rule,
+    class: bool,
+    name: &str,
+    text: &'a str,
+) -> Result<Option<(&'static Attr, &'a str)>, ErrorKind> {
+    let find = |name: &str| rule.attributes().find(|attr| attr.name == name && !(class && attr.own));
+    if let Some(attr) = find(name) {
+        return Ok(Some((attr, text)));
+    }
+    match later::attribute(rule, name, text) {
+        Some(Later::Nothing) => Ok(None),
+        Some(Later::As(other, _)) if node.attributes.iter().any(|(given, _)| given == other) => {
+            Err(ErrorKind::DuplicateAttribute(other.to_owned()))
+        }
+        Some(Later::As(other, text)) => match find(other) {
+            Some(attr) => Ok(Some((attr, text))),
+            None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
+        },
+        Some(Later::Refused) => Err(ErrorKind::LaterAttribute(name.to_owned())),
+        None => Err(ErrorKind::UnknownAttribute(name.to_owned())),
+    }
 }
 
 /// Checks an element without its children. It is apart from `check_below` so that the recursion needs little stack.
@@ -92,8 +125,9 @@ fn check_one(tree: &Tree, at: usize, rule: &'static Rule, class: bool) -> Result
     let mut values = Vec::with_capacity(node.attributes.len());
     let mut rivals = Vec::new();
     for (name, text) in &node.attributes {
-        let found = attributes().find(|attr| attr.name == name);
-        let attr = found.ok_or_else(|| tree.error(at, ErrorKind::UnknownAttribute(name.clone())))?;
+        let Some((attr, text)) = meant(node, rule, class, name, text).map_err(|kind| tree.error(at, kind))? else {
+            continue;
+        };
         values.push((
             attr.name,
             attr.parse(text, &tree.limits).map_err(|kind| tree.error(at, kind))?,
