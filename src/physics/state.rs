@@ -58,6 +58,9 @@ table! {
     /// quantities describe the *start* of the last step, before integration, as in MuJoCo. The integrator `RK4` evaluates them four
     /// times in a step: they are those of its last evaluation, but for `sensordata`, which describes the start there, too.
     ///
+    /// A state belongs to the model that its engine was made for: it keeps the poses of what never moves from its first step on, so that an
+    /// engine of another model, even of the same sizes, would go on with the wrong ones.
+    ///
     /// Constraint rows are read with [`State::efc_rows`], their Jacobian and the inertia matrix with
     /// [`Engine::efc_j`](crate::physics::Engine::efc_j) and [`Engine::full_m`](crate::physics::Engine::full_m).
     #[derive(Debug)]
