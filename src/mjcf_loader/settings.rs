@@ -30,10 +30,10 @@ table! {
         "settotalmass" settotalmass: f64 = -1.0, real(Any), "Mass to which all bodies together are scaled, kg; not above 0 for none.";
         "texturedir" texturedir: String = String::new(), TEXT, "Directory of the textures.";
         "meshdir" meshdir: String = String::new(), TEXT, "Directory of the meshes.";
+        "assetdir" assetdir: String = String::new(), TEXT, "Directory of textures and meshes, where `texturedir` and `meshdir` say no other.";
         "alignfree" alignfree: bool = false, FLAG, "Whether the frames of free bodies, where no others are in them, are moved into their centres of mass and along their principal axes.";
         "fitaabb" fitaabb: bool = false, FLAG, "Whether shapes are fitted to the box around a mesh; else to that of the same inertia.";
         "strippath" strippath: bool = false, FLAG, "Whether directories in the names of files are dropped.";
-        check "assetdir", TEXT, "Directory of textures and meshes, where `texturedir` and `meshdir` say no other.";
         check "coordinate", Kind::Word(&["local"]), "Frame of positions; only the parent's.";
         check "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
         check "fusestatic" | "discardvisual", Kind::Word(&["false"]), "Whether MuJoCo rewrites the bodies; they stay as they are written.";

@@ -6,7 +6,7 @@ mod parser;
 use std::collections::BTreeSet;
 
 use super::error::{ErrorKind, LoadError, Place};
-use crate::assets::{AssetSource, directory};
+use crate::assets::{AssetError, AssetSource, directory, is_absolute};
 use crate::limits::Limits;
 use parser::Parser;
 
@@ -104,6 +104,37 @@ impl Tree {
         &self.files
     }
 
+    /// Returns the path of a file that an element names, which stands in a folder of its model.
+    ///
+    /// As in MuJoCo 3.3.0, an element of an included file finds it beside that file, unless it is where MuJoCo looks for it at first:
+    /// in the folder `probed`, if there is one.
+    ///
+    /// # Errors
+    /// A path that the source cannot have.
+    pub fn named_file(
+        &self,
+        at: usize,
+        file: &str,
+        folder: &str,
+        probed: Option<&str>,
+        source: &dyn AssetSource,
+    ) -> Result<String, AssetError> {
+        let model = &self.models[self.model_of(at)];
+        let within = |folder: &str| match folder.trim_end_matches('/') {
+            "" => source.resolve(&model.dir, file),
+            _ if is_absolute(file) => source.resolve(&model.dir, file),
+            folder => source.resolve(&model.dir, &format!("{folder}/{file}")),
+        };
+        let there = |path: &Result<String, AssetError>| path.as_ref().is_ok_and(|path| source.contains(path));
+        if self.file(at) != model.path && probed.is_some_and(|probed| !there(&within(probed))) {
+            let beside = source.resolve(directory(self.file(at)), file);
+            if there(&beside) {
+                return beside;
+            }
+        }
+        within(folder)
+    }
+
     /// Returns the file of an element.
     pub fn file(&self, at: usize) -> &str {
         &self.files[self.nodes[at].file]
@@ -198,7 +229,6 @@ impl Reading<'_> {
     /// Reads the document, or a model with the element that names it.
     fn model(&mut self, text: &str, path: &str, of: Option<usize>) -> Result<usize, LoadError> {
         let first = self.tree.nodes.len();
-        // MuJoCo resolves every reference against the main document of a model, also those in included files.
         directory(path).clone_into(&mut self.dir);
         self.included = BTreeSet::from([path.to_owned()]);
         let root = self.file(text, path, 0, 0)?;
@@ -240,9 +270,10 @@ impl Reading<'_> {
             let what = "a model is an MJCF document: its file ends with .xml, or content_type is text/xml";
             return Err(self.tree.error(at, ErrorKind::Invalid(what)));
         }
+        // unlike other files, one that an included file names stands beside that file, and nowhere else
         let path = self
             .source
-            .resolve(&self.tree.models[within].dir, file)
+            .resolve(directory(self.tree.file(at)), file)
             .map_err(|e| self.tree.error(at, e))?;
         let (mut around, mut depth) = (Some(within), 1);
         while let Some(model) = around {
@@ -322,10 +353,7 @@ impl Reading<'_> {
                 limit: self.tree.limits.include_depth,
             });
         }
-        let path = self
-            .source
-            .resolve(&self.dir, file)
-            .map_err(|e| self.tree.error(at, e))?;
+        let path = self.included_path(at, file).map_err(|e| self.tree.error(at, e))?;
         if self.included.contains(&path) {
             return fail(ErrorKind::RepeatedInclude(path));
         }
@@ -341,6 +369,18 @@ impl Reading<'_> {
         {
             Some((name, _)) => Err(self.tree.error(root, ErrorKind::UnknownAttribute(name.clone()))),
             None => Ok(root),
+        }
+    }
+
+    /// Returns the path of a file to include: beside the document, or else beside the file that includes it.
+    fn included_path(&self, at: usize, file: &str) -> Result<String, AssetError> {
+        let within = self.source.resolve(&self.dir, file);
+        if within.as_ref().is_ok_and(|path| self.source.contains(path)) {
+            return within;
+        }
+        match self.source.resolve(directory(self.tree.file(at)), file) {
+            Ok(beside) if self.source.contains(&beside) => Ok(beside),
+            _ => within,
         }
     }
 }

@@ -10,6 +10,7 @@ mod contact_geometry;
 mod differential;
 mod growth;
 mod hulls;
+mod included_files;
 mod kit;
 mod length_ranges;
 mod live_loader;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         differential::trials(),
         growth::trials(),
         hulls::trials(),
+        included_files::trials(),
         kit::trials(),
         length_ranges::trials(),
         live_loader::trials(),

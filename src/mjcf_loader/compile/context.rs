@@ -144,14 +144,14 @@ impl Context<'_> {
         &self.compilers[self.tree.model_of(at)]
     }
 
-    /// Returns the folder of the model that an element stands in.
-    pub fn dir(&self, at: usize) -> &str {
-        &self.tree.models()[self.tree.model_of(at)].dir
-    }
-
     /// Returns the folder of meshes for an element.
     pub fn meshdir(&self, at: usize) -> &str {
         self.folder(at, |compiler| &compiler.meshdir)
+    }
+
+    /// Returns the folder of height fields and skins for an element, and where MuJoCo 3.3.0 looks whether an included file has its own.
+    pub fn mesh_dirs(&self, at: usize) -> [&str; 2] {
+        [self.meshdir(at), self.folder(at, |compiler| &compiler.assetdir)]
     }
 
     /// Returns the folder of textures for an element.

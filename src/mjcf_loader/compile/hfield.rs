@@ -99,7 +99,7 @@ fn from_file(
     source: &dyn AssetSource,
     limits: &Limits,
 ) -> Result<Heights, LoadError> {
-    let path = asset_path(context, hfield.at, file, context.meshdir(hfield.at), source)?;
+    let path = asset_path(context, hfield.at, file, context.mesh_dirs(hfield.at), source)?;
     let format = match &hfield.content_type {
         Some(content_type) => HeightFormat::of_content(content_type)
             .ok_or_else(|| context.invalid(hfield.at, "content_type must be image/png or image/vnd.mujoco.hfield"))?,

@@ -77,7 +77,7 @@ fn read(context: &Context, skin: &Skin, source: &dyn AssetSource) -> Result<Skin
     match &skin.file {
         Some(_) if given.contains(&false) || !skin.texcoord.is_empty() => Err(context.invalid(skin.at, TWICE)),
         Some(file) => {
-            let path = asset_path(context, skin.at, file, context.meshdir(skin.at), source)?;
+            let path = asset_path(context, skin.at, file, context.mesh_dirs(skin.at), source)?;
             let bytes = source.read(&path).map_err(|e| context.error(skin.at, e))?;
             SkinFile::read(&bytes).map_err(|error| {
                 let (file, message) = (Some(path), error.to_string());

@@ -1,7 +1,7 @@
 //! Compiles textures and materials.
 
 use super::context::{Context, Ids};
-use crate::assets::{AssetError, AssetSource, is_absolute};
+use crate::assets::{AssetError, AssetSource};
 use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::settings::single;
 use crate::mjcf_loader::surface;
@@ -13,7 +13,7 @@ pub(super) fn compile_texture(
     texture: &surface::Texture,
     source: &dyn AssetSource,
 ) -> Result<model::Texture, LoadError> {
-    let path = |file: &String| asset_path(context, texture.at, file, context.texturedir(texture.at), source);
+    let path = |file: &String| asset_path(context, texture.at, file, [context.texturedir(texture.at); 2], source);
     let mut cube_files = [const { None }; 6];
     for (to, from) in cube_files.iter_mut().zip(&texture.cube_files) {
         *to = from.as_ref().map(path).transpose()?;
@@ -105,27 +105,22 @@ fn grid(context: &Context, texture: &surface::Texture) -> Result<([usize; 2], Ve
     Ok((size, layout.chars().map(face).collect::<Result<_, _>>()?))
 }
 
-/// Returns the path in the source of a file in a folder that the document names. The source must have it.
+/// Returns the path in the source of a file in a folder that the document names; an included file may have it beside itself, if it is
+/// not in the folder `probed`. The source must have it.
 pub(super) fn asset_path(
     context: &Context,
     at: usize,
     file: &str,
-    folder: &str,
+    [folder, probed]: [&str; 2],
     source: &dyn AssetSource,
 ) -> Result<String, LoadError> {
-    let file = if context.settings().strippath {
-        file.rsplit(['/', '\\']).next().unwrap_or(file)
+    let path = if context.settings().strippath {
+        let own = file.rsplit(['/', '\\']).next().unwrap_or(file);
+        context.tree.named_file(at, own, folder, None, source)
     } else {
-        file
+        context.tree.named_file(at, file, folder, Some(probed), source)
     };
-    let file = match folder.trim_end_matches('/') {
-        _ if is_absolute(file) => file.to_owned(),
-        "" => file.to_owned(),
-        folder => format!("{folder}/{file}"),
-    };
-    let path = source
-        .resolve(context.dir(at), &file)
-        .map_err(|e| context.error(at, e))?;
+    let path = path.map_err(|e| context.error(at, e))?;
     if source.contains(&path) {
         Ok(path)
     } else {

@@ -95,6 +95,86 @@ fn includes_splice_and_are_bounded() {
     );
 }
 
+/// Returns a height field of `rows` rows and two columns.
+fn heights(rows: u32) -> Vec<u8> {
+    let sizes = [rows, 2].map(u32::to_le_bytes).concat();
+    [sizes, vec![0; 8 * rows as usize]].concat()
+}
+
+/// What MuJoCo 3.3.0 finds, for each of the files that are there.
+#[test]
+fn included_files_find_theirs_beside_themselves() {
+    let include = "<mujoco><compiler meshdir='m' texturedir='t' FOLDER/><include file='s/a.xml'/></mujoco>";
+    let asset = "<a><asset><texture type='2d' file='b.png'/><hfield file='b.hf' size='1 1 1 1'/></asset></a>";
+    let found = |folder: &str, images: &[&str], fields: &[&str]| {
+        let mut files = source(&[("k/s/a.xml", asset)]);
+        for place in images {
+            files.insert(&format!("k/{place}b.png"), "").unwrap();
+        }
+        for (place, rows) in fields.iter().zip(2..) {
+            files.insert(&format!("k/{place}b.hf"), heights(rows)).unwrap();
+        }
+        let spec = load_str(&include.replace("FOLDER", folder), "k/m.xml", &files);
+        spec.map(|spec| {
+            let image = spec.arrays.textures[0].file.clone().unwrap();
+            (image, fields[spec.arrays.hfields[0].nrow - 2].to_owned())
+        })
+        .map_err(|e| e.to_string())
+    };
+    let pair = |image: &str, field: &str| Ok((image.to_owned(), field.to_owned()));
+    assert_eq!(found("", &["s/"], &["s/"]), pair("k/s/b.png", "s/"));
+    assert_eq!(found("", &["", "t/", "s/"], &["m/", "s/"]), pair("k/t/b.png", "s/"));
+    assert_eq!(found("", &["", "s/"], &["", "m/", "s/"]), pair("k/s/b.png", "m/"));
+    assert_eq!(
+        found("assetdir='d'", &["t/"], &["d/", "m/", "s/"]),
+        pair("k/t/b.png", "m/")
+    );
+    assert_eq!(
+        found("assetdir='d'", &["t/"], &["", "m/", "s/"]),
+        pair("k/t/b.png", "s/")
+    );
+    assert_eq!(
+        found("strippath='true'", &["t/", "s/"], &["m/", "s/"]),
+        pair("k/t/b.png", "m/")
+    );
+    let missing = found("", &[""], &["m/"]).unwrap_err();
+    assert_eq!(
+        missing,
+        "k/s/a.xml:1:11: a/asset/texture: file \"k/t/b.png\" does not exist"
+    );
+}
+
+#[test]
+fn nested_includes_and_models_are_beside_the_included_file() {
+    let body = |name: &str| format!("<mujoco><worldbody><body name='{name}'/></worldbody></mujoco>");
+    let names = |files: &[(&str, &str)]| {
+        let text = "<mujoco><include file='s/a.xml'/></mujoco>";
+        let spec = load_str(text, "k/m.xml", &source(files)).map_err(|e| e.to_string())?;
+        Ok::<_, String>(spec.arrays.body_name[1].clone())
+    };
+    let nested = ("k/s/a.xml", "<a><include file='b.xml'/></a>");
+    let (main, near) = (body("main"), body("near"));
+    assert_eq!(
+        names(&[nested, ("k/b.xml", &main), ("k/s/b.xml", &near)]).unwrap(),
+        "main"
+    );
+    assert_eq!(names(&[nested, ("k/s/b.xml", &near)]).unwrap(), "near");
+    assert_eq!(
+        names(&[nested]).unwrap_err(),
+        "k/s/a.xml:1:4: a/include: file \"k/b.xml\" does not exist"
+    );
+    let attach = "<a><asset><model name='x' file='b.xml'/></asset><worldbody><attach model='x' body='near' prefix='its_'/></worldbody></a>";
+    let model = ("k/s/a.xml", attach);
+    assert_eq!(
+        names(&[model, ("k/b.xml", &main), ("k/s/b.xml", &near)]).unwrap(),
+        "its_near"
+    );
+    assert_eq!(
+        names(&[model, ("k/b.xml", &main)]).unwrap_err(),
+        "k/s/a.xml:1:11: a/asset/model: file \"k/s/b.xml\" does not exist"
+    );
+}
+
 #[test]
 fn layers_and_embedded_files_are_found() {
     static FILES: &[(&str, &[u8])] = &[

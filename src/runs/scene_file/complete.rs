@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{SceneFile, SceneFileError};
-use crate::assets::{AssetSource, resolve};
+use crate::assets::AssetSource;
 use crate::limits::Limits;
 use crate::mjcf_loader::Tree;
 
@@ -85,17 +85,21 @@ impl Copies<'_> {
     /// name of its own is called after its file.
     fn copy(&mut self, at: usize, file: &str, folder: &str, setting: &str) -> Result<String, SceneFileError> {
         let own = file.rsplit(['/', '\\']).next().unwrap_or(file);
-        let file = if self.strips { own } else { file };
-        let file = match self.folder(at, setting).trim_end_matches('/') {
-            "" => file.to_string(),
-            from => format!("{from}/{file}"),
-        };
         let broken = |reason: String| SceneFileError::Asset {
-            file: file.clone(),
+            file: file.to_string(),
             reason,
         };
-        let models = self.tree.models();
-        let path = resolve(&models[self.tree.model_of(at)].dir, &file).map_err(|e| broken(e.to_string()))?;
+        let from = self.folder(at, &["assetdir", setting]);
+        let path = if self.strips {
+            self.tree.named_file(at, own, from, None, self.assets)
+        } else {
+            let probed = match self.tree.nodes[at].name.as_str() {
+                "hfield" | "skin" => self.folder(at, &["assetdir"]),
+                _ => from,
+            };
+            self.tree.named_file(at, file, from, Some(probed), self.assets)
+        };
+        let path = path.map_err(|e| broken(e.to_string()))?;
         let bytes = self.assets.read(&path).map_err(|e| broken(e.to_string()))?.into_owned();
         let mut name = format!("{folder}/{own}");
         let mut number = 1;
@@ -108,10 +112,10 @@ impl Copies<'_> {
     }
 
     /// Returns the folder of images or meshes for an element: that of the model in which it stands, or of the one that names that model.
-    fn folder(&self, at: usize, name: &str) -> &str {
+    fn folder(&self, at: usize, names: &[&str]) -> &str {
         let mut model = Some(self.tree.model_of(at));
         while let Some(one) = model {
-            let found = setting(self.tree, self.tree.models()[one].root, &["assetdir", name]);
+            let found = setting(self.tree, self.tree.models()[one].root, names);
             if let Some(folder) = found.filter(|folder| !folder.is_empty()) {
                 return folder;
             }

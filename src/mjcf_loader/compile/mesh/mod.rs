@@ -41,7 +41,7 @@ pub(super) fn compile_meshes(
         let path = mesh
             .file
             .as_ref()
-            .map(|file| asset_path(context, mesh.at, file, context.meshdir(mesh.at), source))
+            .map(|file| asset_path(context, mesh.at, file, [context.meshdir(mesh.at); 2], source))
             .transpose()?;
         let surface = source::read(context, mesh, path.as_deref(), source, &mut left)?;
         let options = (touches, document.option.flags.multiccd, document.mesh_density);
