@@ -8,7 +8,7 @@ use crate::mjcf_loader::error::{ErrorKind, LoadError};
 use crate::mjcf_loader::schema::Element;
 use crate::mjcf_loader::settings::single;
 use crate::mjcf_loader::table::Table;
-use crate::model::{self, Arrays, CamLight};
+use crate::model::{self, Arrays};
 
 /// Compiles a camera.
 pub(super) fn compile_camera(
@@ -18,11 +18,6 @@ pub(super) fn compile_camera(
     ids: &Ids,
     arrays: &mut Arrays,
 ) -> Result<(), LoadError> {
-    let aims = matches!(camera.mode, CamLight::TargetBody | CamLight::TargetBodyCom);
-    if aims && camera.target.is_none() {
-        // MuJoCo leaves such a camera at the origin of the world
-        return Err(context.error(camera.at, ErrorKind::MissingAttribute("target")));
-    }
     let find = |name: &String| ids.body.find(context.tree, camera.at, "target", name);
     arrays.cam_name.push(camera.name.clone());
     arrays.cam_mode.push(camera.mode);

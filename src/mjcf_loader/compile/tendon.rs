@@ -90,7 +90,8 @@ fn compile_wrap(context: &Context, along: &Along, ids: &Ids, arrays: &Arrays) ->
     let (tree, at) = (context.tree, along.at());
     Ok(match along {
         Along::Joint(joint) => Wrap::Joint {
-            joint: ids.scalar_joint(context, arrays, at, "joint", &joint.joint)?,
+            // of a ball or free joint MuJoCo takes the first coordinate
+            joint: ids.joint.find(tree, at, "joint", &joint.joint)?,
             coef: joint.coef,
         },
         Along::Site(site) => Wrap::Site {

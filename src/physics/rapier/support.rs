@@ -47,6 +47,14 @@ fn couplings(model: &Model, topology: &Topology) -> Result<(), RapierError> {
             let what = "spatial tendons are not supported";
             return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
         }
+        let scalar = |along: &Wrap| match *along {
+            Wrap::Joint { joint, .. } => matches!(model.jnt_type[joint], JointType::Hinge | JointType::Slide),
+            _ => false,
+        };
+        if !model.tendon_wrap[t].iter().all(scalar) {
+            let what = "a tendon over ball and free joints is not supported";
+            return Err(RapierError::unsupported("tendon", &model.tendon_name[t], what));
+        }
         let pair = matches!(model.tendon_wrap[t][..], [Wrap::Joint { joint: a, coef: x }, Wrap::Joint { joint: b, coef: y }]
             if a != b && x != 0.0 && y != 0.0 && tree(a) == tree(b));
         if model.tendon_limited[t] && !pair {
