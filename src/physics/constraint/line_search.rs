@@ -40,12 +40,15 @@ impl LineSearch<'_> {
 
     /// Finds the step length at which the derivative vanishes to within `tolerance`, from a first guess.
     ///
-    /// This is Newton's method on the derivative (which is monotone), kept inside a bracket.
+    /// This is Newton's method on the derivative (which is monotone), kept inside a bracket, which is halved where the method goes on to swing
+    /// between its ends.
     #[inline(always)]
     pub(super) fn minimise(&self, guess: f64, tolerance: f64, iterations: usize) -> f64 {
         let (mut low, mut high) = (0.0, f64::INFINITY);
         let mut alpha = guess;
-        for _ in 0..iterations {
+        // lengths of the last step and of the one before
+        let (mut last, mut before) = (f64::INFINITY, f64::INFINITY);
+        for tried in 0..iterations {
             let (g, h) = self.derivatives(alpha);
             if g.abs() < tolerance {
                 break;
@@ -57,8 +60,12 @@ impl LineSearch<'_> {
             }
             // pieces of the cost are linear, where the slope has no rate
             let mut next = alpha - g / h.max(MINVAL);
-            if !(next > low && next < high) {
-                // Newton's step may leave the bracket where the cost changes from one piece to another
+            let step = (next - alpha).abs();
+            // Where the cost changes from one piece to another Newton's step may leave the bracket, or go back and forth between its
+            // ends and hardly narrow it; mostly it finds its way from there by itself. A step that is short for the bracket is none of
+            // these, however long it is beside those before: near the end all of them are rounding.
+            let swings = tried >= iterations / 2 && step > 0.5 * before && step > 0.5 * (high - low);
+            if !(next > low && next < high) || swings {
                 next = if high.is_finite() {
                     0.5 * (low + high)
                 } else {
@@ -68,8 +75,66 @@ impl LineSearch<'_> {
             if next == alpha {
                 break;
             }
+            (before, last) = (last, (next - alpha).abs());
             alpha = next;
         }
         alpha
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::constraint::cone::Cone;
+    use crate::physics::constraint::jacobian::Jacobian;
+    use crate::physics::constraint::{Block, ConstraintType, Efc};
+
+    /// Builds a contact that slides more and more slowly along the line, and turns round at `turn`.
+    fn turning(d: f64, mu: f64, pressed: f64, [turn, aside]: [f64; 2]) -> (Cone, Jacobian) {
+        let block = Block {
+            kind: ConstraintType::ContactElliptic,
+            dim: 3,
+            mu,
+            friction: [1.0, 1.0, 0.0, 0.0, 0.0],
+            ..Block::default()
+        };
+        let tangential = d / (mu * mu);
+        let efc = Efc {
+            d: vec![d, tangential, tangential],
+            aref: vec![0.0; 3],
+            ..Efc::default()
+        };
+        let mut cone = Cone::new(&block, &efc);
+        cone.jar[..3].copy_from_slice(&[-pressed, -turn, aside]);
+        cone.jv[1] = 1.0;
+        cone.prepare_line();
+        (cone, Jacobian::default())
+    }
+
+    #[test]
+    fn contacts_that_turn_round_are_searched_to_the_end() {
+        let mut rng = testkit::Rng::with_seed(1);
+        let mut power = |low: f64, high: f64| 10_f64.powf(low + (high - low) * rng.f64());
+        let mut searched = 0;
+        for _ in 0..20_000 {
+            let mut island = Island::default();
+            for _ in 0..2 {
+                let (d, mu, pressed) = (power(-1.0, 2.0), power(-0.5, 0.5), power(-2.0, 1.0));
+                let places = [power(-2.0, -0.3), power(-5.0, -1.0)];
+                island.cones.push(turning(d, mu, pressed, places));
+            }
+            let line = LineSearch {
+                slope: -power(-2.0, 1.0),
+                curvature: power(-2.0, 1.5),
+                island: &island,
+            };
+            if line.derivatives(0.0).0 < 0.0 {
+                searched += 1;
+                let alpha = line.minimise(1.0, 1e-10, 50);
+                let (slope, curvature) = line.derivatives(alpha);
+                assert!(slope.abs() < 1e-9 * curvature.max(1.0), "slope {slope} at {alpha}");
+            }
+        }
+        assert!(searched > 10_000, "{searched}");
     }
 }
