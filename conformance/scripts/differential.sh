@@ -21,8 +21,7 @@ target/release/conformance differential --count "$documents" --seed "$seed" --ke
   echo 'is compared. Left out, and counted below, are states in which MuJoCo warns or gives up; those whose inertia is ill-conditioned (scaled'
   echo 'condition above 1e8), or in which a row has hardly any regularisation (below 1e-13) or a Jacobian of rounding errors (below 1e-12);'
   echo 'those in which MuJoCo itself jumps as far when the last bits of the positions change; and those in which conjugate gradients'
-  echo 'end at their limit of iterations. Where a quantity differs, those that follow from it are not compared. Bounding boxes are those'
-  echo 'of geoms in a body, which leave out pairs beyond their margin that the routine for two boxes alone takes for nearer: without them MuJoCo agrees.'
+  echo 'end at their limit of iterations. Where a quantity differs, those that follow from it are not compared.'
   echo 'Documents run in processes of their own, as at some of them MuJoCo reads or writes memory that is not its.'
   echo
   echo "Commit $commit, $(date -u +%F), seed $seed."

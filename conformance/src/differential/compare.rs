@@ -75,8 +75,6 @@ pub enum Why {
     Jump,
     /// Conjugate gradients end at their limit of iterations, before the minimum, from the same rows: rounding errors have grown in each.
     Cut,
-    /// MuJoCo's bounding boxes leave out contacts of pairs beyond their margin; without them, what was measured agrees.
-    Boxes,
 }
 
 /// A document that both sides have loaded.
@@ -205,7 +203,7 @@ impl Sides {
                 rows,
             };
         }
-        let mut measured = self.measured(computed, &state);
+        let measured = self.measured(computed, &state);
         let mut why = Why::Ours;
         let wrong: Vec<Measured> = measured.iter().filter(|m| !m.agrees()).cloned().collect();
         if !wrong.is_empty() {
@@ -213,8 +211,6 @@ impl Sides {
                 why = Why::Jump;
             } else if self.is_cut(&wrong) {
                 why = Why::Cut;
-            } else if let Some(whole) = self.without_boxes(start, first.as_ref(), &state) {
-                (measured, why) = (whole, Why::Boxes);
             }
         }
         Stepped::Compared {
@@ -273,16 +269,6 @@ impl Sides {
         opt.solver == SolverType::Cg
             && self.simulation.solver_iterations() >= opt.iterations
             && wrong.iter().all(follows)
-    }
-
-    /// Measures a step of MuJoCo's without its tree of bounding boxes, where both sides agree then. Its boxes leave out pairs that are
-    /// farther apart than the margin; its routine for boxes, alone, takes them for nearer where corners face each other.
-    fn without_boxes(&mut self, start: &State, first: Option<&State>, state: &State) -> Option<Vec<Measured>> {
-        let before = self.simulation.disable_midphase();
-        let computed = self.advance(start, first);
-        let measured = computed.map(|computed| self.measured(computed, state));
-        self.simulation.set_flags(before);
-        measured.filter(|measured| measured.iter().all(Measured::agrees))
     }
 
     /// Steps MuJoCo from a state of ours; returns whether it neither gave up nor warned, nor will at the beginning of the next

@@ -245,7 +245,7 @@ fn compare(sides: &mut Sides) -> (Meaning, Vec<Measured>, usize) {
         recipe.speed = recipe.speed.min(2.0);
         if let Stepped::Compared {
             measured,
-            why: Why::Ours | Why::Boxes,
+            why: Why::Ours,
             ..
         } = sides.step(&recipe)
         {

@@ -6,6 +6,7 @@ use fastrand::Rng;
 
 use crate::differential::compare::Sides;
 use crate::differential::slack::Slack;
+use crate::live::one_step::TIGHT;
 use crate::live::speed::{copy_motion, cpu_time, quartiles};
 use crate::measure::{Summary, max_abs, relative};
 
@@ -178,7 +179,8 @@ fn step(sides: &mut Sides, start: &State, out: &mut Figures, errors: &mut Vec<f6
     }
 }
 
-/// Returns how far MuJoCo is from itself when the last bits of the positions change, and whether it has other contacts then.
+/// Returns how far MuJoCo is from itself when the last bits of the positions change, and when its solver goes on to the end, which its tolerance
+/// cannot ask for where forces are huge; and whether it has other contacts then.
 fn spread(sides: &mut Sides, start: &State, qacc: &[f64], contacts: usize) -> (f64, bool) {
     let (mut own, mut others, mut rng) = (0.0_f64, false, Rng::with_seed(1));
     for _ in 0..NUDGES {
@@ -192,6 +194,13 @@ fn spread(sides: &mut Sides, start: &State, qacc: &[f64], contacts: usize) -> (f
             others |= sides.simulation().ncon() != contacts;
         }
     }
+    let (tight, ls_tight, iterations) = TIGHT;
+    let before = sides.simulation().set_tolerance(tight, ls_tight, iterations);
+    if sides.step_mujoco(start) {
+        own = own.max(relative(sides.simulation().qacc(), qacc));
+    }
+    let (tolerance, ls_tolerance, iterations) = before;
+    sides.simulation().set_tolerance(tolerance, ls_tolerance, iterations);
     (own, others)
 }
 

@@ -6,6 +6,7 @@ mod compiled_model;
 mod complete_models;
 mod composed;
 mod contact_free;
+mod contact_gaps;
 mod contact_geometry;
 mod differential;
 mod growth;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         compiled_model::trials(),
         complete_models::trials(),
         contact_free::trials(),
+        contact_gaps::trials(),
         contact_geometry::trials(),
         differential::trials(),
         growth::trials(),

@@ -3,6 +3,7 @@
 //! A sweep over the boxes of all geoms finds the pairs that may touch; the routines of [`crate::physics::contact`] work
 //! on world poses, as contact geometry is discontinuous in their last bits.
 
+mod boxes;
 mod pairs;
 mod sweep;
 

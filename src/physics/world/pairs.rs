@@ -3,7 +3,8 @@
 mod rules;
 
 use crate::math::{MINVAL, order};
-use crate::model::Model;
+use crate::model::{GeomType, Model};
+use crate::physics::contact::needs_convex;
 use crate::physics::state::Contact;
 pub use rules::ContactRules;
 
@@ -22,6 +23,10 @@ pub struct Pair {
     pub geom: [usize; 2],
     /// Distance up to which contacts are detected, m.
     pub margin: f64,
+    /// Whether MuJoCo compares the boxes of both geoms before it looks for contacts, by a routine that may find some beyond the margin.
+    pub midphase: bool,
+    /// Distance up to which any geom of both bodies has contacts, m.
+    pub body_margin: f64,
     /// A contact with everything but its geometry filled in.
     pub template: Contact,
 }
@@ -179,6 +184,8 @@ fn explicit(model: &Model, p: usize) -> Pair {
     Pair {
         geom: t.geom,
         margin: model.pair_margin[p],
+        midphase: false,
+        body_margin: model.pair_margin[p],
         template: t,
     }
 }
@@ -220,6 +227,27 @@ fn dynamic(model: &Model, geom: [usize; 2]) -> Pair {
     Pair {
         geom,
         margin,
+        midphase: midphase(model, geom),
+        body_margin: geom
+            .into_iter()
+            .fold(0.0, |margin, g| body_margin(model, g).max(margin)),
         template: t,
     }
+}
+
+/// Tells whether MuJoCo goes through trees of boxes to a pair that is not explicit, as it does where one of the bodies has several geoms, and then
+/// calls a routine that may take what is farther apart than the margin for nearer: the convex one, that for two boxes.
+fn midphase(model: &Model, [a, b]: [usize; 2]) -> bool {
+    let geoms = |g: usize| model.body_geomnum[model.geom_bodyid[g]];
+    let kinds = [model.geom_type[a], model.geom_type[b]];
+    let inexact = kinds == [GeomType::Box; 2] || needs_convex(kinds[0], kinds[1]);
+    model.opt.flags.midphase && geoms(a) * geoms(b) > 1 && inexact
+}
+
+/// Returns the largest margin of the geoms of a geom's body.
+fn body_margin(model: &Model, g: usize) -> f64 {
+    let body = model.geom_bodyid[g];
+    let first = model.body_geomadr[body];
+    let margins = &model.geom_margin[first..first + model.body_geomnum[body]];
+    margins.iter().fold(0.0, |most, &margin| margin.max(most))
 }

@@ -1,15 +1,17 @@
 //! Contact detection: sweep and prune along x, then the exact routines.
 
+use super::boxes;
 use super::pairs::Order;
 use crate::limits::Limits;
-use crate::math::{Mat3, Vec3, add, mat_vec};
+use crate::math::Vec3;
 use crate::model::{GeomType, Model};
 use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 use crate::physics::engine::{EngineError, within};
 use crate::physics::state::{Contact, RESERVED_CONTACTS, State};
 use crate::physics::world::{Pair, PairTable};
 
-/// Enlargement of boxes, m: more than rounding, so that the exact routines decide.
+/// Enlargement of boxes, m: more than rounding, so that the exact routines decide. The tolerance of the convex routines comes on top, as far as
+/// which they may find a contact where there is a gap.
 const SLACK: f64 = 1e-7;
 
 /// The world box of a geom.
@@ -127,6 +129,9 @@ impl Sweep {
         let (scratch, points) = (&mut self.scratch, &mut self.points);
         points.clear();
         collide(&first, &second, pair.margin, &self.options, scratch, points);
+        if pair.midphase && !points.is_empty() && boxes::apart(&first, &second, model, pair, s) {
+            return;
+        }
         s.contact.extend(points.iter().map(|p| Contact {
             dist: p.dist,
             pos: p.pos,
@@ -143,8 +148,8 @@ impl Sweep {
                 continue;
             }
             let g = b.geom;
-            let slack = SLACK + b.margin;
-            [b.low, b.high] = aabb(
+            let slack = SLACK + self.options.ccd_tolerance + b.margin;
+            [b.low, b.high] = boxes::world(
                 model.geom_type[g],
                 (s.params.geom_size[g], &model.geom_aabb[g]),
                 s.geom_xpos[g],
@@ -252,38 +257,4 @@ pub(in crate::physics) fn placed<'a>(model: &'a Model, s: &'a State, g: usize) -
             _ => None,
         },
     }
-}
-
-/// Returns the world box of a geom, enlarged by `slack` (m), from its size and the box around it in its frame, which only meshes
-/// and height fields need. A plane fills the half space behind it.
-#[inline(always)]
-fn aabb(kind: GeomType, (size, own): (Vec3, &[f64; 6]), mut pos: Vec3, mat: &Mat3, slack: f64) -> [Vec3; 2] {
-    let half: Vec3 = match kind {
-        GeomType::Plane => {
-            let mut high = [f64::INFINITY; 3];
-            if mat[2] == 0.0 && mat[5] == 0.0 && mat[8] > 0.0 {
-                high[2] = pos[2] + slack;
-            }
-            return [[f64::NEG_INFINITY; 3], high];
-        }
-        GeomType::Sphere => [size[0]; 3],
-        GeomType::Capsule => std::array::from_fn(|k| size[0] + mat[3 * k + 2].abs() * size[1]),
-        GeomType::Cylinder => std::array::from_fn(|k| {
-            let a = mat[3 * k + 2];
-            a.abs() * size[1] + size[0] * (1.0 - a * a).max(0.0).sqrt()
-        }),
-        GeomType::HField | GeomType::Mesh => {
-            pos = add(pos, mat_vec(mat, [own[0], own[1], own[2]]));
-            std::array::from_fn(|k| {
-                mat[3 * k].abs() * own[3] + mat[3 * k + 1].abs() * own[4] + mat[3 * k + 2].abs() * own[5]
-            })
-        }
-        GeomType::Box | GeomType::Ellipsoid => std::array::from_fn(|k| {
-            mat[3 * k].abs() * size[0] + mat[3 * k + 1].abs() * size[1] + mat[3 * k + 2].abs() * size[2]
-        }),
-    };
-    [
-        std::array::from_fn(|k| pos[k] - half[k] - slack),
-        std::array::from_fn(|k| pos[k] + half[k] + slack),
-    ]
 }

@@ -12,7 +12,6 @@ use super::{Simulation, array_mut, count};
 /// Bits of `mjtDisableBit`.
 const DISABLE_SENSOR: i32 = 1 << 12;
 const DISABLE_CONTACT: i32 = 1 << 4;
-const DISABLE_MIDPHASE: i32 = 1 << 13;
 
 impl Simulation {
     fn option<T: Copy>(&mut self, name: &str, kind: Kind) -> &mut T {
@@ -23,11 +22,14 @@ impl Simulation {
         unsafe { &mut *self.model.byte_add(at).cast::<T>() }
     }
 
-    /// Sets the tolerances of Newton's method and of its line search, and the largest number of iterations.
-    pub fn set_tolerance(&mut self, tolerance: f64, ls_tolerance: f64, iterations: usize) {
-        *self.option("tolerance", Kind::F64) = tolerance;
-        *self.option("ls_tolerance", Kind::F64) = ls_tolerance;
-        *self.option("iterations", Kind::I32) = iterations as c_int;
+    /// Sets the tolerances of Newton's method and of its line search, and the largest number of iterations; returns those from before.
+    pub fn set_tolerance(&mut self, tolerance: f64, ls_tolerance: f64, iterations: usize) -> (f64, f64, usize) {
+        let before: c_int = std::mem::replace(self.option("iterations", Kind::I32), iterations as c_int);
+        (
+            std::mem::replace(self.option("tolerance", Kind::F64), tolerance),
+            std::mem::replace(self.option("ls_tolerance", Kind::F64), ls_tolerance),
+            before as usize,
+        )
     }
 
     fn disable(&mut self, bit: i32, off: bool) {
@@ -43,18 +45,6 @@ impl Simulation {
     /// Switches contacts off, or on again.
     pub fn disable_contacts(&mut self, off: bool) {
         self.disable(DISABLE_CONTACT, off);
-    }
-
-    /// Switches the trees of bounding boxes off; returns the switches from before.
-    pub fn disable_midphase(&mut self) -> i32 {
-        let before = *self.option("disableflags", Kind::I32);
-        self.disable(DISABLE_MIDPHASE, true);
-        before
-    }
-
-    /// Sets all switches.
-    pub fn set_flags(&mut self, flags: i32) {
-        *self.option("disableflags", Kind::I32) = flags;
     }
 
     /// Takes over all that a step of ours depends on, switches and parameters included.
