@@ -144,8 +144,9 @@ table! {
         "eulerdamp" eulerdamp: bool = true, SWITCH, "Whether Euler's method takes joint damping implicitly.";
         "nativeccd" nativeccd: bool = true, SWITCH, "Whether convex collision is MuJoCo's own; off only in models in which it makes no difference.";
         "multiccd" multiccd: bool = false, SWITCH, "Whether pairs of convex collision may have several contacts.";
+        "island" island: bool = false, SWITCH, "Whether islands of bodies are found one by one; on only with other solvers than conjugate gradients, where it makes no difference.";
         check "autoreset" | "energy" | "fwdinv" | "invdiscrete", Kind::Word(SWITCH.names), "What changes no motion. Ignored: pairs of geoms are found in one way, and a simulation that diverges is an error.";
-        check "override" | "island", Kind::Word(&["disable"]), "What is off by default; only that.";
+        check "override", Kind::Word(&["disable"]), "Whether all contacts have the parameters of `<option>`; only off.";
     }
 }
 

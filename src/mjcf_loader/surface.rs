@@ -81,9 +81,9 @@ table! {
         "name" name: String = String::new(), TEXT, required, "Name.";
         "texture" texture: Option<String> = None, TEXT, "Texture.";
         "rgba" rgba: [f64; 4] = [1.0; 4], reals(4, Any), "Colour and opacity.";
-        "specular" specular: f64 = 0.5, real(Unit), "Strength of highlights.";
+        "specular" specular: f64 = 0.5, real(NonNegative), "Strength of highlights.";
         "shininess" shininess: f64 = 0.5, real(Unit), "Sharpness of highlights.";
-        "reflectance" reflectance: f64 = 0.0, real(Unit), "Strength of reflections, which are not drawn.";
+        "reflectance" reflectance: f64 = 0.0, real(Any), "Strength of reflections, which are not drawn.";
         "emission" emission: f64 = 0.0, real(NonNegative), "Light that the surface emits, times its colour.";
         "texrepeat" texrepeat: [f64; 2] = [1.0; 2], reals(2, Any), "Repetitions of a 2d texture.";
         "texuniform" texuniform: bool = false, FLAG, "Whether the texture repeats per metre instead of per object.";

@@ -162,14 +162,17 @@ pub struct Flags {
     pub refsafe: bool,
     /// Sensors.
     pub sensor: bool,
-    /// Contacts of two bodies listed by the types of the geoms, not by their ids. It changes nothing else.
+    /// Contacts of two bodies listed by the types of the geoms, not by their ids, without those of boxes, and of convex collision, whose bounding
+    /// boxes are beyond the margin.
     pub midphase: bool,
     /// Implicit joint damping in Euler's method.
     pub eulerdamp: bool,
     /// MuJoCo's own convex collision; models in which another could be seen are refused.
     pub nativeccd: bool,
-    /// Several contacts of a convex pair; off by default. Models in which it could be seen are refused.
+    /// Several contacts of a convex pair; off by default.
     pub multiccd: bool,
+    /// Islands of bodies found one by one; off by default. Models in which it could be seen are refused: those with conjugate gradients.
+    pub island: bool,
 }
 
 /// The statistics of a model (`<statistic>`), given or computed.

@@ -1,7 +1,7 @@
 //! The last step from a document to a model: the constants that need dynamics.
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
-use crate::model::{Arrays, BiasType, Constants, GainType, JointType, Model, SameFrame};
+use crate::model::{Arrays, BiasType, Constants, GainType, JointType, Model, SameFrame, SolverType};
 use crate::physics::contact::needs_convex;
 use crate::physics::dynamics::{MAX_WEIGHT, constants};
 use crate::physics::length_range;
@@ -14,6 +14,8 @@ const IDLE_MUSCLE: &str = "the muscle moves nothing at qpos0, so that scale give
 const REDUNDANT: &str = "two joints of one kind along one axis of a body that stands alone, of which MuJoCo lets each move the whole inertia: make them one";
 const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder or \
     a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
+const ISLANDS: &str = "island=\"enable\" lets conjugate gradients stop for each island apart, which is not done here: leave it out, or choose another \
+    solver, with which it changes nothing";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
 
 /// Acceleration per unit force below which a muscle moves nothing.
@@ -45,6 +47,9 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     check(&arrays, &constants, &places)?;
     let model = Model::new(arrays, constants);
     check_convex(&model, &places)?;
+    if model.opt.flags.island && model.opt.solver == SolverType::Cg {
+        return Err(places.body_error(0, ISLANDS));
+    }
     length_range::complete(model, &lengthrange, &places)
 }
 
@@ -158,6 +163,20 @@ mod tests {
         assert!(error.contains("may touch another by convex collision"), "{error}");
         assert!(error.ends_with("remove nativeccd=\"disable\""), "{error}");
         assert!(outcome("nativeccd='enable' multiccd='enable'", BOX).is_ok());
+    }
+
+    #[test]
+    fn islands_are_taken_where_they_make_no_difference() {
+        let with = |solver: &str| {
+            let text = format!("<mujoco><option solver='{solver}'><flag island='enable'/></option></mujoco>");
+            load_str(&text, "m.xml", &MemoryAssets::new()).and_then(compile)
+        };
+        assert!(with("Newton").is_ok() && with("PGS").is_ok());
+        let error = with("CG").expect_err("CG").to_string();
+        assert!(
+            error.starts_with("m.xml:1:1: mujoco: island=\"enable\" lets conjugate gradients"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -95,7 +95,7 @@ pub(super) const FLAG: &[Rule] = &[
     ("nativeccd", Word(0.02)),
     ("override", Nothing),
     ("multiccd", Word(0.02)),
-    ("island", Nothing),
+    ("island", Word(0.05)),
 ];
 
 pub(super) const STATISTIC: &[Rule] = &[
