@@ -55,6 +55,8 @@ impl World {
 }
 
 fn outcome(api: &'static Mujoco, folder: &Path, path: &str) -> Outcome {
+    // below a relative path MuJoCo does not find what an included document has beside it
+    let folder = &std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
     let ours = load(&FileSystem::new(folder), path)
         .and_then(compile)
         .map_err(|e| e.to_string());
