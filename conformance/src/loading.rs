@@ -55,7 +55,6 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::WrongCount { found: 0, .. } => Some("attributes without a value, which MuJoCo takes for absent"),
         ErrorKind::UnknownName { name, .. } if name.is_empty() => Some("references without a name"),
         ErrorKind::MissingAttribute("geom1" | "geom2") => Some("contact pairs of a single geom"),
-        ErrorKind::MissingAttribute("target") => Some("cameras without the target of their mode"),
         ErrorKind::Invalid(r#"only a camera with mode="targetbody" has a target"#) => {
             Some("cameras with a target that their mode does not use")
         }
@@ -66,6 +65,7 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
         ErrorKind::Invalid(message) if message.contains("may touch another by convex collision") => {
             Some("other convex collision than the default")
         }
+        ErrorKind::Invalid(message) if message.starts_with("island=") => Some("islands with conjugate gradients"),
         ErrorKind::Invalid(message) if message.starts_with("two joints of one kind along one axis") => {
             Some("joints that move a body alike")
         }
