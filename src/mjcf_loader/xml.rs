@@ -121,8 +121,7 @@ impl Tree {
     ) -> Result<String, AssetError> {
         let model = &self.models[self.model_of(at)];
         let within = |folder: &str| match folder.trim_end_matches('/') {
-            "" => source.resolve(&model.dir, file),
-            _ if is_absolute(file) => source.resolve(&model.dir, file),
+            folder if folder.is_empty() || is_absolute(file) => source.resolve(&model.dir, file),
             folder => source.resolve(&model.dir, &format!("{folder}/{file}")),
         };
         let there = |path: &Result<String, AssetError>| path.as_ref().is_ok_and(|path| source.contains(path));
