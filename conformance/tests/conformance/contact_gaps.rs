@@ -3,12 +3,13 @@
 
 use babybench::physics::Engine;
 use conformance::differential::compare::{Sides, Taken};
+use conformance::differential::dice::{Dice, numbers};
 use conformance::mujoco::{MUJOCO, Mujoco, needed};
 use testkit::harness::Trial;
 use testkit::trials;
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs MUJOCO: gaps_are_those_of_mujoco]
+    trials![needs MUJOCO: gaps_are_those_of_mujoco, trees_leave_out_the_same_contacts]
 }
 
 /// Distances between the surfaces beyond the margin, m: from clear penetration to a clear gap, across the tolerance of 1e-6 m.
@@ -89,4 +90,55 @@ fn compare(mut sides: Sides, low: f64, margin: f64) -> usize {
         found += usize::from(gap > 0.0) * ours.len();
     }
     found
+}
+
+/// Two bodies of some boxes each, over a floor with others, near enough to each other for the routine for two boxes to find contacts beyond the margin.
+fn boxes(dice: &mut Dice, midphase: &str) -> String {
+    let part = |dice: &mut Dice| {
+        let margin = dice.pick(&[0.0, 0.05, 0.2]);
+        let size = (0..3).map(|_| dice.uniform(0.05, 0.3)).collect::<Vec<_>>();
+        format!(
+            "<geom type='box' size='{}' pos='{}' quat='{}' margin='{margin}'/>",
+            numbers(&size),
+            numbers(&dice.vector(3, 0.1)),
+            numbers(&dice.vector(4, 1.0)),
+        )
+    };
+    let mut parts = |count: usize| (0..count).map(|_| part(dice)).collect::<String>();
+    let (world, bodies) = (parts(2), [parts(1), parts(2), parts(5)]);
+    let bodies = bodies.map(|parts| format!("<body><freejoint/>{parts}</body>")).concat();
+    format!(
+        "<mujoco><option><flag midphase='{midphase}'/></option><worldbody>\
+         <geom type='plane' size='0 0 1' pos='0 0 -1' euler='10 20 0'/>{world}{bodies}</worldbody></mujoco>"
+    )
+}
+
+fn trees_leave_out_the_same_contacts() {
+    let (api, mut left_out) = (needed(), 0);
+    for seed in 0..1000 {
+        let mut counts = ["enable", "disable"].map(|midphase| {
+            let mut dice = Dice::new(seed);
+            let mut sides = load(api, &boxes(&mut dice, midphase));
+            let mut counts = Vec::new();
+            for _ in 0..20 {
+                let mut start = sides.new_state();
+                for body in start.qpos.chunks_mut(7) {
+                    body[..3].copy_from_slice(&dice.vector(3, 0.7));
+                    body[3..].copy_from_slice(&dice.vector(4, 1.0));
+                }
+                assert!(sides.step_mujoco(&start));
+                let theirs: Vec<[usize; 2]> = sides.simulation().contacts().iter().map(|c| c.geom).collect();
+                let mut ours = sides.new_state();
+                ours.copy_dynamic_from(&start);
+                sides.engine().step(&mut ours).expect("steps");
+                let ours: Vec<[usize; 2]> = ours.contact.iter().map(|c| c.geom).collect();
+                assert_eq!(ours, theirs, "seed {seed}, midphase {midphase}");
+                counts.push(theirs.len());
+            }
+            counts
+        });
+        let [with, without] = &mut counts;
+        left_out += without.iter().sum::<usize>() - with.iter().sum::<usize>();
+    }
+    assert!(left_out >= 2, "the trees leave {left_out} contacts out alone");
 }

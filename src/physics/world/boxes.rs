@@ -1,12 +1,9 @@
-//! Boxes around geoms: along the axes of the world, for the sweep, and along those of a geom.
+//! Boxes around geoms: along the axes of the world, for the sweep, and along those of a geom or body.
 
-use super::Pair;
 use crate::math::{Mat3, Vec3, add, column, dot, mat_vec, sub};
-use crate::model::{GeomType, Model};
-use crate::physics::contact::PlacedGeom;
-use crate::physics::state::State;
+use crate::model::GeomType;
 
-/// Returns the world box of a geom, enlarged by `slack` (m), from its size and the box around it in its frame, which only meshes
+/// Returns a world box that holds everything nearer to a geom than `slack` (m), from its size and the box around it in its frame, which only meshes
 /// and height fields need. A plane fills the half space behind it.
 #[inline(always)]
 pub(super) fn world(
@@ -16,6 +13,12 @@ pub(super) fn world(
     mat: &Mat3,
     slack: f64,
 ) -> [Vec3; 2] {
+    let turned = |half: Vec3| -> Vec3 {
+        std::array::from_fn(|k| {
+            mat[3 * k].abs() * half[0] + mat[3 * k + 1].abs() * half[1] + mat[3 * k + 2].abs() * half[2]
+        })
+    };
+    let grown = |half: Vec3| half.map(|h| h + slack);
     let half: Vec3 = match kind {
         GeomType::Plane => {
             let mut high = [f64::INFINITY; 3];
@@ -24,53 +27,46 @@ pub(super) fn world(
             }
             return [[f64::NEG_INFINITY; 3], high];
         }
-        GeomType::Sphere => [size[0]; 3],
-        GeomType::Capsule => std::array::from_fn(|k| size[0] + mat[3 * k + 2].abs() * size[1]),
-        GeomType::Cylinder => std::array::from_fn(|k| {
+        GeomType::Sphere => grown([size[0]; 3]),
+        GeomType::Capsule => grown(std::array::from_fn(|k| size[0] + mat[3 * k + 2].abs() * size[1])),
+        GeomType::Cylinder => grown(std::array::from_fn(|k| {
             let a = mat[3 * k + 2];
             a.abs() * size[1] + size[0] * (1.0 - a * a).max(0.0).sqrt()
-        }),
+        })),
         GeomType::HField | GeomType::Mesh => {
             pos = add(pos, mat_vec(mat, [own[0], own[1], own[2]]));
-            std::array::from_fn(|k| {
-                mat[3 * k].abs() * own[3] + mat[3 * k + 1].abs() * own[4] + mat[3 * k + 2].abs() * own[5]
-            })
+            grown(turned([own[3], own[4], own[5]]))
         }
-        GeomType::Box | GeomType::Ellipsoid => std::array::from_fn(|k| {
-            mat[3 * k].abs() * size[0] + mat[3 * k + 1].abs() * size[1] + mat[3 * k + 2].abs() * size[2]
-        }),
+        // the routine for two boxes takes them for within the margin as long as no face and no pair of edges has it between them, which holds
+        // where one reaches into the other with all faces moved out by it: at corners that is farther
+        GeomType::Box => turned(grown(size)),
+        GeomType::Ellipsoid => grown(turned(size)),
     };
     [
-        std::array::from_fn(|k| pos[k] - half[k] - slack),
-        std::array::from_fn(|k| pos[k] + half[k] + slack),
+        std::array::from_fn(|k| pos[k] - half[k]),
+        std::array::from_fn(|k| pos[k] + half[k]),
     ]
 }
 
-/// A box around a geom: its centre, its half sizes and its axes, the columns of the matrix.
+/// From this half size on a box has no end in a direction (MuJoCo's `mjMAXVAL`), m.
+const ENDLESS: f64 = 1e10;
+
+/// A box along given axes: its centre, its half sizes and its axes, the columns of the matrix.
 #[derive(Clone, Copy)]
-struct Oriented<'a> {
+pub(super) struct Oriented<'a> {
     centre: Vec3,
     half: Vec3,
     mat: &'a Mat3,
 }
 
 impl<'a> Oriented<'a> {
-    /// Returns the box along the axes of the geom.
-    fn of(geom: &PlacedGeom<'a>, own: &[f64; 6]) -> Self {
-        let size = geom.size;
-        let (mut centre, mat) = (geom.pos, geom.mat);
-        let half = match geom.kind {
-            GeomType::Plane => [f64::INFINITY; 3],
-            GeomType::Sphere => [size[0]; 3],
-            GeomType::Capsule => [size[0], size[0], size[0] + size[1]],
-            GeomType::Cylinder => [size[0], size[0], size[1]],
-            GeomType::Box | GeomType::Ellipsoid => size,
-            GeomType::HField | GeomType::Mesh => {
-                centre = add(centre, mat_vec(mat, [own[0], own[1], own[2]]));
-                [own[3], own[4], own[5]]
-            }
-        };
-        Self { centre, half, mat }
+    /// Places a box, given by its centre and half sizes, in a frame.
+    pub(super) fn placed(own: &[f64; 6], pos: Vec3, mat: &'a Mat3) -> Self {
+        Self {
+            centre: add(pos, mat_vec(mat, [own[0], own[1], own[2]])),
+            half: [own[3], own[4], own[5]],
+            mat,
+        }
     }
 
     /// Returns half of the length of its shadow on a line in the direction `axis`.
@@ -78,15 +74,6 @@ impl<'a> Oriented<'a> {
         (0..3)
             .map(|k| dot(axis, column(self.mat, k)).abs() * self.half[k])
             .sum()
-    }
-
-    /// Returns the box around this one along other axes.
-    fn along<'b>(&self, mat: &'b Mat3) -> Oriented<'b> {
-        Oriented {
-            centre: self.centre,
-            half: std::array::from_fn(|k| self.reach(column(mat, k))),
-            mat,
-        }
     }
 
     /// Tells whether one of its faces is further from another box than `margin` (m), which is beyond it.
@@ -97,19 +84,16 @@ impl<'a> Oriented<'a> {
             dot(axis, between).abs() > self.half[k] + other.reach(axis) + margin
         })
     }
-}
 
-/// Tells whether a face of a box around one of two geoms lies between both boxes, further from the other than the margin: of the boxes along their
-/// own axes, or of those along the axes of inertia of their bodies.
-///
-/// MuJoCo leaves such pairs out where one of the bodies has several geoms, before routines that may find a contact where there is a gap.
-pub(super) fn apart(a: &PlacedGeom, b: &PlacedGeom, model: &Model, pair: &Pair, s: &State) -> bool {
-    let [x, y] = pair.geom;
-    let (first, second) = (
-        Oriented::of(a, &model.geom_aabb[x]),
-        Oriented::of(b, &model.geom_aabb[y]),
-    );
-    let clear = |a: Oriented, b: Oriented, margin| a.clears(&b, margin) || b.clears(&a, margin);
-    let inertia = |g: usize| &s.ximat[model.geom_bodyid[g]];
-    clear(first, second, pair.margin) || clear(first.along(inertia(x)), second.along(inertia(y)), pair.body_margin)
+    /// Tells whether a face of one of two boxes is further from the other than `margin` (m), as MuJoCo does, which compares nothing with a
+    /// box that has no end in some direction.
+    pub(super) fn apart(&self, other: &Oriented, margin: f64) -> bool {
+        let endless = |half: &f64| *half >= ENDLESS;
+        let ends = |part: &Oriented| !part.half.iter().any(endless);
+        let all = |part: &Oriented| part.half.iter().all(endless);
+        if all(self) || all(other) {
+            return false;
+        }
+        ends(other) && self.clears(other, margin) || ends(self) && other.clears(self, margin)
+    }
 }

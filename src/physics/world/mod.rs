@@ -6,6 +6,7 @@
 mod boxes;
 mod pairs;
 mod sweep;
+mod trees;
 
 use crate::model::Model;
 use crate::physics::contact::{ContactOptions, Quirks};

@@ -2,6 +2,7 @@
 
 use super::boxes;
 use super::pairs::Order;
+use super::trees::Trees;
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
@@ -41,6 +42,7 @@ pub struct Sweep {
     candidates: Vec<u32>,
     untabulated: Vec<(Order, [u32; 2])>,
     points: Vec<ContactPoint>,
+    trees: Trees,
 }
 
 impl Sweep {
@@ -75,6 +77,7 @@ impl Sweep {
             candidates: Vec::with_capacity(2 * RESERVED_CONTACTS),
             untabulated: Vec::new(),
             points: Vec::with_capacity(64),
+            trees: Trees::new(model),
         }
     }
 
@@ -129,7 +132,7 @@ impl Sweep {
         let (scratch, points) = (&mut self.scratch, &mut self.points);
         points.clear();
         collide(&first, &second, pair.margin, &self.options, scratch, points);
-        if pair.midphase && !points.is_empty() && boxes::apart(&first, &second, model, pair, s) {
+        if pair.midphase && !points.is_empty() && self.trees.apart(&first, &second, model, pair, s) {
             return;
         }
         s.contact.extend(points.iter().map(|p| Contact {
