@@ -99,6 +99,12 @@ const DOCUMENTS: &[(&str, &str)] = &[
         <sensor><torque site='s'/></sensor>",
     ),
     (
+        "a tendon that ends where nothing moves its end",
+        "<worldbody><site name='a' pos='.1 0 .6'/><body pos='.5 -.2 -.5'><joint type='ball'/>\
+        <geom type='cylinder' size='.08 .04' pos='-.2 -.3 .2'/><site name='b'/></body></worldbody>\
+        <tendon><spatial range='0 .1' frictionloss='1'><site site='a'/><site site='b'/></spatial></tendon>",
+    ),
+    (
         "the spring of a free joint",
         "<worldbody><body pos='.1 .2 .3' euler='20 30 40'><joint type='free' stiffness='10'/>\
         <geom type='box' size='.1 .2 .3'/></body></worldbody>",

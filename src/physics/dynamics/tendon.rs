@@ -112,14 +112,24 @@ fn spatial(topology: &Topology, s: &mut State, t: usize, points: &mut usize) {
 const SITE: i32 = -1;
 const PULLEY: i32 = -2;
 
+/// Below this a velocity for one of a degree of freedom may be a rounding error, m/rad.
+const AT_REST: f64 = 1e-12;
+
 /// Adds to the row of a tendon what a point of a body, which `moved` moves, has to do with its length: the velocity of the point along
 /// a direction.
 #[inline(always)]
 fn add_end(row: &mut [f64], cdof: &[Spatial], com: Vec3, moved: &[Moved], point: Vec3, along: Vec3) {
     // as a wrench about the centre of mass to which `cdof` refers
-    let turn = cross(sub(point, com), along);
+    let arm = sub(point, com);
+    let turn = cross(arm, along);
     for &Moved { dof, place } in moved {
         let axis = &cdof[dof as usize];
-        row[place as usize] += dot(angular(axis), turn) + dot(linear(axis), along);
+        let mut speed = dot(angular(axis), turn) + dot(linear(axis), along);
+        if speed.abs() < AT_REST {
+            // a point on the axis stays where it is, but the sum of its parts is a rounding error, against which a limit or dry friction would
+            // push with all its might: as velocities they cancel to the last bit
+            speed = dot(add(linear(axis), cross(angular(axis), arm)), along);
+        }
+        row[place as usize] += speed;
     }
 }
