@@ -114,9 +114,9 @@ impl Draft {
     /// As [`super::load`]; an element at fault is named with its place in the text.
     pub fn compile(self, source: &dyn AssetSource) -> Result<Spec, LoadError> {
         let Self { tree, document, .. } = self;
-        let arrays = compile::compile(&tree, &document, source)?;
+        let (arrays, bodies) = compile::compile(&tree, &document, source)?;
         let places = Places {
-            bodies: document.bodies.iter().map(|body| body.at).collect(),
+            bodies,
             tendons: document.tendons.iter().map(|tendon| tendon.at).collect(),
             actuators: document.actuators.iter().map(|actuator| actuator.at).collect(),
             tree,

@@ -34,9 +34,10 @@ table! {
         "alignfree" alignfree: bool = false, FLAG, "Whether the frames of free bodies, where no others are in them, are moved into their centres of mass and along their principal axes.";
         "fitaabb" fitaabb: bool = false, FLAG, "Whether shapes are fitted to the box around a mesh; else to that of the same inertia.";
         "strippath" strippath: bool = false, FLAG, "Whether directories in the names of files are dropped.";
+        "fusestatic" fusestatic: bool = false, FLAG, "Whether bodies without joints are fused with what carries them, where nothing in the document may name them: no contact, equality, tendon, actuator, sensor, tuple or skin, no camera and no light.";
         check "coordinate", Kind::Word(&["local"]), "Frame of positions; only the parent's.";
         check "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
-        check "fusestatic" | "discardvisual", Kind::Word(&["false"]), "Whether MuJoCo rewrites the bodies; they stay as they are written.";
+        check "discardvisual", Kind::Word(&["false"]), "Whether MuJoCo leaves out what is only drawn; it stays.";
     }
 }
 

@@ -9,6 +9,7 @@ mod contact_free;
 mod contact_gaps;
 mod contact_geometry;
 mod differential;
+mod fused_bodies;
 mod growth;
 mod hulls;
 mod included_files;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         contact_gaps::trials(),
         contact_geometry::trials(),
         differential::trials(),
+        fused_bodies::trials(),
         growth::trials(),
         hulls::trials(),
         included_files::trials(),

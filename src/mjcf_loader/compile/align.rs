@@ -5,9 +5,9 @@ use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate, sub};
 use crate::mjcf_loader::document::{Document, Tri};
 use crate::model::{Arrays, JointType};
 
-/// Aligns a body that has just been compiled; one with others in it stays as it is, as in MuJoCo.
-pub(super) fn align(context: &Context, document: &Document, id: usize, arrays: &mut Arrays) {
-    let [joint] = document.bodies[id].joints.as_slice() else {
+/// Aligns a body of the document that has just been compiled as `id`; one with others in it stays as it is, as in MuJoCo.
+pub(super) fn align(context: &Context, document: &Document, body: usize, id: usize, arrays: &mut Arrays) {
+    let [joint] = document.bodies[body].joints.as_slice() else {
         return;
     };
     let asked = match joint.align {
@@ -15,7 +15,7 @@ pub(super) fn align(context: &Context, document: &Document, id: usize, arrays: &
         Tri::No => false,
         Tri::Auto => context.compiler(joint.at).alignfree,
     };
-    let leaf = document.bodies.get(id + 1).is_none_or(|next| next.parent != id);
+    let leaf = document.bodies.get(body + 1).is_none_or(|next| next.parent != body);
     if joint.kind != JointType::Free || !asked || !leaf {
         return;
     }

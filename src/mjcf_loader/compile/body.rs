@@ -3,6 +3,7 @@
 use super::align::align;
 use super::camera::{compile_camera, compile_light};
 use super::context::{Context, Ids, User, named};
+use super::fuse::{Place, places};
 use super::geom::{check_size, compile_geom, place};
 use super::geometry::{Solid, merge, orientation, principal};
 use super::joint::compile_joints;
@@ -12,14 +13,21 @@ use crate::mjcf_loader::error::LoadError;
 use crate::mjcf_loader::settings::single;
 use crate::model::Arrays;
 
-/// Compiles all bodies in order, so that ids are grouped by body.
-pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
-    let mut last_dof = Vec::with_capacity(document.bodies.len());
+/// Compiles all bodies in order, so that ids are grouped by body; returns their elements.
+pub(super) fn compile(
+    context: &Context,
+    document: &Document,
+    ids: &Ids,
+    arrays: &mut Arrays,
+) -> Result<Vec<usize>, LoadError> {
+    let places = places(context, document)?;
+    let mut last_dof = Vec::with_capacity(places.len());
     let users = Users::new(document);
     let limits = &context.tree.limits;
-    for (id, body) in document.bodies.iter().enumerate() {
+    for (id, place) in places.iter().enumerate() {
+        let body = &document.bodies[place.body];
         context.within(body.at, "bodies", limits.bodies, id + 1)?;
-        frame(context, body, id, arrays)?;
+        frame(body, place, id, arrays);
         let user = users.body.of(context, body.at, &body.user)?;
         arrays.body_user.push(user);
         arrays.body_gravcomp.push(body.gravcomp);
@@ -28,20 +36,32 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         }
         arrays.body_mocapid.push(body.mocap.then_some(arrays.nmocap));
         arrays.nmocap += usize::from(body.mocap);
-        let above = last_dof.get(body.parent).copied().flatten();
+        let above = last_dof.get(place.parent).copied().flatten();
         last_dof.push(compile_joints(context, body, id, above, &users.jnt, arrays)?);
         arrays.body_weldid.push(if id == 0 || !body.joints.is_empty() {
             id
         } else {
-            arrays.body_weldid[body.parent]
+            arrays.body_weldid[place.parent]
         });
-        let solids = compile_geoms(context, body, id, ids, &users.geom, arrays)?;
-        inertial(context, body, id, &solids, arrays)?;
-        for site in &body.sites {
-            compile_site(context, site, id, ids, arrays)?;
-            let user = users.site.of(context, site.at, &site.user)?;
-            arrays.site_user.push(user);
+        arrays.body_geomadr.push(arrays.geom_name.len());
+        let mut solid = compile_part(context, body, id, ids, &users, arrays)?;
+        for fused in &place.fused {
+            let part = &document.bodies[fused.body];
+            let (geom, site) = (arrays.geom_name.len(), arrays.site_name.len());
+            let own = compile_part(context, part, id, ids, &users, arrays)?;
+            fused.carry(&mut arrays.geom_pos[geom..], &mut arrays.geom_quat[geom..]);
+            fused.carry(&mut arrays.site_pos[site..], &mut arrays.site_quat[site..]);
+            if id > 0 {
+                solid = fused.added_to(solid, own).map_err(|m| context.invalid(part.at, m))?;
+            }
         }
+        arrays
+            .body_geomnum
+            .push(arrays.geom_name.len() - arrays.body_geomadr[id]);
+        arrays.body_ipos.push(solid.pos);
+        arrays.body_iquat.push(solid.quat);
+        arrays.body_mass.push(solid.mass);
+        arrays.body_inertia.push(solid.inertia);
         for camera in &body.cameras {
             compile_camera(context, camera, id, ids, arrays)?;
             let user = users.cam.of(context, camera.at, &camera.user)?;
@@ -50,11 +70,12 @@ pub(super) fn compile(context: &Context, document: &Document, ids: &Ids, arrays:
         for light in &body.lights {
             arrays.lights.push(compile_light(context, light, id, ids)?);
         }
-        align(context, document, id, arrays);
+        align(context, document, place.body, id, arrays);
     }
     scale_masses(context, arrays);
     subtree_masses(arrays);
-    check_moving_masses(context, document, arrays)
+    check_moving_masses(context, document, &places, arrays)?;
+    Ok(places.iter().map(|place| document.bodies[place.body].at).collect())
 }
 
 /// The lengths of user data on bodies.
@@ -95,23 +116,39 @@ impl Users {
     }
 }
 
-fn frame(context: &Context, body: &Body, id: usize, arrays: &mut Arrays) -> Result<(), LoadError> {
-    let root = match (id, body.parent) {
+fn frame(body: &Body, place: &Place, id: usize, arrays: &mut Arrays) {
+    let root = match (id, place.parent) {
         (_, 0) => id,
         (_, parent) => arrays.body_rootid[parent],
     };
     arrays.body_name.push(body.name.clone());
-    arrays.body_parentid.push(body.parent);
+    arrays.body_parentid.push(place.parent);
     arrays.body_rootid.push(root);
-    let quat = quat_of(context, body.at, &body.frame)?;
-    let (pos, quat) = context.placed(body.within, body.frame.pos, quat);
-    arrays.body_pos.push(pos);
-    arrays.body_quat.push(quat);
-    Ok(())
+    arrays.body_pos.push(place.pos);
+    arrays.body_quat.push(place.quat);
 }
 
 pub(super) fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Quat, LoadError> {
     orientation(&frame.orientation, context.compiler(at)).map_err(|message| context.invalid(at, message))
+}
+
+/// Compiles the geoms and sites of a body as those of `id`, which it may be fused with; returns its inertia.
+fn compile_part(
+    context: &Context,
+    body: &Body,
+    id: usize,
+    ids: &Ids,
+    users: &Users,
+    arrays: &mut Arrays,
+) -> Result<Solid, LoadError> {
+    let solids = compile_geoms(context, body, id, ids, &users.geom, arrays)?;
+    let solid = inertial(context, body, id, &solids)?;
+    for site in &body.sites {
+        compile_site(context, site, id, ids, arrays)?;
+        let user = users.site.of(context, site.at, &site.user)?;
+        arrays.site_user.push(user);
+    }
+    Ok(solid)
 }
 
 /// Compiles the geoms of a body; returns those that count for its inertia.
@@ -123,8 +160,6 @@ fn compile_geoms(
     user: &User,
     arrays: &mut Arrays,
 ) -> Result<Vec<Solid>, LoadError> {
-    arrays.body_geomadr.push(arrays.geom_name.len());
-    arrays.body_geomnum.push(body.geoms.len());
     let mut solids = Vec::with_capacity(body.geoms.len());
     for geom in &body.geoms {
         let limit = context.tree.limits.geoms;
@@ -141,8 +176,8 @@ fn compile_geoms(
     Ok(solids)
 }
 
-/// Fills in mass and inertia of a body: explicit, else from its geoms, else none.
-fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays: &mut Arrays) -> Result<(), LoadError> {
+/// Returns mass and inertia of a body: explicit, else from its geoms, else none.
+fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid]) -> Result<Solid, LoadError> {
     let compiler = context.compiler(body.at);
     let from_geoms = match compiler.inertiafromgeom {
         Tri::No => false,
@@ -187,11 +222,7 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid], arrays:
         }
         solid.inertia = [(a + b + c) / 3.0; 3];
     }
-    arrays.body_ipos.push(solid.pos);
-    arrays.body_iquat.push(solid.quat);
-    arrays.body_mass.push(solid.mass);
-    arrays.body_inertia.push(solid.inertia);
-    Ok(())
+    Ok(solid)
 }
 
 fn compile_site(context: &Context, site: &Site, body: usize, ids: &Ids, arrays: &mut Arrays) -> Result<(), LoadError> {
@@ -233,13 +264,19 @@ fn subtree_masses(arrays: &mut Arrays) {
 }
 
 /// Checks that what moves as one has mass and inertia, without which the joint-space inertia is singular.
-fn check_moving_masses(context: &Context, document: &Document, arrays: &Arrays) -> Result<(), LoadError> {
+fn check_moving_masses(
+    context: &Context,
+    document: &Document,
+    places: &[Place],
+    arrays: &Arrays,
+) -> Result<(), LoadError> {
     let mut heavy = vec![false; arrays.body_mass.len()];
     for (body, &weld) in arrays.body_weldid.iter().enumerate() {
         let inert = arrays.body_inertia[body].iter().all(|&moment| moment > MINVAL);
         heavy[weld] |= arrays.body_mass[body] > MINVAL && inert;
     }
-    for (id, body) in document.bodies.iter().enumerate() {
+    for (id, place) in places.iter().enumerate() {
+        let body = &document.bodies[place.body];
         if !body.joints.is_empty() && !heavy[id] {
             return Err(context.invalid(body.at, "a moving body must have mass and inertia"));
         }

@@ -45,13 +45,13 @@ struct Mount {
 impl Mount {
     /// Checks that the joint can be in the body, and returns where: free and ball joints have no axis of their own, and a free joint is
     /// at the origin.
-    fn of(context: &Context, joint: &Joint, body: &Body, body_id: usize) -> Result<Self, LoadError> {
+    fn of(context: &Context, joint: &Joint, body: &Body, [body_id, parent]: [usize; 2]) -> Result<Self, LoadError> {
         let invalid = |message| Err(context.invalid(joint.at, message));
         let limited = || context.limited(joint.at, "range", joint.limited, joint.range);
         let z = [0.0, 0.0, 1.0];
         match joint.kind {
             JointType::Free => {
-                if body_id == 0 || body.parent != 0 {
+                if body_id == 0 || parent != 0 {
                     return invalid("a free joint can only be in a child of the world");
                 }
                 if body.joints.len() > 1 {
@@ -102,7 +102,7 @@ fn compile_joint(
     }
     let turns = matches!(joint.kind, JointType::Hinge | JointType::Ball) && context.compiler(joint.at).degree;
     let angle = |value: f64| if turns { value * (PI / 180.0) } else { value };
-    let Mount { pos, axis, limited } = Mount::of(context, joint, body, body_id)?;
+    let Mount { pos, axis, limited } = Mount::of(context, joint, body, [body_id, arrays.body_parentid[body_id]])?;
     arrays.jnt_name.push(joint.name.clone());
     arrays.jnt_type.push(joint.kind);
     arrays.jnt_bodyid.push(body_id);

@@ -9,6 +9,7 @@ mod context;
 mod custom;
 mod equality;
 mod fluid;
+mod fuse;
 mod geom;
 mod geometry;
 mod hfield;
@@ -33,8 +34,12 @@ use crate::math::Vec3;
 use crate::model::{Arrays, SameFrame};
 
 /// Compiles the document into everything but what needs dynamics. Images, meshes and heights are looked up in `source`, relative to the
-/// folders of the models that name them; images are not decoded.
-pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource) -> Result<Arrays, LoadError> {
+/// folders of the models that name them; images are not decoded. Returns the elements of the bodies beside it.
+pub(super) fn compile(
+    tree: &Tree,
+    document: &Document,
+    source: &dyn AssetSource,
+) -> Result<(Arrays, Vec<usize>), LoadError> {
     let (name, opt) = (document.model.clone(), document.option.clone());
     let (vis, stat) = (document.visual.clone(), document.statistic.clone());
     let mut arrays = Arrays::without_elements(name, opt, vis, stat);
@@ -65,7 +70,7 @@ pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource
     }
     mesh::compile_meshes(&context, document, &ids, source, &mut arrays)?;
     arrays.hfields = hfield::compile_hfields(&context, document, source)?;
-    body::compile(&context, document, &ids, &mut arrays)?;
+    let bodies = body::compile(&context, document, &ids, &mut arrays)?;
     same_frames(&mut arrays);
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;
     for equality in &document.equalities {
@@ -81,7 +86,7 @@ pub(super) fn compile(tree: &Tree, document: &Document, source: &dyn AssetSource
     arrays.skins = skin::compile_skins(&context, document, &ids, source)?;
     custom::compile_custom(&context, document, &ids, &mut arrays)?;
     custom::compile_keys(&context, document, &mut arrays)?;
-    Ok(arrays)
+    Ok((arrays, bodies))
 }
 
 /// Finds frames that are the same as a body's own or its inertial frame.

@@ -27,6 +27,7 @@ pub(super) const COMPILER: &[Rule] = &[
     ("meshdir", Nothing),
     ("fitaabb", Word(0.2)),
     ("usethread", Nothing),
+    // without effect beside actuators, sensors and the like, which these documents have; fused_bodies.rs has others
     ("fusestatic", Nothing),
     ("discardvisual", Nothing),
     ("alignfree", Word(0.2)),
