@@ -44,12 +44,20 @@ fn differs(api: &'static Mujoco, document: &Node, recipe: Option<&Recipe>, quant
     found.map(|m| (m.error, m.place))
 }
 
-/// Takes away whatever is not needed for the difference, until nothing more can go.
+/// Smaller documents that are tried for a finding: enough for all but those with hundreds of attributes.
+const ATTEMPTS: usize = 600;
+
+/// Takes away what is not needed for the difference, until nothing more can go or [`ATTEMPTS`] were made.
 pub fn reduce(api: &'static Mujoco, finding: &Finding) -> Finding {
     let mut best = finding.clone();
     // a difference that shrinks to rounding is another one
     let enough = 0.01 * finding.error.min(1.0);
+    let mut left = ATTEMPTS;
     let mut attempt = |best: &mut Finding, document: Node, recipe: Option<Recipe>| {
+        if left == 0 {
+            return false;
+        }
+        left -= 1;
         let found = differs(api, &document, recipe.as_ref(), &best.quantity);
         let Some((error, place)) = found.filter(|(error, _)| *error >= enough) else {
             return false;
