@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
-use babybench::model::{IntegratorType, Model, SensorType};
+use babybench::model::Model;
 use babybench::physics::{Engine, EngineError, SoftEngine, State, rne_post_constraint};
 use babybench::render::{FreeCamera, ImageBuffers, Poses, RenderRequest, Renderer, View};
 use numpy::{PyArray1, PyArrayMethods};
@@ -50,12 +50,6 @@ pub struct PhysicsData {
 }
 
 /// Tells whether MuJoCo computes accelerations of bodies in each step, as a sensor reads them.
-fn reads_accelerations(model: &Model) -> bool {
-    use SensorType::{Accelerometer, Force, FrameAngAcc, FrameLinAcc, Torque};
-    let reads = |kind: &SensorType| matches!(kind, Accelerometer | Force | Torque | FrameLinAcc | FrameAngAcc);
-    model.opt.flags.sensor && model.sensor_type.iter().any(reads)
-}
-
 impl PhysicsData {
     fn guard(&self) -> PyResult<MutexGuard<'_, Inner>> {
         self.inner.try_lock().map_err(|e| {
@@ -189,25 +183,11 @@ impl PhysicsData {
         while left > 0 {
             let now = left.min(UNINTERRUPTED);
             left -= now;
-            let (guard, start) = self.with(py, |inner| {
-                let shows = reads_accelerations(&inner.model);
-                if !shows || inner.model.opt.integrator != IntegratorType::Rk4 {
-                    steps(inner, now)?;
-                    return Ok(shows.then_some(None));
-                }
-                // on the way to the end of a step of Runge and Kutta MuJoCo computes no sensors, nor what they need
-                steps(inner, now - 1)?;
-                let mut start = inner.state.clone();
-                inner.engine.forward(&mut start)?;
-                steps(inner, 1)?;
-                Ok(Some(Some(start)))
+            let (guard, post) = self.with(py, |inner| {
+                steps(inner, now)?;
+                Ok(inner.model.reads_accelerations())
             })?;
-            self.show(py, &guard.state, INPUT | COMPUTED)?;
-            match &start {
-                Some(Some(start)) => self.show(py, start, POST)?,
-                Some(None) => self.show(py, &guard.state, POST)?,
-                None => {}
-            }
+            self.show(py, &guard.state, INPUT | COMPUTED | if post { POST } else { 0 })?;
             drop(guard);
             py.check_signals()?;
         }
@@ -232,7 +212,7 @@ impl PhysicsData {
             } else {
                 engine.forward(state)?;
             }
-            Ok(reads_accelerations(model) && groups & INPUT != 0)
+            Ok(model.reads_accelerations() && groups & INPUT != 0)
         })?;
         let groups = if post { groups | POST } else { groups };
         let state = if groups & CONSTRAINTS == 0 {

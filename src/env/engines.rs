@@ -92,6 +92,7 @@ impl EngineMaker {
             EngineKind::Soft => {
                 let options = SoftOptions {
                     double_weld_torque,
+                    post_constraint: true,
                     ..SoftOptions::default()
                 };
                 Self::Soft(SoftModel::new(model, options))

@@ -87,6 +87,14 @@ impl Arrays {
         !matches!(self.tendon_wrap[tendon].first(), Some(Wrap::Joint { .. }))
     }
 
+    /// Tells whether a sensor reads accelerations or wrenches of bodies, which follow from the constraint forces.
+    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    pub fn reads_accelerations(&self) -> bool {
+        use SensorType::{Accelerometer, Force, FrameAngAcc, FrameLinAcc, Torque};
+        let reads = |kind: &SensorType| matches!(kind, Accelerometer | Force | Torque | FrameLinAcc | FrameAngAcc);
+        self.opt.flags.sensor && self.sensor_type.iter().any(reads)
+    }
+
     /// Returns the number of what all tendons run along.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn nwrap(&self) -> usize {

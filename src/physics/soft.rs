@@ -25,6 +25,9 @@ pub struct SoftOptions {
     pub double_weld_torque: bool,
     /// Detect no contacts.
     pub disable_contacts: bool,
+    /// Compute `cacc`, `cfrc_ext` and `cfrc_int` in every step, even where no sensor of the model reads them.
+    #[doc(alias = "mj_rnePostConstraint")]
+    pub post_constraint: bool,
 }
 
 /// Advances a state by MuJoCo's formulation in joint space.
@@ -47,6 +50,8 @@ pub struct SoftEngine {
     sensor_scratch: SensorScratch,
     bias: BiasScratch,
     bodies: Articulated,
+    /// Whether what follows from accelerations and constraint forces is computed.
+    post_constraint: bool,
     probe: Option<Probe>,
 }
 
@@ -93,6 +98,7 @@ impl SoftModel {
             sensor_scratch: SensorScratch::default(),
             bias: BiasScratch::default(),
             bodies: Articulated::new(model),
+            post_constraint: self.options.post_constraint || model.reads_accelerations(),
             probe: None,
             topology: topology.clone(),
             pairs: pairs.clone(),
@@ -139,9 +145,10 @@ impl SoftEngine {
         Ok(())
     }
 
+    /// Computes everything, with or without what sensors read.
     // everything hot is inlined into it, so there must be one of it only
     #[inline(never)]
-    fn compute(&mut self, s: &mut State) -> Result<(), EngineError> {
+    fn compute(&mut self, s: &mut State, senses: bool) -> Result<(), EngineError> {
         check_input(&self.model, &self.topology, s)?;
         self.fwd_position(s)?;
         self.mark(Some(Stage::Forces));
@@ -158,9 +165,14 @@ impl SoftEngine {
             self.dual.hold(&self.model, &self.topology, &mut self.bodies, s)?;
         }
         vectorized!(contact_forces(&self.model, s));
+        if !senses {
+            return Ok(());
+        }
         self.mark(Some(Stage::Wrenches));
         vectorized!({
-            rne_post_constraint(&self.model, s, self.options.double_weld_torque);
+            if self.post_constraint {
+                rne_post_constraint(&self.model, s, self.options.double_weld_torque);
+            }
             if self.model.opt.flags.sensor {
                 sensors(&self.model, s, &mut self.sensor_scratch);
             }
@@ -170,7 +182,7 @@ impl SoftEngine {
 
     /// Computes everything, and refuses what shows that the simulation diverged.
     fn compute_checked(&mut self, s: &mut State) -> Result<(), EngineError> {
-        self.compute(s)?;
+        self.compute(s, true)?;
         check_output(&self.model, s)?;
         check_contacts(&self.model, s)
     }
@@ -208,7 +220,8 @@ impl Engine for SoftEngine {
             IntegratorType::Rk4 => {
                 let (model, mut stages) = (self.model.clone(), std::mem::take(&mut self.stages));
                 let done = stages.advance(&model, state, |s| {
-                    self.compute(s)?;
+                    // sensors stay those of the start of the step, as in MuJoCo
+                    self.compute(s, false)?;
                     check_evaluation(&model, s)?;
                     check_contacts(&model, s)
                 });

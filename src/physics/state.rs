@@ -227,7 +227,9 @@ table! {
         /// Body accelerations (nbody), gravity as upward acceleration of the world: rotation, rad/s^2, translation, m/s^2.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cacc: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// External wrench on each body (nbody), of contacts, welds and `xfrc_applied`: torque, N m, force, N.
+        /// External wrench on each body (nbody), of contacts, welds and `xfrc_applied`: torque, N m, force, N. The default engine computes it, and
+        /// `cacc` and `cfrc_int`, where a sensor of the model reads one of them, as in environments, or where
+        /// [`SoftOptions::post_constraint`](crate::physics::SoftOptions::post_constraint) asks for it; else it is what it was.
         pub cfrc_ext: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Wrench that the parent exerts on each body (nbody): torque, N m, force, N.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]

@@ -82,7 +82,6 @@ pub struct RungeKutta {
     /// Activations at the start (na), and the weighted sum of their rates so far.
     act: Vec<f64>,
     act_dot: Vec<f64>,
-    sensordata: Vec<f64>,
 }
 
 /// How far the evaluations after the first are from the start: each follows the slope of the one before it.
@@ -94,8 +93,8 @@ impl RungeKutta {
     /// Advances `qpos, qvel, time` from a state that `evaluate` has computed already. `evaluate` computes accelerations from
     /// positions and velocities.
     ///
-    /// As in MuJoCo, all computed quantities are those of the last evaluation afterwards, but for the sensors, which stay those
-    /// of the start.
+    /// As in MuJoCo, all that `evaluate` computes is that of the last evaluation afterwards: it leaves the sensors, and what they read, alone, so
+    /// that these stay those of the start.
     pub fn advance<E>(
         &mut self,
         model: &Model,
@@ -107,7 +106,6 @@ impl RungeKutta {
         self.act.clone_from(&s.act);
         self.act_dot.clear();
         self.act_dot.extend(s.act_dot.iter().map(|rate| WEIGHTS[0] * rate));
-        self.sensordata.clone_from(&s.sensordata);
         self.qvel.clear();
         self.qacc.clear();
         self.velocity.resize(nv, 0.0);
@@ -143,7 +141,6 @@ impl RungeKutta {
         self.set(model, s, h);
         s.act.clone_from(&self.act);
         activation::advance(model, &mut s.act, &self.act_dot);
-        s.sensordata.clone_from(&self.sensordata);
         s.time = start + h;
         s.step += 1;
         Ok(())

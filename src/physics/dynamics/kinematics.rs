@@ -54,6 +54,7 @@ pub fn kinematics(model: &Arrays, s: &mut State) {
 fn body(model: &Arrays, s: &mut State, b: usize) {
     let (mut pos, mut quat);
     let joints = model.body_jntadr[b]..model.body_jntadr[b] + model.body_jntnum[b];
+    let mut turned = true;
     if joints.len() == 1 && model.jnt_type[joints.start] == JointType::Free {
         let j = joints.start;
         let q = &s.qpos[model.jnt_qposadr[j]..];
@@ -70,7 +71,13 @@ fn body(model: &Arrays, s: &mut State, b: usize) {
             };
         } else {
             pos = add(mat_vec(&s.xmat[p], model.body_pos[b]), s.xpos[p]);
-            quat = quat_mul(s.xquat[p], model.body_quat[b]);
+            turned = model.body_quat[b] != QUAT_ID;
+            quat = if turned {
+                quat_mul(s.xquat[p], model.body_quat[b])
+            } else {
+                s.xquat[p]
+            };
+            turned |= !joints.is_empty();
         }
         for j in joints {
             let (jpos, jaxis) = (model.jnt_pos[j], model.jnt_axis[j]);
@@ -93,10 +100,13 @@ fn body(model: &Arrays, s: &mut State, b: usize) {
             s.xaxis[j] = axis;
         }
     }
-    quat = quat_normalize(quat);
     s.xpos[b] = pos;
-    s.xquat[b] = quat;
-    s.xmat[b] = quat_to_mat(quat);
+    (s.xquat[b], s.xmat[b]) = if turned {
+        quat = quat_normalize(quat);
+        (quat, quat_to_mat(quat))
+    } else {
+        (quat, s.xmat[model.body_parentid[b]])
+    };
     let (p, q) = (model.body_ipos[b], model.body_iquat[b]);
     (s.xipos[b], s.ximat[b]) = local_to_global(s, b, p, q, model.body_sameframe[b]);
 }
@@ -194,6 +204,11 @@ pub fn com_pos(model: &Arrays, s: &mut State) {
         .zip(&s.params.body_mass);
     let all = bodies.zip(&model.body_rootid).zip(&mut s.cinert);
     for (((((xipos, r), i), &m), &root), cinert) in all.skip(1) {
+        // frames and sites of robots are bodies without mass
+        if m == 0.0 && *i == [0.0; 3] {
+            *cinert = [0.0; 10];
+            continue;
+        }
         let d = sub(*xipos, com[root]);
         let rotated = |a: usize, c: usize| {
             r[3 * a] * i[0] * r[3 * c] + r[3 * a + 1] * i[1] * r[3 * c + 1] + r[3 * a + 2] * i[2] * r[3 * c + 2]

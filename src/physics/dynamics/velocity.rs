@@ -87,6 +87,10 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
             axpy6(&mut a, s.qvel[d], &s.cdof_dot[d]);
         }
         acc[b] = a;
+        if cinert[b] == [0.0; 10] {
+            (gyroscopic[b], force[b]) = ([0.0; 6], [0.0; 6]);
+            continue;
+        }
         let mut f = inertia_mul(&cinert[b], &a);
         let turning = cross_force(&cvel[b], &inertia_mul(&cinert[b], &cvel[b]));
         axpy6(&mut f, 1.0, &turning);
