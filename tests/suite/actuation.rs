@@ -1,7 +1,6 @@
 //! The actuation models, locks, and the typed view of proprioception.
 
 mod locks;
-mod noise;
 
 use std::sync::Arc;
 
