@@ -45,9 +45,9 @@ fn differs(api: &'static Mujoco, document: &Node, recipe: Option<&Recipe>, quant
 }
 
 /// Smaller documents that are tried for a finding: enough for all but those with hundreds of attributes.
-const ATTEMPTS: usize = 600;
+pub const ATTEMPTS: usize = 600;
 
-/// Takes away what is not needed for the difference, until nothing more can go or 600 smaller documents were tried.
+/// Takes away what is not needed for the difference, until nothing more can go or [`ATTEMPTS`] smaller documents were tried.
 pub fn reduce(api: &'static Mujoco, finding: &Finding) -> Finding {
     let mut best = finding.clone();
     // a difference that shrinks to rounding is another one

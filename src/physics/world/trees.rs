@@ -81,14 +81,21 @@ impl Trees {
         if edges[2] >= edges[axis] + EPS {
             axis = 2;
         }
-        order::sort_by(leaves, |a, b| {
-            let (from, to) = (a.pos[axis], b.pos[axis]);
-            if (from - to).abs() > EPS {
-                from.total_cmp(&to)
-            } else {
-                a.geom.cmp(&b.geom)
+        // places that are equal but for rounding are made equal, so that the geoms' order decides: to compare them with a tolerance is no order,
+        // on which sorting may panic
+        let sort = |leaves: &mut [Leaf]| {
+            order::sort_by(leaves, |a, b| {
+                a.pos[axis].total_cmp(&b.pos[axis]).then(a.geom.cmp(&b.geom))
+            });
+        };
+        sort(leaves);
+        for k in 1..leaves.len() {
+            let (before, here) = (leaves[k - 1].pos[axis], &mut leaves[k].pos[axis]);
+            if *here - before <= EPS {
+                *here = before;
             }
-        });
+        }
+        sort(leaves);
         let (low, high) = leaves.split_at_mut(leaves.len() / 2);
         self.node(low);
         self.node(high);
