@@ -2,6 +2,7 @@
 
 mod ball_joints;
 mod several_contacts;
+mod wrenches;
 
 use std::sync::Arc;
 
@@ -389,4 +390,23 @@ fn bounds_may_be_infinite() {
             format!("<mujoco><worldbody><body><joint range='{wrong}'/><geom size='1'/></body></worldbody></mujoco>");
         assert!(load_str(&text, "m.xml", &MemoryAssets::new()).is_err(), "{wrong}");
     }
+}
+
+#[test]
+fn geoms_at_places_that_rounding_alone_tells_apart_are_ordered() {
+    // each is within the tolerance of its neighbours, and not of all: no order, if places were compared with it
+    let boxes: String = (0..200)
+        .map(|k| {
+            format!(
+                "<geom type='box' size='.1 .1 .1' pos='{}e-15 0 0'/>",
+                7 * (k * 37 % 200)
+            )
+        })
+        .collect();
+    let mut engine = engine(&format!(
+        "<mujoco><worldbody><geom type='box' size='1 1 .1'/><body pos='0 0 .19'><freejoint/>{boxes}</body></worldbody></mujoco>"
+    ));
+    let mut state = engine.new_state();
+    engine.step(&mut state).expect("steps");
+    assert!(state.contact.len() >= 200, "{} contacts", state.contact.len());
 }

@@ -2,6 +2,7 @@
 
 mod rules;
 
+use super::trees::Trees;
 use crate::math::{MINVAL, order};
 use crate::model::{GeomType, Model};
 use crate::physics::contact::needs_convex;
@@ -43,6 +44,7 @@ pub struct Pair {
 pub struct PairTable {
     rules: ContactRules,
     table: Option<Table>,
+    trees: Trees,
 }
 
 /// All pairs, and which of them two geoms are.
@@ -77,13 +79,20 @@ impl PairTable {
             }
             Table { index, next, pairs }
         });
-        Self { rules, table }
+        let trees = Trees::new(model);
+        Self { rules, table, trees }
     }
 
     /// Returns all pairs, in contact order; `None` for a scene of more than 256 geoms, whose pairs are not listed.
     #[inline]
     pub fn pairs(&self) -> Option<&[Pair]> {
         self.table.as_ref().map(|table| table.pairs.as_slice())
+    }
+
+    /// Returns the trees of boxes around the geoms of each body.
+    #[inline]
+    pub(super) fn trees(&self) -> &Trees {
+        &self.trees
     }
 
     /// Tells whether two geoms may touch.

@@ -2,7 +2,6 @@
 
 use super::boxes;
 use super::pairs::Order;
-use super::trees::Trees;
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
@@ -42,7 +41,6 @@ pub struct Sweep {
     candidates: Vec<u32>,
     untabulated: Vec<(Order, [u32; 2])>,
     points: Vec<ContactPoint>,
-    trees: Trees,
 }
 
 impl Sweep {
@@ -77,7 +75,6 @@ impl Sweep {
             candidates: Vec::with_capacity(2 * RESERVED_CONTACTS),
             untabulated: Vec::new(),
             points: Vec::with_capacity(64),
-            trees: Trees::new(model),
         }
     }
 
@@ -96,7 +93,7 @@ impl Sweep {
                 self.broad_phase(table);
                 let candidates = std::mem::take(&mut self.candidates);
                 for &k in &candidates {
-                    self.narrow_phase(model, &pairs[k as usize], s);
+                    self.narrow_phase(model, table, &pairs[k as usize], s);
                 }
                 self.candidates = candidates;
             }
@@ -106,7 +103,7 @@ impl Sweep {
                 self.broad_phase_untabulated(table, s.step)?;
                 let candidates = std::mem::take(&mut self.untabulated);
                 for &(order, [a, b]) in &candidates {
-                    self.narrow_phase(model, &table.pair(model, order, a as usize, b as usize), s);
+                    self.narrow_phase(model, table, &table.pair(model, order, a as usize, b as usize), s);
                     within(Limits::DEFAULT.contacts, s.contact.len(), "contacts", s.step)?;
                 }
                 self.untabulated = candidates;
@@ -117,7 +114,7 @@ impl Sweep {
 
     /// Adds the contacts of a pair.
     #[inline(always)]
-    fn narrow_phase(&mut self, model: &Model, pair: &Pair, s: &mut State) {
+    fn narrow_phase(&mut self, model: &Model, table: &PairTable, pair: &Pair, s: &mut State) {
         let [a, b] = pair.geom;
         let (first, second) = (placed(model, s, a), placed(model, s, b));
         if !bounding_test(
@@ -132,7 +129,7 @@ impl Sweep {
         let (scratch, points) = (&mut self.scratch, &mut self.points);
         points.clear();
         collide(&first, &second, pair.margin, &self.options, scratch, points);
-        if pair.midphase && !points.is_empty() && self.trees.apart(&first, &second, model, pair, s) {
+        if pair.midphase && !points.is_empty() && table.trees().apart(&first, &second, model, pair, s) {
             return;
         }
         s.contact.extend(points.iter().map(|p| Contact {
