@@ -7,7 +7,7 @@ use testkit::harness::Trial;
 use testkit::trials;
 
 pub fn trials() -> Vec<Trial> {
-    trials![needs MUJOCO: bodies_are_fused_as_in_mujoco]
+    trials![needs MUJOCO: bodies_are_fused_as_in_mujoco, what_vanishes_is_checked_as_in_mujoco]
 }
 
 /// An arm with fixed parts: one in another, one with a mass of its own, one between two joints, one after what moves; one of the world.
@@ -69,5 +69,23 @@ fn bodies_are_fused_as_in_mujoco() {
                 .iter()
                 .for_each(|measured| assert!(measured.agrees(), "{rest}: state {seed}, {measured:?}"));
         }
+    }
+}
+
+fn what_vanishes_is_checked_as_in_mujoco() {
+    for (settings, part) in [
+        ("<size nuser_body='2'/>", "<body user='1 2 3'><geom size='.1'/></body>"),
+        (
+            "",
+            "<body><geom size='.1'/><body mocap='true'><geom size='.1'/></body></body>",
+        ),
+        ("", "<body><body mocap='true'><joint/><geom size='.1'/></body></body>"),
+        ("", "<body><geom type='box' size='.1'/></body>"),
+        ("", "<body><inertial pos='0 0 0' mass='1' diaginertia='1 1 5'/></body>"),
+        ("", "<body quat='0 0 0 0'><geom size='.1'/></body>"),
+    ] {
+        let text = format!("<mujoco><compiler fusestatic='true'/>{settings}<worldbody>{part}</worldbody></mujoco>");
+        let taken = Sides::load(needed(), &text);
+        assert!(matches!(taken, Taken::Refused(_)), "one side takes {text}");
     }
 }

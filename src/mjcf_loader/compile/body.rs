@@ -44,11 +44,13 @@ pub(super) fn compile(
             arrays.body_weldid[place.parent]
         });
         arrays.body_geomadr.push(arrays.geom_name.len());
-        let mut solid = compile_part(context, body, id, ids, &users, arrays)?;
+        let mut solid = compile_part(context, document, [place.body, id], ids, &users, arrays)?;
         for fused in &place.fused {
             let part = &document.bodies[fused.body];
+            // lost with the body, but not too long
+            users.body.of(context, part.at, &part.user)?;
             let (geom, site) = (arrays.geom_name.len(), arrays.site_name.len());
-            let own = compile_part(context, part, id, ids, &users, arrays)?;
+            let own = compile_part(context, document, [fused.body, id], ids, &users, arrays)?;
             fused.carry(&mut arrays.geom_pos[geom..], &mut arrays.geom_quat[geom..]);
             fused.carry(&mut arrays.site_pos[site..], &mut arrays.site_quat[site..]);
             if id > 0 {
@@ -132,17 +134,18 @@ pub(super) fn quat_of(context: &Context, at: usize, frame: &Frame) -> Result<Qua
     orientation(&frame.orientation, context.compiler(at)).map_err(|message| context.invalid(at, message))
 }
 
-/// Compiles the geoms and sites of a body as those of `id`, which it may be fused with; returns its inertia.
+/// Compiles the geoms and sites of a body of the document as those of `id`, which it may be fused with; returns its inertia.
 fn compile_part(
     context: &Context,
-    body: &Body,
-    id: usize,
+    document: &Document,
+    [own, id]: [usize; 2],
     ids: &Ids,
     users: &Users,
     arrays: &mut Arrays,
 ) -> Result<Solid, LoadError> {
+    let body = &document.bodies[own];
     let solids = compile_geoms(context, body, id, ids, &users.geom, arrays)?;
-    let solid = inertial(context, body, id, &solids)?;
+    let solid = inertial(context, body, own, &solids)?;
     for site in &body.sites {
         compile_site(context, site, id, ids, arrays)?;
         let user = users.site.of(context, site.at, &site.user)?;
@@ -176,8 +179,8 @@ fn compile_geoms(
     Ok(solids)
 }
 
-/// Returns mass and inertia of a body: explicit, else from its geoms, else none.
-fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid]) -> Result<Solid, LoadError> {
+/// Returns mass and inertia of a body, `own` of the document: explicit, else from its geoms, else none, as the world has.
+fn inertial(context: &Context, body: &Body, own: usize, solids: &[Solid]) -> Result<Solid, LoadError> {
     let compiler = context.compiler(body.at);
     let from_geoms = match compiler.inertiafromgeom {
         Tri::No => false,
@@ -193,7 +196,7 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid]) -> Resu
         inertia: [0.0; 3],
     };
     match (&body.inertial, solids) {
-        _ if id == 0 => {}
+        _ if own == 0 => {}
         (_, [single]) if from_geoms => solid = Solid { ..*single },
         (_, [_, _, ..]) if from_geoms => solid = merge(solids).map_err(invalid)?,
         (Some(given), _) => {
@@ -209,7 +212,7 @@ fn inertial(context: &Context, body: &Body, id: usize, solids: &[Solid]) -> Resu
         }
         _ => {}
     }
-    if id > 0 {
+    if own > 0 {
         solid.mass = solid.mass.max(compiler.boundmass);
         solid.inertia = solid.inertia.map(|moment| moment.max(compiler.boundinertia));
     }
