@@ -4,7 +4,7 @@ mod store;
 
 use super::error::ErrorKind;
 use crate::limits::Limits;
-pub(super) use store::Store;
+pub(super) use store::{Store, Visit};
 
 /// Bounds on a number.
 #[derive(Clone, Copy)]
@@ -77,16 +77,8 @@ impl Kind {
         self
     }
 
-    pub fn store(self, value: &Value, into: &mut impl Store) {
-        into.store(value);
-    }
-
-    /// Returns how a document would write what a field holds.
-    pub fn show(self, field: &impl Store) -> String {
-        if matches!(self, Kind::Groups) {
-            return String::new(); // none by default, and what is stored are bits
-        }
-        field.show()
+    pub fn visit(self, field: &mut impl Store, visit: Visit) {
+        visit(field);
     }
 }
 
@@ -110,17 +102,29 @@ impl<T: Copy + PartialEq> Words<T> {
         Kind::Word(self.names)
     }
 
-    pub fn store(self, value: &Value, into: &mut impl Worded<T>) {
+    pub fn visit(self, field: &mut impl Worded<T>, visit: Visit) {
+        visit(&mut Saying { words: self, field });
+    }
+}
+
+/// A field together with the words for what it holds.
+struct Saying<'a, T: 'static, W> {
+    words: Words<T>,
+    field: &'a mut W,
+}
+
+impl<T: Copy + PartialEq, W: Worded<T>> Store for Saying<'_, T, W> {
+    fn store(&mut self, value: &Value) {
         if let Value::Word(index) = value
-            && let Some(value) = self.values.get(*index)
+            && let Some(value) = self.words.values.get(*index)
         {
-            into.set_word(*value);
+            self.field.set_word(*value);
         }
     }
 
-    pub fn show(self, field: &impl Worded<T>) -> String {
-        let mut pairs = self.names.iter().zip(self.values);
-        let Some(field) = field.word() else {
+    fn show(&self) -> String {
+        let mut pairs = self.words.names.iter().zip(self.words.values);
+        let Some(field) = self.field.word() else {
             return String::new();
         };
         pairs
@@ -185,8 +189,9 @@ pub(super) struct Attr {
     pub kind: Kind,
     /// Meaning, for display.
     pub meaning: &'static str,
-    /// Writes the default as a document would; empty when there is none.
-    pub default: fn() -> String,
+    /// Writes the default of the attribute with this name as a document would; empty when there is none. It belongs to the table: one
+    /// for each attribute would be a function each.
+    pub default: fn(&str) -> String,
     /// Whether the element must have it.
     pub required: bool,
     /// Whether it belongs to the element alone and has no place in a default class.
@@ -195,7 +200,7 @@ pub(super) struct Attr {
 }
 
 impl Attr {
-    pub const fn new(name: &'static str, kind: Kind, meaning: &'static str, default: fn() -> String) -> Attr {
+    pub const fn new(name: &'static str, kind: Kind, meaning: &'static str, default: fn(&str) -> String) -> Attr {
         Attr {
             name,
             kind,

@@ -33,14 +33,17 @@ const fn rule(name: &'static str, tables: &'static [Groups], children: &'static 
 }
 
 /// The default class of an element, which the reader looks up before it reads the rest.
-const CLASS: Groups = &[&[Attr::new("class", TEXT, "Default class.", String::new).own()]];
+const CLASS: Groups = &[&[Attr::new("class", TEXT, "Default class.", no_default).own()]];
 /// The name of a section of default classes.
 const CLASS_NAME: Groups = &[&[Attr::new(
     "class",
     TEXT,
     "Name of the class; \"main\" at the top.",
-    String::new,
+    no_default,
 )]];
+fn no_default(_name: &str) -> String {
+    String::new()
+}
 
 static LENGTHRANGE: Rule = rule("lengthrange", &[LengthRange::ATTRIBUTES], &[]);
 static COMPILER: Rule = rule("compiler", &[Compiler::ATTRIBUTES], &[&LENGTHRANGE]);

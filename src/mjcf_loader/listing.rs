@@ -77,7 +77,11 @@ fn info(attr: &Attr, classes: bool) -> AttributeInfo {
     AttributeInfo {
         name: attr.name,
         values: values(attr.kind),
-        default: if attr.required { String::new() } else { (attr.default)() },
+        default: match attr.kind {
+            _ if attr.required => String::new(),
+            Kind::Groups => String::new(), // none by default, and what is stored are bits
+            _ => (attr.default)(attr.name),
+        },
         required: attr.required,
         in_default: classes && !attr.own,
         meaning: attr.meaning,

@@ -17,7 +17,7 @@
 //! allowed in default classes), `required`, `orientation`, `inertia` or `transmission` (an element may have one of those so marked).
 //! `element` makes a struct that also keeps its place in the text, `at`; `group` makes a struct without; `fields` fills a struct that is declared elsewhere.
 
-use super::attribute::{Attr, Value};
+use super::attribute::{Attr, Visit};
 use super::schema::Element;
 
 /// A struct that attributes fill.
@@ -28,8 +28,15 @@ pub(super) trait Table: Sized {
     /// Returns what holds when no attribute is given.
     fn initial() -> Self;
 
-    /// Stores the value of an attribute; returns whether the table has the attribute.
-    fn set(&mut self, name: &str, value: &Value) -> bool;
+    /// Visits the field that an attribute fills, if it has one; returns whether the table has the attribute.
+    fn field(&mut self, name: &str, visit: Visit) -> bool;
+
+    /// Returns how a document would write the default of an attribute.
+    fn default_of(name: &str) -> String {
+        let mut text = String::new();
+        Self::initial().field(name, &mut |field| text = field.show());
+        text
+    }
 
     /// Stores the place in the text.
     fn locate(&mut self, _at: usize) {}
@@ -38,7 +45,7 @@ pub(super) trait Table: Sized {
     fn apply(&mut self, e: &Element) {
         self.locate(e.at);
         for (name, value) in e.values() {
-            self.set(name, value);
+            self.field(name, &mut |field| field.store(value));
         }
     }
 
@@ -96,19 +103,20 @@ macro_rules! table {
         impl $crate::mjcf_loader::table::Table for $T {
             const ATTRIBUTES: &'static [&'static [$crate::mjcf_loader::attribute::Attr]] = &[
                 &[
-                    $($crate::mjcf_loader::attribute::Attr::new($set, $set_form.kind(), $set_meaning, || {
-                        $set_form.show(&Self::initial().$to $(.$sub)* $([$k])?)
-                    })$(.$set_flag())*,)*
-                    $($crate::mjcf_loader::attribute::Attr::new($name, $form.kind(), $meaning, || {
-                        $form.show(&Self::initial().$field)
-                    })$(.$flag())*,)*
+                    $($crate::mjcf_loader::attribute::Attr::new(
+                        $set, $set_form.kind(), $set_meaning, Self::default_of
+                    )$(.$set_flag())*,)*
+                    $($crate::mjcf_loader::attribute::Attr::new(
+                        $name, $form.kind(), $meaning, Self::default_of
+                    )$(.$flag())*,)*
                     $($($crate::mjcf_loader::attribute::Attr::new(
-                        $check, $check_form.kind(), $check_meaning, String::new
+                        $check, $check_form.kind(), $check_meaning, Self::default_of
                     ),)+)*
                 ],
                 $(<$Group as $crate::mjcf_loader::table::Table>::ATTRIBUTES[0],)*
             ];
 
+            #[inline(never)]
             fn initial() -> Self {
                 Self {
                     $($at: 0,)?
@@ -118,13 +126,13 @@ macro_rules! table {
                 }
             }
 
-            fn set(&mut self, name: &str, value: &$crate::mjcf_loader::attribute::Value) -> bool {
-                let _ = value;
+            fn field(&mut self, name: &str, visit: $crate::mjcf_loader::attribute::Visit) -> bool {
+                let _ = &visit;
                 match name {
-                    $($set => $set_form.store(value, &mut self.$to $(.$sub)* $([$k])?),)*
-                    $($name => $form.store(value, &mut self.$field),)*
+                    $($set => $set_form.visit(&mut self.$to $(.$sub)* $([$k])?, visit),)*
+                    $($name => $form.visit(&mut self.$field, visit),)*
                     $($($check)|+ => {})*
-                    _ => return false $(|| <$Group as $crate::mjcf_loader::table::Table>::set(&mut self.$group, name, value))*,
+                    _ => return false $(|| <$Group as $crate::mjcf_loader::table::Table>::field(&mut self.$group, name, visit))*,
                 }
                 true
             }

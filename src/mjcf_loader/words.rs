@@ -4,7 +4,7 @@ use crate::math::Vec3;
 use crate::model::{BiasType, Builtin, CamLight, DynType, GainType, GeomType, JointType, Mark, TextureType};
 
 use super::attribute::Sign::Any;
-use super::attribute::{Kind, Value, Words, reals, words};
+use super::attribute::{Kind, Store, Value, Visit, Words, reals, words};
 use super::table::table;
 
 pub(super) const SOLREF: [f64; 2] = [0.02, 1.0];
@@ -126,11 +126,23 @@ impl<const N: usize> Rotation<N> {
         self.kind
     }
 
-    fn store(self, value: &Value, into: &mut Orientation) {
+    fn visit(self, field: &mut Orientation, visit: Visit) {
+        visit(&mut Turned { rotation: self, field });
+    }
+}
+
+/// A field together with a way to write it.
+struct Turned<'a, const N: usize> {
+    rotation: Rotation<N>,
+    field: &'a mut Orientation,
+}
+
+impl<const N: usize> Store for Turned<'_, N> {
+    fn store(&mut self, value: &Value) {
         if let Value::Reals(values) = value
             && let Ok(values) = values[..].try_into()
         {
-            *into = match ((self.make)(values), *into) {
+            *self.field = match ((self.rotation.make)(values), *self.field) {
                 // A default class that rotates by other means wins over a quaternion, as in MuJoCo.
                 (Orientation::Quat(_), inherited) if !matches!(inherited, Orientation::Quat(_)) => inherited,
                 (written, _) => written,
@@ -138,9 +150,9 @@ impl<const N: usize> Rotation<N> {
         }
     }
 
-    fn show(self, field: &Orientation) -> String {
-        match (self.kind, field) {
-            (Kind::Quat, Orientation::Quat(quat)) => super::attribute::Store::show(quat),
+    fn show(&self) -> String {
+        match (self.rotation.kind, &*self.field) {
+            (Kind::Quat, Orientation::Quat(quat)) => quat.show(),
             _ => String::new(),
         }
     }
