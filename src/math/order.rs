@@ -1,7 +1,7 @@
 //! Sorting where a scene is made.
 
 use std::cmp::Ordering;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Sorts as `slice::sort_by` does, with one instance for all types: each of the standard library's is up to 9 kB of a WebAssembly module. What
 /// is sorted in a step, or by the thousand, has an instance of its own.
@@ -21,6 +21,13 @@ pub(crate) fn set<T: Ord>(items: impl IntoIterator<Item = T>) -> BTreeSet<T> {
     let mut set = BTreeSet::new();
     set.extend(items);
     set
+}
+
+/// Collects a map by insertion, as [`set`] does a set.
+pub(crate) fn map<K: Ord, V>(pairs: impl IntoIterator<Item = (K, V)>) -> BTreeMap<K, V> {
+    let mut map = BTreeMap::new();
+    map.extend(pairs);
+    map
 }
 
 fn order(count: usize, compare: &dyn Fn(usize, usize) -> Ordering) -> Vec<usize> {

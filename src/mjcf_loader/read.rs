@@ -23,6 +23,7 @@ use super::skin::{Bone, Skin};
 use super::surface::{Material, Texture};
 use super::table::Table;
 use super::xml::{ModelFile, Tree};
+use crate::math::order;
 use content::{Spot, content};
 
 /// The defaults of a class: one prototype per kind of element.
@@ -149,11 +150,7 @@ pub(super) fn read(tree: &Tree) -> Result<Document, LoadError> {
     let parts = Parts {
         tree,
         roots: models.iter().map(root).collect::<Result<_, _>>()?,
-        named: models
-            .iter()
-            .enumerate()
-            .map(|(index, model)| (model.of, index))
-            .collect(),
+        named: order::map(models.iter().enumerate().map(|(index, model)| (model.of, index))),
     };
     let compiler = |root: &Element| {
         let mut compiler = Compiler::initial();

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use super::error::{ErrorKind, LoadError, Place};
 use crate::assets::{AssetError, AssetSource, directory, is_absolute};
 use crate::limits::Limits;
+use crate::math::order;
 use parser::Parser;
 
 /// An element. Children may come from other files, the parent is the one in its own file.
@@ -229,7 +230,7 @@ impl Reading<'_> {
     fn model(&mut self, text: &str, path: &str, of: Option<usize>) -> Result<usize, LoadError> {
         let first = self.tree.nodes.len();
         directory(path).clone_into(&mut self.dir);
-        self.included = BTreeSet::from([path.to_owned()]);
+        self.included = order::set([path.to_owned()]);
         let root = self.file(text, path, 0, 0)?;
         self.tree.models.push(ModelFile {
             of: of.unwrap_or(root),

@@ -3,6 +3,12 @@
 use super::*;
 use crate::math::{Mat3, Quat, Vec3};
 
+/// Copies a field. It is apart from where all fields are copied, which would hold an allocation for each.
+#[inline(never)]
+fn copied<T: Clone>(field: &T) -> T {
+    field.clone()
+}
+
 // A field with `["internals"]` before it is shown in the documentation with that feature only: it serves physics, pictures and MuJoCo's
 // names, and changes in any release.
 macro_rules! arrays {
@@ -11,11 +17,17 @@ macro_rules! arrays {
         $($(#[$doc:meta])* $([$of:tt])? $field:ident : $ty:ty),* $(,)?
     ) => {
         /// The numbers of a scene under MuJoCo's names, as a [`Model`] shows them; see the [module documentation](super).
-        #[derive(Clone, Debug, PartialEq)]
+        #[derive(Debug, PartialEq)]
         #[non_exhaustive]
         pub struct Arrays {
             $($(#[$setting_doc])* $(#[cfg_attr(not(feature = $setting_of), doc(hidden))])? pub $setting: $setting_ty,)*
             $($(#[$doc])* $(#[cfg_attr(not(feature = $of), doc(hidden))])? pub $field: $ty,)*
+        }
+
+        impl Clone for Arrays {
+            fn clone(&self) -> Self {
+                Self { $($setting: copied(&self.$setting),)* $($field: copied(&self.$field),)* }
+            }
         }
 
         impl Arrays {

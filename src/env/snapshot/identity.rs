@@ -88,7 +88,7 @@ const MODEL: &str = "model.";
 
 /// Splits lines of a key and its value.
 fn lines(keys: &str) -> BTreeMap<&str, &str> {
-    keys.lines().filter_map(|line| line.split_once(": ")).collect()
+    order::map(keys.lines().filter_map(|line| line.split_once(": ")))
 }
 
 /// Tells what a key was and what it is.

@@ -67,15 +67,22 @@ impl<A: AssetSource> Room<A> {
     }
 }
 
-/// Compares some arrays of two models, each at its own index.
+/// Compares some arrays of two models, each at its own index. What is said stands once, as it is larger than a comparison.
 macro_rules! compare {
     ($part:expr, $a:ident[$i:expr], $b:ident[$j:expr]: $($field:ident)*) => {
-        $(
-            let (found, expected) = (&$a.$field[$i], &$b.$field[$j]);
-            if found != expected {
-                return Some(differs($part, stringify!($field), found, expected));
-            }
-        )*
+        let (i, j) = ($i, $j);
+        let first: Option<(&'static str, &dyn Debug, &dyn Debug)> = 'first: {
+            $(
+                let (found, expected) = (&$a.$field[i], &$b.$field[j]);
+                if found != expected {
+                    break 'first Some((stringify!($field), found, expected));
+                }
+            )*
+            None
+        };
+        if let Some((field, found, expected)) = first {
+            return Some(differs($part, field, found, expected));
+        }
     };
 }
 

@@ -145,7 +145,7 @@ fn take(
     };
     let taken = bodies[taking.bodies.clone()].iter().flat_map(hanging);
     let named = taken.filter(|(_, name)| !name.is_empty());
-    taking.names = named.map(|(thing, name)| (thing, name.clone())).collect();
+    taking.names = order::set(named.map(|(thing, name)| (thing, name.clone())));
     take_tree(&taking, &model.document, spot, document);
     if !spot.again {
         take_assets(&taking, &model.document, document);

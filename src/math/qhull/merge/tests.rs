@@ -2,6 +2,7 @@
 
 use super::super::Builder;
 use super::super::parts::{Id, NONE, Reason, Step};
+use crate::math::order;
 
 impl Builder<'_> {
     /// Tells whether all new facets are clearly convex, by their vertices (`qh_checkzero`). Then nothing is merged.
@@ -101,7 +102,7 @@ impl Builder<'_> {
     /// Sorts merges so that the last, which is done first, has the first reason and the least distance
     /// (`qh_compare_facetmerge`); equal ones keep their order.
     fn sort_merges(&mut self) {
-        self.merges.sort_by(|a, b| {
+        order::sort_by(&mut self.merges, |a, b| {
             let reasons = b.reason.partial_cmp(&a.reason);
             let distances = b.distance.total_cmp(&a.distance);
             reasons.map_or(distances, |order| order.then(distances))
