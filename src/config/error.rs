@@ -186,7 +186,7 @@ pub(super) fn nearest(text: &str, known: impl Iterator<Item = &'static str>) -> 
     if text.len() > LONGEST {
         return None;
     }
-    let text = text.to_lowercase();
+    let text = text.to_ascii_lowercase(); // names are ASCII, and tables of all other letters are 16 kB of a WebAssembly module
     known
         .map(|name| (strsim::damerau_levenshtein(&text, name), name))
         .filter(|(distance, name)| *distance <= 1 + name.len() / 4)
