@@ -131,6 +131,9 @@ class Blueprint:
     def config(self) -> dict[str, Any]:
         """All keys with their values."""
     @property
+    def eye_sizes(self) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Width and height of the pictures of the left eye, and of those of the right one, pixels."""
+    @property
     def init_qpos(self) -> _Floats:
         """The settled positions (nq), from which episodes start."""
     @property

@@ -35,7 +35,7 @@ class Env(gymnasium.Env[Observation, npt.NDArray[Any]]):
     | `touch`         | float32 | forces on the skin, N (`env.touch`)                                                  |
     | `touch_pooled`  | float64 | for each body normal force, N, active sensors, and force, N, (bodies, 5)             |
     | `pain`          | float32 | what hurts, a number for each touch sensor                                           |
-    | `eye_left`      | uint8   | what the left eye sees, (resolution, resolution, 3), red, green, blue, from the top  |
+    | `eye_left`      | uint8   | what the left eye sees, (height, width, 3), red, green, blue, from the top           |
     | `eye_right`     | uint8   | what the right eye sees                                                              |
     | `vestibular`    | float64 | linear acceleration (m/s^2, 3) and angular velocity (rad/s, 3) of the head           |
     | `achieved_goal` | float64 | of tasks with goals: what is achieved                                                |

@@ -39,6 +39,12 @@ impl Blueprint {
     }
 
     #[getter]
+    fn eye_sizes(&self) -> ((usize, usize), (usize, usize)) {
+        let [left, right] = self.inner.config().eye_sizes().map(|[width, height]| (width, height));
+        (left, right)
+    }
+
+    #[getter]
     fn init_qpos<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.inner.init_qpos())
     }

@@ -109,7 +109,16 @@ def test_parameters_that_the_engine_does_not_have_are_refused() -> None:
                 "response_function": "nearest",
             }
         )
-    with pytest.raises(ValueError, match="squares of one size"):
-        BabyBenchEnv(vision_params={"eye_left": {"width": 64, "height": 32}, "eye_right": {"width": 64, "height": 32}})
+    with pytest.raises(ValueError, match="eye_left and eye_right"):
+        BabyBenchEnv(vision_params={"eye_left": {"width": 64, "height": 32}, "corner": {"width": 64, "height": 32}})
     with pytest.raises(NotImplementedError, match="face"):
         BabyBenchEnv().swap_facial_expression("happy")
+
+
+
+def test_each_eye_has_its_own_width_and_height() -> None:
+    env = BabyBenchEnv(vision_params={"eye_left": {"width": 48, "height": 16}, "eye_right": {"width": 8, "height": 24}})
+    seen = env.reset()[0]
+    assert (seen["eye_left"].shape, seen["eye_right"].shape) == ((16, 48, 3), (24, 8, 3))
+    assert env.observation_space["eye_left"].shape == (16, 48, 3)
+    env.close()

@@ -1,6 +1,6 @@
 //! Values of the configuration that exclude each other.
 
-use super::{Behavior, Compat, Config, DelayUnit, Delays, TouchFunction, VisionOutput, defaults, table};
+use super::{Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults, table};
 
 /// A value that another one excludes: key, value, and why.
 pub(super) type Conflict = (&'static str, String, String);
@@ -10,6 +10,20 @@ const MAX_DELAY: usize = 1000;
 
 /// Greatest memory that the images of a delay may take, bytes.
 const MAX_WAITING: usize = 1 << 30;
+
+/// The keys of the fields of view of the eyes.
+const FIELDS: [&str; 3] = ["vision_fovy", "vision_fovy_left", "vision_fovy_right"];
+
+/// The keys of the sizes of their images.
+const SIDES: [&str; 7] = [
+    "vision_resolution",
+    "vision_width",
+    "vision_width_left",
+    "vision_width_right",
+    "vision_height",
+    "vision_height_left",
+    "vision_height_right",
+];
 
 /// Keys that shape a sense, and what to do when it is off.
 struct Shaping {
@@ -123,14 +137,30 @@ impl Config {
                 self.vision_lazy.to_string(),
                 "the Python code that `compat: reference` follows draws images in every step",
             ),
-            Compat::Reference if self.vision_active && self.vision_resolution > self.render_size => (
-                "vision_resolution",
-                self.vision_resolution.to_string(),
-                "under `compat: reference` an eye's image cannot be larger than `render_size`; raise `render_size`",
-            ),
-            Compat::Reference => return None,
+            Compat::Reference => return self.eyes_unlike_reference(),
         };
         Some((key, value, reason.to_string()))
+    }
+
+    /// Returns the first value of the eyes that the Python code that `compat: reference` follows cannot have.
+    fn eyes_unlike_reference(&self) -> Option<Conflict> {
+        let conflict = |key: &super::Key, reason: &str| (key.name, key.value(self).to_yaml(), reason.to_string());
+        let first = |keys: &[&str], fits: &dyn Fn(KeyValue) -> bool| {
+            let mut keys = Self::keys().iter().filter(|key| keys.contains(&key.name));
+            keys.find(|key| fits(key.value(self)))
+        };
+        if let Some(key) = first(&FIELDS, &|value| value != KeyValue::None) {
+            let reason = "the Python code that `compat: reference` follows draws what the cameras of the scene see";
+            return Some(conflict(key, reason));
+        }
+        let sides = self.eye_sizes().into_iter().flatten();
+        let most = sides
+            .max()
+            .filter(|most| self.vision_active && *most > self.render_size as usize)?;
+        let key = first(&SIDES, &|value| value == KeyValue::Whole(most as u64))?;
+        let reason =
+            "under `compat: reference` an eye's image cannot be larger than `render_size`; raise `render_size`";
+        Some(conflict(key, reason))
     }
 
     /// Returns the first value without effect, because the sense that it shapes is off.
@@ -182,8 +212,8 @@ impl Config {
             VisionOutput::Gray => 1,
             VisionOutput::Depth | VisionOutput::Segmentation => 4,
         };
-        let pixels = self.vision_resolution as usize * self.vision_resolution as usize;
-        let images = 2 * pixels * self.vision_outputs.iter().map(bytes).sum::<usize>();
+        let pixels: usize = self.eye_sizes().iter().map(|[width, height]| width * height).sum();
+        let images = pixels * self.vision_outputs.iter().map(bytes).sum::<usize>();
         let delay = delays.of(delays.vision);
         let waiting = delays.steps(delay, self.frame_skip).saturating_mul(images);
         (self.vision_active && waiting > MAX_WAITING).then(|| {

@@ -72,15 +72,14 @@ impl Field for Scene {
     }
 }
 
-impl Field for Option<f64> {
+impl<T: Field> Field for Option<T> {
     fn to_value(&self) -> KeyValue {
-        self.map_or(KeyValue::None, KeyValue::Number)
+        self.as_ref().map_or(KeyValue::None, T::to_value)
     }
     fn from_value(value: &KeyValue) -> Option<Self> {
         match value {
             KeyValue::None => Some(None),
-            KeyValue::Number(number) => Some(Some(*number)),
-            _ => None,
+            value => T::from_value(value).map(Some),
         }
     }
 }

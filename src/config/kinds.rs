@@ -71,6 +71,13 @@ pub enum KeyKind {
         /// Largest value.
         max: f64,
     },
+    /// An integer in a closed range, or none.
+    NoneOrWhole {
+        /// Smallest value.
+        min: u64,
+        /// Largest value.
+        max: u64,
+    },
     /// One of the given names.
     Choice(&'static [&'static str]),
     /// One of the given names, or the path of a file.
@@ -107,6 +114,7 @@ impl KeyKind {
             Self::ZeroOrAtLeast(least) => format!("0 or a finite number of at least {least}"),
             Self::Number { min, max } => format!("a number from {min} to {max}"),
             Self::NoneOr { min, max } => format!("none or a number from {min} to {max}"),
+            Self::NoneOrWhole { min, max } => format!("none or a whole number from {min} to {max}"),
             Self::Choice(names) => format!("one of {}", names.join(", ")),
             Self::ChoiceOrFile { names, ending } => {
                 format!(
@@ -124,9 +132,14 @@ impl KeyKind {
         }
     }
 
+    /// Returns whether a key may have no value.
+    pub(super) fn allows_none(&self) -> bool {
+        matches!(self, Self::NoneOr { .. } | Self::NoneOrWhole { .. })
+    }
+
     /// Parses a YAML scalar: `plain` is false for text in quotes, which is text whatever it looks like.
     pub(super) fn parse(&self, text: &str, plain: bool) -> Result<KeyValue, Misfit> {
-        if matches!(self, Self::NoneOr { .. }) && (text == NONE || plain && NULL.contains(&text)) {
+        if self.allows_none() && (text == NONE || plain && NULL.contains(&text)) {
             return Ok(KeyValue::None);
         }
         if plain && NULL.contains(&text) {
@@ -134,12 +147,12 @@ impl KeyKind {
         }
         let value = match self {
             Self::Bool if plain => KeyValue::Bool(boolean(text).ok_or(Misfit::WrongType)?),
-            Self::Whole { .. } if plain => KeyValue::Whole(whole(text)?),
+            Self::Whole { .. } | Self::NoneOrWhole { .. } if plain => KeyValue::Whole(whole(text)?),
             Self::ZeroOrAtLeast(_) | Self::Number { .. } | Self::NoneOr { .. } if plain => {
                 KeyValue::Number(number(text)?)
             }
             Self::Bool | Self::Whole { .. } | Self::ZeroOrAtLeast(_) | Self::List(_) => return Err(Misfit::WrongType),
-            Self::Number { .. } | Self::NoneOr { .. } => return Err(Misfit::WrongType),
+            Self::Number { .. } | Self::NoneOr { .. } | Self::NoneOrWhole { .. } => return Err(Misfit::WrongType),
             Self::Choice(names) => KeyValue::Choice(named(text, names)?),
             Self::ChoiceOrFile { ending, .. } if text.ends_with(ending) => KeyValue::Text(text.to_string()),
             Self::ChoiceOrFile { names, .. } => KeyValue::Choice(named(text, names)?),
@@ -170,11 +183,13 @@ impl KeyKind {
     pub(super) fn check(&self, value: &KeyValue) -> Result<(), Misfit> {
         let fits = match (self, value) {
             (Self::Bool, KeyValue::Bool(_)) => true,
-            (Self::Whole { min, max }, KeyValue::Whole(number)) => (min..=max).contains(&number),
+            (Self::Whole { min, max } | Self::NoneOrWhole { min, max }, KeyValue::Whole(number)) => {
+                (min..=max).contains(&number)
+            }
             (Self::ZeroOrAtLeast(least), KeyValue::Number(number)) => {
                 number.is_finite() && (*number == 0.0 || number >= least)
             }
-            (Self::NoneOr { .. }, KeyValue::None) => true,
+            (Self::NoneOr { .. } | Self::NoneOrWhole { .. }, KeyValue::None) => true,
             (Self::Number { min, max } | Self::NoneOr { min, max }, KeyValue::Number(number)) => {
                 (min..=max).contains(&number)
             }

@@ -29,6 +29,15 @@ impl Delays {
 }
 
 impl Config {
+    /// Returns the sizes of the images of the left and the right eye: width and height, pixels.
+    pub fn eye_sizes(&self) -> [[usize; 2]; 2] {
+        let EyeOptions { width, height, .. } = self.eyes;
+        let left = [self.eyes.width_left, self.eyes.height_left];
+        let right = [self.eyes.width_right, self.eyes.height_right];
+        let own = [left, right];
+        own.map(|[w, h]| [w.or(width), h.or(height)].map(|side| side.unwrap_or(self.vision_resolution) as usize))
+    }
+
     /// Iterates over the rates of senses that have one of their own, Hz, by key.
     pub(crate) fn rates(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let rates = [("vision_rate", self.vision_rate), ("touch_rate", self.touch_rate)];
@@ -45,6 +54,11 @@ impl EyeOptions {
     pub fn ages(&self, age: Option<f64>) -> [Option<f64>; 2] {
         let common = self.acuity.then(|| age.unwrap_or(Self::DEFAULT_AGE));
         [self.acuity_left.or(common), self.acuity_right.or(common)]
+    }
+
+    /// Returns the vertical fields of view of the left and the right eye, degrees; `None` for that of the camera in the scene.
+    pub fn fields(&self) -> [Option<f64>; 2] {
+        [self.fovy_left, self.fovy_right].map(|own| own.or(self.fovy))
     }
 
     /// Returns the strengths of the foveation of the left and the right eye; 0 for none.

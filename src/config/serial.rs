@@ -38,6 +38,9 @@ impl Serialize for Config {
             match (key.kind, key.value(self)) {
                 // formats that do not describe themselves write whether there is a number
                 (KeyKind::NoneOr { .. }, KeyValue::Number(number)) => map.serialize_entry(key.name, &Some(number))?,
+                (KeyKind::NoneOrWhole { .. }, KeyValue::Whole(number)) => {
+                    map.serialize_entry(key.name, &Some(number))?;
+                }
                 (_, value) => map.serialize_entry(key.name, &value)?,
             }
         }
@@ -155,7 +158,7 @@ impl<'de> DeserializeSeed<'de> for ValueSeed {
             KeyKind::Bool => deserializer.deserialize_bool(self),
             KeyKind::Whole { .. } => deserializer.deserialize_u64(self),
             KeyKind::ZeroOrAtLeast(_) | KeyKind::Number { .. } => deserializer.deserialize_f64(self),
-            KeyKind::NoneOr { .. } => deserializer.deserialize_option(self),
+            KeyKind::NoneOr { .. } | KeyKind::NoneOrWhole { .. } => deserializer.deserialize_option(self),
             KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
                 deserializer.deserialize_str(self)
             }
@@ -187,7 +190,7 @@ impl<'de> Visitor<'de> for ValueSeed {
     fn visit_i64<E: serde::de::Error>(self, number: i64) -> Result<KeyValue, E> {
         match u64::try_from(number) {
             Ok(number) => self.visit_u64(number),
-            Err(_) if matches!(self.key.kind, KeyKind::Whole { .. }) => {
+            Err(_) if matches!(self.key.kind, KeyKind::Whole { .. } | KeyKind::NoneOrWhole { .. }) => {
                 Err(self.refusal(Misfit::OutOfRange { nearest: None }, number.to_string()))
             }
             Err(_) => self.visit_f64(number as f64),
@@ -200,7 +203,7 @@ impl<'de> Visitor<'de> for ValueSeed {
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<KeyValue, E> {
         match self.key.kind {
-            KeyKind::NoneOr { .. } if text == KeyValue::None.to_yaml() => Ok(KeyValue::None),
+            kind if kind.allows_none() && text == KeyValue::None.to_yaml() => Ok(KeyValue::None),
             KeyKind::Choice(_) | KeyKind::ChoiceOrFile { .. } | KeyKind::Text | KeyKind::Document => {
                 match self.key.kind.parse(text, false) {
                     Ok(value) => Ok(value),
@@ -212,7 +215,7 @@ impl<'de> Visitor<'de> for ValueSeed {
     }
 
     fn visit_unit<E: serde::de::Error>(self) -> Result<KeyValue, E> {
-        if matches!(self.key.kind, KeyKind::NoneOr { .. }) {
+        if self.key.kind.allows_none() {
             return Ok(KeyValue::None);
         }
         Err(self.refusal(Misfit::Missing, "null".to_string()))

@@ -26,6 +26,11 @@ const SCENE: KeyKind = KeyKind::ChoiceOrFile {
 const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
 const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
 const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
+const OWN_PIXELS: KeyKind = KeyKind::NoneOrWhole {
+    min: 1,
+    max: MAX_IMAGE_SIZE as u64,
+};
+const FIELD: KeyKind = KeyKind::NoneOr { min: 1.0, max: 170.0 };
 const EYES: KeyKind = whole_from_1_to(2);
 const SEED: KeyKind = KeyKind::Whole { min: 0, max: u64::MAX };
 const SCALE: KeyKind = KeyKind::ZeroOrAtLeast(0.01); // sensors grow with the inverse square: 170 million values at 0.01
@@ -155,12 +160,21 @@ config! {
     }
     "Vision" {
         vision_active: bool = true, Bool, "The images of both eyes are observed.";
-        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels.";
+        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels, where it has none of its own.";
         vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The images of each eye that are observed.";
         vision_threads: u32 = 1, EYES, "Threads that draw the eyes of an environment alone: 2 is faster by the clock, to the same bytes." + "Vectors of environments have threads of their own, and draw each environment with one.";
         vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees in a second, Hz; none for one in each step." + "Between two of them the last one is observed; environments of other seeds see theirs in other steps.";
         vision_lazy: bool = false, Bool, "Images are drawn when they are asked for, and not at all if nobody does." + "Rust asks with `Env::look`, Python by reading them. Where a later image depends on each, by noise, a delay or a rate, all are drawn.";
-        @group eyes: EyeOptions, "How sharp the eyes see, and where (`vision_acuity` ...).", "How sharp the eyes see, and where." {
+        @group eyes: EyeOptions, "What the eyes see, how sharp, and where (`vision_width` ...).", "What the eyes see, how sharp, and where." {
+            width as vision_width: Option<u32> = None, OWN_PIXELS, "The width of an eye's image, pixels; none for vision_resolution.";
+            width_left as vision_width_left: Option<u32> = None, OWN_PIXELS, "The width of the left eye's image, pixels; none for that of both eyes.";
+            width_right as vision_width_right: Option<u32> = None, OWN_PIXELS, "The width of the right eye's image, pixels; none for that of both eyes.";
+            height as vision_height: Option<u32> = None, OWN_PIXELS, "The height of an eye's image, pixels; none for vision_resolution.";
+            height_left as vision_height_left: Option<u32> = None, OWN_PIXELS, "The height of the left eye's image, pixels; none for that of both eyes.";
+            height_right as vision_height_right: Option<u32> = None, OWN_PIXELS, "The height of the right eye's image, pixels; none for that of both eyes.";
+            fovy as vision_fovy: Option<f64> = None, FIELD, "The vertical field of view of an eye, degrees; none for that of its camera in the scene, 60 in those of the library.";
+            fovy_left as vision_fovy_left: Option<f64> = None, FIELD, "The vertical field of view of the left eye, degrees; none for that of both eyes.";
+            fovy_right as vision_fovy_right: Option<f64> = None, FIELD, "The vertical field of view of the right eye, degrees; none for that of both eyes.";
             acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
             acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";
             acuity_right as vision_acuity_right: Option<f64> = None, ACUITY_AGE, "The age of the right eye's acuity, months; none for that of both eyes.";

@@ -13,15 +13,18 @@ impl Blueprint {
             return Vec::new();
         }
         let ages = config.eyes.ages(config.age);
-        let limited = EYES.iter().zip(ages).filter_map(|(eye, age)| {
-            let (age, camera) = (age?, model.camera(eye)?);
-            let (pixels, fovy, cutoff) = (config.vision_resolution, model.cam_fovy[camera], acuity_cutoff(age));
-            let held = 0.5 * f64::from(pixels) / fovy;
+        let limited = EYES.iter().zip(ages).enumerate().filter_map(|(eye, (name, age))| {
+            let (age, camera) = (age?, model.camera(name)?);
+            let [_, pixels] = config.eye_sizes()[eye];
+            let (fovy, cutoff) = (model.cam_fovy[camera], acuity_cutoff(age));
+            let held = 0.5 * pixels as f64 / fovy;
             let needed = (2.0 * cutoff * fovy).ceil();
+            let square = config.eye_sizes() == [[config.vision_resolution as usize; 2]; 2];
+            let key = if square { "vision_resolution" } else { "vision_height" };
             (held < cutoff).then(|| {
                 format!(
                     "{pixels} pixels over {fovy} degrees hold at most {held:.2} cycles per degree, and at {age} months an eye sees up to \
-                     {cutoff:.2}: older and younger eyes look alike beyond that; vision_resolution: {needed} holds all of it"
+                     {cutoff:.2}: older and younger eyes look alike beyond that; {key}: {needed} holds all of it"
                 )
             })
         });

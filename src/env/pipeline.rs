@@ -44,9 +44,8 @@ impl Pipeline {
     /// foveation, noise, delay.
     pub fn configure(&mut self, model: &Model, config: &Config, sense: Sense, like: &Signal<'_>) {
         let chain = &mut self.chains[sense as usize];
-        if let &Signal::Eye { height, width, .. } = like {
-            let eye = usize::from(sense == Sense::EyeRight);
-            let optics = optics(model, config, eye, [height, width]);
+        if let (&Signal::Eye { height, width, .. }, Some(eye)) = (like, sense.eye()) {
+            let optics = optics(model, config, eye, [width, height]);
             chain.optics = optics.len();
             chain.stages.extend(optics.into_iter().map(Stage::configured));
         }
@@ -172,12 +171,13 @@ impl Pipeline {
     }
 }
 
-/// Returns what a configuration's eye, 0 for the left and 1 for the right, makes of each image by itself: acuity, foveation.
+/// Returns what a configuration's eye, 0 for the left and 1 for the right, makes of each image of some width and height by itself: acuity,
+/// foveation.
 pub(super) fn optics(
     model: &Model,
     config: &Config,
     eye: usize,
-    [height, width]: [usize; 2],
+    [width, height]: [usize; 2],
 ) -> Vec<Box<dyn Transform>> {
     let mut transforms: Vec<Box<dyn Transform>> = Vec::new();
     if let (Some(age), Some(camera)) = (config.eyes.ages(config.age)[eye], model.camera(EYES[eye])) {

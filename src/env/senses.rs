@@ -9,6 +9,7 @@ use crate::env::task::TaskSizes;
 use crate::env::{Blueprint, EnvError, Observation, missing_camera};
 use crate::model::Model;
 use crate::physics::State;
+use crate::render::View;
 use crate::sensors::touch::POOLED;
 use crate::sensors::transform::{Sense, Signal, Transform};
 use crate::sensors::{
@@ -65,13 +66,13 @@ impl Senses {
         let vision = if config.vision_active {
             let mut renderer = blueprint.eyes_renderer()?;
             renderer.set_threads(config.vision_threads as usize);
-            let eyes = Vision::with_renderer(model, renderer, config.vision_resolution as usize);
+            let eyes = Vision::with_renderer(model, renderer, config.eye_sizes());
             Some(eyes.ok_or_else(|| missing_camera(EYES[0], "vision_active"))?)
         } else {
             None
         };
-        let pixels = vision.as_ref().map_or(0, |v| v.shape()[0] * v.shape()[1]);
-        let images = || EyeImages::new(config.vision_outputs, pixels);
+        let views = vision.as_ref().map(Vision::views);
+        let images = |eye: usize| EyeImages::new(config.vision_outputs, views.map_or(0, |views| views[eye].pixels()));
         let skin = blueprint.skin();
         let pool = skin.filter(|_| config.touch_pooled).map(|skin| TouchPool::new(skin));
         let pain = skin.filter(|_| config.pain_active);
@@ -87,7 +88,7 @@ impl Senses {
         });
         let mut senses = Self {
             numbers: numbers.map(|len| len.map(|len| vec![0.0; len])),
-            eyes: [images(), images()],
+            eyes: [0, 1].map(images),
             vision_deferred: false,
             vision_lazy: config.vision_lazy,
             picture: Picture::Drawn,
@@ -178,14 +179,15 @@ impl Senses {
 
     /// Returns the values of a sense, to be transformed.
     fn signal(&mut self, sense: Sense) -> Signal<'_> {
-        let [height, width, _] = self.vision.as_ref().map_or([0; 3], Vision::shape);
-        let [left, right] = &mut self.eyes;
-        let eye = |images| Signal::Eye { images, height, width };
+        let views = self.vision.as_ref().map(Vision::views);
+        if let (Some(eye), Some(views)) = (sense.eye(), views) {
+            let View { width, height, .. } = views[eye];
+            let images = &mut self.eyes[eye];
+            return Signal::Eye { images, height, width };
+        }
         match sense {
             Sense::Touch => Signal::Skin(&mut self.touch_values),
             Sense::Pain => Signal::Skin(&mut self.pain_values),
-            Sense::EyeLeft => eye(left),
-            Sense::EyeRight => eye(right),
             sense => Signal::Numbers(numbers_of(&mut self.numbers, sense)),
         }
     }
@@ -332,7 +334,7 @@ impl Senses {
     pub(super) fn observation_with(&self, images: bool) -> Observation<'_> {
         let eyes = if self.known && images { &self.eyes } else { &NO_IMAGES };
         Observation::from_fn(|entry| match (entry.sense?, entry.image) {
-            (eye, Some(image)) => eyes[usize::from(eye == Sense::EyeRight)].image(image),
+            (sense, Some(image)) => eyes[sense.eye()?].image(image),
             (Sense::Touch, None) => self.touch_observed().map(|felt| felt.values().into()),
             (Sense::Pain, None) => self.pain_observed().map(|felt| felt.values().into()),
             (sense, None) => self.numbers[sense as usize].as_deref().map(Values::from),
@@ -341,11 +343,16 @@ impl Senses {
 
     /// Returns the shape of an entry of `len` numbers.
     pub(super) fn shape(&self, entry: &ObservationEntry, len: usize) -> Vec<usize> {
-        let [height, width, colours] = self.vision.as_ref().map_or([0; 3], Vision::shape);
-        match (entry.sense, entry.image) {
-            (_, Some(VisionOutput::Rgb)) => vec![height, width, colours],
-            (_, Some(_)) => vec![height, width],
-            (Some(Sense::TouchPooled), _) => vec![len / POOLED, POOLED],
+        let views = self.vision.as_ref().map(Vision::views);
+        let view = entry
+            .sense
+            .and_then(Sense::eye)
+            .zip(views)
+            .map(|(eye, views)| views[eye]);
+        match (view, entry.image) {
+            (Some(View { width, height, .. }), Some(VisionOutput::Rgb)) => vec![height, width, 3],
+            (Some(View { width, height, .. }), Some(_)) => vec![height, width],
+            _ if entry.sense == Some(Sense::TouchPooled) => vec![len / POOLED, POOLED],
             _ => vec![len],
         }
     }

@@ -165,8 +165,8 @@ impl Viewer {
     }
 
     /// Draws what both eyes see at this moment, with the acuity and the foveation of the configuration; noise and delay belong
-    /// to the observation, which stays as it is. Returns the left and then the right picture, `vision_resolution` pixels wide and
-    /// high: red, green, blue and 255 of each pixel.
+    /// to the observation, which stays as it is. Returns the left and then the right picture, of the sizes of the
+    /// observation: red, green, blue and 255 of each pixel.
     ///
     /// ```
     /// use babybench::env::Viewer;
@@ -187,14 +187,14 @@ impl Viewer {
     /// As [`Viewer::draw`].
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn eyes_rgba(&mut self, env: &Env) -> Result<&[u8], EnvError> {
-        let side = env.config().vision_resolution as usize;
+        let sizes = env.config().eye_sizes();
         let optics = self.optics.take();
         let mut optics =
-            optics.unwrap_or_else(|| [0, 1].map(|eye| pipeline::optics(env.model(), env.config(), eye, [side, side])));
+            optics.unwrap_or_else(|| [0, 1].map(|eye| pipeline::optics(env.model(), env.config(), eye, sizes[eye])));
         let mut rgba = std::mem::take(&mut self.rgba);
         rgba.clear();
-        for (eye, transforms) in EYES.into_iter().zip(&mut optics) {
-            self.draw(env, eye, side, side)?;
+        for ((eye, [width, height]), transforms) in EYES.into_iter().zip(sizes).zip(&mut optics) {
+            self.draw(env, eye, width, height)?;
             let rgb = std::mem::take(&mut self.rgb);
             let mut images = EyeImages {
                 rgb,
@@ -203,8 +203,8 @@ impl Viewer {
             for transform in transforms {
                 let signal = Signal::Eye {
                     images: &mut images,
-                    height: side,
-                    width: side,
+                    height,
+                    width,
                 };
                 transform.apply(signal, &mut NumpyRng::seed(0)); // which neither acuity nor foveation uses
             }

@@ -33,5 +33,5 @@ pub use room::{RoomError, scene_assets};
 #[cfg(feature = "eval")]
 pub(crate) use scene::{document_path, has_own_scene};
 internals!(use scene::{DOCUMENT, build_scene});
-pub use scene::{SceneError, Version, build_model, scene_xml};
+pub use scene::{EYES, SceneError, Version, build_model, scene_xml};
 internals!(use standards::{GrowthStandard, Lms});

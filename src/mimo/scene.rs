@@ -25,6 +25,9 @@ pub(super) const MIMO: &str = "mimo_location";
 /// The material of MIMo's head.
 const HEAD: &str = "head";
 
+/// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
+pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
+
 /// Returns the path of the top document of a configuration.
 pub(crate) fn document_path(config: &Config) -> &'static str {
     match config.scene {
@@ -199,21 +202,9 @@ pub fn build_scene(
 ) -> Result<Model, SceneError> {
     let path = document_path(config);
     let Some(room) = Room::open(config, assets)? else {
-        let face = config.facial_expression;
-        let source = Source {
-            document,
-            path,
-            face,
-            assets,
-        };
-        return source.build(version, config);
+        return Source::of(config, document, path, assets).build(version, config);
     };
-    let source = Source {
-        document,
-        path,
-        face: config.facial_expression,
-        assets: &room,
-    };
+    let source = Source::of(config, document, path, &room);
     if document != scene_xml(config) {
         // a task with a document of its own, in which the room may or may not be
         return source.build(version, config).map_err(|e| room.localized(e));
@@ -231,17 +222,35 @@ pub(super) struct Source<'a> {
     /// As which file of the assets it is read.
     pub path: &'a str,
     /// His face: the texture of the material of his head.
-    pub face: FacialExpression,
+    face: FacialExpression,
+    /// The vertical fields of view of his left and his right eye, degrees, where the configuration has its own.
+    fields: [Option<f64>; 2],
     pub assets: &'a dyn AssetSource,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// Returns a document, read as file `path` of the assets, with the MIMo of a configuration in it.
+    pub fn of(config: &Config, document: &'a str, path: &'a str, assets: &'a dyn AssetSource) -> Self {
+        Self {
+            document,
+            path,
+            face: config.facial_expression,
+            fields: config.eyes.fields(),
+            assets,
+        }
+    }
+
     fn read(&self) -> Result<Draft, LoadError> {
         let mut draft = Draft::read_str(self.document, self.path, self.assets)?;
         if self.face != FacialExpression::Default
             && let Some(texture) = draft.material_texture(HEAD)
         {
             *texture = Some(format!("tex_head_{}", self.face));
+        }
+        for (eye, field) in EYES.into_iter().zip(self.fields) {
+            if let (Some(fovy), Some(field)) = (draft.camera_fovy(eye), field) {
+                *fovy = field;
+            }
         }
         Ok(draft)
     }

@@ -5,7 +5,7 @@ use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::GeomType;
 
-use super::document::{Body, Document};
+use super::document::{Body, Camera, Document};
 use super::error::LoadError;
 use super::geom_volume;
 use super::spec::{Places, Spec};
@@ -159,11 +159,20 @@ impl Draft {
 
     /// Returns the position of a camera in its body, m; `None` if there is no such camera.
     pub fn camera_pos(&mut self, name: &str) -> Option<&mut Vec3> {
+        self.camera(name).map(|camera| &mut camera.frame.pos)
+    }
+
+    /// Returns the vertical field of view of a camera, degrees, which replaces what its sensor gives; `None` if there is no such camera.
+    pub fn camera_fovy(&mut self, name: &str) -> Option<&mut f64> {
+        let camera = self.camera(name)?;
+        camera.sensorsize = [0.0; 2];
+        Some(&mut camera.fovy)
+    }
+
+    fn camera(&mut self, name: &str) -> Option<&mut Camera> {
         let mut cameras = self.document.bodies.iter_mut().flat_map(|body| &mut body.cameras);
         let prefix = &self.prefix;
-        cameras
-            .find(|camera| is_called(&camera.name, prefix, name))
-            .map(|camera| &mut camera.frame.pos)
+        cameras.find(|camera| is_called(&camera.name, prefix, name))
     }
 
     /// Returns a geom by its body and its index among the geoms of that body; `None` if there is no such geom.

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use maud::{Markup, html};
 
 use super::run::Evaluated;
-use crate::config::Compat;
+use crate::config::{Compat, Config};
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::{State, Topology, cameras, com_pos, kinematics};
@@ -26,7 +26,8 @@ pub(super) struct Gaze {
     counts: [[Vec<u32>; 2]; 2],
     cells: usize,
     /// Half the field of view of the eye's camera, rad.
-    half_view: f64,
+    /// Tangents of half the width and half the height of what the right and the left eye see.
+    views: [[f64; 2]; 2],
     compat: Compat,
     pub steps: usize,
 }
@@ -48,15 +49,19 @@ impl Gaze {
 
     /// Counts directions over evaluation logs; returns `None` if the model has no eyes or hands, or does not fit the
     /// logs.
-    pub fn new(model: &Model, evaluations: &[Evaluated], compat: Compat) -> Option<Self> {
+    pub fn new(model: &Model, evaluations: &[Evaluated], config: &Config) -> Option<Self> {
         let eyes = [model.camera("eye_right")?, model.camera("eye_left")?];
         let hands = [model.body("right_hand")?, model.body("left_hand")?];
         let cells = (2.0 * REACH / CELL) as usize;
         let mut gaze = Self {
             counts: [0, 1].map(|_| [0, 1].map(|_| vec![0; cells * cells])),
             cells,
-            half_view: 0.5 * model.cam_fovy[eyes[0]].to_radians(),
-            compat,
+            views: [0, 1].map(|eye| {
+                let [width, height] = config.eye_sizes()[1 - eye];
+                let tangent = pxfm::f_tan(0.5 * model.cam_fovy[eyes[eye]].to_radians());
+                [tangent * width as f64 / height as f64, tangent]
+            }),
+            compat: config.compat,
             steps: 0,
         };
         let all: usize = evaluations.iter().map(|e| e.log.len()).sum();
@@ -117,21 +122,21 @@ impl Gaze {
                 }
                 text class="tick" x=(middle) y="13" text-anchor="middle" { "up" }
                 text class="tick" x=(SIZE - 4.0) y=(middle + 4.0) text-anchor="end" { "right" }
-                polygon class="view" points=(self.view()) {}
+                polygon class="view" points=(self.view(eye)) {}
                 circle class="scored" cx=(middle) cy=(format!("{:.1}", place(-down))) r=(format!("{:.1}", radius(SCORED))) {}
             }
         }
     }
 
     /// Returns the border of the camera's field of view, as points of a polygon.
-    fn view(&self) -> String {
-        let tan = pxfm::f_tan(self.half_view);
+    fn view(&self, eye: usize) -> String {
+        let tangents = self.views[eye];
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
         let mut points = String::new();
         for pair in corners.windows(2) {
             for step in 0..12 {
                 let t = f64::from(step) / 12.0;
-                let at = [0, 1].map(|k| tan * (pair[0][k] * (1.0 - t) + pair[1][k] * t));
+                let at = [0, 1].map(|k| tangents[k] * (pair[0][k] * (1.0 - t) + pair[1][k] * t));
                 let [x, y] = direction([at[0], at[1], -1.0]);
                 let place = |angle: f64| (angle / REACH + 1.0) * 0.5 * SIZE;
                 points.push_str(&format!("{:.1},{:.1} ", place(x), place(-y)));
@@ -198,7 +203,7 @@ mod tests {
             log,
             video: None,
         };
-        let gaze = Gaze::new(blueprint.model(), &[evaluated], Compat::Api).expect("eyes and hands");
+        let gaze = Gaze::new(blueprint.model(), &[evaluated], blueprint.config()).expect("eyes and hands");
         assert_eq!(gaze.steps, 3000);
         for (k, (eye, hand)) in [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().enumerate() {
             let (map, counter) = (gaze.inside(eye, hand), counted[k] as f64 / 3000.0);

@@ -294,7 +294,8 @@ fn curve_section(run: &Run) -> Markup {
 
 fn gaze_section(run: &mut Run) -> Markup {
     let compat = run.compat();
-    let gaze = run.model.as_ref().and_then(|m| Gaze::new(m, &run.evaluations, compat));
+    let config = run.config.clone().unwrap_or_default();
+    let gaze = run.model.as_ref().and_then(|m| Gaze::new(m, &run.evaluations, &config));
     let Some(gaze) = gaze else {
         if !run.evaluations.is_empty() {
             run.notices

@@ -110,7 +110,7 @@ pub fn replay_with_images(
             && every > 0
             && t % every == 0
         {
-            out.eye_size = env.config().vision_resolution as usize;
+            out.eye_sizes = env.config().eye_sizes();
             out.eye_steps.push(t as i64);
             env.look().map_err(at(t))?;
             out.push_eyes(env, viewer).map_err(at(t))?;

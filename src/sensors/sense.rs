@@ -66,6 +66,11 @@ impl Sense {
         }
     }
 
+    /// Returns whose it is: 0 for the left eye, 1 for the right; `None` for what is no eye.
+    pub(crate) fn eye(self) -> Option<usize> {
+        Self::EYES.iter().position(|&eye| eye == self)
+    }
+
     /// Returns how often a second it looks, if a configuration gives it a rate of its own.
     pub(crate) fn rate(self, config: &Config) -> Option<f64> {
         match self {

@@ -3,13 +3,11 @@
 use std::sync::Arc;
 
 use crate::config::{VisionOutput, VisionOutputs};
+pub use crate::mimo::EYES;
 use crate::model::Model;
 use crate::physics::State;
 use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, Scenery, View};
 use crate::spaces::Values;
-
-/// Names of the cameras in the eyes, left and right, which are also the keys of the observation.
-pub const EYES: [&str; 2] = ["eye_left", "eye_right"];
 
 impl<'a> From<&'a State> for Poses<'a> {
     /// Returns the poses at the start of the last physics step.
@@ -110,44 +108,37 @@ impl EyeImages {
     }
 }
 
-/// The two eyes: images of (resolution, resolution, 3) bytes each, red, green and blue, rows from the top.
+/// The two eyes: images of (height, width, 3) bytes each, red, green and blue, rows from the top.
 #[derive(Clone, Debug)]
 pub struct Vision {
     renderer: Renderer,
-    eyes: [usize; 2],
-    resolution: usize,
+    views: [View; 2],
 }
 
 impl Vision {
     /// Creates the eyes of `model`, its cameras [`EYES`], drawn on the CPU; `None` if it has no eyes. `scenery` is the
-    /// look of the same model.
-    pub fn new(model: &Model, scenery: Arc<Scenery>, resolution: usize) -> Option<Self> {
-        Self::with_renderer(model, Renderer::cpu(scenery), resolution)
+    /// look of the same model, and `sizes` are width and height of the left and the right image, pixels.
+    pub fn new(model: &Model, scenery: Arc<Scenery>, sizes: [[usize; 2]; 2]) -> Option<Self> {
+        Self::with_renderer(model, Renderer::cpu(scenery), sizes)
     }
 
     /// Creates the eyes of `model`, drawn by any renderer of its look.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    pub fn with_renderer(model: &Model, renderer: Renderer, resolution: usize) -> Option<Self> {
+    pub fn with_renderer(model: &Model, renderer: Renderer, sizes: [[usize; 2]; 2]) -> Option<Self> {
+        let view = |eye: usize| {
+            let [width, height] = sizes[eye];
+            let camera = model.camera(EYES[eye])?;
+            Some(View { camera, width, height })
+        };
         Some(Self {
             renderer,
-            eyes: [model.camera(EYES[0])?, model.camera(EYES[1])?],
-            resolution,
+            views: [view(0)?, view(1)?],
         })
     }
 
-    /// Returns the shape of an image: rows, columns, colours.
-    pub fn shape(&self) -> [usize; 3] {
-        [self.resolution, self.resolution, 3]
-    }
-
-    /// Returns the number of bytes of an image.
-    pub fn len(&self) -> usize {
-        self.shape().into_iter().fold(1, usize::saturating_mul)
-    }
-
-    /// Returns whether the images have no pixels.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
+    /// Returns what the left and the right eye look through: cameras of the model, and the sizes of their images.
+    pub fn views(&self) -> [View; 2] {
+        self.views
     }
 
     /// Returns the look of the scene.
@@ -166,7 +157,7 @@ impl Vision {
         self.renderer.set_threads(threads);
     }
 
-    /// Draws both images, left and right, of length [`Self::len`] each. Poses are those of the start of the last physics
+    /// Draws both images, left and right, of [`View::rgb_len`] bytes each. Poses are those of the start of the last physics
     /// step, as in the reference.
     ///
     /// # Errors
@@ -185,7 +176,7 @@ impl Vision {
         self.renderer.draw(&requests, eyes)
     }
 
-    /// Draws both gray images: a byte for each pixel, (resolution, resolution).
+    /// Draws both gray images: a byte for each pixel, (height, width).
     ///
     /// # Errors
     /// Fails if a buffer has the wrong length.
@@ -194,7 +185,7 @@ impl Vision {
         self.renderer.gray(&requests, eyes)
     }
 
-    /// Draws for both eyes the distance of the surface at each pixel from the camera's plane, m, (resolution, resolution);
+    /// Draws for both eyes the distance of the surface at each pixel from the camera's plane, m, (height, width);
     /// infinite where nothing is.
     ///
     /// # Errors
@@ -204,7 +195,7 @@ impl Vision {
         self.renderer.depth(&requests, eyes)
     }
 
-    /// Draws for both eyes the id of the geom that each pixel shows, (resolution, resolution); -1 where none is.
+    /// Draws for both eyes the id of the geom that each pixel shows, (height, width); -1 where none is.
     ///
     /// # Errors
     /// Fails if a buffer has the wrong length.
@@ -216,13 +207,9 @@ impl Vision {
     /// Returns the images that [`Self::observe`] draws, left and right.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn requests<'a>(&self, s: &'a State) -> [RenderRequest<'a>; 2] {
-        self.eyes.map(|camera| RenderRequest {
+        self.views.map(|view| RenderRequest {
             poses: Poses::from(s),
-            view: View {
-                camera,
-                width: self.resolution,
-                height: self.resolution,
-            },
+            view,
         })
     }
 }

@@ -318,6 +318,15 @@ export class Env {
     return this.#call((core) => core.locked());
   }
 
+  /**
+   * Width and height of the left eye's pictures, then of the right one's, pixels.
+   * @returns {[[number, number], [number, number]]}
+   */
+  get eyeSizes() {
+    const [width, height, ...right] = this.#call((core) => core.eyeSizes());
+    return [[width, height], [right[0], right[1]]];
+  }
+
   /** Takes a snapshot: all that decides how the run goes on, random numbers, locks and applied forces included. */
   snapshot() {
     return this.#call((core) => core.snapshot());
@@ -381,8 +390,8 @@ export class Env {
 
   /**
    * Draws what both eyes see at this moment, with the acuity and the foveation of the configuration, and leaves the observation, to which
-   * noise and delay belong, as it is. Returns a view of the left and then the right picture, `vision_resolution` pixels wide and
-   * high, as {@link Env.draw} does.
+   * noise and delay belong, as it is. Returns a view of the left and then the right picture, of the sizes {@link Env.eyeSizes}, as
+   * {@link Env.draw} does.
    */
   lookThroughEyes() {
     const [at, length] = this.#call((core) => core.lookThroughEyes());

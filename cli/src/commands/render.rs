@@ -108,14 +108,20 @@ impl Render {
             let off = "--observed: the configuration observes no colour images; it needs vision_active: true and vision_outputs with rgb";
             return Err(off.into());
         };
-        let size = env.config().vision_resolution as usize;
-        let rows = left.chunks_exact(3 * size).zip(right.chunks_exact(3 * size));
-        let picture: Vec<u8> = rows.flat_map(|(left, right)| [left, right].concat()).collect();
-        write_png(&self.out, &picture, 2 * size, size)?;
+        // side by side, from the top; black below the lower one
+        let sizes = env.config().eye_sizes();
+        let [width, height] = [sizes[0][0] + sizes[1][0], sizes[0][1].max(sizes[1][1])];
+        let mut picture = Vec::with_capacity(3 * width * height);
+        for row in 0..height {
+            for (image, [own, _]) in [left, right].into_iter().zip(sizes) {
+                let line = image.chunks_exact(3 * own).nth(row);
+                picture.extend_from_slice(line.unwrap_or(&vec![0; 3 * own]));
+            }
+        }
+        write_png(&self.out, &picture, width, height)?;
         say!(
-            "{}: {} x {size} pixels, left and right eye as observed",
-            self.out.display(),
-            2 * size
+            "{}: {width} x {height} pixels, left and right eye as observed",
+            self.out.display()
         )?;
         Ok(())
     }

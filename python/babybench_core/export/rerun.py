@@ -217,7 +217,7 @@ def _eyes(recording: Any, record: Record, episode: Episode, env: Any, root: str,
 
     recorded = "eye_steps" in episode and "eye_left" in episode
     steps: Any = episode["eye_steps"] if recorded else np.arange(0, episode.steps, eyes_every) if eyes_every else []
-    size, parts = record.manifest["configuration"]["vision_resolution"], _native.Parts(env._core)
+    parts = _native.Parts(env._core)
     if not recorded and "eye_left" not in env._core.blueprint.model_names["camera"]:
         return
     for k, step in enumerate(steps):
@@ -225,7 +225,7 @@ def _eyes(recording: Any, record: Record, episode: Episode, env: Any, root: str,
         recording.set_time("step", sequence=int(step))
         if not recorded:
             parts.forward(episode["qpos"][step].astype(np.float64), episode["qvel"][step].astype(np.float64))
-        for side in ("left", "right"):
-            picture = episode[f"eye_{side}"][k] if recorded else env.picture(f"eye_{side}", size, size)
+        for side, size in zip(("left", "right"), env._core.blueprint.eye_sizes, strict=True):
+            picture = episode[f"eye_{side}"][k] if recorded else env.picture(f"eye_{side}", *size)
             recording.log(f"{root}/eyes/{side}", rr.Image(picture))
     recording.reset_time()

@@ -63,13 +63,19 @@ def _touch(params: Mapping[str, Any]) -> dict[str, Any]:
 
 def _vision(params: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the keys of a configuration that give the eyes of vision parameters."""
-    sizes = {(eye["width"], eye["height"]) for eye in params.values()}
-    if set(params) != {"eye_left", "eye_right"} or len(sizes) != 1 or len(set(*sizes)) != 1:
+    if set(params) != {"eye_left", "eye_right"}:
         raise ValueError(
-            "vision_params: the engine draws eye_left and eye_right as squares of one size; "
+            "vision_params: the engine draws eye_left and eye_right for the observation; "
             "other cameras are drawn by env.mujoco_renderer.render(camera_name=...)"
         )
-    return {"vision_active": True, "vision_resolution": sizes.pop()[0]}
+    sizes = {(eye["width"], eye["height"]) for eye in params.values()}
+    if len(sizes) == 1 and len(set(*sizes)) == 1:
+        return {"vision_active": True, "vision_resolution": sizes.pop()[0]}
+    keys: dict[str, Any] = {"vision_active": True}
+    for side in ("left", "right"):
+        for extent in ("width", "height"):
+            keys[f"vision_{extent}_{side}"] = params[f"eye_{side}"][extent]
+    return keys
 
 
 def _actuators(keys: dict[str, Any], scene: Scene) -> None:

@@ -38,6 +38,16 @@ fn compat_reference_refuses_what_the_reference_cannot_do() {
         ":3:20: `vision_resolution` is 128, but under `compat: reference` an eye's image cannot be larger than \
          `render_size`; raise `render_size`",
     );
+    check_error(
+        &format!("compat: reference\n{touch}vision_height_left: 128\nrender_size: 64"),
+        ":3:21: `vision_height_left` is 128, but under `compat: reference` an eye's image cannot be larger than \
+         `render_size`; raise `render_size`",
+    );
+    check_error(
+        &format!("compat: reference\n{touch}vision_fovy_right: 45"),
+        ":3:20: `vision_fovy_right` is 45.0, but the Python code that `compat: reference` follows draws what the cameras of \
+         the scene see",
+    );
     check(
         "compat: reference\ntouch_active: off\nvision_active: off\nrender_size: 32",
         "render_size=32 compat=reference vision_active=false touch_active=false",

@@ -66,6 +66,15 @@ fn values(kind: KeyKind) -> Values {
             &["one", "true", "'1'", "None"],
             ["-1", "2000000", ".nan"].map(String::from).into(),
         ),
+        KeyKind::NoneOrWhole { min, max } => (
+            ["none", "null", "~", "'none'"]
+                .map(String::from)
+                .into_iter()
+                .chain([min, max].map(|n| n.to_string()))
+                .collect(),
+            &["one", "true", "'1'", "None", "1.5"],
+            ["-1".to_string(), (max + 1).to_string()].into(),
+        ),
         KeyKind::Choice(names) => {
             // Values that depend on other keys have tests of their own.
             let legal = |name: &&&str| !["normal_force", "reference"].contains(*name);
@@ -199,7 +208,7 @@ fn every_key_takes_what_it_says_and_nothing_else() {
             );
         }
         for value in ["", "~", "null", "Null", "NULL"] {
-            if matches!(key.kind, KeyKind::NoneOr { .. }) {
+            if key.kind.allows_none() {
                 assert_eq!(read(&format!("{name}: {value}\n")).ok(), Some(Config::default()));
                 continue;
             }

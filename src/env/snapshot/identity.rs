@@ -114,6 +114,19 @@ const EARLY: [&str; 5] = [
     "vision_active",
 ];
 
+/// Keys that came after the first snapshots, which stay readable where these are as they are by default.
+const LATER: [&str; 9] = [
+    "vision_width",
+    "vision_width_left",
+    "vision_width_right",
+    "vision_height",
+    "vision_height_left",
+    "vision_height_right",
+    "vision_fovy",
+    "vision_fovy_left",
+    "vision_fovy_right",
+];
+
 /// Computes a fingerprint of what decides the meaning of a snapshot: names and masses of the scene, all of a custom scene, and
 /// the keys that shape an environment's memory.
 fn fingerprint(model: &Model, config: &Config) -> u64 {
@@ -172,6 +185,9 @@ fn shaping(config: &Config) -> impl Iterator<Item = &'static Key> {
         if !rated && ["vision_rate", "touch_rate"].contains(&key.name) {
             return false;
         }
+        if LATER.contains(&key.name) && key.value(config) == key.value(&defaults) {
+            return false;
+        }
         // when images are drawn is remembered nowhere
         if key.name == "vision_lazy" {
             return false;
@@ -188,4 +204,25 @@ fn shaping(config: &Config) -> impl Iterator<Item = &'static Key> {
 /// Computes a hash of everything in a model.
 fn content(model: &Model) -> u64 {
     checksum(format!("{model:?}").as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Blueprint, Config};
+
+    #[test]
+    fn snapshots_of_earlier_versions_stay_readable() {
+        let fingerprint = |text: &str| {
+            let config = Config::from_yaml(text, "c.yml").expect("a configuration");
+            let blueprint = Blueprint::new(config).expect("embedded assets");
+            format!("{:016x}", blueprint.identity().fingerprint)
+        };
+        for (text, expected) in [
+            ("touch_active: no\nvision_active: no", "d6191abc0b92d2a3"),
+            (include_str!("../../../configs/config_infant.yml"), "f2c87526a4dcc316"),
+            ("scene: crib\nvision_rate: 30\ntouch_scale: 4", "d00a453064b163df"),
+        ] {
+            assert_eq!(fingerprint(text), expected, "{text}");
+        }
+    }
 }

@@ -45,7 +45,8 @@ pub(super) fn seen(npz: &Npz, manifest: &Manifest) -> Result<Option<PerEyeAndHan
         let [count, height, width] = images.shape[..] else {
             return Ok(None);
         };
-        let central = central(height, width, fovy);
+        let right = manifest.fovy_right.filter(|_| eye == 0);
+        let central = central(height, width, right.unwrap_or(fovy));
         for image in images.data.chunks_exact((height * width).max(1)) {
             let mut found = [false; 2];
             for (&geom, _) in image.iter().zip(&central).filter(|(_, central)| **central) {

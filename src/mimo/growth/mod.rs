@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use crate::config::{Compat, Config, MAX_AGE};
 use crate::math::Vec3;
-use crate::mimo::{JOINT_PREFIX, ROOT, Version};
+use crate::mimo::{EYES, JOINT_PREFIX, ROOT, Version};
 use crate::mjcf_loader::Draft;
 pub(super) use blame::blame;
 use lengths::Lengths;
@@ -150,7 +150,7 @@ impl Growth {
         for place in &self.body.sites {
             placed(draft.site_pos(place.name), "site", place.name, place.pos)?;
         }
-        for name in ["eye_left", "eye_right"] {
+        for name in EYES {
             placed(draft.camera_pos(name), "camera", name, [self.camera, 0.0, 0.0])?;
         }
         Ok(())

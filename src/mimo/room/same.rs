@@ -38,13 +38,7 @@ impl<A: AssetSource> Room<A> {
             ..config.clone()
         };
         let library = Library(self);
-        let usual = Source {
-            document: &scene_xml(&plain),
-            path: DOCUMENT,
-            face: config.facial_expression,
-            assets: &library,
-        }
-        .original()?;
+        let usual = Source::of(config, &scene_xml(&plain), DOCUMENT, &library).original()?;
         let original;
         let model = match config.age {
             None => model,

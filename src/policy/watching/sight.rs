@@ -14,7 +14,7 @@ const CLEAR: f32 = 2.0;
 const TURN: f64 = 0.01;
 /// Part of a picture that has to move for a hand to be there.
 const AREA: f32 = 0.01;
-/// Widths of the middle of a picture, in half widths of it: of the fovea, and of what is near it, with the weight of the latter.
+/// Widths of the middle of a picture, in half heights of it: of the fovea, and of what is near it, with the weight of the latter.
 const FOVEA: f32 = 0.25;
 const NEAR: [f32; 2] = [0.7, 0.1];
 /// Time between two pictures that are compared, s.
@@ -27,8 +27,8 @@ pub(super) struct Sight {
     changes: Vec<f32>,
     /// The pictures with which the next ones are compared, in shades of grey.
     last: Vec<f32>,
-    /// How near each pixel of a picture is to its middle, 0 to 1.
-    weights: Vec<f32>,
+    /// How near each pixel of the pictures is to the middle of its own, 0 to 1, by eye.
+    weights: [Vec<f32>; EYES],
     /// Number of pictures compared for each hand.
     counts: [u32; HANDS],
     /// For each hand the least and the greatest angle of the joints that turn the eyes, rad.
@@ -47,20 +47,22 @@ impl Sight {
                 "watching learns by sight in every step: set vision_active: true, and vision_lazy: false".into(),
             ));
         }
-        let size = env.config().vision_resolution as usize;
-        let middle = 0.5 * (size as f32 - 1.0);
-        let square = |k: usize| ((k as f32 - middle) / (0.5 * size as f32)).powi(2);
         let bell = |squares: f32, width: f32| pxfm::f_expf(-squares / (2.0 * width * width));
-        let weight = |k: usize| {
-            let squares = square(k / size) + square(k % size);
-            let [width, part] = NEAR;
-            (1.0 - part) * bell(squares, FOVEA) + part * bell(squares, width)
-        };
-        let pixels = size * size;
+        let weights = env.config().eye_sizes().map(|[width, height]| {
+            let square =
+                |k: usize, side: usize| ((k as f32 - 0.5 * (side as f32 - 1.0)) / (0.5 * height as f32)).powi(2);
+            let weight = |k: usize| {
+                let squares = square(k / width, height) + square(k % width, width);
+                let [near, part] = NEAR;
+                (1.0 - part) * bell(squares, FOVEA) + part * bell(squares, near)
+            };
+            (0..width * height).map(weight).collect::<Vec<_>>()
+        });
+        let pixels = weights.iter().map(Vec::len).sum();
         Ok(Self {
-            changes: vec![0.0; HANDS * EYES * pixels],
-            last: Vec::with_capacity(EYES * pixels),
-            weights: (0..pixels).map(weight).collect(),
+            changes: vec![0.0; HANDS * pixels],
+            last: Vec::with_capacity(pixels),
+            weights,
             counts: [0; HANDS],
             gaze: [Vec::new(), Vec::new()],
             every: ((APART / env.blueprint().dt()).round() as u32).max(1),
@@ -109,20 +111,21 @@ impl Sight {
 
     /// Returns how much of what moves with each hand, and not with the other, is in the middle of the eyes, 0 to 1.
     pub(super) fn found(&self) -> [f64; HANDS] {
-        let pixels = self.weights.len();
-        let mean = |hand: usize, k: usize| self.changes[hand * EYES * pixels + k] / self.counts[hand].max(1) as f32;
+        let pictures: usize = self.weights.iter().map(Vec::len).sum();
+        let mean = |hand: usize, k: usize| self.changes[hand * pictures + k] / self.counts[hand].max(1) as f32;
         std::array::from_fn(|hand| {
             let eye = |eye: usize| {
                 let (mut inside, mut all) = (0.0_f32, 0.0_f32);
-                for (k, weight) in self.weights.iter().enumerate() {
-                    let at = eye * pixels + k;
+                let first: usize = self.weights[..eye].iter().map(Vec::len).sum();
+                for (k, weight) in self.weights[eye].iter().enumerate() {
+                    let at = first + k;
                     if mean(hand, at) > LEAST + CLEAR * mean(1 - hand, at) {
                         inside += weight;
                         all += 1.0;
                     }
                 }
                 // a hand covers an area; what is smaller may be something else
-                f64::from(inside / all.max(AREA * pixels as f32))
+                f64::from(inside / all.max(AREA * self.weights[eye].len() as f32))
             };
             let turned = self.gaze[hand].iter().map(|[low, high]| high - low).fold(0.0, f64::max);
             let eyes: [f64; EYES] = std::array::from_fn(eye);

@@ -131,5 +131,5 @@ const MEANINGS: &[(&str, &str, &str)] = meanings! {
     "is_failure" "(T)" "Whether the task failed in the step."
     "return" "(T)" "Sum of the rewards so far."
     "eye_steps" "(K)" "Steps, from 0, whose images were recorded."
-    "eye_size" "()" "Width and height of the images, pixels."
+    "eye_size" "()" "Width and height of the images, pixels, where both are squares of one size."
 };

@@ -8,6 +8,7 @@ use super::RecordOptions;
 use super::describe::{geoms, limb_joints, meaning};
 use crate::config::Config;
 use crate::env::Env;
+use crate::sensors::EYES;
 
 /// Name of the format, with which a description begins.
 pub(super) const FORMAT: &str = "babybench record";
@@ -34,8 +35,11 @@ pub struct Manifest {
     pub configuration: Config,
     /// Simulated time of a step, s.
     pub dt: f64,
-    /// Height of the field of view of his eyes, degrees; none if he has no eyes.
+    /// Height of the field of view of his eyes, degrees, of the left one if they differ; none if he has no eyes.
     pub fovy: Option<f64>,
+    /// Height of the field of view of his right eye, degrees, if it is not that of the left one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fovy_right: Option<f64>,
     /// MIMo's joints, in the order of the observation.
     pub joints: Vec<JointDescription>,
     /// The names of the actions.
@@ -109,6 +113,7 @@ impl Manifest {
     /// Describes an environment.
     pub(super) fn of(env: &Env, options: &RecordOptions) -> Self {
         let (model, blueprint) = (env.model(), env.blueprint());
+        let [left, right] = EYES.map(|eye| model.camera(eye).map(|camera| model.cam_fovy[camera]));
         Self {
             format: FORMAT.to_string(),
             version: VERSION,
@@ -118,7 +123,8 @@ impl Manifest {
             policy: options.policy.clone(),
             configuration: env.config().clone(),
             dt: blueprint.dt(),
-            fovy: model.camera("eye_left").map(|camera| model.cam_fovy[camera]),
+            fovy: left,
+            fovy_right: right.filter(|_| right != left),
             joints: limb_joints(env),
             actions: env.actuation().action_names(model),
             bodies: model.body_name.clone(),

@@ -66,7 +66,7 @@ pub(super) struct Rows {
     told: Told,
     senses: Vec<(&'static ObservationEntry, Array)>,
     eye_steps: Vec<i32>,
-    eye_size: usize,
+    eye_sizes: [[usize; 2]; 2],
 }
 
 impl Rows {
@@ -87,7 +87,7 @@ impl Rows {
         self.qpos0.clone_from(&state.qpos);
         self.qvel0.clone_from(&state.qvel);
         self.activity0.clone_from(&state.act);
-        self.eye_size = env.config().vision_resolution as usize;
+        self.eye_sizes = env.config().eye_sizes();
         if let Some(touch) = env.senses().touch() {
             let sparse = self.touch.get_or_insert_default();
             (sparse.ptr, sparse.len) = (vec![0], touch.len() as i64);
@@ -219,9 +219,9 @@ impl Rows {
             let columns = values.len().checked_div(count).unwrap_or(0);
             let shape: Vec<usize> = match entry.image {
                 Some(_) => {
-                    let side = self.eye_size;
-                    let channels = columns.checked_div(side * side).unwrap_or(0);
-                    let mut shape = vec![count, side, side];
+                    let [width, height] = self.eye_sizes[entry.sense.and_then(Sense::eye).unwrap_or_default()];
+                    let channels = columns.checked_div(width * height).unwrap_or(0);
+                    let mut shape = vec![count, height, width];
                     shape.extend((channels > 1).then_some(channels));
                     shape
                 }
@@ -236,7 +236,10 @@ impl Rows {
         }
         if !self.eye_steps.is_empty() {
             out.put("eye_steps", &[self.eye_steps.len()], &self.eye_steps, Packing::Fast)?;
-            out.put("eye_size", &[], &[self.eye_size as i64], Packing::Stored)?;
+            let [[side, _], _] = self.eye_sizes;
+            if self.eye_sizes == [[side; 2]; 2] {
+                out.put("eye_size", &[], &[side as i64], Packing::Stored)?;
+            }
         }
         Ok((out.npz, out.names))
     }

@@ -72,8 +72,8 @@ pub struct Replay {
     pub contact_force: Vec<f64>,
     /// Steps whose pictures were taken (K).
     pub eye_steps: Vec<i64>,
-    /// Width and height of those pictures, pixels.
-    pub eye_size: usize,
+    /// Width and height of those pictures of the left and of the right eye, pixels.
+    pub eye_sizes: [[usize; 2]; 2],
     /// Information of each step.
     pub info: Vec<Info>,
     /// Rewards and goals, of a task that has them.
@@ -234,11 +234,14 @@ impl Replay {
 
     /// Adds what the eyes observe; a viewer draws the colours that they do not.
     pub(super) fn push_eyes(&mut self, env: &Env, viewer: &mut Viewer) -> Result<(), EnvError> {
-        let (observation, side) = (env.observation(), self.eye_size);
+        let (observation, sizes) = (env.observation(), self.eye_sizes);
         for (entry, rows) in self.senses.iter_mut().filter(|(entry, _)| entry.image.is_some()) {
             match observation.get(entry.key) {
                 Some(image) => rows.extend(image),
-                None => rows.extend(viewer.draw(env, entry.key, side, side)?.into()),
+                None => {
+                    let [width, height] = sizes[eye_of(entry)];
+                    rows.extend(viewer.draw(env, entry.key, width, height)?.into());
+                }
             }
         }
         Ok(())
@@ -246,13 +249,14 @@ impl Replay {
 
     /// Writes what the eyes saw: the colours, then what else each of them observed.
     fn write_eyes(&self, npz: &mut NpzWriter) -> Result<(), NpzError> {
-        let (k, side) = (self.eye_steps.len(), self.eye_size);
+        let k = self.eye_steps.len();
         let images = |chosen: &dyn Fn(Sense, VisionOutput) -> bool, npz: &mut NpzWriter| {
             self.senses
                 .iter()
                 .try_for_each(|(entry, rows)| match (entry.sense, entry.image) {
                     (Some(eye), Some(image)) if chosen(eye, image) => {
-                        let shape = [k, side, side, 3];
+                        let [width, height] = self.eye_sizes[eye_of(entry)];
+                        let shape = [k, height, width, 3];
                         let dimensions = if image == VisionOutput::Rgb { 4 } else { 3 };
                         add(npz, entry.key, &shape[..dimensions], rows.values())
                     }
@@ -326,4 +330,9 @@ impl Replay {
         let written = lines.and_then(|lines| replace_file(&path, &lines));
         written.map_err(write_error(&path))
     }
+}
+
+/// Returns whose image an entry is: 0 for the left eye, 1 for the right.
+fn eye_of(entry: &ObservationEntry) -> usize {
+    entry.sense.and_then(Sense::eye).unwrap_or_default()
 }

@@ -7,6 +7,7 @@ mod lazy;
 mod rates;
 #[cfg(feature = "npz")]
 mod readers;
+mod sizes;
 mod skin;
 mod transforms;
 

@@ -358,6 +358,13 @@ impl Core {
         place.map_err(|e| js::env_error(&e))
     }
 
+    /// Returns width and height of what the left eye sees, and of what the right one sees, pixels.
+    #[wasm_bindgen(js_name = eyeSizes)]
+    pub fn eye_sizes(&self) -> Vec<u32> {
+        let sizes = self.env.config().eye_sizes();
+        sizes.into_iter().flatten().map(|pixels| pixels as u32).collect()
+    }
+
     /// Returns the checksum of positions, velocities and senses, as `examples/checksum` prints it.
     pub fn checksum(&self) -> String {
         format!("{:016x}", fold::bits(&self.env))

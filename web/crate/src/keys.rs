@@ -23,7 +23,9 @@ pub fn values(config: &Config) -> JsValue {
 fn describe(key: &Key) -> JsValue {
     let (kind, options, min, max) = match key.kind {
         KeyKind::Bool => ("boolean", JsValue::NULL, JsValue::NULL, JsValue::NULL),
-        KeyKind::Whole { min, max } => ("integer", JsValue::NULL, (min as f64).into(), (max as f64).into()),
+        KeyKind::Whole { min, max } | KeyKind::NoneOrWhole { min, max } => {
+            ("integer", JsValue::NULL, (min as f64).into(), (max as f64).into())
+        }
         KeyKind::ZeroOrAtLeast(least) => ("number", JsValue::NULL, least.into(), JsValue::NULL),
         KeyKind::Number { min, max } | KeyKind::NoneOr { min, max } => {
             ("number", JsValue::NULL, min.into(), max.into())

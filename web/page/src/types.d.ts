@@ -120,10 +120,10 @@ export interface Score {
   kit: [number, number, number, number] | null;
 }
 
-/** What the eyes notice: left and right picture, RGBA, and how many seconds ago it was before them. */
+/** What the eyes notice: left and right picture, RGBA, width and height of each, and how many seconds ago it was before them. */
 export interface Glance {
   pixels: Uint8ClampedArray<ArrayBuffer>;
-  side: number;
+  sizes: [[number, number], [number, number]];
   late: number;
 }
 

@@ -158,8 +158,9 @@ test("eyes mature: acuity and foveation show in their pictures", async () => {
     await tab(page, "Watch");
     await steps(page, 1);
     const seen = await look(async () => mimo.world.ask("eyes"));
+    const [[width, height]] = seen.sizes;
     let sum = 0;
-    for (let i = 4; i < 4 * seen.side ** 2; i++) if (i % (4 * seen.side) > 3) sum += (seen.pixels[i] - seen.pixels[i - 4]) ** 2;
+    for (let i = 4; i < 4 * width * height; i++) if (i % (4 * width) > 3) sum += (seen.pixels[i] - seen.pixels[i - 4]) ** 2;
     await tab(page, "Setup");
     return sum;
   };
@@ -190,6 +191,20 @@ test("eyes mature: acuity and foveation show in their pictures", async () => {
   await until(page, () => mimo.scene.settings.age === null);
   await page.getByRole("group", { name: "Scene" }).getByLabel("Crib").check({ force: true });
   await until(page, () => mimo.scene.settings.scene === "crib");
+});
+
+test("each eye has its own width, height and field of view", async () => {
+  await page.evaluate(() => mimo.change({ vision_width: 48, vision_height: 32, vision_height_left: 24, vision_fovy_right: 100 }));
+  await tab(page, "Watch");
+  await steps(page, 1);
+  const shown = () => page.evaluate(() => [...document.querySelectorAll("section:not([hidden]) .eyes canvas")].map((c) => [c.width, c.height, c.clientWidth / c.clientHeight]));
+  await until(page, () => document.querySelector("section:not([hidden]) .eyes canvas").width === 48);
+  const [right, left] = await shown();
+  assert.deepEqual([right.slice(0, 2), left.slice(0, 2)], [[48, 32], [48, 24]]);
+  assert.ok(Math.abs(right[2] - 1.5) < 0.05 && Math.abs(left[2] - 2) < 0.05, `${right}, ${left}: pixels are square`);
+  await tab(page, "Setup");
+  await page.evaluate(() => mimo.change({ vision_width: null, vision_height: null, vision_height_left: null, vision_fovy_right: null }));
+  await until(page, () => mimo.scene.settings.vision_width === null);
 });
 
 test("senses and movements come late", async () => {

@@ -23,13 +23,14 @@ function eyes(app, event, title) {
     return { canvas, figure: el("figure", {}, canvas, el("figcaption", {}, `${capital(side)} eye`)) };
   });
   const note = el("p", { className: "soft small" });
-  app.on(event, (/** @type {import("../types").Glance} */ { pixels, side, late }) => {
+  app.on(event, (/** @type {import("../types").Glance} */ { pixels, sizes, late }) => {
     say(note, [optics(event === "eyes" ? app.state.settings : (app.second.scene?.settings ?? {}), late), ...(plain(pixels) ? ["Nothing in sight but a plain surface, as the ceiling over the crib is."] : [])].filter(Boolean).join(". "));
-    const size = 4 * side * side;
+    const [left, right] = sizes.map(([width, height]) => 4 * width * height);
+    const pictures = [pixels.subarray(left, left + right), pixels.subarray(0, left)];
     sides.forEach(({ canvas }, i) => {
-      if (canvas.width !== side) canvas.width = canvas.height = side;
-      const start = size * (1 - i);
-      canvas.getContext("2d")?.putImageData(new ImageData(pixels.subarray(start, start + size), side), 0, 0);
+      const [width, height] = sizes[1 - i];
+      if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+      canvas.getContext("2d")?.putImageData(new ImageData(pictures[i], width), 0, 0);
     });
   });
   const section = card(title, el("div", { className: "eyes" }, ...sides.map((s) => s.figure)), note);

@@ -185,7 +185,7 @@ export class PageEnv {
    * @returns {import("../types").Glance}
    */
   eyes() {
-    return { side: Number(this.settings.vision_resolution), ...this.glances.take(this.time, this.env.lookThroughEyes().slice()) };
+    return { sizes: this.env.eyeSizes, ...this.glances.take(this.time, this.env.lookThroughEyes().slice()) };
   }
 
   /** @returns {boolean[]} of all joints */
