@@ -256,6 +256,12 @@ class Env:
         """Goes back to a snapshot of this environment, or of another of the same configuration and scene."""
     def resume(self, snapshot: bytes) -> dict[str, _Array]:
         """Goes back to a snapshot, with touch and images computed; returns the observation."""
+    def swap_facial_expression(self, expression: str) -> None:
+        """Lets MIMo make another face, in all that is drawn from now on.
+
+        Raises:
+            ValueError: There is no such face.
+        """
     def model_array(self, name: str) -> _Array:
         """Returns an array of the model by MuJoCo's name, with what was changed, or an option: ``opt.gravity``."""
     def change_model(self, changes: dict[str, _Array]) -> None:

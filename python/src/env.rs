@@ -1,5 +1,6 @@
 //! One environment.
 
+use babybench::config::FacialExpression;
 use babybench::env::{OtherInfant, Snapshot};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -389,6 +390,25 @@ impl Env {
         let inner = guard.open()?;
         detached(py, || inner.env.by_hand().resume(&snapshot).map(drop))?;
         Self::observed(py, inner)
+    }
+
+    fn swap_facial_expression(&self, py: Python<'_>, expression: &str) -> PyResult<()> {
+        let face = FacialExpression::from_name(expression).ok_or_else(|| {
+            let known = FacialExpression::NAMES.join(", ");
+            PyValueError::new_err(format!("there is no face {expression:?}; there are {known}"))
+        })?;
+        let mut guard = self.guard()?;
+        let inner = guard.open()?;
+        detached(py, || inner.env.swap_facial_expression(face))?;
+        // those so far would go on drawing the old one
+        inner.painters = Painters::default();
+        inner.blueprint = Py::new(
+            py,
+            Blueprint {
+                inner: inner.env.blueprint().clone(),
+            },
+        )?;
+        Ok(())
     }
 
     fn model_array<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {

@@ -6,6 +6,7 @@ import pickle
 from pathlib import Path
 
 import gymnasium as gym
+import numpy as np
 import pytest
 from kit_scripts import CONFIG, Make, steps
 from mimoEnv.babybench import BabyBenchEnv
@@ -111,9 +112,6 @@ def test_parameters_that_the_engine_does_not_have_are_refused() -> None:
         )
     with pytest.raises(ValueError, match="eye_left and eye_right"):
         BabyBenchEnv(vision_params={"eye_left": {"width": 64, "height": 32}, "corner": {"width": 64, "height": 32}})
-    with pytest.raises(NotImplementedError, match="face"):
-        BabyBenchEnv().swap_facial_expression("happy")
-
 
 
 def test_each_eye_has_its_own_width_and_height() -> None:
@@ -122,3 +120,24 @@ def test_each_eye_has_its_own_width_and_height() -> None:
     assert (seen["eye_left"].shape, seen["eye_right"].shape) == ((16, 48, 3), (24, 8, 3))
     assert env.observation_space["eye_left"].shape == (16, 48, 3)
     env.close()
+
+
+def test_a_face_is_seen_and_changes_nothing_else() -> None:
+    env, other = BabyBenchEnv(), BabyBenchEnv()
+    for each in (env, other):
+        each.reset(seed=3)
+        each.step(np.full(each.action_space.shape, 0.2))
+    pictures = []
+    for face in ("happy", "default", "happy", "scared"):
+        env.swap_facial_expression(face)
+        pictures.append(env.mujoco_renderer.render("rgb_array", camera_name="closeup"))
+    happy, default, again, scared = pictures
+    np.testing.assert_array_equal(happy, again)
+    for one, other_face in ((happy, default), (happy, scared), (default, scared)):
+        assert (one != other_face).any()
+    for _ in range(3):
+        mine, others = (each.step(np.full(each.action_space.shape, -0.1))[0]["observation"] for each in (env, other))
+        np.testing.assert_array_equal(mine, others)
+    with pytest.raises(AssertionError, match="bored is not a valid"):
+        env.swap_facial_expression("bored")
+    env.close(), other.close()

@@ -217,11 +217,11 @@ class MIMoEnv(SensingEnv):
         return np.concatenate([engine.state_array("qpos"), engine.state_array("qvel")])
 
     def swap_facial_expression(self, emotion: str) -> None:
-        """Refuses: the engine draws the default face."""
-        raise NotImplementedError(
-            f"facial expression {emotion!r}: the engine draws MIMo's default face here; "
-            "babybench.make(...).swap_facial_expression and the key facial_expression change it"
-        )
+        """Lets MIMo make another face, one of :attr:`facial_expressions`, in all that is drawn from now on."""
+        assert emotion in self.facial_expressions, f"{emotion} is not a valid facial expression!"
+        self._core.pull()
+        self._core.engine.swap_facial_expression(emotion)
+        self._core.changed()  # poses and contacts are those of the state now, no longer of the last step's start
 
     # --- construction ---
 
