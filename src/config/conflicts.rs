@@ -1,6 +1,8 @@
 //! Values of the configuration that exclude each other.
 
-use super::{Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults, table};
+use super::{
+    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults, table,
+};
 
 /// A value that another one excludes: key, value, and why.
 pub(super) type Conflict = (&'static str, String, String);
@@ -32,8 +34,8 @@ struct Shaping {
     reason: &'static str,
 }
 
-/// The keys that shape senses that can be off.
-const SHAPING: [Shaping; 5] = [
+/// The keys that shape senses that can be off, or motors.
+const SHAPING: [Shaping; 6] = [
     Shaping {
         off: |c| !c.vision_active,
         keys: &[
@@ -79,6 +81,11 @@ const SHAPING: [Shaping; 5] = [
         off: |c| !c.vestibular_active,
         keys: &["noise_vestibular", "delay_vestibular"],
         reason: "it shapes the sense of balance, which is off; set `vestibular_active: true`",
+    },
+    Shaping {
+        off: |c| c.actuation_model == ActuationModel::Positional,
+        keys: &["noise_motor"],
+        reason: "it grows with the effort, and actions of `actuation_model: positional` are angles; choose spring_damper or muscle",
     },
     Shaping {
         off: |c| !c.pain_active,

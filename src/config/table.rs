@@ -142,11 +142,12 @@ config! {
         }
     }
     "Noise" {
-        @group noise: NoiseLevels, "Noise of senses (`noise_touch` ...).", "Standard deviations of the noise of senses; 0 is none." {
+        @group noise: NoiseLevels, "Noise of senses and actions (`noise_touch` ...).", "Standard deviations of the noise of senses and actions; 0 is none." {
             proprioception as noise_proprioception: f64 = 0.0, DEVIATION, "Standard deviation of the noise of proprioception, in the unit of each number.";
             touch as noise_touch: f64 = 0.0, DEVIATION, "Standard deviation of the noise of touch sensors that feel something, N.";
             vestibular as noise_vestibular: f64 = 0.0, DEVIATION, "Standard deviation of the noise of the head's motion, m/s^2 and rad/s.";
             vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise of images, of 255.";
+            motor as noise_motor: f64 = 0.0, SHARE, "Standard deviation of the noise of actions, as a share of each number: it grows with the effort.";
         }
     }
     "Proprioception" {

@@ -62,7 +62,7 @@ fn defaults_are_those_of_the_api_page() {
                   shoulder_elbow_length=none thigh_circumference=none thumb_diameter=none upper_arm_circumference=none";
     let delays = "delay_unit=steps delay_sensory=0.0 delay_motor=0.0 delay_proprioception=none delay_touch=none \
                   delay_vestibular=none delay_vision=none noise_proprioception=0.0 noise_touch=0.0 \
-                  noise_vestibular=0.0 noise_vision=0.0";
+                  noise_vestibular=0.0 noise_vision=0.0 noise_motor=0.0";
     let eyes = "vision_width=none vision_width_left=none vision_width_right=none vision_height=none \
                 vision_height_left=none vision_height_right=none vision_fovy=none vision_fovy_left=none \
                 vision_fovy_right=none vision_acuity=false vision_acuity_left=none vision_acuity_right=none vision_foveation=0.0 \

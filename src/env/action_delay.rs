@@ -1,17 +1,21 @@
-//! The delay between an action and the actuators.
+//! The delay between an action and the actuators, and the noise of the motors.
 
 use crate::actuation::Actuation;
 use crate::config::{ActuationModel, Compat};
 use crate::env::Blueprint;
 use crate::sensors::transform::DelayLine;
+use crate::spaces::NumpyRng;
 
-/// Passes actions to the actuators, immediately or after a delay.
+/// Passes actions to the actuators, immediately or after a delay, as they are or with noise that grows with them.
 #[derive(Clone, Debug)]
 pub(super) struct ActionDelay {
     line: Option<DelayLine>,
     /// The action that comes out before the first of an episode.
     rest: Vec<f32>,
     compat: Compat,
+    /// Standard deviation of the noise, as a share of each number.
+    deviation: f64,
+    noisy: Vec<f32>,
 }
 
 impl ActionDelay {
@@ -27,6 +31,8 @@ impl ActionDelay {
                 .map(|(low, high)| if centred { low + (high - low) / 2.0 } else { 0.0 })
                 .collect(),
             compat: config.compat,
+            deviation: config.noise.motor,
+            noisy: Vec::with_capacity(if config.noise.motor > 0.0 { space.len() } else { 0 }),
         }
     }
 
@@ -36,19 +42,27 @@ impl ActionDelay {
     }
 
     /// Returns the action that reaches the actuators when `action` is given.
-    pub fn pass<'a>(&'a mut self, action: &'a [f32]) -> &'a [f32] {
-        match &mut self.line {
+    pub fn pass<'a>(&'a mut self, action: &'a [f32], rng: &mut NumpyRng) -> &'a [f32] {
+        let action = match &mut self.line {
             Some(line) => line.pass(action),
             None => action,
+        };
+        // without noise nothing is drawn: episodes stay what they are
+        if self.deviation == 0.0 {
+            return action;
         }
+        let noisy = |&a: &f32| (f64::from(a) * (1.0 + self.deviation * rng.normal())) as f32;
+        self.noisy.clear();
+        self.noisy.extend(action.iter().map(noisy));
+        &self.noisy
     }
 
     /// Returns the action that reaches the actuators when `action` is given in a reset: at once, but in the code that
     /// `compat: reference` follows as any other.
-    pub fn pass_in_reset<'a>(&'a mut self, action: &'a [f32]) -> &'a [f32] {
+    pub fn pass_in_reset<'a>(&'a mut self, action: &'a [f32], rng: &mut NumpyRng) -> &'a [f32] {
         match self.compat {
             Compat::Api => action,
-            Compat::Reference => self.pass(action),
+            Compat::Reference => self.pass(action, rng),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The actuation models, locks, and the typed view of proprioception.
 
 mod locks;
+mod noise;
 
 use std::sync::Arc;
 

@@ -89,6 +89,11 @@ fn what_shapes_a_sense_that_is_off_is_refused() {
             ":2:19: `delay_vestibular` is 2.0, but it shapes the sense of balance, which is off; set `vestibular_active: true`",
         ),
         (
+            "actuation_model: positional\nnoise_motor: 0.1",
+            ":2:14: `noise_motor` is 0.1, but it grows with the effort, and actions of `actuation_model: positional` are angles; \
+             choose spring_damper or muscle",
+        ),
+        (
             "pain_slope: 2",
             ":1:13: `pain_slope` is 2.0, but it shapes pain, which is off; set `pain_active: true`",
         ),

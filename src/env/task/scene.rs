@@ -160,7 +160,7 @@ impl<'a> TaskScene<'a> {
     /// Gives the action of a step to the actuators, through the delay before them.
     pub(in crate::env) fn pass(&mut self, action: &[f32]) {
         let action = match &mut self.delay {
-            Some(delay) => delay.pass(action),
+            Some(delay) => delay.pass(action, self.rng),
             None => action,
         };
         self.actuation.set_action(self.model, self.state, action);
@@ -169,7 +169,7 @@ impl<'a> TaskScene<'a> {
     /// Gives an action to the actuators, as resets do.
     fn give(&mut self, action: &[f32]) {
         let action = match &mut self.delay {
-            Some(delay) => delay.pass_in_reset(action),
+            Some(delay) => delay.pass_in_reset(action, self.rng),
             None => action,
         };
         self.actuation.set_action(self.model, self.state, action);

@@ -15,6 +15,7 @@ fn noise_has_its_deviation_and_the_generator_of_the_environment() {
         touch: 0.25,
         vestibular: 2.0,
         vision: 8.0,
+        motor: 0.0,
     };
     let noisy = Config { noise, ..everything() };
     let run = |config: &Config, seed: u64| {
