@@ -1,7 +1,8 @@
 //! Values of the configuration that exclude each other.
 
 use super::{
-    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults, table,
+    ActuationModel, Behavior, Compat, Config, DelayUnit, Delays, KeyValue, TouchFunction, VisionOutput, defaults,
+    latencies, table,
 };
 
 /// A value that another one excludes: key, value, and why.
@@ -193,6 +194,15 @@ impl Config {
     /// Returns the first delay that is not a number of steps, or that would remember too much.
     fn impossible_delay(&self) -> Option<Conflict> {
         let delays = &self.delays;
+        if delays.by_age && self.age.is_none() {
+            let reason = "it is that of MIMo's age, and `age` is none; set `age`, 0 to 24 months";
+            return Some(("delay_by_age", delays.by_age.to_string(), reason.to_string()));
+        }
+        if delays.by_age && delays.sensory != 0.0 {
+            let reason = "with `delay_by_age` each sense has the delay of MIMo's age; leave it out, or give `delay_touch`, `delay_vision`, .. \
+                          what they have instead";
+            return Some(("delay_sensory", format!("{:?}", delays.sensory), reason.to_string()));
+        }
         let each = [
             ("delay_sensory", Some(delays.sensory)),
             ("delay_motor", Some(delays.motor)),
@@ -221,20 +231,19 @@ impl Config {
         };
         let pixels: usize = self.eye_sizes().iter().map(|[width, height]| width * height).sum();
         let images = pixels * self.vision_outputs.iter().map(bytes).sum::<usize>();
-        let delay = delays.of(delays.vision);
-        let waiting = delays.steps(delay, self.frame_skip).saturating_mul(images);
+        let waiting = self.sense_delay(delays.vision, latencies::SIGHT).saturating_mul(images);
         (self.vision_active && waiting > MAX_WAITING).then(|| {
-            let key = if delays.vision.is_some() {
-                "delay_vision"
-            } else {
-                "delay_sensory"
+            let (key, delay) = match delays.vision {
+                Some(delay) => ("delay_vision", format!("{delay:?}")),
+                None if delays.by_age => ("delay_by_age", delays.by_age.to_string()),
+                None => ("delay_sensory", format!("{:?}", delays.sensory)),
             };
             let reason = format!(
                 "the images that wait would take {} MB, and may take {}; lower it, or `vision_resolution`",
                 waiting / 1_000_000,
                 MAX_WAITING / 1_000_000
             );
-            (key, format!("{delay:?}"), reason)
+            (key, delay, reason)
         })
     }
 }

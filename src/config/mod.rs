@@ -27,6 +27,7 @@ mod error;
 mod examples;
 mod keys;
 mod kinds;
+pub(crate) mod latencies;
 mod outputs;
 mod parts;
 mod scene;

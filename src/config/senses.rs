@@ -1,6 +1,7 @@
 //! How senses mature: delays and eyes.
 
 use super::choices::DelayUnit;
+use super::latencies::{Latency, latency};
 use super::table::{Config, Delays, EyeOptions};
 
 /// Length of a physics step of BabyBench's scenes, ms, in which delays are counted.
@@ -10,22 +11,20 @@ const PHYSICS_STEP_MS: f64 = 5.0;
 impl Delays {
     /// Returns a delay in steps of the environment, rounded to the nearest, half a step up.
     pub fn steps(&self, delay: f64, frame_skip: u32) -> usize {
-        let steps = match self.unit {
-            DelayUnit::Steps => delay,
-            DelayUnit::Ms => delay / Self::step_ms(frame_skip),
-        };
-        (steps + 0.5) as usize
+        match self.unit {
+            DelayUnit::Steps => rounded(delay),
+            DelayUnit::Ms => rounded(delay / Self::step_ms(frame_skip)),
+        }
     }
 
     /// Returns the length of a step of the environment, ms.
     pub fn step_ms(frame_skip: u32) -> f64 {
         PHYSICS_STEP_MS * f64::from(frame_skip)
     }
+}
 
-    /// Returns the delay of a sense that has one of its own, or that of all senses.
-    pub fn of(&self, own: Option<f64>) -> f64 {
-        own.unwrap_or(self.sensory)
-    }
+fn rounded(steps: f64) -> usize {
+    (steps + 0.5) as usize
 }
 
 impl Config {
@@ -36,6 +35,14 @@ impl Config {
         let right = [self.eyes.width_right, self.eyes.height_right];
         let own = [left, right];
         own.map(|[w, h]| [w.or(width), h.or(height)].map(|side| side.unwrap_or(self.vision_resolution) as usize))
+    }
+
+    /// Returns how many steps of the environment late a sense is, with its own delay, or that of MIMo's age, or that of all senses.
+    pub(crate) fn sense_delay(&self, own: Option<f64>, of_age: &Latency) -> usize {
+        match (own, self.age) {
+            (None, Some(age)) if self.delays.by_age => rounded(latency(of_age, age) / Delays::step_ms(self.frame_skip)),
+            _ => self.delays.steps(own.unwrap_or(self.delays.sensory), self.frame_skip),
+        }
     }
 
     /// Iterates over the rates of senses that have one of their own, Hz, by key.

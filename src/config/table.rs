@@ -133,6 +133,7 @@ config! {
     "Delays" {
         @group delays: Delays, "Delays of senses and actions (`delay_sensory` ...).", "Delays of senses and actions, in [`Delays::unit`]; 0 is none." {
             unit as delay_unit: DelayUnit = DelayUnit::default(), Choice(DelayUnit::NAMES), "The unit of delays; milliseconds are rounded to whole steps.";
+            by_age as delay_by_age: bool = false, Bool, "Senses that have no delay of their own have that of MIMo's age, as it was measured in infants.";
             sensory as delay_sensory: f64 = 0.0, DELAY, "The delay of senses that have none of their own.";
             motor as delay_motor: f64 = 0.0, DELAY, "The delay of actions.";
             proprioception as delay_proprioception: Option<f64> = None, OWN_DELAY, "The delay of proprioception; none for that of all senses.";

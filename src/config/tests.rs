@@ -60,7 +60,7 @@ fn defaults_are_those_of_the_api_page() {
                   forearm_circumference=none hand_breadth=none hand_length=none head_circumference=none \
                   hip_breadth=none knee_sole_length=none middle_finger_diameter=none rump_knee_length=none \
                   shoulder_elbow_length=none thigh_circumference=none thumb_diameter=none upper_arm_circumference=none";
-    let delays = "delay_unit=steps delay_sensory=0.0 delay_motor=0.0 delay_proprioception=none delay_touch=none \
+    let delays = "delay_unit=steps delay_by_age=false delay_sensory=0.0 delay_motor=0.0 delay_proprioception=none delay_touch=none \
                   delay_vestibular=none delay_vision=none noise_proprioception=0.0 noise_touch=0.0 \
                   noise_vestibular=0.0 noise_vision=0.0 noise_motor=0.0";
     let eyes = "vision_width=none vision_width_left=none vision_width_right=none vision_height=none \

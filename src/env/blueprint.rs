@@ -22,6 +22,7 @@ use crate::model::Model;
 use crate::physics::{Engine, Params};
 use crate::render::{RenderError, SharedMemory};
 use crate::sensors::SkinLayout;
+use crate::sensors::transform::Sense;
 use settled::{Settled, make_skin, task_model};
 use surface::Surface;
 
@@ -287,7 +288,16 @@ impl Blueprint {
 
     /// Returns how many steps of an environment pass until an action reaches the actuators.
     pub fn action_delay(&self) -> usize {
-        effective(&self.config, self.config.delays.motor)
+        let steps = self
+            .config
+            .delays
+            .steps(self.config.delays.motor, self.config.frame_skip);
+        effective(&self.config, steps)
+    }
+
+    /// Returns how many steps of an environment pass until the observation has what a sense reports.
+    pub fn sense_delay(&self, sense: Sense) -> usize {
+        effective(&self.config, sense.delay(&self.config))
     }
 
     /// Creates an engine of the kind that the configuration asks for.

@@ -49,7 +49,7 @@ impl Pipeline {
             chain.optics = optics.len();
             chain.stages.extend(optics.into_iter().map(Stage::configured));
         }
-        let (deviation, delay) = sense.noise_and_delay(config);
+        let deviation = sense.noise(config);
         if deviation > 0.0 {
             let noise = Noise::new(deviation);
             let magnitudes = matches!(like, Signal::Skin(values) if values.width() == 1);
@@ -59,7 +59,7 @@ impl Pipeline {
         if sense.rate(config).is_some() {
             chain.hold = Some((chain.stages.len(), Hold::new(like)));
         }
-        let steps = effective(config, config.delays.of(delay));
+        let steps = effective(config, sense.delay(config));
         if steps > 0 {
             let delay = Delay::new(steps, Delays::step_ms(config.frame_skip), like);
             chain.stages.push(Stage::configured(Box::new(delay)));
@@ -208,10 +208,9 @@ pub(super) fn take_part<'b>(bytes: &mut &'b [u8]) -> Option<&'b [u8]> {
     Some(part)
 }
 
-/// Returns how many steps later something comes that a configuration delays. The code that `compat: reference` follows
+/// Returns how many steps later something comes that a configuration delays by some steps. The code that `compat: reference` follows
 /// takes the new value out of its list one step early.
-pub(super) fn effective(config: &Config, delay: f64) -> usize {
-    let steps = config.delays.steps(delay, config.frame_skip);
+pub(super) fn effective(config: &Config, steps: usize) -> usize {
     match config.compat {
         Compat::Api => steps,
         Compat::Reference => steps.saturating_sub(1),

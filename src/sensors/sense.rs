@@ -1,6 +1,7 @@
 //! The contents of an observation: the senses, and the entries that they report. The types of observations, their arrays in vectors, their
 //! keys and types in files, in Python and in JavaScript follow from the two tables here.
 
+use crate::config::latencies;
 use crate::config::{Config, VisionOutput};
 use crate::spaces::{Dtype, Number};
 
@@ -54,16 +55,27 @@ impl Sense {
     /// The two eyes, left and right.
     pub const EYES: [Self; 2] = [Self::EyeLeft, Self::EyeRight];
 
-    /// Returns the standard deviation of the noise that a configuration gives it, and its own delay, if it has one.
-    pub(crate) fn noise_and_delay(self, config: &Config) -> (f64, Option<f64>) {
-        let (noise, delay) = (&config.noise, &config.delays);
+    /// Returns the standard deviation of the noise that a configuration gives it.
+    pub(crate) fn noise(self, config: &Config) -> f64 {
         match self {
-            Self::Proprioception => (noise.proprioception, delay.proprioception),
-            Self::Touch => (noise.touch, delay.touch),
-            Self::TouchPooled | Self::Pain => (0.0, delay.touch),
-            Self::Vestibular => (noise.vestibular, delay.vestibular),
-            Self::EyeLeft | Self::EyeRight => (noise.vision, delay.vision),
+            Self::Proprioception => config.noise.proprioception,
+            Self::Touch => config.noise.touch,
+            Self::TouchPooled | Self::Pain => 0.0,
+            Self::Vestibular => config.noise.vestibular,
+            Self::EyeLeft | Self::EyeRight => config.noise.vision,
         }
+    }
+
+    /// Returns how many steps late a configuration wants it to be.
+    pub(crate) fn delay(self, config: &Config) -> usize {
+        let delays = &config.delays;
+        let (own, of_age) = match self {
+            Self::Proprioception => (delays.proprioception, latencies::SKIN),
+            Self::Touch | Self::TouchPooled | Self::Pain => (delays.touch, latencies::SKIN),
+            Self::Vestibular => (delays.vestibular, latencies::BALANCE),
+            Self::EyeLeft | Self::EyeRight => (delays.vision, latencies::SIGHT),
+        };
+        config.sense_delay(own, of_age)
     }
 
     /// Returns whose it is: 0 for the left eye, 1 for the right; `None` for what is no eye.

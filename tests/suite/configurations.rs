@@ -281,16 +281,14 @@ fn no_key_is_without_effect() {
             _ if name.ends_with("_breadth") || name.ends_with("_length") => &["6"],
             "mocap_motion" => continue, // with a body to move, in the tests of a caregiver's hand
             "delay_unit" => continue,   // with delays, in the tests of senses
+            "delay_by_age" => &["True"],
             _ if name.starts_with("delay_") => &["2"],
             _ if name.starts_with("noise_") => &["0.1"],
             _ if name.starts_with("lock_") => &["True"],
             _ => &["False"],
         };
-        let (base, before) = if key.section == "Growth" && name != "age" {
-            (&infant, grown)
-        } else {
-            (&base, original)
-        };
+        let of_age = key.section == "Growth" && name != "age" || name == "delay_by_age";
+        let (base, before) = if of_age { (&infant, grown) } else { (&base, original) };
         for value in values {
             let config = base
                 .clone()

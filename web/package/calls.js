@@ -6,7 +6,7 @@ export const METHODS = /** @type {const} */ ([
   "drawEyes", "checksum", "view", "free",
 ]);
 export const PROPERTIES = /** @type {const} */ ([
-  "config", "yaml", "observation", "action", "info", "time", "model", "look", "skin", "proprioceptionNames", "locked", "eyeSizes",
+  "config", "yaml", "observation", "action", "info", "time", "model", "look", "skin", "proprioceptionNames", "locked", "eyeSizes", "visionDelay",
 ]);
 
 /** @typedef {typeof METHODS[number] | typeof PROPERTIES[number]} Asked */

@@ -327,6 +327,11 @@ export class Env {
     return [[width, height], [right[0], right[1]]];
   }
 
+  /** How many steps pass until the observation has what the eyes see. */
+  get visionDelay() {
+    return this.#call((core) => core.visionDelay());
+  }
+
   /** Takes a snapshot: all that decides how the run goes on, random numbers, locks and applied forces included. */
   snapshot() {
     return this.#call((core) => core.snapshot());

@@ -94,6 +94,15 @@ fn what_shapes_a_sense_that_is_off_is_refused() {
              choose spring_damper or muscle",
         ),
         (
+            "delay_by_age: yes",
+            ":1:15: `delay_by_age` is true, but it is that of MIMo's age, and `age` is none; set `age`, 0 to 24 months",
+        ),
+        (
+            "age: 2\ndelay_by_age: yes\ndelay_sensory: 4",
+            ":3:16: `delay_sensory` is 4.0, but with `delay_by_age` each sense has the delay of MIMo's age; leave it out, or give \
+             `delay_touch`, `delay_vision`, .. what they have instead",
+        ),
+        (
             "pain_slope: 2",
             ":1:13: `pain_slope` is 2.0, but it shapes pain, which is off; set `pain_active: true`",
         ),

@@ -175,6 +175,7 @@ fn every_key_takes_what_it_says_and_nothing_else() {
                 ("Pain", _) => "pain_active: true\n",
                 // only rooms of one's own have a second infant
                 (_, "learner" | "other_age") => "scene: room.xml\n",
+                (_, "delay_by_age") => "age: 3\n",
                 // 10,000 steps are too many
                 ("Delays", _) if name != "delay_unit" => "delay_unit: ms\nframe_skip: 2\nvision_resolution: 16\n",
                 _ => "",

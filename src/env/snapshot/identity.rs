@@ -115,7 +115,8 @@ const EARLY: [&str; 5] = [
 ];
 
 /// Keys that came after the first snapshots, which stay readable where these are as they are by default.
-const LATER: [&str; 9] = [
+const LATER: [&str; 10] = [
+    "delay_by_age",
     "vision_width",
     "vision_width_left",
     "vision_width_right",

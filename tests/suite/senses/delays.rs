@@ -1,8 +1,9 @@
 //! Senses that arrive late, and actions that do.
 
-use babybench::Config;
 use babybench::config::{Behavior, Compat, DelayUnit, Delays, Scene, TouchFunction};
+use babybench::sensors::transform::Sense;
 use babybench::spaces::NumpyRng;
+use babybench::{Blueprint, Config};
 
 use super::{everything, seen};
 use crate::common::*;
@@ -117,4 +118,44 @@ fn under_reference_the_actions_of_a_reset_come_out_first() {
         plain.step(&action(k - 1)).expect("no divergence");
         assert_eq!(bits(late.state()), bits(plain.state()), "step {k}");
     }
+}
+
+#[test]
+fn delays_of_an_age_are_those_of_its_latencies_and_grow_up_with_it() {
+    let of_age = |age: f64, delays: Delays| {
+        let config = Config {
+            age: Some(age),
+            delays: Delays { by_age: true, ..delays },
+            touch_scale: 4.0,
+            vision_resolution: 8,
+            ..Config::default()
+        };
+        Blueprint::new(config).expect("embedded assets")
+    };
+    let senses = [Sense::EyeLeft, Sense::Touch, Sense::Proprioception, Sense::Vestibular];
+    let steps = |blueprint: &Blueprint| senses.map(|sense| blueprint.sense_delay(sense));
+    let newborn = of_age(0.0, Delays::default());
+    // 260, 30, 30 and 13.3 ms in steps of 5 ms
+    assert_eq!(steps(&newborn), [52, 6, 6, 3]);
+    assert_eq!(newborn.action_delay(), 0);
+    assert_eq!(steps(&newborn.with_age(Some(24.0)).expect("an age")), [21, 4, 4, 3]);
+    let own = Delays {
+        touch: Some(9.0),
+        ..Delays::default()
+    };
+    assert_eq!(steps(&of_age(0.0, own)), [52, 9, 6, 3]);
+
+    // what is observed is what one with delays in numbers observes
+    let numbers = Config {
+        delays: Delays {
+            vision: Some(52.0),
+            touch: Some(6.0),
+            proprioception: Some(6.0),
+            vestibular: Some(3.0),
+            ..Delays::default()
+        },
+        ..newborn.config().clone()
+    };
+    let [one, other] = side_by_side(newborn.config().clone(), numbers, 70);
+    assert!(one == other && one[69] != one[0]);
 }

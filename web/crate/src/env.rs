@@ -8,6 +8,7 @@ use babybench::env::{Snapshot, ViewFrom, Viewer, draw_eyes};
 use babybench::mimo::{LockReport, LockTarget, lock_of};
 use babybench::model::JointType;
 use babybench::render::{FreeCamera, Scenery};
+use babybench::sensors::transform::Sense;
 use babybench::sensors::{ObservationEntry, Touch};
 use babybench::spaces::Values;
 use wasm_bindgen::prelude::*;
@@ -363,6 +364,12 @@ impl Core {
     pub fn eye_sizes(&self) -> Vec<u32> {
         let sizes = self.env.config().eye_sizes();
         sizes.into_iter().flatten().map(|pixels| pixels as u32).collect()
+    }
+
+    /// Returns how many steps pass until the observation has what the eyes see.
+    #[wasm_bindgen(js_name = visionDelay)]
+    pub fn vision_delay(&self) -> u32 {
+        self.env.blueprint().sense_delay(Sense::EyeLeft) as u32
     }
 
     /// Returns the checksum of positions, velocities and senses, as `examples/checksum` prints it.

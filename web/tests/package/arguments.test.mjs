@@ -157,7 +157,7 @@ test("what was freed says so, and may be disposed of twice", () => {
     const args = named.map(([name]) => /** @type {Record<string, unknown>} */ (good)[name]);
     assert.throws(() => /** @type {any} */ (env)[what](...args), { name: "FreedError", message: /environment was freed/ }, what);
   }
-  for (const property of ["observation", "info", "time", "model", "look", "skin", "locked", "eyeSizes", "proprioceptionNames", "action"]) {
+  for (const property of ["observation", "info", "time", "model", "look", "skin", "locked", "eyeSizes", "visionDelay", "proprioceptionNames", "action"]) {
     assert.throws(() => JSON.stringify(/** @type {any} */ (env)[property]), { name: "FreedError" }, property);
   }
   const blueprint = new Blueprint(settings);

@@ -218,13 +218,16 @@ test("one looks through eyes as they are, and disturbs nothing", () => {
   const seen = sharp.lookThroughEyes();
   assert.deepEqual(seen.slice(0, own.length), own, "sharp eyes see what a camera in their place sees");
   assert.notDeepEqual(blurred.lookThroughEyes().slice(0, own.length), blurred.draw("eye_left", 32, 32).slice());
-  const uneven = new Env({ ...crib, vision_active: true, vision_resolution: 16, vision_width: 24, vision_height_right: 8, vision_fovy_left: 30 });
+  assert.deepEqual([sharp, blurred].map((env) => env.visionDelay), [3, 0]);
+  sharp.free(), blurred.free();
+  const uneven = new Env({ ...crib, age: 0, delay_by_age: true, vision_active: true, vision_resolution: 16, vision_width: 24, vision_height_right: 8, vision_fovy_left: 30 });
+  assert.equal(uneven.visionDelay, 52);
   assert.deepEqual(uneven.eyeSizes, [[24, 16], [24, 8]]);
   assert.deepEqual([uneven.observation.eye_left?.length, uneven.observation.eye_right?.length], [3 * 24 * 16, 3 * 24 * 8]);
   const both = uneven.lookThroughEyes().slice();
   assert.equal(both.length, 4 * 24 * (16 + 8));
   assert.deepEqual(both.subarray(0, 4 * 24 * 16), uneven.draw("eye_left", 24, 16).slice());
-  sharp.free(), blurred.free(), uneven.free();
+  uneven.free();
 });
 
 test("a configuration goes round as text", () => {

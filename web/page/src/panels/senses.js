@@ -56,7 +56,7 @@ function eyes(app, change) {
  */
 function delays(app, change) {
   const unit = () => unitOf(app.settings, app.scene?.timestep);
-  const set = (/** @type {string} */ key, /** @type {number} */ ms) => change(() => ({ ...inMilliseconds(app.settings, app.scene?.timestep), [key]: ms }));
+  const set = (/** @type {string} */ key, /** @type {number} */ ms) => change(() => ({ ...inMilliseconds(app.settings, app.scene?.timestep), [key]: ms, ...(key === "delay_sensory" && ms > 0 && { delay_by_age: false }) }));
   const line = (/** @type {string} */ text, /** @type {string} */ key, /** @type {string} */ label) => {
     const made = slider(text, { min: 0, max: 400, step: 5, value: 0, format: (v) => `${Math.round(v)} ms`, label }, () => {});
     made.input.addEventListener("change", () => set(key, made.input.valueAsNumber));

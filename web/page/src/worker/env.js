@@ -56,7 +56,7 @@ export class PageEnv {
     const worn = this.look.drawables.reduce((sum, d) => sum + (d.worn && d.mesh ? 2 * d.mesh.position.length : 0), 0);
     this.count = { worn, drawables: this.look.drawables.length, bodies: this.bodies.length, sensors: this.skin.of.length, actions: this.actions.length, joints: this.joints.length };
     this.seconds = this.model.timestep * this.model.frame_skip;
-    this.glances = new Glances(visionDelay(this.settings, this.seconds));
+    this.glances = new Glances(this.seconds * env.visionDelay);
     this.steps = 0;
     this.ownLocks = this.locked().join();
   }
@@ -262,16 +262,6 @@ export class PageEnv {
   static keys() {
     return configKeys();
   }
-}
-
-/**
- * How late the eyes are, s.
- * @param {Settings} settings
- * @param {number} step s
- */
-function visionDelay({ delay_vision, delay_sensory, delay_unit }, step) {
-  const delay = Number(delay_vision ?? delay_sensory);
-  return step * (delay_unit === "ms" ? Math.round(delay / 1000 / step) : delay);
 }
 
 /**

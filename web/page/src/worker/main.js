@@ -87,7 +87,7 @@ function build(d) {
 async function pair(beside, d) {
   const { age, policy, sensory, motor } = /** @type {import("../types").Twin} */ (d.twin);
   const { settings, seconds, assets } = beside.env;
-  const own = { ...settings, ...inMilliseconds(settings, seconds), age, delay_sensory: sensory, delay_motor: motor };
+  const own = { ...settings, ...inMilliseconds(settings, seconds), age, delay_by_age: settings.delay_by_age && !sensory, delay_sensory: sensory, delay_motor: motor };
   const env = build({ ...d, settings: own, assets, snapshot: d.second });
   const to = { frame: (/** @type {ArrayBuffer} */ frame, /** @type {unknown} */ moment) => post({ frame, moment, second: true }, [frame]), event: (/** @type {string} */ name, /** @type {any} */ data) => name === "episode" && event(name, { ...data, second: true }), fail: stopped };
   const world = new LiveWorld(env, { ...d, policy }, to, beside.clock);
