@@ -62,6 +62,8 @@ pub struct MeshHull {
     pub edge: Vec<u32>,
     /// Vertices of the mesh at the corners of each triangle of the hull, counterclockwise from outside.
     pub face: Vec<[u32; 3]>,
+    /// The place of each corner in the mesh, m, and a number that fills it up to four.
+    point: Vec<[f32; 4]>,
 }
 
 /// The polygons of a hull, or of a mesh without one, in MuJoCo's order: its triangles, joined where they are on one plane.
@@ -152,7 +154,17 @@ impl MeshHull {
             edge: edges.iter().map(|edge| edge[1]).collect(),
             vert,
             face,
+            point: Vec::new(),
         }
+    }
+
+    /// Notes where the corners are, given the vertices of the mesh.
+    pub(crate) fn place(&mut self, vert: &[[f32; 3]]) {
+        let point = |&vertex: &u32| {
+            let [x, y, z] = vert[vertex as usize];
+            [x, y, z, 0.0]
+        };
+        self.point = self.vert.iter().map(point).collect();
     }
 
     /// Takes corners with their edges and the triangles in the order in which they were found. `None` unless every edge of a
@@ -183,7 +195,7 @@ impl MeshHull {
             vert,
             edge_adr,
             edge,
-            face: plain.face,
+            ..plain
         })
     }
 
@@ -191,5 +203,11 @@ impl MeshHull {
     #[inline(always)]
     pub(crate) fn neighbours(&self, corner: usize) -> &[u32] {
         slice(&self.edge_adr, &self.edge, corner)
+    }
+
+    /// Returns where the corners are, m, each with a number that fills it up to four.
+    #[inline(always)]
+    pub(crate) fn points(&self) -> &[[f32; 4]] {
+        &self.point
     }
 }

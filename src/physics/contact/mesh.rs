@@ -65,12 +65,7 @@ impl<'a> MeshShape<'a> {
         let mut highest = f64::from(-f32::MAX);
         loop {
             let from = best;
-            for &corner in hull.neighbours(from) {
-                let h = height(dir, self.mesh.vert[hull.vert[corner as usize] as usize]);
-                if h > highest {
-                    (highest, best) = (h, corner as usize);
-                }
-            }
+            (best, highest) = higher(hull, from, dir, highest);
             if best == from {
                 break;
             }
@@ -78,6 +73,33 @@ impl<'a> MeshShape<'a> {
         self.last.set(Some(best));
         hull.vert[best] as usize
     }
+}
+
+/// Returns the highest neighbour of a corner along a direction with its height, the first of several, or the corner and `highest` if
+/// none is higher than that.
+#[inline(always)]
+fn higher(hull: &MeshHull, from: usize, dir: Vec3, mut highest: f64) -> (usize, f64) {
+    let (mut best, points) = (from as u32, hull.points());
+    let at = |corner: u32| {
+        let [x, y, z, _] = points[corner as usize];
+        height(dir, [x, y, z])
+    };
+    let (fours, rest) = hull.neighbours(from).as_chunks::<4>();
+    for corners in fours {
+        let heights = corners.map(at);
+        // by selection, as no branch could be foretold; of equal ones the first stays
+        let higher = |a: (f64, u32), b: (f64, u32)| if b.0 > a.0 { b } else { a };
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| (heights[k], corners[k]));
+        let top = higher(higher(a, b), higher(c, d));
+        (highest, best) = higher((highest, best), top);
+    }
+    for &corner in rest {
+        let h = at(corner);
+        if h > highest {
+            (highest, best) = (h, corner);
+        }
+    }
+    (best as usize, highest)
 }
 
 impl Support for MeshShape<'_> {
@@ -103,12 +125,7 @@ fn farthest(mesh: &Mesh, dir: Vec3) -> (Option<usize>, usize) {
         let (mut best, mut highest) = (0, at(0));
         loop {
             let before = highest;
-            for &corner in hull.neighbours(best) {
-                let h = at(corner as usize);
-                if h > highest {
-                    (highest, best) = (h, corner as usize);
-                }
-            }
+            (best, highest) = higher(hull, best, dir, highest);
             if highest == before {
                 return (Some(best), hull.vert[best] as usize);
             }

@@ -105,7 +105,7 @@ fn compile(
     if mesh.inertia == MeshInertia::Exact {
         normals::check_orientation(&vert, &face)?;
     }
-    let hull = (touches || face.is_empty() || mesh.inertia == MeshInertia::Convex)
+    let mut hull = (touches || face.is_empty() || mesh.inertia == MeshInertia::Convex)
         .then(|| hull(&vert, usize::try_from(mesh.maxhullvert).ok()))
         .transpose()?;
     if let Some(hull) = hull.as_ref().filter(|_| face.is_empty()) {
@@ -140,6 +140,9 @@ fn compile(
     let solid = Solid::of(&mut vert, &face, counted, mesh.inertia, density)?;
     let bounds = turn(&mut vert, &mut normal, solid.quat);
     polygons::turn(&mut polygons, &vert);
+    if let Some(hull) = &mut hull {
+        hull.place(&vert);
+    }
     Ok(model::Mesh {
         name: String::new(),
         vert,
