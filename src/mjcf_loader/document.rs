@@ -67,6 +67,7 @@ table! {
     /// `<geom>`.
     element Geom {
         also within: Option<usize> = None;
+        also left_out: bool = false;
         "name" name: String = String::new(), TEXT, own, "Name.";
         "type" kind: GeomType = GeomType::Sphere, SHAPES, "Shape.";
         "size" size: Vec3 = [0.0; 3], some(1, 3, NonNegative), "Size, m: radius, half lengths.";

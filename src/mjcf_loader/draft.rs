@@ -113,7 +113,8 @@ impl Draft {
     /// # Errors
     /// As [`super::load`]; an element at fault is named with its place in the text.
     pub fn compile(self, source: &dyn AssetSource) -> Result<Spec, LoadError> {
-        let Self { tree, document, .. } = self;
+        let Self { tree, mut document, .. } = self;
+        compile::leave_out(&tree, &mut document)?;
         let (arrays, bodies) = compile::compile(&tree, &document, source)?;
         let places = Places {
             bodies,

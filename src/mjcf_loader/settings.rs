@@ -35,9 +35,9 @@ table! {
         "fitaabb" fitaabb: bool = false, FLAG, "Whether shapes are fitted to the box around a mesh; else to that of the same inertia.";
         "strippath" strippath: bool = false, FLAG, "Whether directories in the names of files are dropped.";
         "fusestatic" fusestatic: bool = false, FLAG, "Whether bodies without joints are fused with what carries them, where nothing in the document may name them: no contact, equality, tendon, actuator, sensor, tuple or skin, no camera and no light.";
+        "discardvisual" discardvisual: bool = false, FLAG, "Whether what is only drawn is left out: textures, materials, geoms that collide by no mask and that nothing names (they still weigh), and meshes of none.";
         check "coordinate", Kind::Word(&["local"]), "Frame of positions; only the parent's.";
         check "usethread", FLAG, "How MuJoCo compiles meshes. Ignored.";
-        check "discardvisual", Kind::Word(&["false"]), "Whether MuJoCo leaves out what is only drawn; it stays.";
     }
 }
 

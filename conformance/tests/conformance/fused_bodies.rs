@@ -1,10 +1,11 @@
 //! `fusestatic`: bodies without joints become part of what carries them, beside MuJoCo.
 
-use conformance::differential::compare::{Sides, Stepped, Taken};
-use conformance::differential::state::Recipe;
+use conformance::differential::compare::{Sides, Taken};
 use conformance::mujoco::{MUJOCO, needed};
 use testkit::harness::Trial;
 use testkit::trials;
+
+use crate::agreement::agrees;
 
 pub fn trials() -> Vec<Trial> {
     trials![needs MUJOCO: bodies_are_fused_as_in_mujoco, what_vanishes_is_checked_as_in_mujoco]
@@ -58,17 +59,7 @@ fn bodies_are_fused_as_in_mujoco() {
             _ => panic!("one side refuses {text}"),
         };
         assert_eq!(sides.model.nbody(), bodies, "{rest}");
-        for measured in sides.arrays() {
-            assert!(measured.agrees(), "{rest}: {measured:?}");
-        }
-        for seed in 0..20 {
-            let Stepped::Compared { measured, .. } = sides.step(&Recipe::new(seed)) else {
-                panic!("{rest}: state {seed} is not compared");
-            };
-            measured
-                .iter()
-                .for_each(|measured| assert!(measured.agrees(), "{rest}: state {seed}, {measured:?}"));
-        }
+        agrees(&mut sides, rest);
     }
 }
 

@@ -8,7 +8,7 @@ use super::geom::{check_size, compile_geom, place};
 use super::geometry::{Solid, merge, orientation, principal};
 use super::joint::compile_joints;
 use crate::math::{MINVAL, QUAT_ID, Quat, Vec3, add, quat_rotate};
-use crate::mjcf_loader::document::{Body, BodyFrame, Copied, Document, Frame, Orientation, Site, Tri};
+use crate::mjcf_loader::document::{Body, BodyFrame, Copied, Document, Frame, Geom, Orientation, Site, Tri};
 use crate::mjcf_loader::error::LoadError;
 use crate::mjcf_loader::settings::single;
 use crate::model::Arrays;
@@ -167,16 +167,39 @@ fn compile_geoms(
     for geom in &body.geoms {
         let limit = context.tree.limits.geoms;
         context.within(geom.at, "geoms", limit, arrays.geom_name.len() + 1)?;
-        let solid = compile_geom(context, geom, id, ids, arrays)?;
+        let solid = if geom.left_out {
+            weigh(context, geom, id, ids, arrays)?
+        } else {
+            compile_geom(context, geom, id, ids, arrays)?
+        };
         // the others are only drawn, or only collide
         let [lowest, highest] = context.compiler(body.at).inertiagrouprange;
         if (lowest..=highest).contains(&(geom.group as f64)) {
             solids.push(solid);
         }
         let user = user.of(context, geom.at, &geom.user)?;
-        arrays.geom_user.push(user);
+        if !geom.left_out {
+            arrays.geom_user.push(user);
+        }
     }
     Ok(solids)
+}
+
+/// Compiles a geom that is left out, for what it weighs and for the errors that are in it.
+fn weigh(context: &Context, geom: &Geom, body: usize, ids: &Ids, arrays: &mut Arrays) -> Result<Solid, LoadError> {
+    let mut aside = Arrays::without_elements(
+        String::new(),
+        arrays.opt.clone(),
+        arrays.vis.clone(),
+        arrays.stat.clone(),
+    );
+    // all that a geom depends on; a mesh is moved for those that follow, too
+    aside.meshes = std::mem::take(&mut arrays.meshes);
+    aside.hfields = std::mem::take(&mut arrays.hfields);
+    aside.body_weldid = std::mem::take(&mut arrays.body_weldid);
+    let solid = compile_geom(context, geom, body, ids, &mut aside);
+    (arrays.meshes, arrays.hfields, arrays.body_weldid) = (aside.meshes, aside.hfields, aside.body_weldid);
+    solid
 }
 
 /// Returns mass and inertia of a body, `own` of the document: explicit, else from its geoms, else none, as the world has.

@@ -256,7 +256,8 @@ impl Ids {
         check_unreferenced(tree, document)?;
         let bodies = &document.bodies;
         let joints = bodies.iter().flat_map(|b| &b.joints).map(|j| (j.at, &j.name));
-        let geoms = bodies.iter().flat_map(|b| &b.geoms).map(|g| (g.at, &g.name));
+        let geoms = bodies.iter().flat_map(|b| &b.geoms).filter(|g| !g.left_out);
+        let geoms = geoms.map(|g| (g.at, &g.name));
         let sites = bodies.iter().flat_map(|b| &b.sites).map(|s| (s.at, &s.name));
         let cameras = bodies.iter().flat_map(|b| &b.cameras).map(|c| (c.at, &c.name));
         let hfield_names = document

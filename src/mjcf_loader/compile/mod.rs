@@ -7,6 +7,7 @@ mod camera;
 mod constraint;
 mod context;
 mod custom;
+mod discard;
 mod equality;
 mod fluid;
 mod fuse;
@@ -22,6 +23,7 @@ mod surface;
 mod tendon;
 
 use context::{Context, Ids, User};
+pub(super) use discard::leave_out;
 pub(crate) use geometry::bounding_radius;
 pub(super) use geometry::{frame_to_quat, normalize, volume};
 pub(super) use mesh::stem;
@@ -72,6 +74,9 @@ pub(super) fn compile(
     arrays.hfields = hfield::compile_hfields(&context, document, source)?;
     let bodies = body::compile(&context, document, &ids, &mut arrays)?;
     same_frames(&mut arrays);
+    if context.settings().discardvisual {
+        discard::drop_meshes(&mut arrays);
+    }
     constraint::compile_contacts(&context, document, &ids, &mut arrays)?;
     for equality in &document.equalities {
         equality::compile_equality(&context, equality, &ids, &mut arrays)?;

@@ -200,3 +200,39 @@ fn lights_follow_and_cameras_carry_numbers() {
         "mujoco/visual/rgba: unknown attribute \"sky\"",
     );
 }
+
+#[test]
+fn what_is_only_drawn_is_left_out_and_still_weighs() {
+    let world = "<asset><texture name='t' type='2d' file='not_there.png'/><material name='m' texture='t'/></asset>\
+        <worldbody><body><freejoint/><geom name='a' size='.1' material='m'/>\
+        <geom name='drawn' size='.2' contype='0' conaffinity='0'/><geom size='.3' contype='0'/></body></worldbody>";
+    let load = |compiler: &str| {
+        let text = format!(
+            "<mujoco>{compiler}{}</mujoco>",
+            world.replace(" file='not_there.png'", " builtin='flat' width='4' height='4'")
+        );
+        load_str(&text, "m.xml", &source(&[])).unwrap().arrays
+    };
+    let (all, left) = (load(""), load("<compiler discardvisual='true'/>"));
+    assert_eq!((all.geom_name.len(), left.geom_name.len()), (3, 2));
+    assert_eq!(
+        (left.materials.len(), left.textures.len(), left.geom_matid[0]),
+        (0, 0, None)
+    );
+    assert_eq!((left.body_mass, left.body_inertia), (all.body_mass, all.body_inertia));
+
+    let left_out = format!("<compiler discardvisual='true'/>{world}");
+    check(&left_out, "");
+    check(
+        &format!(
+            "{left_out}<sensor><framepos objtype='body' objname='world' reftype='geom' refname='drawn'/></sensor>"
+        ),
+        "mujoco/sensor/framepos: discardvisual=\"true\" leaves out geoms in front of the one to which this sensor refers, of which \
+         MuJoCo loses count: refer to a site or a body, or leave discardvisual out",
+    );
+    check(
+        &format!("{left_out}<worldbody><site material='m'/></worldbody>"),
+        "mujoco/worldbody/site: discardvisual=\"true\" leaves out all materials, and MuJoCo then finds none but those of geoms: remove \
+         this material",
+    );
+}

@@ -29,7 +29,7 @@ pub(super) const COMPILER: &[Rule] = &[
     ("usethread", Nothing),
     // without effect beside actuators, sensors and the like, which these documents have; fused_bodies.rs has others
     ("fusestatic", Nothing),
-    ("discardvisual", Nothing),
+    ("discardvisual", Word(0.08)),
     ("alignfree", Word(0.2)),
     ("coordinate", Nothing),
 ];
