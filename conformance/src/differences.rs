@@ -5,9 +5,21 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use conformance::differential::reduce::reduce;
-use conformance::differential::{processes, write_finding};
+use conformance::differential::{in_child, run_in_processes, write_finding};
 use conformance::mujoco::reference;
-use conformance::worlds::{compare_all, table};
+use conformance::worlds::{self, compare_in_processes, table};
+
+/// Makes commands that let this program compare a range of documents.
+fn child(arguments: &[&str]) -> Result<impl Fn(&Range<u64>) -> Command + Sync, String> {
+    let program = std::env::current_exe().map_err(|e| format!("this program: {e}"))?;
+    let arguments: Vec<String> = arguments.iter().map(|argument| argument.to_string()).collect();
+    Ok(move |range: &Range<u64>| {
+        let mut command = Command::new(&program);
+        command.args(&arguments);
+        command.args(["--from", &range.start.to_string(), "--to", &range.end.to_string()]);
+        command
+    })
+}
 
 /// Compares `count` documents of a seed, prints the table, and writes the smallest documents that differ into `keep`.
 ///
@@ -15,13 +27,8 @@ use conformance::worlds::{compare_all, table};
 /// MuJoCo is missing, a folder cannot be written to, the sides differ.
 pub fn print(count: u64, seed: u64, keep: Option<&Path>) -> Result<(), String> {
     let api = reference()?;
-    let program = std::env::current_exe().map_err(|e| format!("this program: {e}"))?;
-    let tally = processes::run(count, seed, |range: &Range<u64>| {
-        let mut command = Command::new(&program);
-        command.args(["differential", "--seed", &seed.to_string()]);
-        command.args(["--from", &range.start.to_string(), "--to", &range.end.to_string()]);
-        command
-    })?;
+    let seed_text = seed.to_string();
+    let tally = run_in_processes(count, child(&["differential", "--seed", &seed_text])?)?;
     println!("{count} documents of seed {seed}\n\n{tally}");
     for (k, finding) in tally.findings().into_iter().enumerate() {
         println!(
@@ -52,7 +59,19 @@ pub fn print(count: u64, seed: u64, keep: Option<&Path>) -> Result<(), String> {
 /// # Errors
 /// MuJoCo is missing, a closed output.
 pub fn print_part(seed: u64, range: Range<u64>) -> Result<(), String> {
-    processes::in_child(reference()?, seed, range)
+    in_child(reference()?, seed, range)
+}
+
+fn paths(folders: &[String]) -> Vec<PathBuf> {
+    folders.iter().map(PathBuf::from).collect()
+}
+
+/// Compares documents `range` of those under some folders for the process that started this one.
+///
+/// # Errors
+/// MuJoCo is missing, a folder cannot be read, a closed output.
+pub fn print_worlds_part(folders: &[String], range: Range<u64>) -> Result<(), String> {
+    worlds::in_child(reference()?, &paths(folders), range)
 }
 
 /// Compares all documents under some folders, prints the tables, and writes everything into `json`.
@@ -66,8 +85,10 @@ pub fn print_worlds(folders: &[String], json: Option<&Path>) -> Result<(), Strin
                 .to_owned(),
         );
     }
-    let folders: Vec<PathBuf> = folders.iter().map(PathBuf::from).collect();
-    let worlds = compare_all(reference()?, &folders)?;
+    let names: Vec<&str> = std::iter::once("worlds")
+        .chain(folders.iter().map(String::as_str))
+        .collect();
+    let worlds = compare_in_processes(&paths(folders), child(&names)?)?;
     print!("{}", table::text(&worlds));
     if let Some(file) = json {
         let text = format!("{:#}\n", table::json(&worlds));

@@ -10,6 +10,7 @@ pub mod measure;
 pub mod motion;
 pub mod mujoco;
 pub mod pictures;
+pub mod processes;
 pub mod recordings;
 pub mod reference;
 pub mod replays;

@@ -10,6 +10,7 @@ mod python;
 mod report;
 mod speed;
 
+use std::ops::Range;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -71,18 +72,14 @@ fn run(args: &[String]) -> Result<(), String> {
             )?;
         }
         "differential" => {
-            // the last two are between processes of this program, and not in its help
             let [count, seed, keep, from, to] = values(options, ["--count", "--seed", "--keep", "--from", "--to"])?;
             let (count, seed) = (
                 number("--count", count, 1000)? as u64,
                 number("--seed", seed, 1)? as u64,
             );
-            match to {
+            match part(from, to)? {
                 None => differences::print(count, seed, keep.as_ref().map(Path::new))?,
-                to => {
-                    let range = number("--from", from, 0)? as u64..number("--to", to, 0)? as u64;
-                    differences::print_part(seed, range)?;
-                }
+                Some(range) => differences::print_part(seed, range)?,
             }
         }
         "worlds" => {
@@ -91,8 +88,11 @@ fn run(args: &[String]) -> Result<(), String> {
                 .position(|option| option.starts_with("--"))
                 .unwrap_or(options.len());
             let (folders, options) = options.split_at(at);
-            let [json] = values(options, ["--json"])?;
-            differences::print_worlds(folders, json.as_ref().map(Path::new))?;
+            let [json, from, to] = values(options, ["--json", "--from", "--to"])?;
+            match part(from, to)? {
+                None => differences::print_worlds(folders, json.as_ref().map(Path::new))?,
+                Some(range) => differences::print_worlds_part(folders, range)?,
+            }
         }
         "gpu" => {
             let [environments] = values(options, ["--environments"])?;
@@ -144,6 +144,15 @@ fn speeds(filter: &str, batches: usize, pictures: Option<bool>, kit: Option<&Pat
         .canonicalize()
         .map_err(|e| format!("--kit {}: {e}", kit.display()))?;
     kit_speed::print(&kit, &python, filter)
+}
+
+/// Returns the documents of a process that another one has started, which is between processes of this program and not in its help.
+fn part(from: Option<String>, to: Option<String>) -> Result<Option<Range<u64>>, String> {
+    if from.is_none() && to.is_none() {
+        return Ok(None);
+    }
+    let (from, to) = (number("--from", from, 0)?, number("--to", to, 0)?);
+    Ok(Some(from as u64..to as u64))
 }
 
 /// Parses a number; when it is left out, returns the default.

@@ -1,15 +1,25 @@
 //! Measures of distance.
 
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// Reads a number of JSON, which has none that are not finite: they are written as `null`, and read as not a number.
+pub fn or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}
+
 /// Median, 90th percentile and maximum of a set of errors.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Summary {
     /// Number of errors.
     pub n: usize,
     /// Median.
+    #[serde(deserialize_with = "or_nan")]
     pub p50: f64,
     /// 90th percentile.
+    #[serde(deserialize_with = "or_nan")]
     pub p90: f64,
     /// Maximum.
+    #[serde(deserialize_with = "or_nan")]
     pub max: f64,
 }
 

@@ -112,7 +112,7 @@ pub(super) fn measure(model: &Model, state: &State, theirs: &Simulation) -> Vec<
         return all;
     }
     let h = model.opt.timestep;
-    let slack = Slack::new(model, theirs.full_inertia());
+    let slack = Slack::new(model, theirs);
     let qacc = acceleration(state, theirs, limit).or(slack.accelerations(&state.qacc, theirs.qacc()));
     let (agrees, alike) = (qacc.agrees(), qacc.quantity == QACC);
     all.push(qacc);

@@ -2,7 +2,7 @@
 //!
 //! Documents follow from the loader's own list of elements and attributes ([`language`]) and from a line for each of
 //! them that says how ([`rules`]), so that a new attribute is either drawn or a test fails. [`document`] puts the elements together,
-//! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. Many documents run in [`processes`] of their own. [`single`] has one
+//! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. Many documents run in [`processes`](crate::processes) of their own. [`single`] has one
 //! document for each attribute and value.
 
 pub mod compare;
@@ -12,7 +12,6 @@ pub mod language;
 mod matrix;
 pub mod measured;
 pub mod node;
-pub mod processes;
 pub mod reduce;
 pub mod rules;
 pub mod single;
@@ -23,9 +22,11 @@ pub mod table;
 pub use document::document;
 
 use std::ops::Range;
+use std::process::Command;
 
 use crate::live::parallel;
 use crate::mujoco::Mujoco;
+use crate::processes::{self, Ran, ranges};
 use compare::{Sides, Stepped, Taken, Why};
 use language::Language;
 use measured::Measured;
@@ -41,6 +42,9 @@ pub fn seed_of(version: &str) -> u64 {
     hash(0, version)
 }
 
+/// What counts as a document at which MuJoCo fell.
+const FELL: &str = "documents at which MuJoCo falls (invalid access to memory)";
+
 /// Compares documents `0..count` of a seed, in threads.
 ///
 /// # Errors
@@ -48,23 +52,44 @@ pub fn seed_of(version: &str) -> u64 {
 pub fn run(api: &'static Mujoco, seed: u64, count: u64) -> Result<Tally, String> {
     let language = Language::new()?;
     let parts = parallel(
-        &batches(count, 50),
+        &ranges(count, 50),
         || (),
-        |(), batch| {
-            let mut tally = Tally::default();
-            for k in batch.clone() {
-                one(api, &language, hash(seed, &k.to_string()), &mut tally);
-            }
-            tally
-        },
+        |(), range| Tally::of(range.clone().map(|k| numbered(api, &language, seed, k))),
     );
     Ok(Tally::of(parts))
 }
 
-/// Splits documents `0..count` into ranges: long enough for a thread to be worth its while, short enough to end together.
-fn batches(count: u64, length: u64) -> Vec<Range<u64>> {
-    let starts = (0..count).step_by(length as usize);
-    starts.map(|k| k..count.min(k + length)).collect()
+/// Compares documents `0..count` of a seed, in processes: `child` makes the command that calls [`in_child`] for a range.
+///
+/// # Errors
+/// As [`processes::run`].
+pub fn run_in_processes(count: u64, child: impl Fn(&Range<u64>) -> Command + Sync) -> Result<Tally, String> {
+    let ran = processes::run(count, 500, child)?;
+    Ok(Tally::of(ran.into_iter().map(|ran| match ran {
+        Ran::Done(tally) => tally,
+        Ran::Fell => {
+            let mut tally = Tally::default();
+            tally.count("documents");
+            tally.count(FELL);
+            tally
+        }
+    })))
+}
+
+/// Compares the documents of a range in this process, and tells the one that started it.
+///
+/// # Errors
+/// Attributes without a rule, a closed output.
+pub fn in_child(api: &'static Mujoco, seed: u64, range: Range<u64>) -> Result<(), String> {
+    let language = Language::new()?;
+    processes::in_child(range, |k| numbered(api, &language, seed, k))
+}
+
+/// Compares a document of a seed.
+fn numbered(api: &'static Mujoco, language: &Language, seed: u64, k: u64) -> Tally {
+    let mut tally = Tally::default();
+    one(api, language, hash(seed, &k.to_string()), &mut tally);
+    tally
 }
 
 /// Compares the document of a seed.

@@ -4,11 +4,13 @@
 //! curved as the inertia `M`, so accelerations `d` away from its minimum cost at least `d' M d / 2` more than that. The steps that
 //! are not taken gain less than the last one, so each solver ends within `E` of the minimum, `d' M d / 2 <= E`; by the triangle
 //! inequality two solvers are within `(sqrt(E) + sqrt(E))^2 = 4 E` of each other. This decides nothing but where accelerations are
-//! small: a relative limit asks there for more than either solver was told to find.
+//! small: a relative limit asks there for more than either solver was told to find. Nor can a solver see that a step lowers the cost by less than
+//! the rounding of the cost, a sum over the rows of constraints: where a row that moves nothing has a force of 1e17, both stop far from the minimum.
 
 use babybench::Model;
 
 use super::measured::Measured;
+use crate::mujoco::Simulation;
 
 /// Multiples of the cost at which one solver stops that two may be apart.
 const APART: f64 = 4.0;
@@ -22,10 +24,15 @@ pub struct Slack {
 }
 
 impl Slack {
-    /// Derives it from the options of a model and its inertia.
-    pub fn new(model: &Model, inertia: Vec<f64>) -> Self {
-        let cost = model.opt.tolerance * model.stat.meaninertia * model.nv.max(1) as f64;
-        Self { cost, inertia }
+    /// Derives it from the options of a model, and the inertia and forces of the state in which MuJoCo is.
+    pub fn new(model: &Model, theirs: &Simulation) -> Self {
+        let told = model.opt.tolerance * model.stat.meaninertia * model.nv.max(1) as f64;
+        let rows = theirs.efc_force().iter().zip(theirs.efc_R());
+        let whole: f64 = rows.map(|(force, r)| 0.5 * r * force * force).sum();
+        Self {
+            cost: told.max(theirs.nefc() as f64 * f64::EPSILON * whole),
+            inertia: theirs.full_inertia(),
+        }
     }
 
     /// Measures accelerations by the cost; `None` where they are further apart than the rule explains.

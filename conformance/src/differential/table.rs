@@ -68,7 +68,7 @@ impl Tally {
     }
 
     /// Puts tallies together.
-    pub fn of(parts: Vec<Self>) -> Self {
+    pub fn of(parts: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self::default();
         parts.into_iter().for_each(|part| all.append(part));
         all

@@ -3,12 +3,13 @@
 use babybench::Model;
 use babybench::physics::{Engine, State};
 use fastrand::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::differential::compare::Sides;
 use crate::differential::slack::Slack;
 use crate::live::one_step::TIGHT;
 use crate::live::speed::{copy_motion, cpu_time, quartiles};
-use crate::measure::{Summary, max_abs, relative};
+use crate::measure::{Summary, max_abs, or_nan, relative};
 
 /// Episodes from which states are taken, and states of each, one every other step.
 const EPISODES: u64 = 4;
@@ -34,33 +35,42 @@ const NUDGES: usize = 8;
 pub const LARGE: f64 = 1e-6;
 
 /// How far a rollout is from MuJoCo's.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Rollout {
     /// Largest difference of the coordinates after the last step.
+    #[serde(deserialize_with = "or_nan")]
     pub ours: f64,
     /// The same for MuJoCo from a start 1e-10 away.
+    #[serde(deserialize_with = "or_nan")]
     pub floor: f64,
 }
 
 /// Figures of a document.
+#[derive(Deserialize, Serialize)]
 pub struct Figures {
     /// Degrees of freedom.
     pub nv: usize,
-    /// The compiled array that differs most, in units of its limit, and where.
-    pub arrays: (f64, String),
+    /// How far the compiled array that differs most is apart, in units of its limit.
+    #[serde(deserialize_with = "or_nan")]
+    pub arrays: f64,
+    /// Which that is, and where.
+    pub farthest_array: String,
     /// States compared.
     pub states: usize,
     /// Contacts on average.
+    #[serde(deserialize_with = "or_nan")]
     pub contacts: f64,
     /// States in which the numbers of contacts differ.
     pub other_contacts: usize,
     /// Relative errors of the acceleration.
     pub qacc: Summary,
     /// The largest of them that neither the cost at which solvers stop ([`Slack`]) nor a spread of MuJoCo's own explains.
+    #[serde(deserialize_with = "or_nan")]
     pub unexplained: f64,
     /// A rollout; `None` where one side diverges.
     pub rollout: Option<Rollout>,
     /// CPU time of a step over MuJoCo's: median over batches.
+    #[serde(deserialize_with = "or_nan")]
     pub cpu: f64,
     /// Why our step failed, where it did.
     pub failure: Option<String>,
@@ -69,7 +79,7 @@ pub struct Figures {
 impl Figures {
     /// Tells whether both sides mean the same by the document.
     pub fn agrees(&self) -> bool {
-        self.arrays.0 <= 1.0 && self.other_contacts == 0 && self.unexplained <= LARGE && self.failure.is_none()
+        self.arrays <= 1.0 && self.other_contacts == 0 && self.unexplained <= LARGE && self.failure.is_none()
     }
 }
 
@@ -89,13 +99,14 @@ fn controls(model: &Model, rng: &mut Rng, ctrl: &mut [f64]) {
 pub fn figures(sides: &mut Sides) -> Figures {
     let model = sides.model.clone();
     let worst = sides.arrays().into_iter().map(|m| (m.error / m.limit, m.place));
-    let arrays = worst.fold(
+    let (arrays, farthest_array) = worst.fold(
         (0.0, String::new()),
         |worst, next| if next.0 > worst.0 { next } else { worst },
     );
     let mut out = Figures {
         nv: model.nv,
         arrays,
+        farthest_array,
         states: 0,
         contacts: 0.0,
         other_contacts: 0,
@@ -164,12 +175,8 @@ fn step(sides: &mut Sides, start: &State, out: &mut Figures, errors: &mut Vec<f6
         return;
     }
     // a solver that stops at a small cost leaves more undone than there is of an acceleration that is nearly zero
-    let inertia = sides.simulation().full_inertia();
-    if same
-        && Slack::new(&sides.model, inertia)
-            .accelerations(&state.qacc, &qacc)
-            .is_some()
-    {
+    let slack = Slack::new(&sides.model.clone(), sides.simulation());
+    if same && slack.accelerations(&state.qacc, &qacc).is_some() {
         return;
     }
     let (own, others) = spread(sides, start, &qacc, contacts);

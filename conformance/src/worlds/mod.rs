@@ -1,13 +1,15 @@
 //! Documents that people have, MuJoCo 3.3.0 and ours side by side.
 //!
-//! [`find`] lists the documents under some folders, [`World::compare`] puts one beside MuJoCo, and [`table`] writes what came out, for
+//! [`find`] lists the documents under some folders, [`compare_all`] puts them beside MuJoCo, and [`table`] writes what came out, for
 //! people and for programs.
 
 mod find;
 mod measure;
 pub mod table;
 
-use std::path::{Path, PathBuf};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::process::Command;
 use std::sync::Arc;
 
 use babybench::assets::FileSystem;
@@ -16,12 +18,15 @@ use babybench::physics::compile;
 
 pub use find::{Document, find};
 pub use measure::{Figures, Rollout};
+use serde::{Deserialize, Serialize};
 
 use crate::differential::compare::Sides;
 use crate::live::parallel;
 use crate::mujoco::{Mujoco, Simulation};
+use crate::processes::{self, Ran};
 
 /// Result of giving a document to both sides.
+#[derive(Deserialize, Serialize)]
 pub enum Outcome {
     /// MuJoCo refuses it, or it is a part of another document: it does not count.
     NoDocument,
@@ -31,6 +36,8 @@ pub enum Outcome {
     Refused(String),
     /// Both take it.
     Both(Box<Figures>),
+    /// MuJoCo reads or writes memory that is not its, as it loads or steps it.
+    Fell,
 }
 
 /// A document beside MuJoCo.
@@ -43,20 +50,9 @@ pub struct World {
     pub outcome: Outcome,
 }
 
-impl World {
-    /// Compares a document of a folder.
-    pub fn compare(api: &'static Mujoco, document: &Document) -> Self {
-        Self {
-            folder: document.folder.clone(),
-            path: document.path.clone(),
-            outcome: outcome(api, &document.folder, &document.path),
-        }
-    }
-}
-
-fn outcome(api: &'static Mujoco, folder: &Path, path: &str) -> Outcome {
+fn outcome(api: &'static Mujoco, Document { folder, path }: &Document) -> Outcome {
     // below a relative path MuJoCo does not find what an included document has beside it
-    let folder = &std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
+    let folder = &std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
     let ours = load(&FileSystem::new(folder), path)
         .and_then(compile)
         .map_err(|e| e.to_string());
@@ -78,7 +74,47 @@ fn outcome(api: &'static Mujoco, folder: &Path, path: &str) -> Outcome {
 /// A folder that cannot be read.
 pub fn compare_all(api: &'static Mujoco, folders: &[PathBuf]) -> Result<Vec<World>, String> {
     let documents = find(folders)?;
-    let all = parallel(&documents, || (), |(), document| World::compare(api, document));
-    let counts = |world: &World| !matches!(world.outcome, Outcome::NoDocument);
-    Ok(all.into_iter().filter(counts).collect())
+    let all = parallel(&documents, || (), |(), document| outcome(api, document));
+    Ok(counted(documents, all))
+}
+
+/// Compares all documents under some folders in other processes, so that one at which MuJoCo falls ends no others. `child` makes the command that
+/// calls [`in_child`] for a range of them.
+///
+/// # Errors
+/// A folder that cannot be read; as [`processes::run`].
+pub fn compare_in_processes(
+    folders: &[PathBuf],
+    child: impl Fn(&Range<u64>) -> Command + Sync,
+) -> Result<Vec<World>, String> {
+    let documents = find(folders)?;
+    let ran = processes::run(documents.len() as u64, 8, child)?;
+    let outcomes = ran.into_iter().map(|ran| match ran {
+        Ran::Done(outcome) => outcome,
+        Ran::Fell => Outcome::Fell,
+    });
+    Ok(counted(documents, outcomes))
+}
+
+/// Compares a range of the documents under some folders in this process, and tells the one that started it.
+///
+/// # Errors
+/// A folder that cannot be read, a closed output.
+pub fn in_child(api: &'static Mujoco, folders: &[PathBuf], range: Range<u64>) -> Result<(), String> {
+    let documents = find(folders)?;
+    processes::in_child(range, |k| {
+        let document = documents.get(k as usize);
+        document.map_or(Outcome::NoDocument, |document| outcome(api, document))
+    })
+}
+
+/// Puts documents and what came out together, but for those that count for neither side.
+fn counted(documents: Vec<Document>, outcomes: impl IntoIterator<Item = Outcome>) -> Vec<World> {
+    let all = documents.into_iter().zip(outcomes).map(|(document, outcome)| World {
+        folder: document.folder,
+        path: document.path,
+        outcome,
+    });
+    all.filter(|world| !matches!(world.outcome, Outcome::NoDocument))
+        .collect()
 }

@@ -30,9 +30,22 @@ fn short(value: f64) -> String {
     }
 }
 
-/// Writes the tables of totals, of documents that both take, and of reasons.
+/// Writes the tables of totals, documents at which MuJoCo falls, the tables of documents that both take, and of reasons.
 pub fn text(worlds: &[World]) -> String {
-    totals(worlds) + &taken(worlds) + &reasons(worlds)
+    totals(worlds) + &fallen(worlds) + &taken(worlds) + &reasons(worlds)
+}
+
+/// Returns the place of a document.
+fn place(world: &World) -> String {
+    format!("{}/{}", name(&world.folder), world.path)
+}
+
+fn fallen(worlds: &[World]) -> String {
+    let mut out = String::new();
+    for world in worlds.iter().filter(|world| matches!(world.outcome, Outcome::Fell)) {
+        let _ = writeln!(out, "\nMuJoCo falls (invalid access to memory): {}", place(world));
+    }
+    out
 }
 
 fn totals(worlds: &[World]) -> String {
@@ -40,7 +53,7 @@ fn totals(worlds: &[World]) -> String {
     for world in worlds {
         let counts = folders.entry(name(&world.folder)).or_default();
         match &world.outcome {
-            Outcome::NoDocument => {}
+            Outcome::NoDocument | Outcome::Fell => {}
             Outcome::OursAlone(_) => counts[3] += 1,
             Outcome::Refused(_) => counts[0] += 1,
             Outcome::Both(figures) => {
@@ -86,18 +99,9 @@ fn taken(worlds: &[World]) -> String {
     let mut notes = String::new();
     for world in worlds {
         let Outcome::Both(f) = &world.outcome else { continue };
-        let place = format!("{}/{}", name(&world.folder), world.path);
+        let place = place(world);
         let [ours, floor] = f.rollout.map_or([f64::NAN; 2], |rollout| [rollout.ours, rollout.floor]);
-        let figures = [
-            f.arrays.0,
-            f.qacc.p50,
-            f.qacc.p90,
-            f.qacc.max,
-            f.unexplained,
-            ours,
-            floor,
-        ]
-        .map(short);
+        let figures = [f.arrays, f.qacc.p50, f.qacc.p90, f.qacc.max, f.unexplained, ours, floor].map(short);
         let cpu = if f.cpu.is_nan() {
             "-".to_owned()
         } else {
@@ -112,8 +116,8 @@ fn taken(worlds: &[World]) -> String {
             f.states,
             figures.join(" | ")
         );
-        if f.arrays.0 > 1.0 {
-            let _ = writeln!(notes, "- {place}: {}", f.arrays.1);
+        if f.arrays > 1.0 {
+            let _ = writeln!(notes, "- {place}: {}", f.farthest_array);
         }
         if let Some(failure) = &f.failure {
             let _ = writeln!(notes, "- {place}: {failure}");
@@ -153,8 +157,8 @@ fn figures(f: &Figures) -> Value {
         "states": f.states,
         "contacts": number(f.contacts),
         "other_contacts": f.other_contacts,
-        "arrays": number(f.arrays.0),
-        "farthest_array": f.arrays.1,
+        "arrays": number(f.arrays),
+        "farthest_array": f.farthest_array,
         "qacc": { "p50": number(f.qacc.p50), "p90": number(f.qacc.p90), "max": number(f.qacc.max) },
         "unexplained": number(f.unexplained),
         "rollout": f.rollout.map(|rollout| json!({ "ours": number(rollout.ours), "floor": number(rollout.floor) })),
@@ -171,6 +175,7 @@ pub fn json(worlds: &[World]) -> Value {
             Outcome::OursAlone(reason) => ("ours alone", json!(reason)),
             Outcome::Refused(reason) => ("refused", json!(reason)),
             Outcome::Both(f) => ("both", figures(f)),
+            Outcome::Fell => ("MuJoCo falls", Value::Null),
         };
         json!({ "folder": name(&world.folder), "path": world.path, "outcome": outcome, "detail": detail })
     };
@@ -182,7 +187,7 @@ pub fn faults(worlds: &[World]) -> usize {
     let fault = |world: &&World| match &world.outcome {
         Outcome::OursAlone(_) => true,
         Outcome::Both(f) => !f.agrees(),
-        Outcome::NoDocument | Outcome::Refused(_) => false,
+        Outcome::NoDocument | Outcome::Refused(_) | Outcome::Fell => false,
     };
     worlds.iter().filter(fault).count()
 }
