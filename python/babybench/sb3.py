@@ -1,5 +1,5 @@
-"""Many environments at once for Stable-Baselines3: see :class:`VecEnv`."""
+"""Stable-Baselines3: :class:`VecEnv` is many environments at once, and :func:`sparse` lets PPO learn faster from a whole skin."""
 
-from babybench_core.sb3 import VecEnv
+from babybench_core.sb3 import VecEnv, sparse
 
-__all__ = ["VecEnv"]
+__all__ = ["VecEnv", "sparse"]

