@@ -77,6 +77,15 @@ def test_a_run_from_training_to_the_report(folder: Path) -> None:
     assert (folder / "room.png").read_bytes()[1:4] == b"PNG"
 
 
+def test_a_policy_that_is_an_onnx_model_is_evaluated(folder: Path) -> None:
+    policy = Path(__file__).parents[2] / "policies" / "reach.onnx"
+    (folder / "reach.yml").write_text("behavior: reach\nsave_dir: reach\n")
+    arguments = ("--config", "reach.yml", "--episodes", "3", "--no-render", "--quiet", "--policy", str(policy))
+    done = call(folder, "evaluate", *arguments)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count('"is_success"') == 3, done.stdout
+
+
 def test_a_model_is_simulated(folder: Path) -> None:
     (folder / "ball.xml").write_text(
         "<mujoco><worldbody><body pos='0 0 1'><freejoint/><geom size='.1'/></body></worldbody></mujoco>"
