@@ -62,9 +62,6 @@ pub fn deliberate(error: &LoadError) -> Option<&'static str> {
             Some("damping ratios of servos with a negative gain")
         }
         ErrorKind::Invalid("the tendon names this joint twice") => Some("tendons that name a joint twice"),
-        ErrorKind::Invalid(message) if message.contains("may touch another by convex collision") => {
-            Some("other convex collision than the default")
-        }
         ErrorKind::Invalid(message) if message.starts_with("island=") => Some("islands with conjugate gradients"),
         ErrorKind::Invalid(message) if message.starts_with("two joints of one kind along one axis") => {
             Some("joints that move a body alike")

@@ -143,7 +143,7 @@ table! {
         "sensor" sensor: bool = true, SWITCH, "Whether sensors are computed.";
         "midphase" midphase: bool = true, SWITCH, "Whether contacts of two bodies are listed by the types of the geoms; else by their ids.";
         "eulerdamp" eulerdamp: bool = true, SWITCH, "Whether Euler's method takes joint damping implicitly.";
-        "nativeccd" nativeccd: bool = true, SWITCH, "Whether convex collision is MuJoCo's own; off only in models in which it makes no difference.";
+        "nativeccd" nativeccd: bool = true, SWITCH, "Whether convex collision is by GJK and EPA, MuJoCo's own; else by Minkowski portal refinement, as in libccd.";
         "multiccd" multiccd: bool = false, SWITCH, "Whether pairs of convex collision may have several contacts.";
         "island" island: bool = false, SWITCH, "Whether islands of bodies are found one by one; on only with other solvers than conjugate gradients, where it makes no difference.";
         check "autoreset" | "energy" | "fwdinv" | "invdiscrete", Kind::Word(SWITCH.names), "What changes no motion. Ignored: pairs of geoms are found in one way, and a simulation that diverges is an error.";

@@ -167,7 +167,7 @@ pub struct Flags {
     pub midphase: bool,
     /// Implicit joint damping in Euler's method.
     pub eulerdamp: bool,
-    /// MuJoCo's own convex collision; models in which another could be seen are refused.
+    /// MuJoCo's own convex collision, by GJK and EPA; without it Minkowski portal refinement, as in libccd.
     pub nativeccd: bool,
     /// Several contacts of a convex pair; off by default.
     pub multiccd: bool,

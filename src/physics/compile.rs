@@ -2,18 +2,14 @@
 
 use crate::mjcf_loader::{LoadError, Places, Spec};
 use crate::model::{Arrays, BiasType, Constants, GainType, JointType, Model, SameFrame, SolverType};
-use crate::physics::contact::needs_convex;
 use crate::physics::dynamics::{MAX_WEIGHT, constants};
 use crate::physics::length_range;
-use crate::physics::world::ContactRules;
 
 const NO_ACCELERATION: &str =
     "the inertia at qpos0 is singular or ill-conditioned: redundant joints, or masses of extreme size or ratio";
 const NO_DAMPING: &str = "a damping ratio needs a gain that is not negative: give kv instead";
 const IDLE_MUSCLE: &str = "the muscle moves nothing at qpos0, so that scale gives no force: give force, or let its ends move against each other";
 const REDUNDANT: &str = "two joints of one kind along one axis of a body that stands alone, of which MuJoCo lets each move the whole inertia: make them one";
-const OTHER_CONVEX: &str = "a geom of it may touch another by convex collision (an ellipsoid, a mesh, or a cylinder with a capsule, a cylinder or \
-    a box), which is MuJoCo's own only: remove nativeccd=\"disable\"";
 const ISLANDS: &str = "island=\"enable\" lets conjugate gradients stop for each island apart, which is not done here: leave it out, or choose another \
     solver, with which it changes nothing";
 const NO_STATISTICS: &str = "sizes or masses are too large for the statistics of the model";
@@ -46,25 +42,10 @@ pub fn compile(spec: Spec) -> Result<Model, LoadError> {
     let constants = constants(&arrays);
     check(&arrays, &constants, &places)?;
     let model = Model::new(arrays, constants);
-    check_convex(&model, &places)?;
     if model.opt.flags.island && model.opt.solver == SolverType::Cg {
         return Err(places.body_error(0, ISLANDS));
     }
     length_range::complete(model, &lengthrange, &places)
-}
-
-/// Refuses other convex collision than MuJoCo's default where two geoms may touch whose contacts it finds.
-fn check_convex(model: &Model, places: &Places) -> Result<(), LoadError> {
-    if model.opt.flags.nativeccd {
-        return Ok(());
-    }
-    match ContactRules::new(model).find(needs_convex) {
-        Some([a, b]) => {
-            let body = model.geom_bodyid[a].max(model.geom_bodyid[b]);
-            Err(places.body_error(body, OTHER_CONVEX))
-        }
-        None => Ok(()),
-    }
 }
 
 /// Finds a body whose inertia MuJoCo takes for diagonal (`body_simple`) although two of its joints move it alike: one without
@@ -140,30 +121,6 @@ mod tests {
     use super::*;
     use crate::assets::MemoryAssets;
     use crate::mjcf_loader::load_str;
-
-    fn outcome(flag: &str, geoms: &str) -> Result<Model, String> {
-        let text = format!(
-            "<mujoco><option><flag {flag}/></option><worldbody><geom type='plane' size='1 1 1'/>{geoms}
-             <body><freejoint/><geom type='cylinder' size='.1 .1'/></body></worldbody></mujoco>"
-        );
-        let model = load_str(&text, "m.xml", &MemoryAssets::new()).and_then(compile);
-        model.map_err(|e| e.to_string())
-    }
-
-    #[test]
-    fn other_convex_collision_is_taken_where_it_makes_no_difference() {
-        const BALL: &str = "<body><freejoint/><geom size='.1'/></body>";
-        const BOX: &str = "<body><freejoint/><geom type='box' size='.1 .1 .1'/></body>";
-        const GHOST: &str = "<body><freejoint/><geom type='box' size='.1 .1 .1' contype='0' conaffinity='0'/></body>";
-        const FLAG: &str = "nativeccd='disable'";
-        for harmless in ["", BALL, GHOST] {
-            assert!(outcome(FLAG, harmless).is_ok(), "{harmless}");
-        }
-        let error = outcome(FLAG, BOX).expect_err("a box and a cylinder");
-        assert!(error.contains("may touch another by convex collision"), "{error}");
-        assert!(error.ends_with("remove nativeccd=\"disable\""), "{error}");
-        assert!(outcome("nativeccd='enable' multiccd='enable'", BOX).is_ok());
-    }
 
     #[test]
     fn islands_are_taken_where_they_make_no_difference() {

@@ -26,6 +26,7 @@ mod meanings;
 mod mutations;
 mod rapier_engine;
 mod recordings;
+mod refined_portals;
 mod render;
 #[cfg(feature = "wgpu")]
 mod render_gpu;
@@ -67,6 +68,7 @@ fn main() -> ExitCode {
         mutations::trials(),
         rapier_engine::trials(),
         recordings::trials(),
+        refined_portals::trials(),
         render::trials(),
         #[cfg(feature = "wgpu")]
         render_gpu::trials(),

@@ -1,4 +1,4 @@
-//! Pairs without a formula of their own: ellipsoids and meshes with everything but planes, capsules with cylinders, cylinders with
+//! Pairs without a formula of their own, by GJK and EPA: ellipsoids and meshes with everything but planes, capsules with cylinders, cylinders with
 //! cylinders and cylinders with boxes.
 
 use super::epa::{Overlap, epa};

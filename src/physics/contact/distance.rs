@@ -22,7 +22,7 @@ pub struct Span {
 
 /// Measures the distance of two geoms as far as it is below `most`, m; `points` is working memory. Planes have no distance from planes.
 ///
-/// Where convex collision measures it, MuJoCo has the points in the order of the types of the geoms, whichever is asked for first.
+/// Where GJK and EPA measure it, MuJoCo has the points in the order of the types of the geoms, whichever is asked for first.
 pub fn distance(
     first: &PlacedGeom,
     second: &PlacedGeom,
@@ -39,6 +39,9 @@ pub fn distance(
         |g| Ellipsoid::new(g, 0.0),
         |g| Cuboid::new(g, 0.0),
     );
+    if !options.nativeccd {
+        return of_contacts(a, b, turned, most, options, scratch, points);
+    }
     let mut find = Search {
         a,
         b,
@@ -63,11 +66,7 @@ pub fn distance(
         (Rod, Mesh) => find.whole(&rod(a), &mesh(b)?),
         (Box, Mesh) => find.whole(&cuboid(a), &mesh(b)?),
         (Mesh, Mesh) => find.whole(&mesh(a)?, &mesh(b)?),
-        _ => {
-            points.clear();
-            collide(a, b, most, options, scratch, points);
-            return nearest(points, most, if turned { -1.0 } else { 1.0 });
-        }
+        _ => return of_contacts(a, b, turned, most, options, scratch, points),
     };
     (span.dist < most).then_some(span)
 }
@@ -75,6 +74,21 @@ pub fn distance(
 /// Returns the shape of a mesh.
 fn mesh<'g>(geom: &PlacedGeom<'g>) -> Option<MeshShape<'g>> {
     geom.mesh.map(|mesh| MeshShape::new(geom, mesh, 0.0))
+}
+
+/// Measures by contacts, with a margin of all that counts.
+fn of_contacts(
+    a: &PlacedGeom,
+    b: &PlacedGeom,
+    turned: bool,
+    most: f64,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+    points: &mut Vec<ContactPoint>,
+) -> Option<Span> {
+    points.clear();
+    collide(a, b, most, options, scratch, points);
+    nearest(points, most, if turned { -1.0 } else { 1.0 })
 }
 
 /// Returns the span of the nearest of some contacts.

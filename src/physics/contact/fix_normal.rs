@@ -1,4 +1,5 @@
-//! Normals of round shapes, which prisms of a height field meet at their edges.
+//! Normals of round shapes, where those that are found have errors: prisms of a height field meet them at their edges, and MPR stops at a
+//! portal near their surface.
 
 use super::{PlacedGeom, sub};
 use crate::math::{MINVAL, Vec3, mat_t_vec, mat_vec, norm, scale, unit};
@@ -8,23 +9,38 @@ use crate::model::GeomType;
 const ITERATIONS: usize = 30;
 const TOLERANCE: f64 = 1e-6;
 
-/// Returns the normal of a contact with the second geom at its surface there, where that is round; else `normal`, which points
-/// to that geom (MuJoCo's `mjc_fixNormal`).
-pub(super) fn fixed(geom: &PlacedGeom, pos: Vec3, normal: Vec3) -> Vec3 {
-    let at = mat_t_vec(geom.mat, sub(pos, geom.pos));
-    let own = mat_t_vec(geom.mat, scale(normal, -1.0));
-    match round(geom, at, own) {
-        Some(found) => scale(mat_vec(geom.mat, unit(found).0), -1.0),
-        None => normal,
+/// Returns the normal of a contact, which points to the second geom, at the surfaces of those geoms that are round there: between both where
+/// both are; else `normal` (MuJoCo's `mjc_fixNormal`).
+pub(super) fn fixed(a: &PlacedGeom, b: &PlacedGeom, pos: Vec3, normal: Vec3) -> Vec3 {
+    match (outward(a, pos, normal), outward(b, pos, scale(normal, -1.0))) {
+        (Some(first), Some(second)) => unit(sub(first, second)).0,
+        (Some(first), None) => first,
+        (None, Some(second)) => scale(second, -1.0),
+        (None, None) => normal,
     }
 }
 
-/// Returns the outward normal near a point of a round shape in its frame, of any length.
+/// Returns the outward normal of a geom near a point where it is round; `own` is the one that was found.
+fn outward(geom: &PlacedGeom, pos: Vec3, own: Vec3) -> Option<Vec3> {
+    let at = mat_t_vec(geom.mat, sub(pos, geom.pos));
+    let found = round(geom, at, mat_t_vec(geom.mat, own))?;
+    Some(mat_vec(geom.mat, unit(found).0))
+}
+
+/// Returns the outward normal near a point of a round shape in its frame, of any length: that of an ellipsoid is a unit vector already, which
+/// another normalisation changes in its last bits.
 fn round(geom: &PlacedGeom, at: Vec3, own: Vec3) -> Option<Vec3> {
     let [a, b, _] = geom.size;
     match geom.kind {
         GeomType::Sphere => Some(at),
-        GeomType::Capsule => Some([at[0], at[1], at[2] - at[2].clamp(-b, b)]),
+        GeomType::Capsule => {
+            let z = match at[2] {
+                z if z < -b => z + b,
+                z if z > b => z - b,
+                _ => 0.0,
+            };
+            Some([at[0], at[1], z])
+        }
         GeomType::Ellipsoid if geom.size.iter().all(|&v| v >= MINVAL) => ellipsoid(at, own, geom.size),
         GeomType::Cylinder => {
             // near an end the flat side may be meant
@@ -79,7 +95,7 @@ fn inside(at: Vec3, own: Vec3, size: Vec3) -> Option<Vec3> {
     Some(normal)
 }
 
-/// Finds the nearest point of the surface by Newton's method on the multiplier.
+/// Returns the normal at the nearest point of the surface, by Newton's method on the multiplier.
 fn outside(at: Vec3, size: Vec3) -> Vec3 {
     let square = size.map(|s| s * s);
     let weighted: Vec3 = std::array::from_fn(|k| at[k] * at[k] * square[k]);
@@ -101,5 +117,5 @@ fn outside(at: Vec3, size: Vec3) -> Vec3 {
         }
         multiplier += step;
     }
-    std::array::from_fn(|k| at[k] / (square[k] + multiplier))
+    unit(std::array::from_fn(|k| at[k] / (square[k] + multiplier))).0
 }

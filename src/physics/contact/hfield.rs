@@ -4,10 +4,12 @@ use super::epa::epa;
 use super::fix_normal::fixed;
 use super::frame;
 use super::gjk::{Limits, Simplex, gjk};
-use super::mesh::{MeshReach, MeshShape};
+use super::mesh::MeshShape;
+use super::mpr;
 use super::polytope::Polytope;
 use super::support::{Ball, Capsule, Cuboid, Cylinder, Difference, Ellipsoid, Point, Segment, Support};
-use super::{BIG, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, sub};
+use super::whole::Whole;
+use super::{BIG, BareContact, ContactOptions, ContactPoint, PlacedGeom, add_scaled, dot, sub};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_t_vec, mat_vec, scale, transpose, unit};
 use crate::model::{GeomType, HField};
 
@@ -77,20 +79,33 @@ pub(super) fn hfield(
         mat: &mat,
         ..*b
     };
-    let mut under = None;
-    match local.mesh.filter(|_| local.kind == GeomType::Mesh) {
-        Some(mesh) => under = cells(field, &MeshReach::new(&local, mesh), margin),
-        None => with_shape(&local, 0.0, |bare| under = cells(field, bare.whole, margin)),
+    if local.kind == GeomType::Mesh && local.mesh.is_none() {
+        return;
     }
-    let Some(cells) = under else { return };
-    with_shape(&local, margin, |other| {
-        touch_cells(field, &cells, other, margin, options, polytope, |dist, pos, normal| {
-            let normal = mat_vec(a.mat, normal);
-            let pos = add(mat_vec(a.mat, pos), a.pos);
-            let frame = frame::from_normal(fixed(b, pos, normal));
-            out.push(ContactPoint { dist, pos, frame });
+    let bare = Whole::new(&local, 0.0, 0);
+    let Some(cells) = cells(field, &bare, margin) else {
+        return;
+    };
+    let found = |BareContact { dist, pos, normal }: BareContact| {
+        let normal = mat_vec(a.mat, normal);
+        let pos = add(mat_vec(a.mat, pos), a.pos);
+        let frame = frame::from_normal(fixed(a, b, pos, normal));
+        out.push(ContactPoint { dist, pos, frame });
+    };
+    if options.nativeccd {
+        with_shape(&local, margin, |other| {
+            let touch = |prism: &Prism| overlap(prism, other, options, polytope);
+            touch_cells(field, &cells, margin, touch, found);
         });
-    });
+    } else {
+        let other = Whole::new(&local, margin, bare.corner());
+        let limits = mpr::Limits {
+            tolerance: options.ccd_tolerance,
+            iterations: options.ccd_iterations,
+        };
+        let touch = |prism: &Prism| penetration(prism, (&other, local.pos), &limits);
+        touch_cells(field, &cells, margin, touch, found);
+    }
 }
 
 /// Calls `run` with a geom grown by half the margin.
@@ -171,15 +186,13 @@ fn cells(field: &HField, whole: &dyn Support, margin: f64) -> Option<Cells> {
     })
 }
 
-/// Calls `found` with distance, place and normal of each contact.
+/// Calls `found` with each contact; `touch` finds that with a prism.
 fn touch_cells(
     field: &HField,
     cells: &Cells,
-    other: &Other,
     margin: f64,
-    options: &ContactOptions,
-    polytope: &mut Polytope,
-    mut found: impl FnMut(f64, Vec3, Vec3),
+    mut touch: impl FnMut(&Prism) -> Option<BareContact>,
+    mut found: impl FnMut(BareContact),
 ) {
     let [x, y, top, base] = field.size;
     let (dx, dy) = (2.0 * x / (field.ncol - 1) as f64, 2.0 * y / (field.nrow - 1) as f64);
@@ -197,9 +210,8 @@ fn touch_cells(
                 if corners < 3 || prism.is_below(cells.lowest) {
                     continue;
                 }
-                if let Some((dist, first, second)) = overlap(&prism, other, options, polytope) {
-                    let normal = unit(sub(first, second)).0;
-                    found(dist, scale(add(first, second), 0.5), normal);
+                if let Some(contact) = touch(&prism) {
+                    found(contact);
                     count += 1;
                     if count == MOST {
                         return;
@@ -210,8 +222,28 @@ fn touch_cells(
     }
 }
 
+/// Finds the contact of a prism and a geom that overlap, by MPR.
+fn penetration(prism: &Prism, other: (&dyn Support, Vec3), limits: &mpr::Limits) -> Option<BareContact> {
+    let found = mpr::mpr((prism, prism.centre()), other, limits)?;
+    Some(BareContact {
+        dist: -found.depth,
+        pos: found.pos,
+        normal: found.dir,
+    })
+}
+
+/// Finds the contact of a prism and a geom that overlap, by GJK and EPA.
+fn overlap(prism: &Prism, other: &Other, options: &ContactOptions, polytope: &mut Polytope) -> Option<BareContact> {
+    let (dist, first, second) = deepest(prism, other, options, polytope)?;
+    Some(BareContact {
+        dist,
+        pos: scale(add(first, second), 0.5),
+        normal: unit(sub(first, second)).0,
+    })
+}
+
 /// Returns the distance of a prism and a geom that overlap, and the deepest point of either.
-fn overlap(
+fn deepest(
     prism: &Prism,
     other: &Other,
     options: &ContactOptions,

@@ -117,16 +117,16 @@ impl Support for MeshShape<'_> {
     }
 }
 
-/// The farthest vertex in a direction of the mesh's frame, by the search that MuJoCo uses outside of its convex routine: the
-/// corner of the hull, where there is one, and the vertex.
-fn farthest(mesh: &Mesh, dir: Vec3) -> (Option<usize>, usize) {
+/// The farthest vertex in a direction of the mesh's frame, by the search that MuJoCo uses outside of its own convex routine: the
+/// corner of the hull, where there is one, and the vertex. The search goes over the hull, however small it is, from the corner `start`.
+pub(super) fn climb_from(mesh: &Mesh, start: usize, dir: Vec3) -> (Option<usize>, usize) {
     if let Some(hull) = &mesh.hull {
-        let at = |corner: usize| height(dir, mesh.vert[hull.vert[corner] as usize]);
-        let (mut best, mut highest) = (0, at(0));
+        let mut best = start.min(hull.vert.len().saturating_sub(1));
+        let mut highest = height(dir, mesh.vert[hull.vert[best] as usize]);
         loop {
-            let before = highest;
+            let before = best;
             (best, highest) = higher(hull, best, dir, highest);
-            if highest == before {
+            if best == before {
                 return (Some(best), hull.vert[best] as usize);
             }
         }
@@ -141,33 +141,12 @@ fn farthest(mesh: &Mesh, dir: Vec3) -> (Option<usize>, usize) {
     (None, best)
 }
 
-/// A mesh as MuJoCo measures how far it reaches over a height field: by the corners of its hull, however few, which `maxhullvert` may leave
-/// out others of.
-pub(super) struct MeshReach<'a> {
-    pose: Pose<'a>,
-    mesh: &'a Mesh,
-}
-
-impl<'a> MeshReach<'a> {
-    pub(super) fn new(geom: &PlacedGeom<'a>, mesh: &'a Mesh) -> Self {
-        let pose = Pose::new(geom, 0.0);
-        MeshReach { pose, mesh }
-    }
-}
-
-impl Support for MeshReach<'_> {
-    fn support(&self, dir: Vec3) -> Vec3 {
-        let (_, vertex) = farthest(self.mesh, mat_t_vec(self.pose.mat, dir));
-        self.pose.place(self.mesh.vert[vertex].map(f64::from), dir)
-    }
-}
-
 /// Finds the contacts of a plane and a mesh: the deepest vertex, and up to two more at some distance from it, among its neighbours
 /// on the hull.
 pub(super) fn plane_mesh(a: &PlacedGeom, b: &PlacedGeom, mesh: &Mesh, margin: f64, out: &mut Vec<ContactPoint>) {
     let normal = a.axis();
     let down = mat_t_vec(b.mat, scale(normal, -1.0));
-    let (corner, deepest) = farthest(mesh, down);
+    let (corner, deepest) = climb_from(mesh, 0, down);
     let lowest = add(mat_vec(b.mat, mesh.vert[deepest].map(f64::from)), b.pos);
     let dist = dot(normal, sub(lowest, a.pos));
     if dist > margin || dist.is_nan() {

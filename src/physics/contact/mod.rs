@@ -1,7 +1,7 @@
 //! Contact geometry: where, how deep and in which direction two geoms touch.
 //!
-//! The results are those of MuJoCo 3.3.0 with its native convex collision detection, to the bit: the same contacts in
-//! the same order with the same distance, position and frame. To that end every routine keeps MuJoCo's order of
+//! The results are those of MuJoCo 3.3.0, to the bit: the same contacts in the same order with the same distance, position and frame, with
+//! its native convex collision detection and with that of libccd (`nativeccd`). To that end every routine keeps MuJoCo's order of
 //! operations and uses nothing but `+ - * /` and square roots, so the bits are also the same on every target.
 //!
 //! Conventions, for all pairs:
@@ -15,10 +15,10 @@
 //! |---|---|---|
 //! | plane with sphere, capsule, ellipsoid, cylinder, box, mesh | deepest points | up to 1, 2, 1, 4, 4, 3 |
 //! | sphere with sphere, capsule, cylinder, box | nearest points | up to 1 |
-//! | height field with everything but planes and height fields | GJK and EPA with each prism of its grid | up to 50 |
+//! | height field with everything but planes and height fields | GJK and EPA, or MPR, with each prism of its grid | up to 50 |
 //! | capsule with capsule, box | nearest points, a second one along the capsule | up to 2 |
 //! | box with box | separating axes, then clipping | up to 24 |
-//! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA | up to 1; with `multiccd` 5 |
+//! | ellipsoid and mesh with everything but planes, capsule with cylinder, cylinder with cylinder, box | GJK and EPA, or MPR | up to 1; with `multiccd` 5 |
 //!
 //! Planes and height fields touch neither planes nor height fields. Of meshes the convex hulls touch. The order of
 //! a hull's edges is that of Qhull, as in MuJoCo: where several corners are equally far in a direction, it decides which is found first, and where more
@@ -52,6 +52,7 @@ pub(crate) mod frame;
 mod gjk;
 mod hfield;
 mod mesh;
+mod mpr;
 mod nearest;
 mod plane;
 mod polytope;
@@ -60,6 +61,8 @@ mod several;
 mod support;
 #[cfg(test)]
 mod tests;
+mod triangle;
+mod whole;
 
 pub use distance::distance;
 
@@ -134,18 +137,21 @@ pub struct ContactOptions {
     pub ccd_tolerance: f64,
     /// Greatest number of iterations of GJK and of EPA (MuJoCo's `ccd_iterations`).
     pub ccd_iterations: usize,
-    /// Whether pairs that GJK and EPA find touching may have several contacts (MuJoCo's flag `multiccd`).
+    /// Whether convex pairs are searched by GJK and EPA, as MuJoCo does by default, or else by MPR, as libccd does (MuJoCo's flag `nativeccd`).
+    pub nativeccd: bool,
+    /// Whether convex pairs may have several contacts (MuJoCo's flag `multiccd`).
     pub multiccd: bool,
     /// Peculiarities to keep.
     pub quirks: Quirks,
 }
 
 impl Default for ContactOptions {
-    /// Returns MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, one contact of a convex pair, all quirks kept.
+    /// Returns MuJoCo's defaults: tolerance 1e-6 m, 50 iterations, GJK and EPA, one contact of a convex pair, all quirks kept.
     fn default() -> Self {
         ContactOptions {
             ccd_tolerance: 1e-6,
             ccd_iterations: 50,
+            nativeccd: true,
             multiccd: false,
             quirks: Quirks::default(),
         }

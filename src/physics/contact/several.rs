@@ -1,8 +1,8 @@
 //! The contacts of a convex pair: the deepest one, and with MuJoCo's `multiccd` more of them.
 
-use super::convex;
 use super::mesh::mesh_radius;
 use super::{BareContact, ContactOptions, ContactPoint, PlacedGeom, Scratch, faces, push, sub};
+use super::{convex, whole};
 use crate::math::{Mat3, Vec3, add, mat_mul, mat_vec, norm, quat_to_mat, scale, transpose, unit};
 use crate::mjcf_loader::bounding_radius;
 use crate::model::GeomType;
@@ -22,21 +22,24 @@ pub(super) fn convex(
     scratch: &mut Scratch,
     out: &mut Vec<ContactPoint>,
 ) {
-    let mut overlap = None;
-    let Some(touch) = convex::convex(a, b, margin, options, &mut scratch.polytope, &mut overlap) else {
-        return;
+    let (mut overlap, mut corners) = (None, [0; 2]);
+    let found = if options.nativeccd {
+        convex::convex(a, b, margin, options, &mut scratch.polytope, &mut overlap)
+    } else {
+        whole::convex(a, b, margin, options, &mut corners)
     };
+    let Some(touch) = found else { return };
     if options.multiccd {
         let faceted = |geom: &PlacedGeom| matches!(geom.kind, GeomType::Box | GeomType::Mesh);
         // a margin rounds the corners of faces
-        if faceted(a) && faceted(b) && margin <= 0.0 {
+        if options.nativeccd && faceted(a) && faceted(b) && margin <= 0.0 {
             let points = overlap.and_then(|overlap| faces::clip(a, b, &overlap, &scratch.polytope, &mut scratch.faces));
             if let Some((points, step)) = points {
                 return points.iter().for_each(|&b| push(between(b, step, touch.dist), out));
             }
         } else {
             push(Some(touch), out);
-            return tilted(a, b, margin, options, scratch, out);
+            return tilted(a, b, margin, options, (scratch, corners), out);
         }
     }
     push(Some(touch), out);
@@ -60,7 +63,7 @@ fn tilted(
     b: &PlacedGeom,
     margin: f64,
     options: &ContactOptions,
-    scratch: &mut Scratch,
+    (scratch, mut corners): (&mut Scratch, [usize; 2]),
     out: &mut Vec<ContactPoint>,
 ) {
     let round = |geom: &PlacedGeom| matches!(geom.kind, GeomType::Sphere | GeomType::Ellipsoid);
@@ -86,7 +89,11 @@ fn tilted(
                 mat: &mat_b,
                 ..*b
             };
-            let found = convex::convex(&a, &b, margin, options, &mut scratch.polytope, &mut None);
+            let found = if options.nativeccd {
+                convex::convex(&a, &b, margin, options, &mut scratch.polytope, &mut None)
+            } else {
+                whole::convex(&a, &b, margin, options, &mut corners)
+            };
             let elsewhere =
                 |touch: &BareContact| out[begin..].iter().all(|known| norm(sub(known.pos, touch.pos)) > apart);
             if let Some(touch) = found.filter(elsewhere) {

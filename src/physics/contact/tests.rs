@@ -261,6 +261,7 @@ fn input_that_is_not_sane_is_survived() {
                 let options = ContactOptions {
                     ccd_tolerance: if round % 5 == 0 { random.pick(&ODD) } else { 1e-6 },
                     ccd_iterations: random.pick(&[0, 1, 2, 50, 400]),
+                    nativeccd: round % 7 != 0,
                     multiccd: round % 3 == 0,
                     quirks,
                 };

@@ -20,6 +20,7 @@ pub(super) fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {
     ContactOptions {
         ccd_tolerance: model.opt.ccd_tolerance,
         ccd_iterations: model.opt.ccd_iterations,
+        nativeccd: model.opt.flags.nativeccd,
         multiccd: model.opt.flags.multiccd,
         quirks,
     }

@@ -93,9 +93,9 @@ pub(super) const FLAG: &[Rule] = &[
     ("energy", Nothing),
     ("fwdinv", Nothing),
     ("invdiscrete", Nothing),
-    ("nativeccd", Word(0.02)),
+    ("nativeccd", Word(0.1)),
     ("override", Nothing),
-    ("multiccd", Word(0.02)),
+    ("multiccd", Word(0.05)),
     ("island", Word(0.05)),
 ];
 

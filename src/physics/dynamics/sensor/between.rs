@@ -29,6 +29,7 @@ impl Between {
         let options = ContactOptions {
             ccd_tolerance: model.opt.ccd_tolerance,
             ccd_iterations: model.opt.ccd_iterations,
+            nativeccd: model.opt.flags.nativeccd,
             ..ContactOptions::default()
         };
         let cutoff = model.sensor_cutoff[sensor];

@@ -93,18 +93,6 @@ impl ContactRules {
         self.is_explicit(a, b) || self.collide(a, b)
     }
 
-    /// Finds two geoms that may touch and whose kinds `concerns`.
-    pub fn find(&self, concerns: impl Fn(GeomType, GeomType) -> bool) -> Option<[usize; 2]> {
-        let taking: Vec<usize> = (0..self.ngeom()).filter(|&g| self.takes_part(g)).collect();
-        for (k, &a) in taking.iter().enumerate() {
-            let with = |b: &&usize| concerns(self.geoms[a].kind, self.geoms[**b].kind) && self.allow(a, **b);
-            if let Some(&b) = taking[k + 1..].iter().find(with) {
-                return Some([a, b]);
-            }
-        }
-        None
-    }
-
     /// Orders two geoms by type, then by body.
     pub(super) fn ordered(&self, a: usize, b: usize) -> [usize; 2] {
         let key = |g: usize| (self.geoms[g].kind, self.geoms[g].body, g);
