@@ -4,7 +4,7 @@ mod four;
 
 use std::ops::Range;
 
-use crate::model::Arrays;
+use crate::model::{Arrays, JointType};
 use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::physics::state::State;
 
@@ -50,6 +50,8 @@ struct Link {
     dofs: Range<usize>,
     /// The link next to it on the way to the world, if there is one.
     parent: Option<usize>,
+    /// Whether its first three degrees of freedom move it along the axes of the world, as those of a free joint do.
+    free: bool,
 }
 
 /// A body that is fixed to a link, with all that it carries.
@@ -105,6 +107,7 @@ impl Articulated {
                     body: b,
                     dofs: model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b],
                     parent,
+                    free: model.body_jntnum[b] > 0 && model.jnt_type[model.body_jntadr[b]] == JointType::Free,
                 });
             } else if let Some(link) = parent {
                 loads.push(Load { body: b, link });
@@ -148,9 +151,19 @@ impl Articulated {
                     model.dof_armature[d] + h * s.params.dof_damping[d],
                 ];
                 // from the joint next to the body to the one next to its parent: each moves all behind it
-                self.released[d] = release(inertia, &s.cdof[d], extra);
+                let (k, inwards) = (d - link.dofs.start, link.parent.is_some());
+                let (force, felt) = match k {
+                    0..3 if link.free => unit_force_along(inertia, 3 + k, extra),
+                    _ => unit_force(inertia, &s.cdof[d], extra),
+                };
+                self.released[d] = match k {
+                    // what is left after these is felt by the rest of them alone
+                    0..3 if link.free && !inwards => release(inertia, force, felt, 3..3 + k),
+                    // the world cannot be accelerated: what it would feel is of no consequence
+                    0 if !inwards => release(inertia, force, felt, 0..0),
+                    _ => release(inertia, force, felt, 0..6),
+                };
             }
-            // the world cannot be accelerated: what it would feel is of no consequence
             if let Some(p) = link.parent {
                 for (a, c) in head[p].iter_mut().zip(inertia) {
                     for k in 0..2 {
@@ -217,12 +230,10 @@ impl Articulated {
     }
 }
 
-/// Lets an articulated body move along `axis`: takes out of its inertia what that motion feels. `extra` adds to the
-/// inertia along the axis.
+/// Returns the force of a unit acceleration of an articulated body along `axis`, and the inertia that is felt along it; `extra` adds to that.
 #[inline(always)]
-fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
-    let mut force = [[0.0; 2]; 6];
-    let (mut felt, mut inverse) = (extra, [0.0; 2]);
+fn unit_force(inertia: &[Pair; 21], axis: &Spatial, extra: Pair) -> ([Pair; 6], Pair) {
+    let (mut force, mut felt) = ([[0.0; 2]; 6], extra);
     for i in 0..6 {
         for j in 0..6 {
             // only the lower triangle is kept, as the inertia stays symmetric
@@ -235,13 +246,30 @@ fn release(inertia: &mut [Pair; 21], axis: &Spatial, extra: Pair) -> Released {
             felt[k] += force[i][k] * axis[i];
         }
     }
-    for k in 0..2 {
-        inverse[k] = 1.0 / felt[k];
-    }
-    for i in 0..6 {
+    (force, felt)
+}
+
+/// The same along a unit vector, in which only row `row` is 1: it picks a column. Products with zero are left out, which have no effect but on the sign of
+/// a zero: adding to zero has it, too.
+#[inline(always)]
+fn unit_force_along(inertia: &[Pair; 21], row: usize, extra: Pair) -> ([Pair; 6], Pair) {
+    let force = std::array::from_fn(|i| {
+        let [a, b] = inertia[at(i.max(row), i.min(row))];
+        [0.0 + a, 0.0 + b]
+    });
+    let [a, b]: Pair = force[row];
+    (force, [extra[0] + a, extra[1] + b])
+}
+
+/// Lets an articulated body move along an axis of which the force and the inertia are given: takes out of its inertia what that motion feels, in the rows and
+/// columns `left` that are still asked for.
+#[inline(always)]
+fn release(inertia: &mut [Pair; 21], force: [Pair; 6], felt: Pair, left: Range<usize>) -> Released {
+    let inverse = [1.0 / felt[0], 1.0 / felt[1]];
+    for i in left.clone() {
         // I - U D^-1 U': what moves freely with the joint is not felt beyond it
         let scaled = [force[i][0] * inverse[0], force[i][1] * inverse[1]];
-        for j in 0..=i {
+        for j in left.start..=i {
             for k in 0..2 {
                 inertia[at(i, j)][k] -= scaled[k] * force[j][k];
             }
