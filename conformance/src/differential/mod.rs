@@ -2,7 +2,7 @@
 //!
 //! Documents follow from the loader's own list of elements and attributes ([`language`]) and from a line for each of
 //! them that says how ([`rules`]), so that a new attribute is either drawn or a test fails. [`document`] puts the elements together,
-//! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. Many documents run in [`processes`](crate::processes) of their own. [`single`] has one
+//! [`state`] the states, [`compare`] steps both sides, [`measured`] tells how far they are apart, [`reduce`] makes what differs small, [`table`] counts. Many documents run in [`processes`] of their own. [`single`] has one
 //! document for each attribute and value.
 
 pub mod compare;
