@@ -1,28 +1,37 @@
-// How much slower a browser is than the native library, in pairs that alternate: `node web/bench.mjs [PAIRS]`. Build first:
+// How much slower a browser and the node that runs this are than the native library, in turns: `node web/bench.mjs [TURNS]`. Build first:
 // `web/build.sh package` and `cargo build --release --example pace`.
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 import { root, serve } from "./tests/package/server.mjs";
 
-const pairs = Number(process.argv[2] ?? 5);
+const turns = Number(process.argv[2] ?? 5);
 const program = join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "release/examples/pace");
 const server = await serve();
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
 const page = await browser.newPage();
 await page.goto(server.page);
 await page.waitForFunction(() => "pace" in globalThis);
+const sums = JSON.stringify(join(root, "web/tests/package/sums.js"));
+/** @type {Record<string, (name: string) => Promise<number> | number>} */
+const sides = {
+  native: (name) => Number(execFileSync(program, [name], { encoding: "utf8" })),
+  Chromium: (name) => page.evaluate((work) => /** @type {any} */ (globalThis).pace(work), name),
+  node: (name) => {
+    const text = `import(${sums}).then(async ({ pace }) => console.log(await pace("${name}")))`;
+    return Number(execFileSync(process.execPath, ["--eval", text], { encoding: "utf8" }));
+  },
+};
+const median = (/** @type {number[]} */ values) => values.sort((a, b) => a - b)[values.length >> 1];
 for (const name of ["physics", "eyes", "picture"]) {
-  /** @type {[number, number][]} */
-  const times = [];
-  for (let k = 0; k < pairs; k++) {
-    const native = Number(execFileSync(program, [name], { encoding: "utf8" }));
-    const there = await page.evaluate((work) => /** @type {any} */ (globalThis).pace(work), name);
-    times.push([native, there]);
-  }
-  const median = (/** @type {number[]} */ values) => values.sort((a, b) => a - b)[values.length >> 1];
-  const [native, there, ratio] = [median(times.map((t) => t[0])), median(times.map((t) => t[1])), median(times.map(([a, b]) => b / a))];
-  console.log(`${name}: native ${native.toFixed(3)} ms, Chromium ${there.toFixed(3)} ms, ratio ${ratio.toFixed(2)}`);
+  /** @type {Record<string, number[]>} */
+  const times = Object.fromEntries(Object.keys(sides).map((side) => [side, []]));
+  for (let k = 0; k < turns; k++) for (const [side, time] of Object.entries(sides)) times[side].push(await time(name));
+  const shown = Object.entries(times).map(([side, all]) => {
+    const ratio = median(all.map((time, k) => time / times.native[k]));
+    return `${side} ${median([...all]).toFixed(3)} ms` + (side === "native" ? "" : ` (${ratio.toFixed(2)} times)`);
+  });
+  console.log(`${name}: ${shown.join(", ")}`);
 }
 await browser.close();
 server.close();
