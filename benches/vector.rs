@@ -11,7 +11,8 @@
 //! - `nodes`: 64 nodes of a search, each a state that goes on from the same one for a step, in a `physics::Batch` of one thread against one engine
 //!   and a state that is copied, stepped and copied again, by processor time.
 //! - `eyes`: one environment whose eyes two threads draw (`vision_threads: 2`) against one that draws them alone, by the clock.
-//! - `memory`: what a further environment takes of the allocator, in a vector and after 50 steps; how long it takes to make one.
+//! - `memory`: how long 4,096 environments take to make, what they keep resident after some steps, and what a further one takes of
+//!   the allocator; each in a process of its own, in which no memory is there from before.
 
 #[path = "../tests/common/allocations.rs"]
 mod allocations;
@@ -36,6 +37,9 @@ const EXAMPLES: [(&str, &str); 3] = [
 
 /// Environments of a vector.
 const ENVS: usize = 64;
+/// Environments whose memory is measured, and their steps before that.
+const HERD: usize = 4096;
+const HERD_STEPS: usize = 10;
 /// Pairs of measurements, and steps of a vector in each half.
 const PAIRS: usize = 25;
 const STEPS: usize = 8;
@@ -353,34 +357,34 @@ fn halves_of(len: usize) -> impl FnMut(&mut VectorEnv, &[f32]) {
 }
 
 fn memory(name: &str, blueprint: &Blueprint) {
-    let (mut live, mut resident) = (Vec::new(), Vec::new());
-    let (mut kept, mut made) = (Vec::new(), Vec::new());
-    for n in [8, 40] {
-        let (before, resident_before) = (allocations::live(), resident_memory());
-        let options = VectorOptions {
-            threads: 1,
-            ..VectorOptions::default()
-        };
-        let start = cpu_time();
-        let mut envs = VectorEnv::new(blueprint, n, options).expect("available");
-        made.push((cpu_time() - start) * 1e3 / n as f64);
-        envs.reset(0).expect("no divergence");
-        let mut actions = Vec::new();
-        for _ in 0..50 {
-            envs.sample_actions(&mut actions).expect("all are here");
-            envs.step(&actions).expect("valid actions");
-        }
-        live.push((allocations::live() - before) as f64 / 1e6);
-        resident.push(resident_memory() - resident_before);
-        kept.push(envs);
+    let options = VectorOptions {
+        threads: 1,
+        ..VectorOptions::default()
+    };
+    let (live, resident, start) = (allocations::live(), resident_memory(), wall_time());
+    let mut envs = VectorEnv::new(blueprint, HERD, options).expect("available");
+    let made = wall_time() - start;
+    envs.reset(0).expect("no divergence");
+    let mut actions = Vec::new();
+    for _ in 0..HERD_STEPS {
+        envs.sample_actions(&mut actions).expect("all are here");
+        envs.step(&actions).expect("valid actions");
     }
+    let resident = resident_memory() - resident;
+    let live = (allocations::live() - live) as f64 / 1e6;
     println!(
-        "{:60} {:.3} MB, of which {:.3} MB are resident; made in {:.3} ms",
-        format!("memory/{name}/a further environment"),
-        (live[1] - live[0]) / 32.0,
-        (resident[1] - resident[0]) / 32.0,
-        made[1]
+        "{:60} made in {made:.2} s, {resident:.0} MB resident: {:.3} MB each, of {:.3} MB that it has room for",
+        format!("memory/{name}, {HERD} environments"),
+        resident / HERD as f64,
+        live / HERD as f64
     );
+}
+
+/// Measures memory in a process of its own.
+fn memory_apart(filter: &str) {
+    let program = std::env::current_exe().expect("this program has a path");
+    let status = std::process::Command::new(program).arg(filter).status();
+    assert!(status.expect("this program runs").success(), "{filter} failed");
 }
 
 fn main() {
@@ -397,6 +401,10 @@ fn main() {
         if wants(&format!("rates/{name}")) && config.vision_active {
             rates(name, &config);
         }
+        let herd = format!("memory/{name}");
+        if wants(&herd) && filter.as_ref() != Some(&herd) {
+            memory_apart(&herd);
+        }
         let blueprint = Blueprint::new(config).expect("available");
         if wants(&format!("eyes/{name}")) && blueprint.config().vision_active {
             self::eyes(name, &blueprint);
@@ -407,7 +415,7 @@ fn main() {
         if wants(&format!("crowd/{name}")) {
             crowd(&format!("{name}, {eyes}"), &blueprint);
         }
-        if wants(&format!("memory/{name}")) {
+        if filter.as_ref() == Some(&herd) {
             memory(&format!("{name}, {eyes}"), &blueprint);
         }
         if wants(&format!("threads/{name}")) {

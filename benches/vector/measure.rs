@@ -43,22 +43,28 @@ pub fn pair(
     println!("{name:60} {median:.3} times ({low:.3} .. {high:.3}); {one:8.1} and {other:8.1} us per step");
 }
 
-/// Returns how long this thread has run, s, where the system tells (Linux), or else what time it is.
+/// Returns how long this thread has run, s, where the system tells, or else what time it is.
 pub fn cpu_time() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let ns = text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok());
-    ns.map_or_else(wall_time, |ns| ns * 1e-9)
+    #[cfg(any(target_os = "linux", target_os = "macos"))]
+    return seconds(rustix::time::ClockId::ThreadCPUTime);
+    #[cfg(not(any(target_os = "linux", target_os = "macos")))]
+    return wall_time();
 }
 
-/// Returns how long all threads of the process have run, s, where the system tells (Linux), or else what time it is.
+/// Returns how long all threads of the process have run, s, where the system tells, or else what time it is.
 pub fn process_time() -> f64 {
-    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
-    let ns = threads.filter_map(|thread| {
-        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
-        text.split(' ').next()?.parse::<f64>().ok()
-    });
-    let ns: f64 = ns.sum();
-    if ns > 0.0 { ns * 1e-9 } else { wall_time() }
+    #[cfg(any(target_os = "linux", target_os = "macos"))]
+    return seconds(rustix::time::ClockId::ProcessCPUTime);
+    #[cfg(not(any(target_os = "linux", target_os = "macos")))]
+    return wall_time();
+}
+
+/// Reads a clock, s.
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+fn seconds(clock: rustix::time::ClockId) -> f64 {
+    // counts as time passes; what /proc says is a timer's tick of four milliseconds old
+    let time = rustix::time::clock_gettime(clock);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
 /// Returns what time it is, s, since the first call.
