@@ -6,7 +6,7 @@ use crate::math::MINVAL;
 use crate::mjcf_loader::{LengthRange, LengthRangeMode, LoadError, Places};
 use crate::model::{BiasType, GainType, IntegratorType, Model, TrnType};
 use crate::physics::dynamics::once::{com_pos, crb, kinematics, solve, update};
-use crate::physics::dynamics::{Articulated, dense_moment, tendons, transmissions};
+use crate::physics::dynamics::{Articulated, Composite, dense_moment, tendons, transmissions};
 use crate::physics::engine::Engine;
 use crate::physics::soft::{SoftEngine, SoftOptions};
 use crate::physics::state::State;
@@ -81,6 +81,7 @@ fn own_limit(model: &Model, i: usize) -> Option<[f64; 2]> {
 struct Search<'a> {
     settings: &'a LengthRange,
     engine: SoftEngine,
+    composite: Composite,
     bodies: Articulated,
     moment: Vec<f64>,
     response: Vec<f64>,
@@ -121,6 +122,7 @@ impl<'a> Search<'a> {
         let nv = model.nv;
         Self {
             settings,
+            composite: Composite::default(),
             bodies: Articulated::new(&model),
             engine: SoftEngine::new(Arc::new(model), SoftOptions::default()),
             moment: vec![0.0; nv],
@@ -170,8 +172,8 @@ impl<'a> Search<'a> {
         com_pos(&model, s);
         tendons(&model, topology, s);
         transmissions(&model, topology, s);
-        crb(&model, topology, s);
-        update(&mut self.bodies, &model, s);
+        crb(&model, topology, s, &mut self.composite);
+        update(&mut self.bodies, &model, s, &self.composite);
         dense_moment(&model, topology, s, i, &mut self.moment);
         solve(&mut self.bodies, s, &self.moment, &mut self.response);
         let norm = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();

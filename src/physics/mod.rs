@@ -37,7 +37,7 @@ pub use compile::compile;
 pub use contact::Quirks;
 internals!(use constraint::{ConstraintType, EfcRow});
 internals!(use dynamics::once::{com_pos, kinematics});
-internals!(use dynamics::{cameras, rne_post_constraint});
+internals!(use dynamics::{cameras, once::rne_post_constraint});
 pub use engine::{Engine, EngineError};
 internals!(use engine::{Probe, Stage});
 pub use free_body::FreeBody;

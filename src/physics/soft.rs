@@ -48,6 +48,7 @@ pub struct SoftEngine {
     integrator: Integrator,
     stages: RungeKutta,
     sensor_scratch: SensorScratch,
+    composite: Composite,
     bias: BiasScratch,
     bodies: Articulated,
     /// Whether what follows from accelerations and constraint forces is computed.
@@ -96,6 +97,7 @@ impl SoftModel {
             integrator: Integrator::default(),
             stages: RungeKutta::default(),
             sensor_scratch: SensorScratch::default(),
+            composite: Composite::default(),
             bias: BiasScratch::default(),
             bodies: Articulated::new(model),
             post_constraint: self.options.post_constraint || model.reads_accelerations(),
@@ -130,8 +132,8 @@ impl SoftEngine {
             cameras(&self.model, s);
             tendons(&self.model, &self.topology, s);
         });
-        vectorized!(crb(&self.model, &self.topology, s));
-        vectorized!(self.bodies.update(&self.model, s));
+        vectorized!(crb(&self.model, &self.topology, s, &mut self.composite));
+        vectorized!(self.bodies.update(&self.model, s, &self.composite));
         self.mark(Some(Stage::Collision));
         let flags = &self.model.opt.flags;
         if self.options.disable_contacts || !flags.contact || !flags.constraint {
@@ -140,7 +142,7 @@ impl SoftEngine {
             vectorized!(self.sweep.contacts(&self.model, &self.pairs, s))?;
         }
         self.mark(Some(Stage::Constraints));
-        vectorized!(self.rows.build(&self.model, &self.topology, s));
+        vectorized!(self.rows.build(&self.model, &self.topology, &self.composite, s));
         transmissions(&self.model, &self.topology, s);
         Ok(())
     }
@@ -171,7 +173,7 @@ impl SoftEngine {
         self.mark(Some(Stage::Wrenches));
         vectorized!({
             if self.post_constraint {
-                rne_post_constraint(&self.model, s, self.options.double_weld_torque);
+                rne_post_constraint(&self.model, s, &self.bias, self.options.double_weld_torque);
             }
             if self.model.opt.flags.sensor {
                 sensors(&self.model, s, &mut self.sensor_scratch);

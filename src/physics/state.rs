@@ -5,9 +5,8 @@ use crate::model::Arrays;
 use crate::physics::constraint::{Efc, EfcRow};
 use crate::physics::engine::EngineError;
 use crate::physics::params::Params;
-use crate::physics::spatial::Inertia;
 use crate::physics::table::table;
-use crate::physics::tiles::{Lanes, Tile};
+use crate::physics::tiles::Tile;
 use crate::physics::topology::Topology;
 
 /// Contacts for which memory is reserved, so that steps need not allocate. The cubes scene reaches about 100.
@@ -146,8 +145,6 @@ table! {
         /// kg m^2, mass times the offset of the body's centre of mass (3), kg m, mass, kg. Those of the world are zero.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cinert: [[f64; 10]; model.nbody()] = [0.0; 10];
-        /// Composite inertias of subtrees (nbody).
-        pub(crate) crb: [Inertia; model.nbody()] = [0.0; 10];
         /// Lengths of the tendons (ntendon): coordinates of their joints, rad or m, times their coefficients; m for spatial ones.
         pub ten_length: [f64; model.ntendon()] = 0.0;
         /// Rates of the lengths of the tendons (ntendon).
@@ -172,8 +169,6 @@ table! {
         pub wrap_obj: [i32; 2 * model.nwrap()] = 0;
         /// Derivatives of the lengths of actuators on sites, slider-cranks and contacts by the degrees of freedom, one after another.
         pub(crate) actuator_moment: [f64; topology.actuators.len()] = 0.0;
-        /// Motion axes by tile: six values for each lane, zeros where there is none.
-        pub(crate) cdof_lanes: [[Lanes; 6]; topology.tiles.rows()] = [[0.0; 4]; 6];
         /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal.
         pub(crate) qm: [Tile; topology.tiles.tiles()] => topology.new_tiles();
         /// Contacts in MuJoCo's order.
@@ -187,8 +182,6 @@ table! {
         /// Rates of the motion axes (nv): rotation, translation, 1/s.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Wrench on each body (nbody) that its velocity alone asks for: `cvel x I cvel`.
-        pub(crate) gyroscopic: [[f64; 6]; model.nbody()] = [0.0; 6];
         /// Lengths of the actuators (nu): the coordinate of the joint or the length of the tendon, rad or m, times the gear; of a site
         /// its displacement from the reference site along the gears; of a slider-crank that of the slider.
         pub actuator_length: [f64; model.nu()] = 0.0;

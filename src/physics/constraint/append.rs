@@ -3,7 +3,7 @@
 use crate::math::*;
 use crate::model::Model;
 use crate::physics::constraint::impedance::Impedance;
-use crate::physics::constraint::{Block, ConstraintType, Efc, impedance};
+use crate::physics::constraint::{Block, ConeShape, ConstraintType, Efc, impedance};
 use crate::physics::state::State;
 use crate::physics::tiles::Lanes;
 use crate::physics::topology::Topology;
@@ -21,6 +21,8 @@ pub(super) struct Spec {
 pub(super) struct Rows<'a> {
     pub(super) model: &'a Model,
     pub(super) topology: &'a Topology,
+    /// Motion axes by tile.
+    pub(super) axes: &'a [[Lanes; 6]],
     pub(super) efc: &'a mut Efc,
 }
 
@@ -44,6 +46,13 @@ impl Rows<'_> {
     pub(super) fn block_mut(&mut self) -> &mut Block {
         let last = self.efc.blocks.len() - 1;
         &mut self.efc.blocks[last]
+    }
+
+    /// Gives the last block, of a contact, its friction.
+    #[inline(always)]
+    pub(super) fn cone(&mut self, mu: f64, friction: [f64; 5]) {
+        self.block_mut().cone = self.efc.cones.len() as u32;
+        self.efc.cones.push(ConeShape { mu, friction });
     }
 
     /// Takes the last block back, before it has rows.
@@ -79,7 +88,7 @@ impl Rows<'_> {
     pub(super) fn single(&mut self, kind: ConstraintType, id: usize, dof: usize, value: f64) {
         self.block(kind, id, 1);
         self.entry(dof, value);
-        self.block_mut().dof = Some(dof);
+        self.block_mut().dof = Some(dof as u32);
     }
 
     /// Starts a block for the motion of a point of body `b` relative to a point of body `a`, over the tiles that move
@@ -110,7 +119,7 @@ impl Rows<'_> {
                 break;
             }
             let (mut translation, mut rotation) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
-            let cdof = &s.cdof_lanes[tile as usize];
+            let cdof = &self.axes[tile as usize];
             if tile_b == tile {
                 tiles_b = &tiles_b[1..];
             }

@@ -1,6 +1,6 @@
 //! Contacts with an elliptic friction cone: cost, force, curvature, slopes along a line.
 
-use crate::physics::constraint::{Block, Efc};
+use crate::physics::constraint::{Block, ConeShape, Efc};
 
 /// The zone of its cost in which a contact is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -60,19 +60,20 @@ impl Cone {
     /// Creates the cone of a contact from its block of rows.
     #[inline(always)]
     pub(super) fn new(b: &Block, efc: &Efc) -> Self {
+        let ConeShape { mu, friction } = *efc.cone(b);
         let mut cone = Self {
             dim: b.dim,
             row: b.row,
-            mu: b.mu,
+            mu,
             // the one curvature that makes cost and force continuous where the surface zone meets the quadratic one, at
             // mu n + t = 0 (there d_k = d_0 (friction_k / mu)^2)
-            dm: efc.d[b.row] / (b.mu * b.mu * (1.0 + b.mu * b.mu)),
+            dm: efc.d[b.row] / (mu * mu * (1.0 + mu * mu)),
             ..Self::default()
         };
         for k in 0..b.dim {
             (cone.d[k], cone.aref[k]) = (efc.d[b.row + k], efc.aref[b.row + k]);
         }
-        cone.friction[1..].copy_from_slice(&b.friction);
+        cone.friction[1..].copy_from_slice(&friction);
         cone
     }
 
@@ -217,14 +218,17 @@ mod tests {
         let block = Block {
             kind: ConstraintType::ContactElliptic,
             dim: 4,
+            ..Block::default()
+        };
+        let shape = ConeShape {
             mu: 0.8,
             friction: [0.8, 0.8, 0.05, 0.0, 0.0],
-            ..Block::default()
         };
         let torsional = 100.0 / (0.8 / 0.05_f64).powi(2);
         let efc = Efc {
             d: vec![100.0, 100.0, 100.0, torsional],
             aref: vec![0.0; 4],
+            cones: vec![shape],
             ..Efc::default()
         };
         let mut cone = Cone::new(&block, &efc);

@@ -77,9 +77,7 @@ fn cone(rows: &mut Rows, s: &State, i: usize) -> bool {
         }
         rows.efc.r[first + 1] = sliding;
         rows.efc.d[first + 1] = 1.0 / sliding;
-        let block = rows.block_mut();
-        block.mu = c.friction[0] * (sliding / normal).sqrt();
-        block.friction = c.friction;
+        rows.cone(c.friction[0] * (sliding / normal).sqrt(), c.friction);
     }
     true
 }
@@ -129,9 +127,7 @@ fn pyramid(rows: &mut Rows, s: &State, i: usize) -> bool {
     let r = (2.0 * mu * mu * rows.efc.r[first]).max(MINVAL);
     rows.efc.r[first..].fill(r);
     rows.efc.d[first..].fill(1.0 / r);
-    let block = rows.block_mut();
-    block.mu = mu;
-    block.friction = c.friction;
+    rows.cone(mu, c.friction);
     true
 }
 

@@ -10,7 +10,7 @@ use crate::math::MINVAL;
 use crate::model::Model;
 use crate::physics::constraint::cone::Cone;
 use crate::physics::constraint::friction::Quadratic;
-use crate::physics::constraint::{Block, ConstraintType, Efc};
+use crate::physics::constraint::{Block, ConeShape, ConstraintType, Efc};
 use crate::physics::dynamics::{Articulated, Damping, Four};
 use crate::physics::engine::EngineError;
 use crate::physics::state::State;
@@ -167,7 +167,7 @@ impl Dual {
             let mut improvement = 0.0;
             for block in &efc.blocks {
                 if block.kind == ConstraintType::ContactElliptic {
-                    improvement -= self.cone(block, &mut efc.force);
+                    improvement -= self.cone(block, &efc.cones[block.cone as usize], &mut efc.force);
                     continue;
                 }
                 let [low, high] = bounds(block);
@@ -197,7 +197,7 @@ impl Dual {
     /// Improves the forces of a contact with an elliptic cone: along the ray on which they are, then friction at that normal force.
     /// Returns the change of the cost.
     #[inline(always)]
-    fn cone(&mut self, block: &Block, force: &mut [f64]) -> f64 {
+    fn cone(&mut self, block: &Block, shape: &ConeShape, force: &mut [f64]) -> f64 {
         let (first, dim) = (block.row, block.dim);
         let entry = |r: usize, c: usize| self.row(first + r)[first + c];
         let mut residual = [0.0; CONE_ROWS];
@@ -232,7 +232,7 @@ impl Dual {
                     cost.b[r] -= cost.a[r][c] * old[c + 1];
                 }
             }
-            let friction = cost.within_ellipsoid(&block.friction, own[0]);
+            let friction = cost.within_ellipsoid(&shape.friction, own[0]);
             own[1..].copy_from_slice(&friction[..dim - 1]);
         }
         let change = settle(dim, entry, own, &old, &residual);

@@ -182,7 +182,7 @@ impl Island {
                 }
                 // a limit of a joint is one number instead of a tile for each ancestor
                 if let Some(dof) = b.dof {
-                    let slot = self.slot(topology, dof);
+                    let slot = self.slot(topology, dof as usize);
                     let value = efc.jac[b.jac][slot % 4];
                     self.singles.push(Single { row, slot, value });
                 } else {

@@ -87,21 +87,24 @@ mod tests {
     use super::*;
     use crate::physics::constraint::cone::Cone;
     use crate::physics::constraint::jacobian::Jacobian;
-    use crate::physics::constraint::{Block, ConstraintType, Efc};
+    use crate::physics::constraint::{Block, ConeShape, ConstraintType, Efc};
 
     /// Builds a contact that slides more and more slowly along the line, and turns round at `turn`.
     fn turning(d: f64, mu: f64, pressed: f64, [turn, aside]: [f64; 2]) -> (Cone, Jacobian) {
         let block = Block {
             kind: ConstraintType::ContactElliptic,
             dim: 3,
+            ..Block::default()
+        };
+        let shape = ConeShape {
             mu,
             friction: [1.0, 1.0, 0.0, 0.0, 0.0],
-            ..Block::default()
         };
         let tangential = d / (mu * mu);
         let efc = Efc {
             d: vec![d, tangential, tangential],
             aref: vec![0.0; 3],
+            cones: vec![shape],
             ..Efc::default()
         };
         let mut cone = Cone::new(&block, &efc);

@@ -92,12 +92,19 @@ pub struct Block {
     /// First entry in [`Efc::jac`].
     pub jac: usize,
     /// The degree of freedom of a row that has only one.
-    pub dof: Option<usize>,
+    pub dof: Option<u32>,
     /// Bound of dry friction, N m.
     pub frictionloss: f64,
-    /// Slope of the regularised friction cone.
+    /// Index in [`Efc::cones`], for a contact with friction.
+    pub cone: u32,
+}
+
+/// The friction of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct ConeShape {
+    /// Slope of the regularised cone.
     pub mu: f64,
-    /// Friction coefficients of a contact.
+    /// Coefficients.
     pub friction: [f64; 5],
 }
 
@@ -108,6 +115,8 @@ pub struct Efc {
     pub blocks: Vec<Block>,
     /// Tiles of degrees of freedom ([`Topology::tiles`]) in which each block has entries, ascending.
     pub cols: Vec<u32>,
+    /// Friction of contacts, apart from blocks, of which most are of one degree of freedom: each is written in each step.
+    pub cones: Vec<ConeShape>,
     /// Jacobian values of each block: for each of its tiles, `dim` rows.
     pub jac: Vec<Lanes>,
     /// Constraint violation of each row, m or rad.
@@ -140,6 +149,7 @@ impl Efc {
         let reserved = || Vec::with_capacity(rows);
         Self {
             blocks: Vec::with_capacity(contacts + 3 * nv),
+            cones: Vec::with_capacity(contacts),
             cols: Vec::with_capacity(8 * contacts + 3 * nv),
             jac: Vec::with_capacity(32 * contacts + 9 * nv),
             pos: reserved(),
@@ -156,6 +166,7 @@ impl Efc {
     /// Drops all rows, keeps the memory.
     pub fn clear(&mut self) {
         self.blocks.clear();
+        self.cones.clear();
         self.cols.clear();
         self.jac.clear();
         for v in [
@@ -170,6 +181,12 @@ impl Efc {
         ] {
             v.clear();
         }
+    }
+
+    /// Returns the friction of a contact from its block.
+    #[inline(always)]
+    pub fn cone(&self, b: &Block) -> &ConeShape {
+        &self.cones[b.cone as usize]
     }
 
     /// Returns the tiles of a block, and for each of them `dim` rows.

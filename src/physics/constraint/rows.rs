@@ -8,6 +8,7 @@ use super::joint_rows::joint_limits;
 use super::tendon_rows::{tendon_friction, tendon_limits};
 use super::{Block, ConstraintType, Efc, MAX_ROWS};
 use crate::model::Model;
+use crate::physics::dynamics::Composite;
 use crate::physics::state::State;
 use crate::physics::tiles::Lanes;
 use crate::physics::topology::Topology;
@@ -29,6 +30,7 @@ impl RowBuilder {
         let mut rows = Rows {
             model,
             topology,
+            axes: &[],
             efc: &mut friction,
         };
         for d in 0..model.nv {
@@ -54,7 +56,7 @@ impl RowBuilder {
     /// Fills `s.efc` from the position stage, the contacts and `qvel`: equalities, friction loss, limits of joints and
     /// tendons, contacts.
     #[inline(always)]
-    pub fn build(&mut self, model: &Model, topology: &Topology, s: &mut State) {
+    pub fn build(&mut self, model: &Model, topology: &Topology, composite: &Composite, s: &mut State) {
         let mut efc = std::mem::take(&mut s.efc);
         efc.clear();
         let flags = &model.opt.flags;
@@ -66,6 +68,7 @@ impl RowBuilder {
         let mut rows = Rows {
             model,
             topology,
+            axes: &composite.axes,
             efc: &mut efc,
         };
         if flags.equality {
@@ -128,7 +131,7 @@ impl RowBuilder {
             let v: [f64; MAX_ROWS] = if let Some(dof) = b.dof {
                 let value = efc.jac[b.jac].iter().find(|v| **v != 0.0);
                 let mut v = [0.0; MAX_ROWS];
-                v[0] = value.copied().unwrap_or(0.0) * s.qvel[dof];
+                v[0] = value.copied().unwrap_or(0.0) * s.qvel[dof as usize];
                 v
             } else {
                 let (col, ncol, jac) = (b.col, b.ncol, b.jac);

@@ -5,6 +5,7 @@ mod four;
 use std::ops::Range;
 
 use crate::model::{Arrays, JointType};
+use crate::physics::dynamics::Composite;
 use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
 use crate::physics::state::State;
 
@@ -132,9 +133,9 @@ impl Articulated {
         }
     }
 
-    /// Computes the inertias from `cinert`, `crb`, `cdof`, armature and damping.
+    /// Computes the inertias from `cinert`, the composite inertias, `cdof`, armature and damping.
     #[inline(always)]
-    pub fn update(&mut self, model: &Arrays, s: &State) {
+    pub fn update(&mut self, model: &Arrays, s: &State, composite: &Composite) {
         for (link, inertia) in self.links.iter().zip(&mut self.inertia) {
             *inertia = matrix(&s.cinert[link.body]).map(|v| [v; 2]);
         }
@@ -143,7 +144,10 @@ impl Articulated {
         // children have higher ids than their parents, so each link is complete when its turn comes
         for (k, link) in self.links.iter().enumerate().rev() {
             while let Some(load) = loads.next_if(|load| load.body > link.body) {
-                for (a, v) in self.inertia[load.link].iter_mut().zip(matrix(&s.crb[load.body])) {
+                for (a, v) in self.inertia[load.link]
+                    .iter_mut()
+                    .zip(matrix(&composite.crb[load.body]))
+                {
                     *a = [a[0] + v, a[1] + v];
                 }
             }
@@ -352,8 +356,9 @@ mod tests {
             *q += 0.3 * (k % 5) as f64 - 0.6;
         }
         engine.forward(&mut s).expect("finite");
-        let mut bodies = Articulated::new(model);
-        bodies.update(model, &s);
+        let (mut bodies, mut composite) = (Articulated::new(model), Composite::default());
+        crate::physics::dynamics::crb(model, &Topology::new(model), &mut s, &mut composite);
+        bodies.update(model, &s, &composite);
         let x: Vec<f64> = (0..model.nv).map(|d| (d % 7) as f64 - 3.0).collect();
         let (mut b, mut found) = (vec![0.0; model.nv], vec![0.0; model.nv]);
         mul_m(&Topology::new(model), &s.qm, &x, &mut b);

@@ -11,7 +11,7 @@ use crate::physics::dynamics::kinematics::local_to_global;
 use crate::physics::dynamics::once::{com_pos, crb, kinematics, solve, update};
 use crate::physics::dynamics::springs::{bias, slack, springs};
 use crate::physics::dynamics::transmission::{dense_moment, length, transmissions};
-use crate::physics::dynamics::{Articulated, tendons};
+use crate::physics::dynamics::{Articulated, Composite, tendons};
 use crate::physics::spatial::{angular, velocity_at};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
@@ -25,10 +25,11 @@ pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
     com_pos(model, &mut s);
     tendons(model, &topology, &mut s);
     transmissions(model, &topology, &mut s);
-    crb(model, &topology, &mut s);
+    let mut composite = Composite::default();
+    crb(model, &topology, &mut s, &mut composite);
     let diagonal = (0..model.nv).map(|d| topology.row(&s.qm, d).last().map_or(0.0, |(_, v)| v));
     let dof_m0: Vec<f64> = diagonal.collect();
-    let mut weights = Weights::new(model, &topology, &s);
+    let mut weights = Weights::new(model, &topology, &s, &composite);
     let dof_invweight0 = weights.dofs();
     let (jnt_stiffness, dof_damping) = springs(model, &dof_invweight0);
     Constants {
@@ -118,9 +119,9 @@ struct Weights<'a> {
 }
 
 impl<'a> Weights<'a> {
-    fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State) -> Self {
+    fn new(model: &'a Arrays, topology: &'a Topology, s: &'a State, composite: &Composite) -> Self {
         let mut bodies = Articulated::new(model);
-        update(&mut bodies, model, s);
+        update(&mut bodies, model, s, composite);
         let first = |tree: usize| model.jnt_bodyid[model.dof_jntid[topology.tree_adr[tree]]];
         let below = |b: usize| (b + 1..model.nbody()).find(|&c| model.body_parentid[c] < b);
         let range = |b: usize| b..below(b).unwrap_or(model.nbody());

@@ -1,21 +1,34 @@
 //! The joint-space inertia matrix.
 
 use crate::model::Arrays;
-use crate::physics::spatial::inertia_mul;
+use crate::physics::spatial::{Inertia, inertia_mul};
 use crate::physics::state::State;
+use crate::physics::tiles::{Lanes, ZERO, add_outer_products};
 #[cfg(any(test, feature = "rapier"))]
 use crate::physics::tiles::{Tile, mul};
-use crate::physics::tiles::{ZERO, add_outer_products};
 use crate::physics::topology::Topology;
 
-/// Computes `crb` and `qm` from `cinert` and `cdof`, armature included (composite-rigid-body algorithm).
+/// What is known of inertia within a step alone. It belongs to an engine: states take turns in the caches of a core, and what each of them
+/// writes is fetched from memory first and goes back there.
+#[derive(Clone, Debug, Default)]
+pub struct Composite {
+    /// Composite inertias of subtrees (nbody).
+    pub crb: Vec<Inertia>,
+    /// Motion axes by tile: six values for each lane, zeros where there is none.
+    pub axes: Vec<[Lanes; 6]>,
+}
+
+/// Computes the composite inertias and `qm` from `cinert` and `cdof`, armature included (composite-rigid-body algorithm).
 #[inline(always)]
-pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
-    s.crb.copy_from_slice(&s.cinert);
+pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut Composite) {
+    let Composite { crb, axes } = composite;
+    crb.clear();
+    crb.extend_from_slice(&s.cinert);
+    axes.resize(topology.tiles.rows(), [[0.0; 4]; 6]);
     for b in (1..model.nbody()).rev() {
         let p = model.body_parentid[b];
         if p > 0 {
-            let (head, tail) = s.crb.split_at_mut(b);
+            let (head, tail) = crb.split_at_mut(b);
             for (a, c) in head[p].iter_mut().zip(&tail[0]) {
                 *a += c;
             }
@@ -25,19 +38,19 @@ pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
         let dofs = topology.tile_dof[row]..topology.tile_dof[row + 1];
         let first = dofs.start;
         let mut force = [[0.0; 4]; 6];
-        let axes = &mut s.cdof_lanes[row];
+        let own = &mut axes[row];
         for ((k, cdof), &body) in (0..4).zip(&s.cdof[dofs.clone()]).zip(&model.dof_bodyid[dofs]) {
-            let f = inertia_mul(&s.crb[body], cdof);
+            let f = inertia_mul(&crb[body], cdof);
             for c in 0..6 {
                 force[c][k] = f[c];
-                axes[c][k] = cdof[c];
+                own[c][k] = cdof[c];
             }
         }
         let tiles = &mut s.qm[topology.tiles.start(row)..topology.tiles.start(row + 1)];
         let ancestors = topology.body_tiles(model.dof_bodyid[first]);
         for (tile, &(col, lanes)) in tiles.iter_mut().zip(ancestors) {
             *tile = ZERO;
-            add_outer_products(tile, &force, &s.cdof_lanes[col as usize]);
+            add_outer_products(tile, &force, &axes[col as usize]);
             // a limb may leave the trunk in the middle of a tile
             if col as usize != row && lanes < 4 {
                 for row in tile {

@@ -28,9 +28,9 @@ mod wrap;
 pub use actuation::fwd_actuation;
 pub use articulated::{Articulated, Damping, Four};
 pub(in crate::physics) use constants::{MAX_WEIGHT, constants};
-pub use inertia::crb;
 #[cfg(any(test, feature = "rapier"))]
 pub use inertia::mul_m;
+pub use inertia::{Composite, crb};
 pub use integrate::{Integrator, RungeKutta};
 pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;

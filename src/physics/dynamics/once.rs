@@ -1,8 +1,8 @@
 //! Parts of a step for those who want them once. A step has all of its parts in one function; here each is a function of its own, so that
 //! programs have them only once more.
 
-use super::{Articulated, Damping};
-use crate::model::Arrays;
+use super::{Articulated, BiasScratch, Composite, Damping};
+use crate::model::{Arrays, Model};
 use crate::physics::state::State;
 use crate::physics::topology::Topology;
 
@@ -19,16 +19,24 @@ pub fn com_pos(model: &Arrays, s: &mut State) {
     super::com_pos(model, s);
 }
 
-/// Computes `crb` and `qm` from `cinert` and `cdof`.
+/// Computes the composite inertias and `qm` from `cinert` and `cdof`.
 #[inline(never)]
-pub fn crb(model: &Arrays, topology: &Topology, s: &mut State) {
-    super::crb(model, topology, s);
+pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut Composite) {
+    super::crb(model, topology, s, composite);
 }
 
-/// Computes the articulated inertias from `cinert`, `crb` and `cdof`.
+/// Computes the articulated inertias from `cinert`, the composite inertias and `cdof`.
 #[inline(never)]
-pub fn update(bodies: &mut Articulated, model: &Arrays, s: &State) {
-    bodies.update(model, s);
+pub fn update(bodies: &mut Articulated, model: &Arrays, s: &State, composite: &Composite) {
+    bodies.update(model, s, composite);
+}
+
+/// Computes `cacc, cfrc_ext, cfrc_int` of a state of which all else is computed.
+#[doc(alias = "mj_rnePostConstraint")]
+#[inline(never)]
+pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: bool) {
+    let bias = BiasScratch::of(s);
+    super::rne_post_constraint(model, s, &bias, double_weld_torque);
 }
 
 /// Solves `M x = b` (nv).

@@ -3,6 +3,7 @@
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
 use crate::physics::constraint::{ConstraintType, connected_points, weld_points};
+use crate::physics::dynamics::BiasScratch;
 use crate::physics::dynamics::applied::applied;
 use crate::physics::spatial::*;
 use crate::physics::state::State;
@@ -14,7 +15,7 @@ use crate::physics::state::State;
 /// in `cfrc_int`. With `double_weld_torque` the rotational rows of a weld count as a torque, as MuJoCo 3.3.0 has it,
 /// although their Jacobian is about half the angular one: the wrench is then about twice the true one.
 #[inline(always)]
-pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: bool) {
+pub fn rne_post_constraint(model: &Model, s: &mut State, bias: &BiasScratch, double_weld_torque: bool) {
     let nb = model.nbody();
     s.cfrc_ext.fill([0.0; 6]);
     let mut ext = std::mem::take(&mut s.cfrc_ext);
@@ -40,7 +41,7 @@ pub fn rne_post_constraint(model: &Model, s: &mut State, double_weld_torque: boo
     s.cacc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     s.cfrc_int[0] = [0.0; 6];
     let (cacc, cfrc_int) = (&mut s.cacc[..nb], &mut s.cfrc_int[..nb]);
-    let (cinert, gyroscopic, cfrc_ext) = (&s.cinert[..nb], &s.gyroscopic[..nb], &s.cfrc_ext[..nb]);
+    let (cinert, gyroscopic, cfrc_ext) = (&s.cinert[..nb], &bias.gyroscopic[..nb], &s.cfrc_ext[..nb]);
     for b in 1..nb {
         let mut a = cacc[model.body_parentid[b]];
         for d in model.body_dofadr[b]..model.body_dofadr[b] + model.body_dofnum[b] {

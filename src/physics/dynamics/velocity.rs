@@ -44,6 +44,24 @@ pub fn com_vel(model: &Model, s: &mut State) {
 pub struct BiasScratch {
     acc: Vec<Spatial>,
     force: Vec<Spatial>,
+    /// Wrench on each body (nbody) that its velocity alone asks for: `cvel x I cvel`.
+    pub gyroscopic: Vec<Spatial>,
+}
+
+impl BiasScratch {
+    /// Computes what the velocity stage leaves of a state, whose velocity stage is done.
+    pub fn of(s: &State) -> Self {
+        Self {
+            gyroscopic: s.cinert.iter().zip(&s.cvel).map(|(i, v)| turning(i, v)).collect(),
+            ..Self::default()
+        }
+    }
+}
+
+/// Returns the wrench that a velocity alone asks for.
+#[inline(always)]
+fn turning(cinert: &Inertia, cvel: &Spatial) -> Spatial {
+    cross_force(cvel, &inertia_mul(cinert, cvel))
 }
 
 /// Computes the lengths of actuators and their rates: `actuator_length, actuator_velocity`.
@@ -71,11 +89,12 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
     let nb = model.nbody();
     scratch.acc.resize(nb, [0.0; 6]);
     scratch.force.resize(nb, [0.0; 6]);
+    scratch.gyroscopic.resize(nb, [0.0; 6]);
     let g = s.params.gravity;
     scratch.acc[0] = [0.0, 0.0, 0.0, -g[0], -g[1], -g[2]];
     scratch.force[0] = [0.0; 6];
     let (acc, force) = (&mut scratch.acc[..nb], &mut scratch.force[..nb]);
-    let (cinert, cvel, gyroscopic) = (&s.cinert[..nb], &s.cvel[..nb], &mut s.gyroscopic[..nb]);
+    let (cinert, cvel, gyroscopic) = (&s.cinert[..nb], &s.cvel[..nb], &mut scratch.gyroscopic[..nb]);
     for b in 1..nb {
         // what no joint moves has no velocity, and its weight is borne by the world
         if topology.body_last_dof[b].is_none() {
@@ -92,7 +111,7 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
             continue;
         }
         let mut f = inertia_mul(&cinert[b], &a);
-        let turning = cross_force(&cvel[b], &inertia_mul(&cinert[b], &cvel[b]));
+        let turning = turning(&cinert[b], &cvel[b]);
         axpy6(&mut f, 1.0, &turning);
         gyroscopic[b] = turning;
         force[b] = f;

@@ -40,6 +40,7 @@ pub struct Bridge {
     rows: RapierRows,
     aims: ContactAims,
     integrator: Integrator,
+    composite: Composite,
     bias: BiasScratch,
     sensor_scratch: SensorScratch,
     builder: RowBuilder,
@@ -84,6 +85,7 @@ impl Bridge {
             rows: RapierRows::default(),
             aims: ContactAims::default(),
             integrator: Integrator::default(),
+            composite: Composite::default(),
             bias: BiasScratch::default(),
             sensor_scratch: SensorScratch::default(),
             builder: RowBuilder::new(&model, &topology),
@@ -214,8 +216,8 @@ impl Bridge {
         com_pos(model, s);
         cameras(model, s);
         tendons(model, topology, s);
-        crb(model, topology, s);
-        self.inertia.update(model, s);
+        crb(model, topology, s, &mut self.composite);
+        self.inertia.update(model, s, &self.composite);
         stage(Stage::Collision);
         let flags = &model.opt.flags;
         if self.options.disable_contacts || !flags.contact || !flags.constraint {
@@ -224,7 +226,7 @@ impl Bridge {
             self.sweep.contacts(model, &self.pairs, s)?;
         }
         stage(Stage::Constraints);
-        self.builder.build(model, topology, s);
+        self.builder.build(model, topology, &self.composite, s);
         transmissions(model, topology, s);
         stage(Stage::Forces);
         fwd_velocity(model, topology, s, &mut self.bias);
@@ -267,7 +269,7 @@ impl Bridge {
         s.solver_iterations = self.options.iterations;
         read_contacts(&self.hooks(), model, narrow, s, self.stranger);
         read_welds(&self.rig, model, s, sets);
-        rne_post_constraint(model, s, self.options.double_weld_torque);
+        rne_post_constraint(model, s, &self.bias, self.options.double_weld_torque);
         if model.opt.flags.sensor {
             sensors(model, s, &mut self.sensor_scratch);
         }

@@ -102,7 +102,7 @@ impl RapierRows {
         clear_joints(rig, sets);
         for block in &s.efc.blocks {
             let aim = Aim::of(s, block.row, h);
-            match (block.kind, block.dof) {
+            match (block.kind, block.dof.map(|dof| dof as usize)) {
                 // models with it are refused
                 (ConstraintType::FrictionTendon, _) => {}
                 (ConstraintType::FrictionDof, _) => self.dofs[block.id].friction = Some((block.frictionloss, aim)),

@@ -161,7 +161,7 @@ impl Dual {
         let friction = if normal < MINVAL {
             [0.0; DIRECTIONS]
         } else {
-            cost.within_ellipsoid(&block.friction, normal)
+            cost.within_ellipsoid(&efc.cone(block).friction, normal)
         };
         let own = &mut efc.force[first..first + n];
         own.copy_from_slice(&friction[..n]);
