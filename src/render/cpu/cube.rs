@@ -2,56 +2,53 @@
 
 use std::ops::Neg;
 
-use wide::{f32x4, u32x4};
+use wide::{f32x4, i32x4, u32x4};
 
 use super::lanes::{at_least, four, integers, three};
 use super::light::Vectors;
-use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather, upward};
+use super::sample::{
+    Coordinates, MipLevels, across, are_settled, channels, floor, gather, gather_pairs, upward, whole,
+};
 use crate::render::texture::{Face, Level};
 
+/// Looks up the pixels of a block that are `wanted`: red, green, blue; 0..255.
+#[inline(always)]
+pub fn colours(faces: &[Face; 6], at: &Coordinates, wanted: [bool; 4]) -> Vectors {
+    let axes = Axes::new(at);
+    let Some(side) = axes.common() else {
+        return Points::apart(faces, axes.sides(), at).mixed(faces, wanted);
+    };
+    let points = Points::on(faces, side, at);
+    if !points.detail.same() {
+        return points.mixed(faces, wanted);
+    }
+    points.colours(faces, wanted)
+}
+
 /// The points of a cube map at which the pixels of a block look.
-pub struct CubePoints {
+#[derive(Clone, Copy)]
+struct Points {
     side: [u8; 4],
     u: f32x4,
     v: f32x4,
     detail: MipLevels,
 }
 
-impl CubePoints {
-    #[inline(always)]
-    pub fn new(faces: &[Face; 6], at: &Coordinates) -> Self {
-        let axes = Axes::new(at);
-        match axes.common() {
-            Some(side) => Self::on(faces, side, at),
-            None => Self::apart(faces, axes.sides(), at),
-        }
-    }
-
+impl Points {
     /// Locates pixels of a block across several faces: each as if the whole block were on its face.
     #[cold]
     fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
         // the differences of a face's own coordinates within the block choose the mip level: between coordinates of
         // two faces they would be as large as the face, and the blurriest level would be taken along every edge
         let own = side.map(|side| Self::on(faces, side, at));
-        let each = |value: &dyn Fn(&Self) -> [f32; 4]| {
-            let mut out = [0.0; 4];
-            for k in 0..4 {
-                out[k] = value(&own[k])[k];
-            }
-            out
-        };
-        let mut level = [0; 4];
-        for k in 0..4 {
-            level[k] = own[k].detail.level[k];
-        }
+        let each = |value: &dyn Fn(&Self) -> f32x4| f32x4::new(four(|k| value(&own[k]).to_array()[k]));
         Self {
             side,
-            u: f32x4::new(each(&|p| p.u.to_array())),
-            v: f32x4::new(each(&|p| p.v.to_array())),
+            u: each(&|p| p.u),
+            v: each(&|p| p.v),
             detail: MipLevels {
-                level,
+                level: i32x4::new(four(|k| own[k].detail.level.to_array()[k])),
                 blend: each(&|p| p.detail.blend),
-                same: false,
             },
         }
     }
@@ -66,7 +63,7 @@ impl CubePoints {
         // OpenGL's coordinates on a face are (sc / ma + 1) / 2: the half is in both, the 1/2 is added where they are
         // used
         let half = 0.5 * inverse;
-        let scale = half * f32x4::splat(faces[0][0].width as f32);
+        let scale = half * f32x4::splat(whole(faces[0][0].width));
         let length = |change: fn(f32x4) -> f32x4| {
             // the differences of sc / ma by the quotient rule, as llvmpipe takes them; those of the quotients would
             // choose other levels
@@ -84,19 +81,15 @@ impl CubePoints {
         }
     }
 
-    /// Returns red, green and blue (0..255) at those pixels that are `wanted`.
+    /// Looks up pixels that lie on one side and in one level.
     #[inline(always)]
-    pub fn colours(&self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
-        if !self.detail.same {
-            return self.mixed(faces, wanted);
-        }
-        // one level for the block means one face, too: blocks across faces are never the same
-        let side = usize::from(self.side[0]);
-        let level = self.detail.level[0];
-        let image = &faces[side][level];
-        let spots = Spots::new(self.u, self.v, f32x4::splat(image.width as f32));
+    fn colours(&self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
+        let face = &faces[usize::from(self.side[0])];
+        let level = self.detail.level.to_array()[0] as usize;
+        let image = &face[level];
+        let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
         if spots.inside == 15 {
-            let first = gather(image, spots.first);
+            let first = gather(image, spots.first.to_array());
             // around a settled texel there is no other colour, in this level or the next: nothing to lerp
             if are_settled(first) {
                 return channels(first);
@@ -106,14 +99,16 @@ impl CubePoints {
             if spots.inside == 15 {
                 spots.within(image)
             } else {
-                self.beyond(faces, [level; 4], spots, wanted)
+                // copies, which keep what they are made of in registers on the other way
+                let (points, spots) = (*self, *spots);
+                points.beyond(faces, [level; 4], &spots, wanted)
             }
         };
         let mut colours = look(image, level, &spots);
         if self.detail.blends() {
-            let level = (level + 1).min(faces[side].len() - 1);
-            let image = &faces[side][level];
-            let spots = Spots::new(self.u, self.v, f32x4::splat(image.width as f32));
+            let level = (level + 1).min(face.len() - 1);
+            let image = &face[level];
+            let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
             self.blend(&mut colours, &look(image, level, &spots));
         }
         colours
@@ -121,15 +116,16 @@ impl CubePoints {
 
     /// Looks up pixels that lie on several sides or in several levels.
     #[inline(never)]
-    fn mixed(&self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
+    fn mixed(self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
         let last = faces[0].len() - 1;
         let at = |level: [usize; 4]| {
-            let size = f32x4::new(four(|k| faces[0][level[k]].width as f32));
+            let size = f32x4::new(four(|k| whole(faces[0][level[k]].width)));
             self.beyond(faces, level, &Spots::new(self.u, self.v, size), wanted)
         };
-        let mut colours = at(self.detail.level);
+        let level = self.detail.level.to_array().map(|level| level as usize);
+        let mut colours = at(level);
         if self.detail.blends() {
-            let next = at(four(|k| (self.detail.level[k] + 1).min(last)));
+            let next = at(level.map(|level| (level + 1).min(last)));
             self.blend(&mut colours, &next);
         }
         colours
@@ -138,9 +134,8 @@ impl CubePoints {
     /// Lerps to the colours of the next mip level.
     #[inline(always)]
     fn blend(&self, colours: &mut Vectors, next: &Vectors) {
-        let share = f32x4::new(self.detail.blend);
         for k in 0..3 {
-            colours[k] += share * (next[k] - colours[k]);
+            colours[k] += self.detail.blend * (next[k] - colours[k]);
         }
     }
 
@@ -148,11 +143,12 @@ impl CubePoints {
     #[inline(never)]
     fn beyond(&self, faces: &[Face; 6], level: [usize; 4], spots: &Spots, wanted: [bool; 4]) -> Vectors {
         let (left, top) = (spots.left.to_array(), spots.top.to_array());
+        let first = spots.first.to_array();
         let mut corners = [[0; 4]; 4];
         for k in (0..4).filter(|&k| wanted[k]) {
             let image = &faces[usize::from(self.side[k])][level[k]];
             let found = if spots.inside >> k & 1 == 1 {
-                let at = |place: usize| image.pixels[spots.first[k] as usize + place];
+                let at = |place: usize| image.pixels[first[k] as usize + place];
                 [at(0), at(1), at(image.width), at(image.width + 1)]
             } else {
                 across_edges(faces, self.side[k], level[k], left[k] as i32, top[k] as i32)
@@ -166,6 +162,7 @@ impl CubePoints {
 }
 
 /// The places in one mip level for each pixel at which the pixels of a block look.
+#[derive(Clone, Copy)]
 struct Spots {
     /// Column of the texel before; -1 or the last one if the texel after lies beyond the edge.
     left: f32x4,
@@ -175,7 +172,7 @@ struct Spots {
     across: f32x4,
     down: f32x4,
     /// Index of the first texel, if all four are inside.
-    first: [i32; 4],
+    first: i32x4,
     /// One bit for each pixel: whether all four texels are inside the image.
     inside: u32,
 }
@@ -198,7 +195,7 @@ impl Spots {
             across,
             down,
             // textures are small enough for exact indices
-            first: integers(top * size + left).to_array(),
+            first: integers(top * size + left),
             inside: (least & left.fast_max(top).simd_lt(last)).to_bitmask(),
         }
     }
@@ -207,8 +204,9 @@ impl Spots {
     #[inline(always)]
     fn within(&self, image: &Level) -> Vectors {
         let n = image.width as i32;
-        let at = |place: i32| channels(gather(image, four(|k| self.first[k] + place)));
-        self.between([at(0), at(1), at(n), at(n + 1)])
+        let row = |first: i32x4| gather_pairs(image, first.to_array()).map(channels);
+        let ([a, b], [c, d]) = (row(self.first), row(self.first + i32x4::splat(n)));
+        self.between([a, b, c, d])
     }
 
     /// Lerps between four texels for each pixel.
@@ -267,7 +265,8 @@ impl Axes {
             // at equal lengths z wins over x and y, and y over x, as in llvmpipe, so that what lies on an edge of the
             // cube is on the same face there
             upright: z.abs().simd_ge(longer.select(along_x, along_y)).to_bitmask(),
-            negative: [x, y, z].map(|v| v.is_sign_negative().to_bitmask()),
+            // a mask of bits is made of signs
+            negative: [x, y, z].map(|v| v.to_bitmask()),
         }
     }
 

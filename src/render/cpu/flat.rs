@@ -25,7 +25,7 @@ pub fn colours(face: &Face, [s, t, _]: &Coordinates) -> Vectors {
     let squared = length(across).max(length(upward));
     let detail = MipLevels::new(f32x4::splat(squared), face.len());
     // all lanes are the same here
-    let (level, share) = (detail.level[0], detail.blend[0]);
+    let (level, share) = (detail.level.to_array()[0] as usize, detail.blend.to_array()[0]);
     let spots = Spots::new(&face[level], *s, *t);
     let first = gather(spots.level, spots.places(spots.y.before, spots.x.before));
     // a texel around which there is one colour, here and in the next level, needs neither neighbours nor blending

@@ -1,9 +1,9 @@
 //! Texture lookups as in Mesa's llvmpipe: bilinear in two mip levels, with one level of detail per 2 x 2 pixels.
 
 use wide::bytemuck::cast;
-use wide::{f32x4, i32x4, u32x4};
+use wide::{f32x4, i32x4, u32x4, u64x2};
 
-use super::cube::CubePoints;
+use super::cube;
 use super::flat;
 use super::lanes::{four, three};
 use super::light::Vectors;
@@ -13,10 +13,8 @@ use crate::render::texture::{Level, TexturePixels};
 /// The mip levels to blend at each pixel of a block, and their blend weights.
 #[derive(Clone, Copy, Debug)]
 pub struct MipLevels {
-    pub level: [usize; 4],
-    pub blend: [f32; 4],
-    /// Whether the whole block has one level.
-    pub same: bool,
+    pub level: i32x4,
+    pub blend: f32x4,
 }
 
 impl MipLevels {
@@ -31,20 +29,33 @@ impl MipLevels {
         let mantissa: f32x4 = cast(bits & i32x4::splat(0x007f_ffff) | i32x4::splat(0x3f80_0000));
         let level = 0.5 * (exponent + mantissa - f32x4::ONE);
         // never NaN
-        let level = level.fast_max(f32x4::ZERO).fast_min(f32x4::splat(levels as f32 - 1.0));
-        let whole = level.fast_trunc_int();
-        let first = whole.to_array()[0];
+        let level = level.fast_max(f32x4::ZERO).fast_min(f32x4::splat(whole(levels) - 1.0));
+        let first = level.fast_trunc_int();
         Self {
-            level: four(|k| whole.to_array()[k] as usize),
-            blend: (level - f32x4::from_i32x4(whole)).to_array(),
-            same: whole.simd_eq(i32x4::splat(first)).to_bitmask() == 15,
+            level: first,
+            blend: level - f32x4::from_i32x4(first),
         }
     }
 
-    /// Returns whether any pixel lies between two levels.
-    pub fn blends(&self) -> bool {
-        self.blend != [0.0; 4]
+    /// Returns whether the whole block has one level.
+    #[inline(always)]
+    pub fn same(&self) -> bool {
+        let first = i32x4::splat(self.level.to_array()[0]);
+        self.level.simd_eq(first).to_bitmask() == 15
     }
+
+    /// Returns whether any pixel lies between two levels.
+    #[inline(always)]
+    pub fn blends(&self) -> bool {
+        self.blend.simd_ne(f32x4::ZERO).to_bitmask() != 0
+    }
+}
+
+/// Converts a number of texels or levels.
+#[inline(always)]
+pub fn whole(count: usize) -> f32 {
+    // an instruction, where one for all 64 bits without a sign takes two ways
+    count as i32 as f32
 }
 
 /// Texture coordinates of a block of 2 x 2 pixels, the lower two first.
@@ -56,7 +67,7 @@ impl TexturePixels {
     pub(super) fn sample(&self, at: &Coordinates, wanted: [bool; 4]) -> Vectors {
         let colours = match self {
             TexturePixels::Flat(face) => flat::colours(face, at),
-            TexturePixels::Cube(faces) => CubePoints::new(faces, at).colours(faces, wanted),
+            TexturePixels::Cube(faces) => cube::colours(faces, at, wanted),
         };
         three(|k| colours[k] * (1.0 / 255.0))
     }
@@ -81,6 +92,24 @@ pub fn upward(v: f32x4) -> f32x4 {
 #[inline(always)]
 pub fn gather(level: &Level, places: [i32; 4]) -> u32x4 {
     u32x4::new(four(|k| u32::from_le_bytes(level.pixels[places[k] as usize])))
+}
+
+/// Gathers two texels side by side for each pixel of a block: the left ones, and those on their right.
+#[inline(always)]
+pub fn gather_pairs(level: &Level, places: [i32; 4]) -> [u32x4; 2] {
+    // both texels by one load and one check of bounds: lookups spend most of their time on these
+    let pair = |k: usize| -> u64 {
+        let at = places[k] as u32 as usize;
+        let pair = &level.pixels[at..at + 2];
+        cast([u32::from_le_bytes(pair[0]), u32::from_le_bytes(pair[1])])
+    };
+    // vectors from the start, so that compilers see the shuffles
+    let [a, b]: [u32x4; 2] = [u64x2::new([pair(0), pair(1)]), u64x2::new([pair(2), pair(3)])].map(cast);
+    let (a, b) = (a.to_array(), b.to_array());
+    [
+        u32x4::new([a[0], a[2], b[0], b[2]]),
+        u32x4::new([a[1], a[3], b[1], b[3]]),
+    ]
 }
 
 /// Returns whether all of these texels are [`SETTLED`].
@@ -115,7 +144,7 @@ mod tests {
     fn levels_follow_the_logarithm() {
         let of = |texels: f32| {
             let detail = MipLevels::new(f32x4::splat(texels * texels), 8);
-            (detail.level[0], detail.blend[0])
+            (detail.level.to_array()[0], detail.blend.to_array()[0])
         };
         assert_eq!(of(0.1), (0, 0.0));
         assert_eq!(of(4.0), (2, 0.0));
