@@ -97,7 +97,7 @@ pub fn gather(level: &Level, places: [i32; 4]) -> u32x4 {
 /// Gathers two texels side by side for each pixel of a block: the left ones, and those on their right.
 #[inline(always)]
 pub fn gather_pairs(level: &Level, places: [i32; 4]) -> [u32x4; 2] {
-    // both texels by one load and one check of bounds: lookups spend most of their time on these
+    // one load and one check of bounds for both
     let pair = |k: usize| -> u64 {
         let at = places[k] as u32 as usize;
         let pair = &level.pixels[at..at + 2];
