@@ -18,12 +18,21 @@ impl<T> Default for Shelf<T> {
 impl<T> Shelf<T> {
     /// Does some work with a tool, which `make` makes if none is idle. One with which the work panicked does not come back.
     pub fn lend<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
-        // the last one that came back: a thread that works again and again has its own, warm in the cache of its core
-        let idle = self.lock().pop();
-        let mut tool = idle.unwrap_or_else(make);
+        let mut tool = self.take().unwrap_or_else(make);
         let result = work(&mut tool);
-        self.lock().push(tool);
+        self.put(tool);
         result
+    }
+
+    /// Takes an idle tool, if there is one.
+    pub fn take(&self) -> Option<T> {
+        // the last one that came back: a thread that works again and again has its own, warm in the cache of its core
+        self.lock().pop()
+    }
+
+    /// Brings a tool back.
+    pub fn put(&self, tool: T) {
+        self.lock().push(tool);
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<T>> {

@@ -79,7 +79,7 @@ impl PhysicsData {
                 self.active.bind(py).try_readonly()?,
             );
             read_inputs(memory.as_slice()?, &mut guard.state);
-            guard.state.params = params(&guard.model, active.as_slice()?);
+            guard.state.params = params(&guard.model, active.as_slice()?).into();
         }
         let inner = &mut *guard;
         let done = detached(py, || work(inner))?;

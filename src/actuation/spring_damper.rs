@@ -95,9 +95,10 @@ impl Actuation for SpringDamper {
     /// Writes controls, then torques (N m): gear times the control within the motor's limits.
     fn observe(&self, model: &Model, state: &State, out: &mut [f64]) {
         let (controls, torques) = out.split_at_mut(self.actuators.len());
+        let gears = &state.params.actuator_gear;
         for ((control, t), &i) in controls.iter_mut().zip(torques).zip(&self.actuators) {
             *control = state.ctrl[i];
-            *t = state.params.actuator_gear[i] * self.effective(model, state, i);
+            *t = gears[i] * self.effective(model, state, i);
         }
     }
 

@@ -102,14 +102,17 @@ impl Env {
     }
 
     /// Returns the state of the scene.
+    ///
+    /// An environment of a [`VectorEnv`](crate::VectorEnv) keeps what decides how the run goes on. What its last step computed is computed again at
+    /// the first call, which takes as long as a physics step; it then has memory for it, as one alone has, until its next episode.
     pub fn state(&self) -> &State {
-        &self.physics.state
+        self.physics.state()
     }
 
     /// Returns the state of the scene, to change positions, velocities, warm start, applied forces or parameters. Quantities that
     /// follow from them, and the observation, are brought up to date by the next step or [`Env::refresh`].
     pub fn state_mut(&mut self) -> &mut State {
-        &mut self.physics.state
+        self.physics.state_mut()
     }
 
     /// Returns the physics engine.

@@ -60,10 +60,16 @@ impl Env {
     /// Turns into an environment of another age. Returns what it was.
     pub(crate) fn become_grown(&mut self, mut grown: Self) -> Self {
         let (old, new) = (&self.physics.base, &mut grown.physics.base);
-        new.eq_active.clone_from(&old.eq_active);
-        new.eq_offset.clone_from(&old.eq_offset);
+        // only what differs, as parameters are shared until they are written to
+        if (&new.eq_active, &new.eq_offset) != (&old.eq_active, &old.eq_offset) {
+            new.eq_active.clone_from(&old.eq_active);
+            new.eq_offset.clone_from(&old.eq_offset);
+        }
         std::mem::swap(&mut grown.rng, &mut self.rng);
         grown.set_probe(self.probe.take());
+        if self.physics.may_borrow() {
+            grown.start_borrowing();
+        }
         grown.episode.accumulate = self.episode.accumulate;
         grown.senses.vision_deferred = self.senses.vision_deferred;
         grown.senses_mut().set_vision_threads(self.senses.vision_threads());

@@ -9,6 +9,7 @@ pub use options::BlueprintOptions;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::actuation::{self, Actuation};
 use crate::assets::AssetSource;
 use crate::config::{ActuationModel, Config, EngineKind, FacialExpression, RendererKind};
 use crate::env::engines::Engines;
@@ -19,10 +20,10 @@ use crate::env::task::{TaskSizes, of_config};
 use crate::env::{Env, EnvError, Task};
 use crate::mimo::scene_assets;
 use crate::model::Model;
-use crate::physics::{Engine, Params};
+use crate::physics::{Engine, Params, Shared};
 use crate::render::{RenderError, SharedMemory};
-use crate::sensors::SkinLayout;
 use crate::sensors::transform::Sense;
+use crate::sensors::{Proprioception, SkinLayout, Vestibular};
 use settled::{Settled, make_skin, task_model};
 use surface::Surface;
 
@@ -42,14 +43,15 @@ use surface::Surface;
 pub struct Blueprint {
     config: Arc<Config>,
     /// The task, bound to the model.
-    task: Box<dyn Task>,
+    task: Arc<dyn Task>,
     sizes: TaskSizes,
     model: Arc<Model>,
     engines: Arc<Engines>,
+    tables: Tables,
     paths: Option<Arc<Paths>>,
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
-    params: Arc<Params>,
+    params: Shared<Params>,
     /// The identity that a snapshot must fit.
     identity: Arc<Identity>,
     /// The same, the model and its parameters before a program changed the model.
@@ -57,11 +59,37 @@ pub struct Blueprint {
     surface: Surface,
 }
 
+/// What follows from configuration and model and never changes. Environments share it: each would fetch its own into the caches.
+#[derive(Clone)]
+pub(super) struct Tables {
+    pub actuation: Arc<dyn Actuation>,
+    pub proprioception: Arc<Proprioception>,
+    pub vestibular: Option<Arc<Vestibular>>,
+}
+
+impl std::fmt::Debug for Tables {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Tables").finish_non_exhaustive()
+    }
+}
+
+impl Tables {
+    fn new(config: &Config, model: &Model) -> Result<Self, EnvError> {
+        let actuation: Arc<dyn Actuation> = actuation::build(model, config)?.into();
+        let proprioception = Proprioception::new(model, config, actuation.observation_len());
+        Ok(Self {
+            actuation,
+            proprioception: proprioception.into(),
+            vestibular: config.vestibular_active.then(|| Vestibular::new(model).into()),
+        })
+    }
+}
+
 /// The state of a blueprint before its model was changed.
 #[derive(Debug)]
 struct Origin {
     model: Arc<Model>,
-    params: Arc<Params>,
+    params: Shared<Params>,
     identity: Arc<Identity>,
 }
 
@@ -142,9 +170,10 @@ impl Blueprint {
         let engines = Arc::new(Engines::new(&config, &model)?);
         let sizes = task.bind(&config, &model)?;
         let paths = Paths::new(&config.mocap_motion, &model)?.map(Arc::new);
-        let settled = Settled::new(&config, &*task, &engines, &model, paths.as_deref())?;
+        let tables = Tables::new(&config, &model)?;
+        let settled = Settled::new(&config, &*task, &engines, &*tables.actuation, &model, paths.as_deref())?;
         let identity = Arc::new(Identity::new(&model, &config));
-        let params = Arc::new(settled.params);
+        let params = settled.params;
         let origin = Origin {
             model: model.clone(),
             params: params.clone(),
@@ -154,10 +183,11 @@ impl Blueprint {
             identity,
             origin: Arc::new(origin),
             config: Arc::new(config),
-            task,
+            task: task.into(),
             sizes,
             model,
             engines,
+            tables,
             paths,
             init_qpos: Arc::new(settled.qpos),
             init_qvel: Arc::new(settled.qvel),
@@ -171,13 +201,14 @@ impl Blueprint {
     pub(super) fn with_model(
         &self,
         model: Arc<Model>,
-        params: Params,
+        params: Shared<Params>,
         changes: &BTreeMap<&'static str, &[f64]>,
     ) -> Result<Self, EnvError> {
         Ok(Self {
             engines: Arc::new(Engines::new(&self.config, &model)?),
+            tables: Tables::new(&self.config, &model)?,
             model,
-            params: Arc::new(params),
+            params,
             identity: Arc::new(self.origin.identity.with_changes(changes)),
             ..self.clone()
         })
@@ -211,7 +242,7 @@ impl Blueprint {
             assets: scene_assets(&config, self.surface.given.clone())?,
             ..self.surface.clone()
         };
-        Self::settled(config, self.task.clone(), model, surface)
+        Self::settled(config, self.task.clone_task(), model, surface)
     }
 
     /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
@@ -227,7 +258,7 @@ impl Blueprint {
             ..Config::clone(&self.config)
         };
         let options = BlueprintOptions {
-            task: Some(self.task.clone()),
+            task: Some(self.task.clone_task()),
             assets: self.surface.given.clone(),
         };
         Self::with(config, options)
@@ -271,6 +302,11 @@ impl Blueprint {
     /// Returns the task, which environments copy.
     pub fn task(&self) -> &dyn Task {
         &*self.task
+    }
+
+    /// Returns what all its environments share.
+    pub(super) fn tables(&self) -> &Tables {
+        &self.tables
     }
 
     /// Returns how many numbers the task hands out in each step.
@@ -347,7 +383,7 @@ impl Blueprint {
 
     /// Returns the parameters after a reset: the model's, with the configured locks active and the changes of the actuation model.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
-    pub fn params(&self) -> &Params {
+    pub fn params(&self) -> &Shared<Params> {
         &self.params
     }
 

@@ -154,7 +154,7 @@ impl<'a> Parts<'a> {
     /// A wrong length (motors and servos have none) or numbers that are not finite; nothing is changed then.
     #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
-        let state = &mut self.env.physics.state;
+        let state = self.env.physics.state_mut();
         check_vector("activity", activity, state.act.len())?;
         let muscles = !state.muscle_torque.is_empty();
         for (act, &new) in state.act.iter_mut().zip(activity) {
@@ -258,8 +258,8 @@ impl<'a> Parts<'a> {
         check_vector("pos", &pos, pos.len())?;
         check_vector("quat", &quat, quat.len())?;
         env.physics.check_shape()?;
-        env.physics.state.mocap_pos[k] = pos;
-        env.physics.state.mocap_quat[k] = quat;
+        let state = env.physics.state_mut();
+        (state.mocap_pos[k], state.mocap_quat[k]) = (pos, quat);
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::config::{Compat, Config, EngineKind};
 use crate::env::EnvError;
 use crate::model::Model;
-use crate::physics::{Engine, SoftModel, SoftOptions};
+use crate::physics::{Engine, SoftModel, SoftOptions, State};
 #[cfg(feature = "rapier")]
 use crate::physics::{RapierModel, RapierOptions};
 use crate::shelf::Shelf;
@@ -43,6 +43,8 @@ pub(in crate::env) struct Engines {
     /// Answers questions about the model; it never steps.
     reader: Box<dyn Engine>,
     idle: Shelf<Box<dyn Engine>>,
+    /// States whose computed part serves one environment of a vector after the other.
+    states: Shelf<Box<State>>,
 }
 
 impl std::fmt::Debug for Engines {
@@ -57,6 +59,7 @@ impl Engines {
         Ok(Self {
             reader: kind.make(),
             idle: Shelf::default(),
+            states: Shelf::default(),
             kind,
         })
     }
@@ -72,8 +75,19 @@ impl Engines {
     }
 
     /// Lends an engine for some work.
-    fn lend<R>(&self, work: impl FnOnce(&mut dyn Engine) -> R) -> R {
+    pub fn lend<R>(&self, work: impl FnOnce(&mut dyn Engine) -> R) -> R {
         self.idle.lend(|| self.kind.make(), |engine| work(&mut **engine))
+    }
+
+    /// Takes a state to work in, of which nothing means anything yet.
+    pub fn take_state(&self) -> Box<State> {
+        let idle = self.states.take();
+        idle.unwrap_or_else(|| self.reader.new_state().into())
+    }
+
+    /// Brings a state of [`Engines::take_state`] back.
+    pub fn put_state(&self, state: Box<State>) {
+        self.states.put(state);
     }
 }
 

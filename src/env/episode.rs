@@ -50,13 +50,14 @@ impl Env {
 
     /// Returns the scene and the task that plays in it.
     pub(super) fn play(&mut self) -> Play<'_> {
-        let (engine, state, base) = self.physics.parts();
+        let (engine, state, origin, base) = self.physics.parts();
         let scene = TaskScene {
             config: self.blueprint.config(),
             model: self.blueprint.model(),
             state,
             rng: &mut self.rng,
             engine,
+            origin,
             base,
             actuation: &*self.actuation,
             paths: self.blueprint.paths(),

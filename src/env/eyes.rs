@@ -124,7 +124,7 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
             on_gpus.push(env);
             continue;
         }
-        env.senses.observe_eyes(&env.physics.state, &mut env.rng)?;
+        env.senses.observe_eyes(env.physics.state(), &mut env.rng)?;
     }
     draw_on_gpus(&mut on_gpus)?;
     Ok(())
@@ -134,7 +134,7 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
 fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
     let mut batches: Vec<Batch> = Vec::new();
     for env in environments.iter_mut().filter(|env| env.senses.eyes_look()) {
-        let state = &env.physics.state;
+        let state = env.physics.state();
         let Some(vision) = &env.senses.vision else { continue };
         let Some(gpu) = vision.renderer().shared_gpu() else {
             continue;

@@ -12,6 +12,7 @@ mod episode;
 pub(crate) mod error;
 mod eyes;
 mod fields;
+mod held;
 pub(crate) mod info;
 mod model_change;
 mod notices;
@@ -68,7 +69,7 @@ pub use viewer::{ViewFrom, Viewer};
 
 use std::sync::Arc;
 
-use crate::actuation::{self, Actuation};
+use crate::actuation::Actuation;
 use crate::config::Config;
 use crate::mimo::{LockReport, LockTarget};
 use crate::spaces::NumpyRng;
@@ -157,15 +158,15 @@ impl Env {
     }
 
     fn from_blueprint(blueprint: &Blueprint) -> Result<Self, EnvError> {
-        let (config, model) = (blueprint.config(), blueprint.model());
-        let actuation: Arc<dyn Actuation> = actuation::build(model, config)?.into();
+        let config = blueprint.config();
+        let actuation = blueprint.tables().actuation.clone();
         let task = blueprint.task().clone_task();
         let mut info = Info::default();
         clear(&*task, &mut info);
         Ok(Self {
             physics: Physics::new(blueprint, &*actuation),
             action_delay: ActionDelay::new(blueprint, &*actuation),
-            senses: Senses::new(blueprint, &*actuation, blueprint.task_sizes())?,
+            senses: Senses::new(blueprint, blueprint.task_sizes())?,
             goals: Goals::new(blueprint.task_sizes()),
             rng: NumpyRng::seed(config.seed),
             action: Vec::with_capacity(actuation.action_space().len()),
@@ -258,6 +259,34 @@ impl Env {
         })
     }
 
+    /// Lets steps and resets borrow the room for what they compute, between [`Env::borrow_room`] and [`Env::give_room_back`], if the task
+    /// allows it. It is for a new environment.
+    pub(crate) fn start_borrowing(&mut self) {
+        if self.task.only_moves() {
+            self.physics.start_borrowing();
+        }
+    }
+
+    /// Returns whether steps and resets borrow the room for what they compute.
+    pub(crate) fn may_borrow(&self) -> bool {
+        self.physics.may_borrow()
+    }
+
+    /// Borrows room for a step, unless somebody has looked into the state since the episode began.
+    pub(crate) fn borrow_room(&mut self) {
+        self.physics.borrow_room();
+    }
+
+    /// Borrows room for a reset.
+    pub(crate) fn borrow_room_for_reset(&mut self) {
+        self.physics.borrow_room_for_reset();
+    }
+
+    /// Gives the room back: what was computed in it is computed again for whoever asks.
+    pub(crate) fn give_room_back(&mut self) {
+        self.physics.give_room_back();
+    }
+
     /// Checks the length of an action, and that it is finite.
     pub(crate) fn check_action(&self, action: &[f32]) -> Result<(), EnvError> {
         let expected = self.action_space().len();
@@ -283,8 +312,9 @@ impl Env {
 
     /// Counts what the behavior counts.
     fn track(&mut self) {
-        self.task.count(&self.physics.state);
-        self.task.inform(TaskEvent::Step(&self.physics.state), &mut self.info);
+        let state = self.physics.state();
+        self.task.count(state);
+        self.task.inform(TaskEvent::Step(state), &mut self.info);
     }
 
     /// Notes how old the pictures are that the eyes show.
@@ -296,7 +326,7 @@ impl Env {
     fn sense(&mut self) -> Result<(), EnvError> {
         self.physics.check_shape()?;
         let model = self.blueprint.model();
-        let (state, task) = (&self.physics.state, &*self.task);
+        let (state, task) = (self.physics.state(), &*self.task);
         let append = |out: &mut [f64]| task.observe(state, out);
         self.senses
             .observe(model, state, &*self.actuation, append, &mut self.rng)

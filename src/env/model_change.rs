@@ -286,7 +286,7 @@ impl Env {
         self.blueprint = blueprint;
         let model = self.blueprint.model();
         change.apply_to(&mut self.physics.base, model);
-        change.apply_to(&mut self.physics.state.params, model);
+        change.apply_to(&mut self.physics.state_mut().params, model);
         self.physics.use_engines(self.blueprint.engines());
         Ok(())
     }

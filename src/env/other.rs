@@ -90,8 +90,9 @@ impl OtherInfant {
             return Err(EnvError::ActionNotFinite { index, actuator, value });
         }
         env.physics.check_shape()?;
+        let ctrl = &mut env.physics.state_mut().ctrl;
         for (k, (&i, &value)) in self.actuators.iter().zip(action).enumerate() {
-            if let Some(ctrl) = env.physics.state.ctrl.get_mut(i) {
+            if let Some(ctrl) = ctrl.get_mut(i) {
                 *ctrl = f64::from(self.space.clip(k, value));
             }
         }

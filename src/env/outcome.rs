@@ -24,7 +24,7 @@ impl Env {
     pub(super) fn judge(&mut self) {
         let view = TaskView {
             model: self.blueprint.model(),
-            state: &self.physics.state,
+            state: self.physics.state(),
             touch: self.senses.touch.as_ref(),
             actuation: &*self.actuation,
         };

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::env::engines::{EngineSource, Engines};
+use crate::env::held::{Call, Held, Origin};
 use crate::env::{Blueprint, EnvError};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
-use crate::physics::{Engine, EngineError, Params, State};
+use crate::physics::{Engine, EngineError, Params, Shared, State};
 
 /// The state of a scene, and what advances it.
 pub(super) struct Physics {
@@ -15,15 +16,15 @@ pub(super) struct Physics {
     engines: Arc<Engines>,
     /// An engine of its own, for a program that asked for it.
     own: Option<Box<dyn Engine>>,
-    pub state: State,
+    held: Held,
     /// Parameters after a reset: the blueprint's, with what locks and unlocks changed.
-    pub base: Params,
+    pub base: Shared<Params>,
 }
 
 impl std::fmt::Debug for Physics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Physics")
-            .field("state", &self.state)
+            .field("state", &self.held)
             .finish_non_exhaustive()
     }
 }
@@ -34,7 +35,7 @@ impl Clone for Physics {
         Self {
             engines: self.engines.clone(),
             own: None,
-            state: self.state.clone(),
+            held: self.held.copy(&self.engines),
             base: self.base.clone(),
         }
     }
@@ -45,22 +46,64 @@ impl Physics {
         let engines = blueprint.engines().clone();
         let mut state = engines.reader().new_state();
         actuation.prepare(blueprint.model(), &mut state);
-        state.params.clone_from(blueprint.params());
+        // shared from the start: copies into what is one's own would stay that
+        state.params = blueprint.params().clone();
         Self {
             engines,
             own: None,
-            state,
+            held: Held::new(state),
             base: blueprint.params().clone(),
         }
     }
 
-    /// Returns where steps get their engine from, the state that it advances, and the parameters of a reset.
-    pub fn parts(&mut self) -> (EngineSource<'_>, &mut State, &mut Params) {
+    /// Returns the state.
+    pub fn state(&self) -> &State {
+        self.held.get(&self.engines)
+    }
+
+    /// Returns the state, to change it.
+    pub fn state_mut(&mut self) -> &mut State {
+        self.held.parts(&self.engines).0
+    }
+
+    /// Returns the state, of which only what decides how the run goes on may be there.
+    pub fn dynamic(&self) -> &State {
+        self.held.dynamic()
+    }
+
+    /// Lets steps borrow the room for what they compute from now on; nothing is computed yet.
+    pub fn start_borrowing(&mut self) {
+        self.held.start_borrowing();
+    }
+
+    /// Returns whether they do.
+    pub fn may_borrow(&self) -> bool {
+        self.held.may_borrow()
+    }
+
+    /// Borrows the room for what is computed, if steps do: see [`Held::borrow`].
+    pub fn borrow_room(&mut self) {
+        self.held.borrow(&self.engines);
+    }
+
+    /// Borrows it for a reset, if resets do: see [`Held::borrow_for_reset`].
+    pub fn borrow_room_for_reset(&mut self) {
+        self.held.borrow_for_reset(&self.engines);
+    }
+
+    /// Gives back what was borrowed.
+    pub fn give_room_back(&mut self) {
+        self.held.give_back(&self.engines);
+    }
+
+    /// Returns where steps get their engine from, the state that it advances, where its calls are noted, and the parameters of a reset.
+    pub fn parts(&mut self) -> (EngineSource<'_>, &mut State, Option<&mut Origin>, &mut Shared<Params>) {
+        let (state, origin) = self.held.parts(&self.engines);
         let source = match &mut self.own {
             Some(own) => EngineSource::Own(&mut **own),
             None => EngineSource::Shared(&self.engines),
         };
-        (source, &mut self.state, &mut self.base)
+        (source, state, origin, &mut self.base)
     }
 
     /// Returns an engine that tells what follows from the model.
@@ -70,11 +113,14 @@ impl Physics {
 
     /// Returns an engine of its own, with which the environment goes on from now on.
     pub fn own_engine(&mut self) -> &mut dyn Engine {
+        self.held.parts(&self.engines);
         &mut **self.own.get_or_insert_with(|| self.engines.make())
     }
 
     /// Goes on with the engines of another model of the same sizes.
     pub fn use_engines(&mut self, engines: &Arc<Engines>) {
+        // what those of the other model computed, these would compute differently
+        self.held.parts(&self.engines);
         self.engines = engines.clone();
         if let Some(own) = &mut self.own {
             *own = self.engines.make();
@@ -83,19 +129,22 @@ impl Physics {
 
     /// Computes everything that follows from the state.
     pub fn forward(&mut self) -> Result<(), EngineError> {
-        let (mut engine, state, _) = self.parts();
+        let (mut engine, state, origin, _) = self.parts();
+        if let Some(origin) = origin {
+            origin.note(Call::Forward, state);
+        }
         engine.lend(|engine| engine.forward(state))
     }
 
     /// Checks that the vectors of the state, which a program may change, still fit the model.
     pub fn check_shape(&self) -> Result<(), EngineError> {
-        self.reader().check_shape(&self.state)
+        self.reader().check_shape(self.state())
     }
 
     /// Locks joints now and for later episodes.
     pub fn lock(&mut self, model: &Model, target: LockTarget<'_>, angle: f64) -> Result<LockReport, EnvError> {
         self.check_shape()?;
-        let report = lock(model, &mut self.state.params, target, angle)?;
+        let report = lock(model, &mut self.state_mut().params, target, angle)?;
         self.keep_locks(model, &report);
         Ok(report)
     }
@@ -103,13 +152,13 @@ impl Physics {
     /// Unlocks joints now and for later episodes.
     pub fn unlock(&mut self, model: &Model, target: LockTarget<'_>) -> Result<LockReport, EnvError> {
         self.check_shape()?;
-        let report = unlock(model, &mut self.state.params, target)?;
+        let report = unlock(model, &mut self.state_mut().params, target)?;
         self.keep_locks(model, &report);
         Ok(report)
     }
 
     fn keep_locks(&mut self, model: &Model, report: &LockReport) {
-        let now = &self.state.params;
+        let now = &self.held.dynamic().params;
         for e in report.changed.iter().filter_map(|&j| lock_of(model, j)) {
             self.base.eq_active[e] = now.eq_active[e];
             self.base.eq_offset[e] = now.eq_offset[e];

@@ -37,6 +37,8 @@ struct Chain {
 pub(super) struct Pipeline {
     /// By sense, in the order of [`Sense::ALL`].
     chains: [Chain; Sense::ALL.len()],
+    /// Whether a sense has transforms, side by side: it is asked several times in every step, and mostly none has.
+    changes: [bool; Sense::ALL.len()],
 }
 
 impl Pipeline {
@@ -64,12 +66,17 @@ impl Pipeline {
             let delay = Delay::new(steps, Delays::step_ms(config.frame_skip), like);
             chain.stages.push(Stage::configured(Box::new(delay)));
         }
+        self.note_changes();
+    }
+
+    fn note_changes(&mut self) {
+        let changes = |chain: &Chain| !chain.stages.is_empty() || chain.hold.is_some();
+        self.changes = self.chains.each_ref().map(changes);
     }
 
     /// Returns whether a sense has transforms.
     pub fn changes(&self, sense: Sense) -> bool {
-        let chain = &self.chains[sense as usize];
-        !chain.stages.is_empty() || chain.hold.is_some()
+        self.changes[sense as usize]
     }
 
     /// Returns whether what a sense reports in a step can be left out without changing what comes later: no transform remembers it or draws
@@ -111,6 +118,7 @@ impl Pipeline {
     pub fn add(&mut self, sense: Sense, transform: Box<dyn Transform>) {
         let configured = false;
         self.chains[sense as usize].stages.push(Stage { transform, configured });
+        self.note_changes();
     }
 
     /// Takes over the transforms that were added to another, which the configuration did not ask for.
@@ -122,6 +130,8 @@ impl Pipeline {
             let added: Vec<Stage> = added;
             own.stages.extend(added);
         }
+        self.note_changes();
+        other.note_changes();
     }
 
     /// Forgets the last episode.

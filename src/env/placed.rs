@@ -48,9 +48,9 @@ impl Env {
     pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
         // the solver leaves its solution in the state as the start of the next one: the state gets its own back
         self.senses.forget_picture();
-        let before = self.physics.state.clone();
+        let before = self.physics.state().clone();
         let posed = self.physics.forward();
-        self.physics.state.copy_dynamic_from(&before);
+        self.physics.state_mut().copy_dynamic_from(&before);
         if let Err(e) = posed {
             self.episode.ready = false;
             return Err(e.into());
@@ -73,8 +73,9 @@ impl Env {
         check_vector("qpos", qpos, model.nq)?;
         check_vector("qvel", qvel, model.nv)?;
         self.physics.check_shape()?;
-        self.physics.state.qpos.copy_from_slice(qpos);
-        self.physics.state.qvel.copy_from_slice(qvel);
+        let state = self.physics.state_mut();
+        state.qpos.copy_from_slice(qpos);
+        state.qvel.copy_from_slice(qvel);
         Ok(())
     }
 }

@@ -1,7 +1,10 @@
 //! The senses of an environment and what they observe.
 
+use std::sync::Arc;
+
 use crate::actuation::Actuation;
 use crate::config::VisionOutput;
+use crate::env::blueprint::Tables;
 use crate::env::clock::Clock;
 use crate::env::eyes::Picture;
 use crate::env::pipeline::Pipeline;
@@ -23,10 +26,10 @@ static NO_IMAGES: [EyeImages; 2] = [EyeImages::NONE, EyeImages::NONE];
 /// The senses of an environment that the configuration turns on, with what they observed last: [`Env::senses`](crate::Env::senses).
 #[derive(Clone)]
 pub struct Senses {
-    pub(super) proprioception: Proprioception,
+    pub(super) proprioception: Arc<Proprioception>,
     pub(super) touch: Option<Touch>,
     pub(super) vision: Option<Vision>,
-    pub(super) vestibular: Option<Vestibular>,
+    pub(super) vestibular: Option<Arc<Vestibular>>,
     pub(super) pool: Option<TouchPool>,
     pub(super) pain: Option<Pain>,
     /// The numbers that a sense reports, by sense; `None` for those that are off, and for skins and eyes.
@@ -59,10 +62,13 @@ impl std::fmt::Debug for Senses {
 }
 
 impl Senses {
-    pub(super) fn new(blueprint: &Blueprint, actuation: &dyn Actuation, sizes: TaskSizes) -> Result<Self, EnvError> {
+    pub(super) fn new(blueprint: &Blueprint, sizes: TaskSizes) -> Result<Self, EnvError> {
         let (config, model) = (blueprint.config(), blueprint.model());
-        let proprioception = Proprioception::new(model, config, actuation.observation_len());
-        let vestibular = config.vestibular_active.then(|| Vestibular::new(model));
+        let Tables {
+            proprioception,
+            vestibular,
+            ..
+        } = blueprint.tables().clone();
         let vision = if config.vision_active {
             let mut renderer = blueprint.eyes_renderer()?;
             renderer.set_threads(config.vision_threads as usize);
@@ -83,7 +89,7 @@ impl Senses {
         let numbers = Sense::ALL.map(|sense| match sense {
             Sense::Proprioception => Some(proprioception.len() + sizes.observation),
             Sense::TouchPooled => pool.as_ref().map(TouchPool::len),
-            Sense::Vestibular => vestibular.as_ref().map(Vestibular::len),
+            Sense::Vestibular => vestibular.as_ref().map(|v| v.len()),
             Sense::Touch | Sense::Pain | Sense::EyeLeft | Sense::EyeRight => None,
         });
         let mut senses = Self {

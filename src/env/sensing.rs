@@ -45,7 +45,7 @@ impl Senses {
 
     /// Returns the vestibular sense, if it is active.
     pub fn vestibular(&self) -> Option<&Vestibular> {
-        self.vestibular.as_ref()
+        self.vestibular.as_deref()
     }
 
     /// Returns the sense of vision, if it is active. [`Vision::requests`] tells what the eyes see of a state, to be drawn by any
@@ -110,7 +110,7 @@ impl<'a> SensesMut<'a> {
     fn sight(&mut self) -> Result<(&mut Vision, &State), EnvError> {
         let vision = self.senses.vision.as_mut().ok_or(EnvError::NoVision)?;
         self.physics.check_shape()?;
-        Ok((vision, &self.physics.state))
+        Ok((vision, self.physics.state()))
     }
 
     /// Draws what both eyes see in grey: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.

@@ -43,7 +43,7 @@ impl Env {
     /// Returns the vectors of numbers of a snapshot, in their order; `memory` is that of the task.
     fn numbers<'a>(&'a self, memory: &'a [f64]) -> Vec<&'a [f64]> {
         let mut out = Vec::with_capacity(VECTORS);
-        self.physics.state.numbers(&mut out);
+        self.physics.dynamic().numbers(&mut out);
         out.extend([
             &self.physics.base.eq_offset[..],
             self.senses.numbers(Sense::Proprioception),
@@ -70,9 +70,10 @@ impl Env {
             }
         }
         let mut out = Vec::with_capacity(VECTORS);
-        self.physics.state.numbers_mut(&mut out);
+        let (_, state, _, base) = self.physics.parts();
+        state.numbers_mut(&mut out);
         out.extend([
-            &mut self.physics.base.eq_offset[..],
+            &mut base.eq_offset[..],
             proprioception,
             vestibular,
             &mut self.goals.achieved,
@@ -88,7 +89,7 @@ impl Env {
     /// Returns the vectors of flags of a snapshot, in their order.
     fn flags(&self) -> Vec<&[bool]> {
         let mut out = Vec::with_capacity(VECTORS);
-        self.physics.state.flags(&mut out);
+        self.physics.dynamic().flags(&mut out);
         out.push(&self.physics.base.eq_active);
         out
     }
@@ -96,8 +97,9 @@ impl Env {
     /// Returns the vectors of [`Env::flags`], to write to.
     fn flags_mut(&mut self) -> Vec<&mut [bool]> {
         let mut out = Vec::with_capacity(VECTORS);
-        self.physics.state.flags_mut(&mut out);
-        out.push(&mut self.physics.base.eq_active);
+        let (_, state, _, base) = self.physics.parts();
+        state.flags_mut(&mut out);
+        out.push(&mut base.eq_active);
         out
     }
 
@@ -146,7 +148,7 @@ impl Env {
         bytes.extend_from_slice(&identity.fingerprint.to_le_bytes());
         bytes.extend_from_slice(&[0; 8]);
         let whole = [
-            self.physics.state.step,
+            self.physics.dynamic().step,
             self.episode.steps,
             self.info.steps,
             u64::from(self.episode.ready),
@@ -214,8 +216,9 @@ impl Env {
         }
         if self.physics.check_shape().is_err() {
             // a program has cleared a vector, which leaves no room for its numbers
-            self.physics.state = self.physics.reader().new_state();
-            self.actuation.prepare(self.blueprint.model(), &mut self.physics.state);
+            let state = self.physics.reader().new_state();
+            *self.physics.state_mut() = state;
+            self.actuation.prepare(self.blueprint.model(), self.physics.state_mut());
         }
         let (behavior, memory) = self.parse(&r, counts)?;
         self.load_memory(memory)?;
@@ -228,7 +231,7 @@ impl Env {
         for flags in self.flags_mut() {
             r.fill_flags(flags);
         }
-        self.physics.state.step = step;
+        self.physics.state_mut().step = step;
         self.episode.steps = steps;
         self.info.steps = info_steps;
         self.info.behavior = behavior;

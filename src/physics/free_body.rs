@@ -109,7 +109,7 @@ impl State {
 
     /// Changes mass and inertia of a free body, and what follows from them.
     fn weigh(&mut self, model: &Model, body: usize, mass: f64, inertia: Vec3) {
-        let p = &mut self.params;
+        let p = &mut *self.params;
         (p.body_mass[body], p.body_inertia[body]) = (mass, inertia);
         p.body_subtreemass.clone_from(&p.body_mass);
         for b in (1..model.nbody()).rev() {

@@ -19,6 +19,7 @@ mod patterns;
 #[cfg(feature = "rapier")]
 pub mod rapier;
 mod ray;
+mod shared;
 mod soft;
 mod spatial;
 mod state;
@@ -44,6 +45,7 @@ pub use free_body::FreeBody;
 pub use params::Params;
 #[cfg(feature = "rapier")]
 internals!(use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions, RapierScene});
+pub use shared::Shared;
 pub use soft::{SoftEngine, SoftOptions};
 internals!(use soft::SoftModel);
 pub use state::{Contact, State};

@@ -5,6 +5,7 @@ use crate::model::Arrays;
 use crate::physics::constraint::{Efc, EfcRow};
 use crate::physics::engine::EngineError;
 use crate::physics::params::Params;
+use crate::physics::shared::Shared;
 use crate::physics::table::table;
 use crate::physics::tiles::Tile;
 use crate::physics::topology::Topology;
@@ -102,8 +103,8 @@ table! {
         /// Start of the solver (nv): the last acceleration.
         #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub qacc_warmstart: [f64; model.nv] = 0.0;
-        /// Parameters that may change.
-        pub params: (Params) = Params::new(model);
+        /// Parameters that may change. States share them until one writes to its own.
+        pub params: (Shared<Params>) = Params::new(model).into();
     }
     computed {
         // position stage

@@ -173,6 +173,18 @@ macro_rules! table {
                 $(self.$field.clone_from(&other.$field);)*
             }
 
+            /// Exchanges what decides how a run goes on, without copying a number.
+            #[allow(dead_code, reason = "not every table is taken apart")]
+            pub(crate) fn swap_dynamic(&mut self, other: &mut Self) {
+                $(std::mem::swap(&mut self.$field, &mut other.$field);)*
+            }
+
+            /// Gives back the memory of what every step computes anew.
+            #[allow(dead_code, reason = "not every table is taken apart")]
+            pub(crate) fn drop_computed(&mut self) {
+                $(self.$cfield = Default::default();)*
+            }
+
             /// Checks the lengths of all vectors.
             pub(in crate::physics) fn fits(&self $(, $arg: $of)+) -> Result<(), $crate::physics::EngineError> {
                 $($crate::physics::table::row_fits!(concat!($prefix, stringify!($field)), self.$field, $kind);)*

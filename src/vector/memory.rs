@@ -20,9 +20,19 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     // the array of the vector and the vector of the sense; with the ends of episodes, another of each
     let copies = if mode == AutoresetMode::SameStep { 4 } else { 2 };
     let rows = copies * layout.row_bytes();
-    // the state, with room for contacts and their rows; engines and the memory of pictures are shared
-    let state = 340_000 + 300 * model.ngeom() + 1_600 * model.nv;
-    (rows + state + env.transform_memory()) as u64
+    // what decides how the run goes on, and where the last step began; engines and the memory of pictures are shared
+    let state = 4_000 + 64 * model.nv + 50 * model.nbody();
+    let computed = if env.may_borrow() {
+        0
+    } else {
+        // with room for contacts and their rows
+        300_000 + 300 * model.ngeom() + 1_600 * model.nv
+    };
+    let skin = env
+        .senses()
+        .touch()
+        .map_or(0, |touch| 24_000 + 7 * touch.layout().len());
+    (rows + state + computed + skin + env.transform_memory()) as u64
 }
 
 /// Refuses more environments than fit.

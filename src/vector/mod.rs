@@ -137,21 +137,18 @@ impl VectorEnv {
         if n == 0 {
             return Err(VectorError::NoEnvironments);
         }
-        let make = |env: usize| -> Result<Env, VectorError> { blueprint(env).env().map_err(of(env)) };
+        let make = |env: usize| make(blueprint(env)).map_err(of(env));
         let first = make(0)?;
         let mode = options.autoreset;
         let each = memory::estimate(&first, &Layout::new([&first]), mode);
         memory::check(n, each, options.max_memory)?;
         let envs = alike(first, n, make)?;
-        let deferred = envs
-            .iter()
-            .all(|e| e.senses().vision().is_some() && e.config().renderer == RendererKind::Wgpu);
+        let deferred = envs.iter().all(on_gpu);
         let lazy = envs.iter().any(|env| env.senses().vision_is_lazy());
         let layout = Layout::new(&envs);
         let (action_space, observation_space) = (envs[0].action_space().clone(), envs[0].observation_space());
         let slots = envs.into_iter().enumerate().map(|(index, mut env)| {
             env.senses_mut().defer_vision(deferred);
-            env.senses_mut().set_vision_threads(1); // the vector has threads of its own
             Some(Box::new(Slot::new(index, env, mode)))
         });
         let (threads, clipped) = options::threads(options.threads, n);
@@ -247,6 +244,22 @@ impl VectorEnv {
     pub fn failures(&self) -> &[Failure] {
         &self.failures
     }
+}
+
+/// Makes an environment for a vector.
+fn make(blueprint: &Blueprint) -> Result<Env, EnvError> {
+    let mut env = blueprint.env()?;
+    env.senses_mut().set_vision_threads(1); // the vector has threads of its own
+    // a GPU draws what the environments see when all have stepped: each needs its poses until then
+    if !on_gpu(&env) {
+        env.start_borrowing();
+    }
+    Ok(env)
+}
+
+/// Tells whether a GPU draws what the eyes see.
+fn on_gpu(env: &Env) -> bool {
+    env.senses().vision().is_some() && env.config().renderer == RendererKind::Wgpu
 }
 
 /// Makes the environments after the first, whose spaces must be those of the first.

@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, draw_eyes};
 use crate::threads::Job;
-use crate::vector::AutoresetMode;
 use crate::vector::rows::{Layout, Rows};
+use crate::vector::{AutoresetMode, make};
 
 /// The next order of an environment.
 #[derive(Clone, Copy, Debug)]
@@ -94,13 +94,22 @@ impl Slot {
                 if let Err(e) = self.revive() {
                     self.failure = Some(e);
                 } else {
-                    self.reset(seed);
+                    self.in_borrowed_room(|slot| slot.reset(seed));
                 }
             }
-            Order::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
-            Order::Step => self.step(),
+            Order::Step if self.mode != AutoresetMode::Disabled && self.over() => {
+                self.in_borrowed_room(|slot| slot.reset(None));
+            }
+            Order::Step => self.in_borrowed_room(Self::step),
             Order::Look => self.failure = self.env.look().err(),
         }
+    }
+
+    /// Steps or resets the environment in the memory of the thread, which the environment before it has left in the caches.
+    fn in_borrowed_room(&mut self, work: impl FnOnce(&mut Self)) {
+        self.env.borrow_room();
+        work(self);
+        self.env.give_room_back();
     }
 
     fn step(&mut self) {
@@ -119,6 +128,7 @@ impl Slot {
 
     fn reset(&mut self, seed: Option<u64>) {
         self.started = true;
+        self.env.borrow_room_for_reset();
         if let Err(e) = self.env.reset(seed) {
             self.failure.get_or_insert(e);
         }
@@ -128,9 +138,8 @@ impl Slot {
     fn revive(&mut self) -> Result<(), EnvError> {
         if self.panicked.is_some() {
             let deferred = self.env.senses().vision_is_deferred();
-            self.env = self.env.blueprint().env()?;
+            self.env = make(self.env.blueprint())?;
             self.env.senses_mut().defer_vision(deferred);
-            self.env.senses_mut().set_vision_threads(1);
             self.panicked = None;
         }
         Ok(())

@@ -7,7 +7,8 @@ use babybench::{Blueprint, Config, Env, EnvError};
 
 use testkit::show;
 
-fn caregiver() -> Config {
+/// The room in which a caregiver's hand moves on its path.
+pub(crate) fn caregiver() -> Config {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/config_caregiver.yml");
     let config = Config::from_file(&file).expect("the configuration");
     Config {

@@ -6,7 +6,7 @@ use babybench::Model;
 use babybench::config::{Behavior, BodyParts, Config, Part, Scene};
 use babybench::mimo::{DOCUMENT, Version, build_model, embedded, lock, scene_xml};
 use babybench::mjcf_loader::load_str;
-use babybench::physics::{Engine, Params, RapierEngine, RapierOptions, SoftEngine, SoftOptions, compile};
+use babybench::physics::{Engine, Params, RapierEngine, RapierOptions, Shared, SoftEngine, SoftOptions, compile};
 
 use crate::mujoco::{Mujoco, Release, Simulation};
 
@@ -54,7 +54,7 @@ pub struct Case {
     /// Our model.
     pub model: Arc<Model>,
     /// Parameters at the start: those of the model and the configuration's locks.
-    pub params: Params,
+    pub params: Shared<Params>,
 }
 
 impl Case {
@@ -71,7 +71,7 @@ impl Case {
             name,
             config,
             model,
-            params,
+            params: params.into(),
         }
     }
 

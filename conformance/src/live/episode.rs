@@ -1,7 +1,7 @@
 //! Episodes that MuJoCo runs, for others to be compared with.
 
 use babybench::mimo::{MimoJoints, lock};
-use babybench::physics::Params;
+use babybench::physics::{Params, Shared};
 
 use super::{Case, Drive, Motion};
 use crate::mujoco::Simulation;
@@ -31,7 +31,7 @@ impl Episode {
     }
 
     /// Locks of the episode: in every third none, in every third the feet and eyes, else random joints at random angles.
-    pub fn params(&self, case: &Case, drive: &mut Drive) -> Params {
+    pub fn params(&self, case: &Case, drive: &mut Drive) -> Shared<Params> {
         let mut params = case.params.clone();
         let m = &case.model;
         let turn = self.seed / Motion::ALL.len() as u64 % 3;
@@ -51,7 +51,7 @@ impl Episode {
     }
 
     /// Brings the simulation to the start, `qpos0` with random velocities, and gives the controls.
-    pub fn start(&self, case: &Case, simulation: &mut Simulation) -> (Drive, Params) {
+    pub fn start(&self, case: &Case, simulation: &mut Simulation) -> (Drive, Shared<Params>) {
         let mut drive = Drive::new(&case.model, self.motion, self.seed);
         let params = self.params(case, &mut drive);
         simulation.reset();

@@ -1,6 +1,6 @@
 //! A scene compiled for its task, with its skin, and come to rest.
 
-use crate::actuation;
+use crate::actuation::Actuation;
 use crate::assets::AssetSource;
 use crate::config::{Compat, Config, Part};
 use crate::env::engines::{EngineSource, Engines};
@@ -9,7 +9,7 @@ use crate::env::task::TaskScene;
 use crate::env::{EnvError, Task};
 use crate::mimo::{build_scene, lock};
 use crate::model::Model;
-use crate::physics::Params;
+use crate::physics::{Params, Shared};
 use crate::sensors::SkinLayout;
 use crate::spaces::NumpyRng;
 
@@ -46,7 +46,7 @@ pub fn make_skin(
 pub struct Settled {
     pub qpos: Vec<f64>,
     pub qvel: Vec<f64>,
-    pub params: Params,
+    pub params: Shared<Params>,
 }
 
 impl Settled {
@@ -56,10 +56,10 @@ impl Settled {
         config: &Config,
         task: &dyn Task,
         engines: &Engines,
+        actuation: &dyn Actuation,
         model: &Model,
         paths: Option<&Paths>,
     ) -> Result<Self, EnvError> {
-        let actuation = actuation::build(model, config)?;
         let mut state = engines.reader().new_state();
         if let Some(paths) = paths {
             // where they begin, and stay while the rest comes to rest
@@ -82,8 +82,9 @@ impl Settled {
             state: &mut state,
             rng: &mut NumpyRng::seed(config.seed),
             engine: EngineSource::Shared(engines),
+            origin: None,
             base: &mut params,
-            actuation: &*actuation,
+            actuation,
             paths: None,
             delay: None,
             start: [&model.qpos0, &still],

@@ -190,6 +190,10 @@ impl Task for Catch {
         "catch"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument {
             touch_spacing: TOUCH,

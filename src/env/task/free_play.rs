@@ -12,6 +12,10 @@ impl Task for FreePlay {
         "none"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn inform(&self, _event: TaskEvent<'_>, info: &mut Info) {
         info.behavior = BehaviorInfo::None;
     }

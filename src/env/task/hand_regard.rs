@@ -71,6 +71,10 @@ impl Task for HandRegard {
         "hand_regard"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         let purpose = "behavior hand_regard";
         let camera = |name: &str| model.camera(name).ok_or_else(|| missing_camera(name, purpose));

@@ -158,6 +158,14 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         Ok(())
     }
 
+    /// Returns whether the task leaves forces, locks and parameters of the scene alone between the last physics step, or
+    /// [`TaskScene::forward`], of a reset or step and its end, and reads nothing computed before the first of them: it may move things, by
+    /// `qpos` and `qvel`. The environments of a vector then work in the same memory, one after the other, which the caches of a processor
+    /// reward; with a task that says so wrongly they tell wrong poses and forces between steps. By default it is not said.
+    fn only_moves(&self) -> bool {
+        false
+    }
+
     /// Writes what is appended to proprioception.
     fn observe(&self, state: &State, out: &mut [f64]) {
         let _ = (state, out);

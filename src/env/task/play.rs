@@ -122,6 +122,10 @@ impl Task for Play {
         "play"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         let mimo = MimoBodies::of(model);
         let hip = model.body(crate::mimo::ROOT);

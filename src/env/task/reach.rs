@@ -43,6 +43,10 @@ impl Task for Reach {
         "reach"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.fingers = body(model, "right_fingers", PURPOSE)?;
         self.target = body(model, "target", PURPOSE)?;

@@ -49,6 +49,10 @@ impl Task for RollOver {
         "roll_over"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.base = free_address(model, body(model, "mimo_location", PURPOSE)?, PURPOSE)?;
         self.reference = config.compat == Compat::Reference;

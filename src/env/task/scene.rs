@@ -4,11 +4,12 @@ use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
+use crate::env::held::{Call, Origin};
 use crate::env::paths::Paths;
 use crate::env::{EnvError, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
 use crate::model::Model;
-use crate::physics::{Engine, Params, State};
+use crate::physics::{Engine, Params, Shared, State};
 use crate::sensors::Touch;
 use crate::spaces::NumpyRng;
 
@@ -26,8 +27,10 @@ pub struct TaskScene<'a> {
     /// The generator of the environment's random choices.
     pub rng: &'a mut NumpyRng,
     pub(in crate::env) engine: EngineSource<'a>,
+    /// Where calls of the engine are noted, if they are.
+    pub(in crate::env) origin: Option<&'a mut Origin>,
     /// Parameters after a reset.
-    pub(in crate::env) base: &'a mut Params,
+    pub(in crate::env) base: &'a mut Shared<Params>,
     pub(in crate::env) actuation: &'a dyn Actuation,
     /// Where bodies that the engine does not move are over time; nothing while the scene settles.
     pub(in crate::env) paths: Option<&'a Paths>,
@@ -139,6 +142,9 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn forward(&mut self) -> Result<(), EnvError> {
+        if let Some(origin) = &mut self.origin {
+            origin.note(Call::Forward, self.state);
+        }
         Ok(self.engine.lend(|engine| engine.forward(self.state))?)
     }
 
@@ -233,10 +239,13 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn steps(&mut self, steps: u32) -> Result<(), EnvError> {
-        let (state, paths) = (&mut *self.state, self.paths);
+        let (state, paths, origin) = (&mut *self.state, self.paths, &mut self.origin);
         let mut step = |engine: &mut dyn Engine| {
             if let Some(paths) = paths {
                 paths.place(state);
+            }
+            if let Some(origin) = origin {
+                origin.note(Call::Step, state);
             }
             engine.step(state)
         };

@@ -148,6 +148,10 @@ impl Task for SelfBody {
         "selfbody"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument {
             touch_spacing: TOUCH,

@@ -45,6 +45,10 @@ impl Task for SelfTouch {
         "self_touch"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn bind(&mut self, _config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         let purpose = "behavior self_touch";
         let (right, left) = (body(model, "right_hand", purpose)?, body(model, "left_hand", purpose)?);

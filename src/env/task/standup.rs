@@ -87,6 +87,10 @@ impl Task for Standup {
         "standup"
     }
 
+    fn only_moves(&self) -> bool {
+        true
+    }
+
     fn bind(&mut self, config: &Config, model: &Model) -> Result<TaskSizes, EnvError> {
         self.head = body(model, "head", PURPOSE)?;
         self.base = free_address(model, body(model, "mimo_location", PURPOSE)?, PURPOSE)?;

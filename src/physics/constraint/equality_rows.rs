@@ -10,9 +10,9 @@ use crate::physics::state::State;
 /// Appends the rows of the active equalities.
 #[inline(always)]
 pub fn equalities(rows: &mut Rows, s: &State) {
-    let model = rows.model;
+    let (model, params) = (rows.model, &*s.params);
     for id in 0..model.neq() {
-        if !s.params.eq_active[id] {
+        if !params.eq_active[id] {
             continue;
         }
         match model.eq_kind[id] {

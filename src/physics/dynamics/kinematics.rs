@@ -182,15 +182,15 @@ fn aimed(pos: Vec3, target: Vec3) -> (Vec3, Mat3) {
 #[inline(always)]
 pub fn com_pos(model: &Arrays, s: &mut State) {
     let nb = model.nbody();
-    let (com, xipos) = (&mut s.subtree_com[..nb], &s.xipos[..nb]);
+    let (com, xipos, params) = (&mut s.subtree_com[..nb], &s.xipos[..nb], &*s.params);
     com.fill([0.0; 3]);
     for b in (0..nb).rev() {
-        let weighted = add_scaled(com[b], xipos[b], s.params.body_mass[b]);
+        let weighted = add_scaled(com[b], xipos[b], params.body_mass[b]);
         if b > 0 {
             let p = model.body_parentid[b];
             com[p] = add(com[p], weighted);
         }
-        let mass = s.params.body_subtreemass[b];
+        let mass = params.body_subtreemass[b];
         com[b] = if mass < MINVAL {
             xipos[b]
         } else {
@@ -200,8 +200,8 @@ pub fn com_pos(model: &Arrays, s: &mut State) {
     let bodies = xipos
         .iter()
         .zip(&s.ximat)
-        .zip(&s.params.body_inertia)
-        .zip(&s.params.body_mass);
+        .zip(&params.body_inertia)
+        .zip(&params.body_mass);
     let all = bodies.zip(&model.body_rootid).zip(&mut s.cinert);
     for (((((xipos, r), i), &m), &root), cinert) in all.skip(1) {
         // frames and sites of robots are bodies without mass

@@ -137,11 +137,12 @@ pub fn fwd_velocity(model: &Model, topology: &Topology, s: &mut State, scratch: 
 /// Computes `qfrc_passive`: springs and dampers of joints and tendons, compensated gravity, the medium.
 #[inline(always)]
 fn passive(model: &Model, topology: &Topology, s: &mut State) {
+    let params = &*s.params;
     for d in 0..model.nv {
-        s.qfrc_passive[d] = -s.params.dof_damping[d] * s.qvel[d];
+        s.qfrc_passive[d] = -params.dof_damping[d] * s.qvel[d];
     }
     for j in 0..model.njnt() {
-        let k = s.params.jnt_stiffness[j];
+        let k = params.jnt_stiffness[j];
         if k == 0.0 {
             continue;
         }

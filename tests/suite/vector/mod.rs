@@ -1,6 +1,7 @@
 //! Vectors of environments.
 
 mod bits;
+mod borrowed;
 mod one_by_one;
 mod trouble;
 
