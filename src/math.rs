@@ -3,12 +3,13 @@
 //! Vectors are `[f64; 3]`, quaternions `[w, x, y, z]`, matrices row-major `[f64; 9]` whose columns are the local axes in
 //! the parent frame. Every sum is written out left to right and no fused multiply-add is used, so results are the same
 //! bits on every target. Trigonometry comes from `pxfm`, which rounds
-//! correctly, for the same reason.
+//! correctly, for the same reason; small angles of joints have a shorter way to the same bits (`sincos`).
 
 pub(crate) mod hull;
 mod operations;
 pub(crate) mod order;
 pub(crate) mod qhull;
+mod sincos;
 
 internals!(use operations::*);
 

@@ -1,5 +1,6 @@
 //! The operations on vectors, quaternions and matrices.
 
+use super::sincos::sincos;
 use super::{Mat3, Quat, Vec3};
 
 /// Lengths and norms below this count as zero (MuJoCo's `mjMINVAL`).
@@ -220,7 +221,7 @@ pub fn axis_angle_to_quat(axis: Vec3, angle: f64) -> Quat {
     if angle == 0.0 {
         return QUAT_ID;
     }
-    let (s, c) = pxfm::f_sincos(angle * 0.5);
+    let (s, c) = sincos(angle * 0.5);
     [c, axis[0] * s, axis[1] * s, axis[2] * s]
 }
 
