@@ -91,7 +91,8 @@ fn chain(length: usize) -> Vec<u8> {
     model_of(&nodes, &[], &value("observation", 1, &[1, OBSERVATION]))
 }
 
-/// Models whose sizes stand in constants of other types, and on which the runtime panics.
+/// Models whose sizes stand in constants of other types, on which the runtime panics, or whose
+/// choices it takes long to plan.
 fn by_the_runtime() -> Vec<Case> {
     let observation = value("observation", 1, &[1, OBSERVATION]);
     let single = |name: &str, v: f32| tensor(name, 1, None, &v.to_le_bytes());
@@ -123,14 +124,17 @@ fn by_the_runtime() -> Vec<Case> {
         let attributes = [branch("then_branch", graph), branch("else_branch", &same("e"))];
         node("If", &["c"], &[name], &attributes)
     };
-    let nested = (0..12).fold(same("y"), |graph, k| {
-        let name = format!("y{k}");
-        [
-            field(1, &chosen(&graph, &name)),
-            field(12, field(1, name.as_bytes()).as_slice()),
-        ]
-        .concat()
-    });
+    let nested = |levels: usize| {
+        let graph = (0..levels).fold(same("y"), |graph, k| {
+            let name = format!("y{k}");
+            [
+                field(1, &chosen(&graph, &name)),
+                field(12, field(1, name.as_bytes()).as_slice()),
+            ]
+            .concat()
+        });
+        model_of(&[chosen(&graph, "action")], &[tensor("c", 9, None, &[1])], &observation)
+    };
     vec![
         case(
             "the 2^62 largest of an observation",
@@ -149,14 +153,8 @@ fn by_the_runtime() -> Vec<Case> {
             "least number divided by -1",
             model_of(&quotient, &divided, &observation),
         ),
-        case(
-            "choices in choices",
-            model_of(
-                &[chosen(&nested, "action")],
-                &[tensor("c", 9, None, &[1])],
-                &observation,
-            ),
-        ),
+        case("choices in choices", nested(3)),
+        case("a choice in twelve choices", nested(12)),
         case("25,000 operators in a row", chain(25_000)),
         case("9,999 operators in a row", chain(9_998)),
     ]

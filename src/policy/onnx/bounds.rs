@@ -15,6 +15,9 @@ const MOST: f64 = (1 << 26) as f64;
 const MOST_LARGER: f64 = (1 << 16) as f64;
 /// Greatest number of turns of a loop.
 const MOST_TURNS: f64 = (1 << 20) as f64;
+/// Greatest number of graphs around a graph. The runtime plans the graph of an operator several times whenever it plans the operator, so
+/// that time and memory grow by a factor with each level: two kilobytes with twelve levels would take gigabytes.
+const NESTED: usize = 4;
 
 /// Lists numbers as an error message has them.
 fn list(values: &[f64]) -> String {
@@ -117,6 +120,10 @@ pub(super) fn check(model: &[u8]) -> Result<usize, String> {
 /// Checks a graph within a limit of operators, and those in its operators; how deep they are was checked before.
 fn check_graph<'m>(graph: &'m [u8], most: usize, constants: &mut Constants<'m>) -> Result<(), String> {
     let nodes = parts(graph, 1);
+    // there is an entry for each graph around it
+    if constants.len() > NESTED {
+        return Err(format!("it has graphs within more than {NESTED} graphs"));
+    }
     if nodes.len() > most {
         return Err(format!("a graph of it has {} operators, more than {most}", nodes.len()));
     }
@@ -324,5 +331,17 @@ mod tests {
         };
         assert_eq!(check(&branch(runtime::SHALLOW)), Ok(1));
         assert!(check(&branch(runtime::SHALLOW + 1)).is_err());
+    }
+
+    #[test]
+    fn graphs_are_not_nested_deeply() {
+        let nested = |levels: usize| {
+            let leaf = field(1, &field(4, b"Identity"));
+            let around = |inside: Vec<u8>, _| field_of(1, &field_of(5, &field_of(6, &inside)));
+            field_of(7, &(0..levels).fold(leaf, around))
+        };
+        assert_eq!(check(&nested(NESTED)), Ok(1));
+        let refused = check(&nested(NESTED + 1)).expect_err("too deep");
+        assert!(refused.contains("within more than 4 graphs"), "{refused}");
     }
 }
