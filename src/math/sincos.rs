@@ -9,9 +9,9 @@ const COS: [f64; 4] = [-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0];
 
 /// Returns sine and cosine of an angle (rad), correctly rounded as those of `pxfm`.
 ///
-/// Joints that are held are turned by a thousandth of a radian or less. There `pxfm` nearly always finds the bound of the error of its fast way too
-/// wide and computes the sine with twice the digits; the error of what is left of it without the angle itself is so small that rounding is in doubt
-/// once in a million times.
+/// Joints that are held are turned by a thousandth of a radian or less. There `pxfm` nearly always finds the error bound of its fast way too
+/// wide and computes the sine with twice the digits. The difference between sine and angle is so small that its error leaves the rounding in doubt
+/// a few times in a million.
 #[inline(always)]
 pub fn sincos(x: f64) -> (f64, f64) {
     if x.abs() < SMALL && x != 0.0 {

@@ -158,10 +158,11 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         Ok(())
     }
 
-    /// Returns whether the task leaves forces, locks and parameters of the scene alone between the last physics step, or
-    /// [`TaskScene::forward`], of a reset or step and its end, and reads nothing computed before the first of them: it may move things, by
-    /// `qpos` and `qvel`. The environments of a vector then work in the same memory, one after the other, which the caches of a processor
-    /// reward; with a task that says so wrongly they tell wrong poses and forces between steps. By default it is not said.
+    /// Returns whether the environments of a vector may work in the same memory, one after the other, which is faster where there are many.
+    ///
+    /// A task may say so if it changes nothing but `qpos` and `qvel` between the last physics step, or [`TaskScene::forward`], of a reset or step
+    /// and its end, and if its resets read nothing computed before the first of them. If a task says so and does otherwise, poses and
+    /// forces that are read between the steps of a vector are wrong. By default it does not say so.
     fn only_moves(&self) -> bool {
         false
     }
