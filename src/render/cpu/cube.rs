@@ -6,10 +6,8 @@ use wide::{f32x4, i32x4, u32x4};
 
 use super::lanes::{at_least, four, integers, three};
 use super::light::Vectors;
-use super::sample::{
-    Coordinates, MipLevels, across, are_settled, channels, floor, gather, gather_pairs, upward, whole,
-};
-use crate::render::texture::{Face, Level};
+use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather_squares, upward, whole};
+use crate::render::texture::Face;
 
 /// Looks up the pixels of a block that are `wanted`: red, green, blue; 0..255.
 #[inline(always)]
@@ -87,29 +85,32 @@ impl Points {
         let face = &faces[usize::from(self.side[0])];
         let level = self.detail.level.to_array()[0] as usize;
         let image = &face[level];
-        let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
-        if spots.inside == 15 {
-            let first = gather(image, spots.first.to_array());
-            // around a settled texel there is no other colour, in this level or the next: nothing to lerp
-            if are_settled(first) {
-                return channels(first);
-            }
-        }
-        let look = |image: &Level, level: usize, spots: &Spots| {
-            if spots.inside == 15 {
-                spots.within(image)
-            } else {
-                // copies, which keep what they are made of in registers on the other way
-                let (points, spots) = (*self, *spots);
-                points.beyond(faces, [level; 4], &spots, wanted)
-            }
+        // copies, which keep what they are made of in registers on the other way
+        let beyond = |level: usize, spots: Spots| {
+            let points = *self;
+            points.beyond(faces, [level; 4], &spots, wanted)
         };
-        let mut colours = look(image, level, &spots);
+        let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
+        let mut colours = if spots.inside == 15 {
+            let square = gather_squares(image, spots.first.to_array());
+            // around a settled texel there is no other colour, in this level or the next: nothing to lerp
+            if are_settled(square[0]) {
+                return channels(square[0]);
+            }
+            spots.between(square.map(channels))
+        } else {
+            beyond(level, spots)
+        };
         if self.detail.blends() {
             let level = (level + 1).min(face.len() - 1);
             let image = &face[level];
             let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
-            self.blend(&mut colours, &look(image, level, &spots));
+            let next = if spots.inside == 15 {
+                spots.between(gather_squares(image, spots.first.to_array()).map(channels))
+            } else {
+                beyond(level, spots)
+            };
+            self.blend(&mut colours, &next);
         }
         colours
     }
@@ -198,15 +199,6 @@ impl Spots {
             first: integers(top * size + left),
             inside: (least & left.fast_max(top).simd_lt(last)).to_bitmask(),
         }
-    }
-
-    /// Looks up bilinearly where all texels are inside the image.
-    #[inline(always)]
-    fn within(&self, image: &Level) -> Vectors {
-        let n = image.width as i32;
-        let row = |first: i32x4| gather_pairs(image, first.to_array()).map(channels);
-        let ([a, b], [c, d]) = (row(self.first), row(self.first + i32x4::splat(n)));
-        self.between([a, b, c, d])
     }
 
     /// Lerps between four texels for each pixel.

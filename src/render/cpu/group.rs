@@ -4,6 +4,7 @@ use wide::{f32x4, i32x4};
 
 use super::lanes::{four, integers, three};
 use super::plane::{Plane, Vertex};
+use super::project::steps;
 use super::raster::{Depth, Edges, MEDIUM};
 use super::sampling::{GRAIN, Sampling};
 use super::small::{PIXEL, Spots};
@@ -14,9 +15,6 @@ pub const GROUP: usize = 4;
 /// Triangles that wait to be set up together.
 #[derive(Debug, Default)]
 pub struct Waiting {
-    /// Corners, whole numbers of 1/256 pixels.
-    x: [[f32; GROUP]; 3],
-    y: [[f32; GROUP]; 3],
     /// The projected corners of each triangle.
     corners: [[Vertex; GROUP]; 3],
     /// Vertices in the frame.
@@ -35,14 +33,11 @@ pub enum Drawn {
 }
 
 impl Waiting {
-    /// Adds a triangle; returns whether the group is complete. `x` and `y` are the places of all vertices, whole numbers of
-    /// 1/256 pixels.
+    /// Adds a triangle; returns whether the group is complete.
     #[inline(always)]
-    pub fn add(&mut self, own: [usize; 3], vertices: &[Vertex], x: &[f32], y: &[f32]) -> bool {
+    pub fn add(&mut self, own: [usize; 3], vertices: &[Vertex]) -> bool {
         let at = self.count % GROUP;
         for (k, &vertex) in own.iter().enumerate() {
-            self.x[k][at] = x[vertex];
-            self.y[k][at] = y[vertex];
             self.corners[k][at] = vertices[vertex];
         }
         self.vertices[at] = own;
@@ -62,7 +57,14 @@ impl Waiting {
         if self.count == 0 {
             return;
         }
-        let (x, y) = (three(|k| f32x4::new(self.x[k])), three(|k| f32x4::new(self.y[k])));
+        let corners = three(|k| {
+            f32x4::transpose(four(|i| {
+                let Vertex { x, y, z, iw } = self.corners[k][i];
+                f32x4::new([x, y, z, iw])
+            }))
+        });
+        // rounded once more, which costs less than to collect what was rounded
+        let (x, y) = (three(|k| steps(corners[k][0])), three(|k| steps(corners[k][1])));
         let extent = [Extent::new(&x), Extent::new(&y)];
         let within = |limit: i32| {
             let limit = f32x4::splat(limit as f32);
@@ -78,7 +80,7 @@ impl Waiting {
         let turned = edges.counterclockwise();
         let pixels = [extent[0].pixels(), extent[1].pixels()];
         let lanes = edges.at_pixels(&extent);
-        let depth = LaneDepth::new(&self.corners, size);
+        let depth = LaneDepth::new(&corners, size);
         let corner = [low[0].to_array(), low[1].to_array()];
         for at in 0..self.count {
             let own = self.vertices[at];
@@ -215,15 +217,9 @@ struct LaneDepth {
 
 impl LaneDepth {
     #[inline(always)]
-    fn new(corners: &[[Vertex; GROUP]; 3], size: [usize; 2]) -> Self {
-        let lanes = |k: usize| {
-            f32x4::transpose(four(|i| {
-                let Vertex { x, y, z, iw } = corners[k][i];
-                f32x4::new([x, y, z, iw])
-            }))
-        };
+    fn new(corners: &[[f32x4; 4]; 3], size: [usize; 2]) -> Self {
         // the order in which Mesa sets triangles up
-        let ([bx, by, bz, _], [ax, ay, az, _], [cx, cy, cz, _]) = (lanes(0), lanes(1), lanes(2));
+        let [[bx, by, bz, _], [ax, ay, az, _], [cx, cy, cz, _]] = *corners;
         let (dx01, dy01) = (ax - bx, ay - by);
         let (dx20, dy20) = (cx - ax, cy - ay);
         let scale = f32x4::ONE / (dx01 * dy20 - dy01 * dx20);

@@ -22,6 +22,7 @@ mod sample;
 mod sampling;
 mod seen;
 mod shade;
+mod sky;
 mod small;
 mod target;
 mod triangles;

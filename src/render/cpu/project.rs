@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
+use wide::f32x4;
+
 use super::camera::{Eye, Row, fused, part_rows};
 use super::clip::{self, Place};
 use super::facing::Facing;
 use super::frame::Frame;
+use super::lanes::at_least;
 use super::plane::Vertex;
 use super::raster::LIMIT;
 use crate::render::drawable::Drawable;
@@ -119,20 +122,23 @@ impl Frame {
                 z: pz[k],
                 iw: iw[k],
             };
-            (px[k], py[k]) = (steps(px[k]), steps(py[k]));
         }
-        self.x[base + at..][..LANES].copy_from_slice(&px);
-        self.y[base + at..][..LANES].copy_from_slice(&py);
+        for (places, pixels) in [(&mut self.x, px), (&mut self.y, py)] {
+            let places = &mut places[base + at..][..LANES];
+            for (places, pixels) in places.as_chunks_mut().0.iter_mut().zip(pixels.as_chunks().0) {
+                *places = steps(f32x4::new(*pixels)).to_array();
+            }
+        }
         clips
     }
 }
 
 /// Converts to 1/256 pixels, rounded to the nearest, halves to even. Beyond [`LIMIT`] the result is at the limit.
 #[inline(always)]
-pub fn steps(pixels: f32) -> f32 {
+pub fn steps(pixels: f32x4) -> f32x4 {
     // adding 1.5 * 2^23 rounds to the nearest integer
     const SHIFT: f32 = 12_582_912.0;
-    #[allow(clippy::manual_clamp)] // unlike `clamp`, this turns NaN into a number
-    let v = (pixels * 256.0).max(-LIMIT).min(LIMIT);
+    // numbers, even of what is none
+    let v = at_least(pixels * 256.0, f32x4::splat(-LIMIT)).fast_min(f32x4::splat(LIMIT));
     (v + SHIFT) - SHIFT
 }

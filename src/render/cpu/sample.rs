@@ -94,21 +94,32 @@ pub fn gather(level: &Level, places: [i32; 4]) -> u32x4 {
     u32x4::new(four(|k| u32::from_le_bytes(level.pixels[places[k] as usize])))
 }
 
-/// Gathers two texels side by side for each pixel of a block: the left ones, and those on their right.
+/// Gathers four texels around a place for each pixel of a block, from the place of the upper left one: the upper left ones,
+/// those on their right, the lower left ones, those on their right.
 #[inline(always)]
-pub fn gather_pairs(level: &Level, places: [i32; 4]) -> [u32x4; 2] {
-    // one load and one check of bounds for both
-    let pair = |k: usize| -> u64 {
+pub fn gather_squares(level: &Level, places: [i32; 4]) -> [u32x4; 4] {
+    // 32 bits, so that no sum below needs a check that it does not overflow
+    let width = level.width as u32 as usize;
+    // two loads and one check of bounds for four texels
+    let square = |k: usize| -> [u64; 2] {
         let at = places[k] as u32 as usize;
-        let pair = &level.pixels[at..at + 2];
-        cast([u32::from_le_bytes(pair[0]), u32::from_le_bytes(pair[1])])
+        let texels = &level.pixels[at..at + width + 2];
+        let pair = |at: usize| cast([u32::from_le_bytes(texels[at]), u32::from_le_bytes(texels[at + 1])]);
+        [pair(0), pair(width)]
     };
+    let squares = four(square);
     // vectors from the start, so that compilers see the shuffles
-    let [a, b]: [u32x4; 2] = [u64x2::new([pair(0), pair(1)]), u64x2::new([pair(2), pair(3)])].map(cast);
-    let (a, b) = (a.to_array(), b.to_array());
+    let two = |row: usize, k: usize| -> [u32; 4] {
+        cast::<_, u32x4>(u64x2::new([squares[k][row], squares[k + 1][row]])).to_array()
+    };
+    let left = |a: [u32; 4], b: [u32; 4]| u32x4::new([a[0], a[2], b[0], b[2]]);
+    let right = |a: [u32; 4], b: [u32; 4]| u32x4::new([a[1], a[3], b[1], b[3]]);
+    let (upper, lower) = ([two(0, 0), two(0, 2)], [two(1, 0), two(1, 2)]);
     [
-        u32x4::new([a[0], a[2], b[0], b[2]]),
-        u32x4::new([a[1], a[3], b[1], b[3]]),
+        left(upper[0], upper[1]),
+        right(upper[0], upper[1]),
+        left(lower[0], lower[1]),
+        right(lower[0], lower[1]),
     ]
 }
 

@@ -134,15 +134,20 @@ impl Seen {
         };
         let mut last = NONE;
         for (y, row) in ids.chunks_exact(*width).enumerate() {
-            for (x, ids) in row.iter().enumerate() {
+            for (k, several) in row.chunks(4).enumerate() {
                 // neighbouring samples mostly show the same triangle
-                if !wanted(x, y) || u32x4::new(*ids).simd_eq(u32x4::splat(last)).to_bitmask() == 15 {
+                let as_before = |ids: &[u32; 4]| u32x4::new(*ids).simd_eq(u32x4::splat(last));
+                if let [a, b, c, d] = several
+                    && (as_before(a) & as_before(b) & as_before(c) & as_before(d)).to_bitmask() == 15
+                {
                     continue;
                 }
-                for &id in ids {
-                    if id != last {
-                        see(id);
-                        last = id;
+                for (x, ids) in several.iter().enumerate() {
+                    for &id in ids.iter().filter(|_| wanted(4 * k + x, y)) {
+                        if id != last {
+                            see(id);
+                            last = id;
+                        }
                     }
                 }
             }

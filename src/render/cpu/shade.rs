@@ -9,6 +9,7 @@ use super::light::Vectors;
 use super::plane::{Basis, Planes};
 use super::sample::channels;
 use super::seen::Seen;
+use super::sky::Rays;
 use super::target::{NONE, Triangle};
 use crate::render::scenery::Scenery;
 use crate::render::texture::TexturePixels;
@@ -18,6 +19,7 @@ use crate::render::view::Poses;
 #[derive(Debug, Default)]
 pub struct Shader {
     seen: Seen,
+    rays: Rays,
     /// The shading of each triangle that is seen.
     setups: Vec<Setup>,
     /// Colours of the samples of each pixel, in bytes; used where there are transparent drawables.
@@ -39,6 +41,29 @@ pub enum Pixels {
 }
 
 impl Pixels {
+    /// Writes the colours of a block of 2 x 2 pixels, the lower two first, where they are wanted.
+    #[inline(always)]
+    fn write(self, out: &mut [u8], [w, h]: [usize; 2], [x, y]: [usize; 2], colours: &[[u8; 4]; 4]) {
+        if self == Self::All && x + 1 < w && y + 1 < h {
+            // nearly every block: two pixels at once, and no questions for each
+            for (up, pair) in colours.as_chunks().0.iter().enumerate() {
+                let [left, right] = pair.map(|c| u64::from(u32::from_le_bytes(c)));
+                let at = 3 * ((h - 1 - y - up) * w + x);
+                out[at..at + 6].copy_from_slice(&(left | right << 24).to_le_bytes()[..6]);
+            }
+            return;
+        }
+        for (k, colour) in colours.iter().enumerate() {
+            let (x, y) = (x + k % 2, y + k / 2);
+            if x < w
+                && y < h
+                && let Some(at) = self.place(x, h - 1 - y, w)
+            {
+                out[3 * at..3 * at + 3].copy_from_slice(&colour[..3]);
+            }
+        }
+    }
+
     /// Returns where a pixel goes, counted in pixels; `None` if it is not wanted. `y` is counted from the top.
     #[inline(always)]
     fn place(self, x: usize, y: usize, width: usize) -> Option<usize> {
@@ -71,15 +96,6 @@ struct Setup {
     image: u32,
 }
 
-/// The inputs of shading.
-#[derive(Clone, Copy)]
-struct Inputs<'a> {
-    scenery: &'a Scenery,
-    eye: &'a Eye,
-    /// Factor from pixels to half images.
-    step: [f32; 2],
-}
-
 impl Shader {
     /// Writes pixels of the image, rows from the top.
     pub fn resolve(
@@ -93,18 +109,14 @@ impl Shader {
     ) {
         self.seen.find(frame, scenery, poses, eye, pixels);
         let (w, h) = (frame.size[0], frame.size[1]);
-        let inputs = Inputs {
-            scenery,
-            eye,
-            step: [2.0 / w as f32, 2.0 / h as f32],
-        };
+        self.rays.aim(eye, frame.size);
         self.setups.clear();
         for &id in &self.seen.triangles {
             let setup = Setup::new(frame, scenery, &self.seen, &frame.colour.records[id as usize]);
             self.setups.push(setup);
         }
         if !frame.layers.is_empty() {
-            self.blended(frame, &inputs, pixels, out);
+            self.blended(frame, scenery, pixels, out);
             return;
         }
         let part = pixels.of_block(h);
@@ -113,11 +125,11 @@ impl Shader {
             for x in (0..w).step_by(2) {
                 // inside a triangle all samples have its colour: one shading, no mean
                 let colours = if let Some(id) = frame.colour.only(x, y) {
-                    bytes(&self.colours(frame, &inputs, [x, y], id, [true; 4]))
+                    bytes(&self.colours(frame, scenery, [x, y], id, [true; 4]))
                 } else {
                     // half of four samples, so that rounding their mean down rounds it to the nearest
                     let mut sums = [f32x4::splat(2.0); 3];
-                    self.block(frame, &inputs, [x, y], part, |samples, colour| {
+                    self.block(frame, scenery, [x, y], part, |samples, colour| {
                         let count = f32x4::new(four(|k| COUNT[(samples >> (4 * k) & 15) as usize]));
                         for k in 0..3 {
                             sums[k] += count * colour[k];
@@ -125,16 +137,7 @@ impl Shader {
                     });
                     three(|k| sums[k] * 0.25)
                 };
-                let colours = packed(&colours);
-                for k in 0..4 {
-                    let (x, y) = (x + k % 2, y + k / 2);
-                    if x < w
-                        && y < h
-                        && let Some(at) = pixels.place(x, h - 1 - y, w)
-                    {
-                        out[3 * at..3 * at + 3].copy_from_slice(&colours[k][..3]);
-                    }
-                }
+                pixels.write(out, frame.size, [x, y], &packed(&colours));
             }
         }
     }
@@ -142,7 +145,7 @@ impl Shader {
     /// Passes on the colours that are seen in a block of 2 x 2 pixels, at the samples with a bit in `part`: four bits for each
     /// pixel, the colours of all pixels in bytes.
     #[inline(always)]
-    fn block(&self, frame: &Frame, inputs: &Inputs, at: [usize; 2], part: u32, mut emit: impl FnMut(u32, &Vectors)) {
+    fn block(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], part: u32, mut emit: impl FnMut(u32, &Vectors)) {
         let (w, h) = (frame.size[0], frame.size[1]);
         let [x, y] = at;
         let first = y * w + x;
@@ -159,20 +162,20 @@ impl Shader {
             let mine = (same(0) | same(1) | same(2) | same(3)) & rest;
             rest &= !mine;
             let wanted = four(|k| mine >> (4 * k) & 15 != 0);
-            emit(mine, &bytes(&self.colours(frame, inputs, at, id, wanted)));
+            emit(mine, &bytes(&self.colours(frame, scenery, at, id, wanted)));
         }
     }
 
     /// Writes an image with transparent things, each drawn twice: from the front to the back and then back.
     #[cold]
-    fn blended(&mut self, frame: &Frame, inputs: &Inputs, pixels: Pixels, out: &mut [u8]) {
+    fn blended(&mut self, frame: &Frame, scenery: &Scenery, pixels: Pixels, out: &mut [u8]) {
         let (w, h) = (frame.size[0], frame.size[1]);
         let mut samples = std::mem::take(&mut self.samples);
         samples.clear();
         samples.resize(w * h, [f32x4::ZERO; 4]);
         for y in (0..h).step_by(2) {
             for x in (0..w).step_by(2) {
-                self.block(frame, inputs, [x, y], 0xffff, |covered, colours| {
+                self.block(frame, scenery, [x, y], 0xffff, |covered, colours| {
                     let colours = by_pixel(colours);
                     for k in 0..4 {
                         let (x, y) = (x + k % 2, y + k / 2);
@@ -194,7 +197,7 @@ impl Shader {
                 let own = x % 2 + 2 * (y % 2);
                 wanted[own] = true;
                 let block = [x - x % 2, y - y % 2];
-                let colour = by_pixel(&self.colours(frame, inputs, block, fragment.id, wanted))[own];
+                let colour = by_pixel(&self.colours(frame, scenery, block, fragment.id, wanted))[own];
                 let draw = frame.colour.records[fragment.id as usize].draw;
                 let alpha = frame.draws[draw as usize].alpha;
                 for s in (0..4).filter(|s| fragment.samples >> s & 1 == 1) {
@@ -214,13 +217,13 @@ impl Shader {
 
     /// Returns the colours of a record at the centres of those pixels of a block that are `wanted`.
     #[inline(always)]
-    fn colours(&self, frame: &Frame, inputs: &Inputs, [x, y]: [usize; 2], id: u32, wanted: [bool; 4]) -> Vectors {
-        let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+    fn colours(&self, frame: &Frame, scenery: &Scenery, at: [usize; 2], id: u32, wanted: [bool; 4]) -> Vectors {
         if id == NONE {
-            return inputs.sky(x, y, wanted);
+            return self.rays.colours(scenery, at, wanted);
         }
         let index = frame.colour.records[id as usize].setup;
-        self.setups[index as usize].colours(inputs.scenery, x, y, wanted)
+        let [x, y] = at.map(|v| v as f32 + 0.5);
+        self.setups[index as usize].colours(scenery, x, y, wanted)
     }
 }
 
@@ -303,23 +306,5 @@ impl Setup {
         let [s, t, u, _] = f32x4::transpose(self.texture.block(x, y));
         let texels = scenery.textures[self.image as usize].sample(&[s * w, t * w, u * w], wanted);
         three(|k| colours[k] * texels[k])
-    }
-}
-
-impl Inputs<'_> {
-    /// Returns the background: a cube map turned by 90 degrees about x, seen in the directions of the pixels of a
-    /// block.
-    fn sky(&self, x: f32, y: f32, wanted: [bool; 4]) -> Vectors {
-        let Some(sky) = self.scenery.sky else {
-            return [f32x4::ZERO; 3];
-        };
-        let Eye { forward, right, up, .. } = self.eye;
-        let ray = |at: [f32; 4], k: usize| (f32x4::new(at) * self.step[k] - 1.0) * self.eye.tan[k];
-        // all four pixels even where one is wanted: their differences choose the mip level
-        let across = ray([x, x + 1.0, x, x + 1.0], 0);
-        let upward = ray([y, y, y + 1.0, y + 1.0], 1);
-        let along = |k: usize| forward[k] + right[k] * across + up[k] * upward;
-        // MuJoCo's cube has its top along +y, the world along +z
-        self.scenery.textures[sky].sample(&[along(0), along(2), -along(1)], wanted)
     }
 }

@@ -106,7 +106,7 @@ impl Frame {
     fn wait(&mut self, index: usize, vertices: [usize; 3]) {
         // four triangles of any strips wait for each other: a group that is full costs as much as one with a single
         // triangle
-        if self.waiting.add(vertices, &self.vertices, &self.x, &self.y) {
+        if self.waiting.add(vertices, &self.vertices) {
             self.flush(index);
         }
     }
@@ -158,8 +158,9 @@ impl Frame {
         };
         for &EdgePoint { clip, from, to, share } in points {
             let vertex = clip::project(clip, half);
-            self.x.push(steps(vertex.x));
-            self.y.push(steps(vertex.y));
+            let [x, y, ..] = steps(f32x4::new([vertex.x, vertex.y, 0.0, 0.0])).to_array();
+            self.x.push(x);
+            self.y.push(y);
             self.vertices.push(vertex);
             self.sides.push(0);
             self.points.push(ClipPoint {
