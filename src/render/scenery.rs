@@ -246,13 +246,18 @@ impl Scenery {
             .iter()
             .flat_map(|t| match t {
                 TexturePixels::Flat(f) => std::slice::from_ref(f),
-                TexturePixels::Cube(f) => f.as_slice(),
+                TexturePixels::Cube(cube) => cube.faces.as_slice(),
             })
             .collect();
         // images are shared between textures, and count once
         order::sort_by(&mut faces, |a, b| Arc::as_ptr(a).cmp(&Arc::as_ptr(b)));
         faces.dedup_by_key(|f| Arc::as_ptr(f));
-        faces.iter().flat_map(|f| f.iter()).map(|l| 4 * l.pixels.len()).sum()
+        let within: usize = faces.iter().flat_map(|f| f.iter()).map(|l| l.pixels.len()).sum();
+        let around = |texture: &TexturePixels| match texture {
+            TexturePixels::Flat(_) => 0,
+            TexturePixels::Cube(cube) => cube.around(),
+        };
+        4 * (within + self.textures.iter().map(around).sum::<usize>())
     }
 
     /// Checks that a view of these poses can be drawn.

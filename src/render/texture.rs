@@ -1,5 +1,6 @@
 //! Textures: decoded or computed, with the mip levels that Mesa generates.
 
+mod cube;
 mod pattern;
 
 use std::collections::BTreeMap;
@@ -10,6 +11,7 @@ use crate::formats::png::{decode_png, is_opaque};
 use crate::limits::Limits;
 use crate::model::{Builtin, Texture as Recipe, TextureType};
 use crate::render::{RenderError, plain};
+pub use cube::{Cube, components};
 use pattern::{Mt19937, cube_builtin, flat_builtin, truncated};
 
 /// Largest side of a texture, pixels: images are halved while loading until they fit, so that the original's textures
@@ -37,8 +39,8 @@ pub type Face = Arc<Vec<Level>>;
 pub enum TexturePixels {
     /// One image, repeated in both directions.
     Flat(Face),
-    /// Images on the sides of a cube: +x, -x, +y, -y, +z, -z.
-    Cube([Face; 6]),
+    /// Images on the sides of a cube.
+    Cube(Cube),
 }
 
 impl Level {
@@ -173,7 +175,8 @@ impl<'a> Loader<'a> {
                 TexturePixels::Flat(flat_builtin(recipe, width, height).face())
             } else {
                 let mut dice = Mt19937::new(MARK_SEED);
-                TexturePixels::Cube([0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side, &mut dice).face()))
+                let faces = [0, 1, 2, 3, 4, 5].map(|side| cube_builtin(recipe, width, side, &mut dice).face());
+                TexturePixels::Cube(Cube::new(faces))
             });
         }
         if let Some(path) = &recipe.file {
@@ -203,7 +206,8 @@ impl<'a> Loader<'a> {
             return Err(wrong("it has neither an image file nor a builtin pattern".to_string()));
         };
         let plain = Level::filled(side, side, truncated(recipe.rgb1)).face();
-        Ok(TexturePixels::Cube(faces.map(|f| f.unwrap_or_else(|| plain.clone()))))
+        let faces = faces.map(|f| f.unwrap_or_else(|| plain.clone()));
+        Ok(TexturePixels::Cube(Cube::new(faces)))
     }
 
     /// Checks a texture of what is blended with what lies behind.
@@ -237,7 +241,7 @@ impl<'a> Loader<'a> {
             let face = self.image(path, recipe.flip)?;
             // MuJoCo repeats a square image on all six sides
             if face[0].width == face[0].height {
-                return Ok(TexturePixels::Cube([0; 6].map(|_| face.clone())));
+                return Ok(TexturePixels::Cube(Cube::new([0; 6].map(|_| face.clone()))));
             }
             return Err(RenderError::Texture {
                 name: recipe.name.clone(),
@@ -268,7 +272,7 @@ impl<'a> Loader<'a> {
                     .face();
             }
         }
-        Ok(TexturePixels::Cube(faces))
+        Ok(TexturePixels::Cube(Cube::new(faces)))
     }
 
     /// Counts pixels of a texture, before time and memory are spent on them; the error says that they are too many.

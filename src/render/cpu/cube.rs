@@ -1,26 +1,25 @@
 //! Lookups in cube maps, in single precision.
 
-use std::ops::Neg;
-
+use wide::bytemuck::cast;
 use wide::{f32x4, i32x4, u32x4};
 
 use super::lanes::{at_least, four, integers, three};
 use super::light::Vectors;
 use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather_squares, upward, whole};
-use crate::render::texture::Face;
+use crate::render::texture::{Cube, components};
 
 /// Looks up the pixels of a block that are `wanted`: red, green, blue; 0..255.
 #[inline(always)]
-pub fn colours(faces: &[Face; 6], at: &Coordinates, wanted: [bool; 4]) -> Vectors {
+pub fn colours(cube: &Cube, at: &Coordinates, wanted: [bool; 4]) -> Vectors {
     let axes = Axes::new(at);
     let Some(side) = axes.common() else {
-        return Points::apart(faces, axes.sides(), at).mixed(faces, wanted);
+        return Points::apart(cube, axes.sides(), at).mixed(cube, wanted);
     };
-    let points = Points::on(faces, side, at);
+    let points = Points::on(cube, side, at);
     if !points.detail.same() {
-        return points.mixed(faces, wanted);
+        return points.mixed(cube, wanted);
     }
-    points.colours(faces, wanted)
+    points.colours(cube, wanted)
 }
 
 /// The points of a cube map at which the pixels of a block look.
@@ -35,25 +34,29 @@ struct Points {
 impl Points {
     /// Locates pixels of a block across several faces: each as if the whole block were on its face.
     #[cold]
-    fn apart(faces: &[Face; 6], side: [u8; 4], at: &Coordinates) -> Self {
+    fn apart(cube: &Cube, side: [u8; 4], at: &Coordinates) -> Self {
         // the differences of a face's own coordinates within the block choose the mip level: between coordinates of
         // two faces they would be as large as the face, and the blurriest level would be taken along every edge
-        let own = side.map(|side| Self::on(faces, side, at));
-        let each = |value: &dyn Fn(&Self) -> f32x4| f32x4::new(four(|k| value(&own[k]).to_array()[k]));
-        Self {
-            side,
-            u: each(&|p| p.u),
-            v: each(&|p| p.v),
-            detail: MipLevels {
-                level: i32x4::new(four(|k| own[k].detail.level.to_array()[k])),
-                blend: each(&|p| p.detail.blend),
-            },
+        let mut found = Self::on(cube, side[0], at);
+        for k in 1..4 {
+            if side[..k].contains(&side[k]) {
+                continue;
+            }
+            let own = Self::on(cube, side[k], at);
+            let here = i32x4::new(four(|i| -i32::from(side[i] == side[k])));
+            found.detail.level = here.select(own.detail.level, found.detail.level);
+            let here: f32x4 = cast(here);
+            found.detail.blend = here.select(own.detail.blend, found.detail.blend);
+            found.u = here.select(own.u, found.u);
+            found.v = here.select(own.v, found.v);
         }
+        found.side = side;
+        found
     }
 
     /// Locates pixels as if all of them were on one side.
     #[inline(always)]
-    fn on(faces: &[Face; 6], side: u8, at: &Coordinates) -> Self {
+    fn on(cube: &Cube, side: u8, at: &Coordinates) -> Self {
         let (sc, tc, ma) = components(side, *at);
         // a zero direction has no side; any colour will do
         let least = f32x4::splat(f32::MIN_POSITIVE);
@@ -61,7 +64,7 @@ impl Points {
         // OpenGL's coordinates on a face are (sc / ma + 1) / 2: the half is in both, the 1/2 is added where they are
         // used
         let half = 0.5 * inverse;
-        let scale = half * f32x4::splat(whole(faces[0][0].width));
+        let scale = half * f32x4::splat(whole(cube.faces[0][0].width));
         let length = |change: fn(f32x4) -> f32x4| {
             // the differences of sc / ma by the quotient rule, as llvmpipe takes them; those of the quotients would
             // choose other levels
@@ -75,20 +78,20 @@ impl Points {
             side: [side; 4],
             u: sc * half + 0.5,
             v: tc * half + 0.5,
-            detail: MipLevels::new(right.simd_gt(up).select(right, up), faces[0].len()),
+            detail: MipLevels::new(right.simd_gt(up).select(right, up), cube.faces[0].len()),
         }
     }
 
     /// Looks up pixels that lie on one side and in one level.
     #[inline(always)]
-    fn colours(&self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
-        let face = &faces[usize::from(self.side[0])];
+    fn colours(&self, cube: &Cube, wanted: [bool; 4]) -> Vectors {
+        let face = &cube.faces[usize::from(self.side[0])];
         let level = self.detail.level.to_array()[0] as usize;
         let image = &face[level];
         // copies, which keep what they are made of in registers on the other way
         let beyond = |level: usize, spots: Spots| {
             let points = *self;
-            points.beyond(faces, [level; 4], &spots, wanted)
+            points.beyond(cube, [level; 4], &spots, wanted)
         };
         let spots = Spots::new(self.u, self.v, f32x4::splat(whole(image.width)));
         let mut colours = if spots.inside == 15 {
@@ -117,11 +120,11 @@ impl Points {
 
     /// Looks up pixels that lie on several sides or in several levels.
     #[inline(never)]
-    fn mixed(self, faces: &[Face; 6], wanted: [bool; 4]) -> Vectors {
-        let last = faces[0].len() - 1;
+    fn mixed(self, cube: &Cube, wanted: [bool; 4]) -> Vectors {
+        let last = cube.faces[0].len() - 1;
         let at = |level: [usize; 4]| {
-            let size = f32x4::new(four(|k| whole(faces[0][level[k]].width)));
-            self.beyond(faces, level, &Spots::new(self.u, self.v, size), wanted)
+            let size = f32x4::new(four(|k| whole(cube.faces[0][level[k]].width)));
+            self.beyond(cube, level, &Spots::new(self.u, self.v, size), wanted)
         };
         let level = self.detail.level.to_array().map(|level| level as usize);
         let mut colours = at(level);
@@ -142,17 +145,17 @@ impl Points {
 
     /// Looks up bilinearly in one mip level for each pixel, across the edges of the cube where needed.
     #[inline(never)]
-    fn beyond(&self, faces: &[Face; 6], level: [usize; 4], spots: &Spots, wanted: [bool; 4]) -> Vectors {
+    fn beyond(&self, cube: &Cube, level: [usize; 4], spots: &Spots, wanted: [bool; 4]) -> Vectors {
         let (left, top) = (spots.left.to_array(), spots.top.to_array());
         let first = spots.first.to_array();
         let mut corners = [[0; 4]; 4];
         for k in (0..4).filter(|&k| wanted[k]) {
-            let image = &faces[usize::from(self.side[k])][level[k]];
+            let image = &cube.faces[usize::from(self.side[k])][level[k]];
             let found = if spots.inside >> k & 1 == 1 {
                 let at = |place: usize| image.pixels[first[k] as usize + place];
                 [at(0), at(1), at(image.width), at(image.width + 1)]
             } else {
-                across_edges(faces, self.side[k], level[k], left[k] as i32, top[k] as i32)
+                cube.block(self.side[k], level[k], left[k] as i32, top[k] as i32)
             };
             for i in 0..4 {
                 corners[i][k] = u32::from_le_bytes(found[i]);
@@ -211,32 +214,6 @@ impl Spots {
     }
 }
 
-/// Returns the components of directions on a side of the cube: right, down, outward.
-#[inline(always)]
-fn components<T: Neg<Output = T>>(side: u8, [x, y, z]: [T; 3]) -> (T, T, T) {
-    // the table of cube map faces in OpenGL's specification
-    match side {
-        0 => (-z, -y, x),
-        1 => (z, -y, -x),
-        2 => (x, z, y),
-        3 => (x, -z, -y),
-        4 => (x, -y, z),
-        _ => (-x, -y, -z),
-    }
-}
-
-/// Returns the direction with the given components on a side of the cube.
-fn direction(side: u8, right: f32, down: f32) -> [f32; 3] {
-    match side {
-        0 => [1.0, -down, -right],
-        1 => [-1.0, -down, right],
-        2 => [right, 1.0, down],
-        3 => [right, -1.0, -down],
-        4 => [right, -down, 1.0],
-        _ => [-right, -down, -1.0],
-    }
-}
-
 /// The axes of the cube along which directions are longest: one bit for each pixel.
 struct Axes {
     /// Whether x is longer than y.
@@ -288,56 +265,5 @@ impl Axes {
             };
             (2 * axis + (self.negative[axis as usize] >> k & 1)) as u8
         })
-    }
-}
-
-/// Returns a block of four texels, some of which lie beyond an edge of the side.
-#[cold]
-fn across_edges(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> [[u8; 4]; 4] {
-    let at = |dx: i32, dy: i32| texel(faces, side, level, x + dx, y + dy);
-    let mut found = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-    // at a corner of the cube only three texels meet
-    if let Some(missing) = found.iter().position(Option::is_none) {
-        let others = || found.iter().flatten();
-        let count = others().count().max(1) as u16;
-        let mean = [0, 1, 2, 3].map(|c| (others().map(|t| u16::from(t[c])).sum::<u16>() / count) as u8);
-        found[missing] = Some(mean);
-    }
-    found.map(|t| t.unwrap_or_default())
-}
-
-/// Returns a texel of a side or, beyond one of its edges, of the adjoining side; `None` beyond two edges.
-fn texel(faces: &[Face; 6], side: u8, level: usize, x: i32, y: i32) -> Option<[u8; 4]> {
-    let image = |side: u8| &faces[usize::from(side)][level];
-    let n = image(side).width;
-    let inside = |i: i32| (0..n as i32).contains(&i);
-    match (inside(x), inside(y)) {
-        (true, true) => Some(image(side).pixels[y as usize * n + x as usize]),
-        // beyond a corner there is no face: three texels meet, and their mean takes the place of the fourth
-        (false, false) => None,
-        _ => {
-            // the centres of texels on a face that reaches from -1 to 1
-            let place = |i: i32| (2 * i + 1) as f32 / n as f32 - 1.0;
-            let at = direction(side, place(x), place(y));
-            // the direction of the texel's centre, beyond the edge, points through the adjoining face
-            let side = Axes::new(&at.map(f32x4::splat)).sides()[0];
-            let (right, down, out) = components(side, at);
-            let index = |v: f32| (((v / out + 1.0) * 0.5 * n as f32) as usize).min(n - 1);
-            Some(image(side).pixels[index(down) * n + index(right)])
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sides_and_directions_are_inverse() {
-        for side in 0..6 {
-            let at = direction(side, 0.3, -0.7);
-            assert_eq!(Axes::new(&at.map(f32x4::splat)).sides(), [side; 4]);
-            assert_eq!(components(side, at), (0.3, -0.7, 1.0));
-        }
     }
 }

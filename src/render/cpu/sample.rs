@@ -67,7 +67,7 @@ impl TexturePixels {
     pub(super) fn sample(&self, at: &Coordinates, wanted: [bool; 4]) -> Vectors {
         let colours = match self {
             TexturePixels::Flat(face) => flat::colours(face, at),
-            TexturePixels::Cube(faces) => cube::colours(faces, at, wanted),
+            TexturePixels::Cube(map) => cube::colours(map, at, wanted),
         };
         three(|k| colours[k] * (1.0 / 255.0))
     }

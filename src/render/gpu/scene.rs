@@ -226,8 +226,8 @@ fn upload(gpu: &Gpu, layouts: &Layouts, texture: &TexturePixels) -> wgpu::BindGr
             wgpu::AddressMode::Repeat,
             &layouts.image,
         ),
-        TexturePixels::Cube(faces) => (
-            faces,
+        TexturePixels::Cube(cube) => (
+            &cube.faces,
             wgpu::TextureViewDimension::Cube,
             wgpu::AddressMode::ClampToEdge,
             &layouts.cube,

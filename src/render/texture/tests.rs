@@ -36,9 +36,9 @@ fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
         let spec = crate::mjcf_loader::load_str(&text, "t.xml", &assets).expect("valid");
         let recipe = spec.into_parts().0.textures.remove(0);
         match Loader::new(&assets).texture(&recipe) {
-            Ok(TexturePixels::Cube(faces)) => {
-                Ok(faces.map(|face| (face[0].width, [0, 1, 2].map(|c| face[0].pixels[0][c]))))
-            }
+            Ok(TexturePixels::Cube(cube)) => Ok(cube
+                .faces
+                .map(|face| (face[0].width, [0, 1, 2].map(|c| face[0].pixels[0][c])))),
             Ok(_) => Err("not a cube".to_string()),
             Err(e) => Err(e.to_string()),
         }

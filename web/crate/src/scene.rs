@@ -170,7 +170,7 @@ fn texture(texture: &TexturePixels) -> JsValue {
 pub fn faces(texture: &TexturePixels) -> &[Face] {
     match texture {
         TexturePixels::Flat(face) => std::slice::from_ref(face),
-        TexturePixels::Cube(faces) => faces,
+        TexturePixels::Cube(cube) => &cube.faces,
     }
 }
 
