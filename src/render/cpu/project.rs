@@ -47,7 +47,7 @@ impl Frame {
                 _ => match self.project_all(mesh, draw.base, band.vertices.clone(), &rows) {
                     // the box was cut, the vertices are not
                     (0, _) if !draw.flip => self.inside(mesh, index, band),
-                    (_, 0) => self.across(mesh, &rows, index, band.triangles.clone()),
+                    (_, 0) => self.across(mesh, &rows, index, band),
                     _ => {}
                 },
             }

@@ -1,12 +1,10 @@
 //! Triangle assembly: back faces and triangles that fall between the samples are culled, the others set up and rasterised.
 
-use std::ops::Range;
-
 use wide::f32x4;
 
 use super::camera::Row;
-use super::clip::{self, Clip, EdgePoint, Origin, Polygon};
-use super::frame::{ClipPoint, Frame, Targets};
+use super::clip::{self, Clip, EdgePoint, Origin, Place, Polygon};
+use super::frame::{ClipPoint, Frame, PlacedDrawable, Targets};
 use super::group::{Drawn, Waiting};
 use super::lanes::{four, three};
 use super::plane::Vertex;
@@ -19,23 +17,76 @@ use crate::render::mesh::{Band, Mesh};
 use crate::render::strip::{STRIP_LANES, Strip};
 
 impl Frame {
-    /// Draws triangles of which some are not wholly in view.
-    pub fn across(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, range: Range<usize>) {
-        let draw = self.draws[index];
-        for &[a, b, c] in &mesh.triangles[range] {
-            let t = if draw.flip { [a, c, b] } else { [a, b, c] };
-            let own = three(|k| draw.base + usize::from(t[k]));
-            // one bit for each plane that the corner is beyond
-            let [p, q, r] = three(|k| self.sides[own[k]]);
-            // all corners are beyond the same plane
-            if p & q & r != 0 {
-                continue;
+    /// Draws a band that is not wholly in view.
+    pub fn across(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, band: &Band) {
+        let triangles = &mesh.triangles[band.triangles.clone()];
+        // what is wound the other way is in no order of strips
+        let (loose, strips): (_, &[Strip]) = if self.draws[index].flip {
+            (triangles.len(), &[])
+        } else {
+            (band.loose, &band.strips)
+        };
+        for &t in &triangles[..loose] {
+            self.cut(mesh, rows, index, t);
+        }
+        for strip in strips {
+            for k in 0..strip.count / STRIP_LANES {
+                match self.place_of(index, strip, k) {
+                    Place::Inside => self.four(index, strip, k),
+                    Place::Outside => {}
+                    Place::Across => {
+                        for j in STRIP_LANES * k..STRIP_LANES * (k + 1) {
+                            let [a, b, c, d] = strip.corners(j);
+                            self.cut(mesh, rows, index, [a, b, d]);
+                            if !strip.fan {
+                                self.cut(mesh, rows, index, [b, c, d]);
+                            }
+                        }
+                    }
+                }
             }
-            if p | q | r != 0 {
-                self.clipped(mesh, rows, index, t, p | q | r);
-            } else if self.shows_front(own) {
-                self.wait(index, own);
+        }
+    }
+
+    /// Returns where four quadrilaterals of a strip are, by their corners.
+    #[inline(always)]
+    fn place_of(&self, index: usize, strip: &Strip, k: usize) -> Place {
+        let base = self.draws[index].base;
+        // a byte for each quadrilateral, with one bit for each plane that the corner is beyond
+        let [a, b, c, d] = four(|i| {
+            let from = base + usize::from(strip.first[i]);
+            if strip.step[i] == 0 {
+                return u32::from_ne_bytes([self.sides[from]; STRIP_LANES]);
             }
+            let from = from + STRIP_LANES * k;
+            u32::from_ne_bytes(four(|j| self.sides[from..from + STRIP_LANES][j]))
+        });
+        // bits of planes are the lower six of a byte: a sum with 127 has the highest if there is any
+        let each_has_some = |sides: u32| (sides + 0x7f7f_7f7f) & 0x8080_8080 == 0x8080_8080;
+        if a | b | c | d == 0 {
+            Place::Inside
+        } else if each_has_some(a & b & d) && (strip.fan || each_has_some(b & c & d)) {
+            // all corners of each triangle are beyond the same plane
+            Place::Outside
+        } else {
+            Place::Across
+        }
+    }
+
+    /// Draws what is in view of a triangle.
+    #[inline(always)]
+    fn cut(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, [a, b, c]: [u16; 3]) {
+        let PlacedDrawable { flip, base, .. } = self.draws[index];
+        let t = if flip { [a, c, b] } else { [a, b, c] };
+        let own = three(|k| base + usize::from(t[k]));
+        let [p, q, r] = three(|k| self.sides[own[k]]);
+        if p & q & r != 0 {
+            return;
+        }
+        if p | q | r != 0 {
+            self.clipped(mesh, rows, index, t, p | q | r);
+        } else if self.shows_front(own) {
+            self.wait(index, own);
         }
     }
 
@@ -54,49 +105,49 @@ impl Frame {
             self.wait(index, three(|k| base + usize::from(t[k])));
         }
         for strip in &band.strips {
-            self.strip(index, strip);
+            for k in 0..strip.count / STRIP_LANES {
+                self.four(index, strip, k);
+            }
         }
     }
 
-    /// Draws a strip that is wholly in view.
-    fn strip(&mut self, index: usize, strip: &Strip) {
+    /// Draws four quadrilaterals of a strip that are wholly in view.
+    #[inline(always)]
+    fn four(&mut self, index: usize, strip: &Strip, k: usize) {
+        let fronts = u32::from(self.fronts[strip.patch + k]);
+        // they are skipped at once, and their vertices may not even be projected
+        if fronts == 0 {
+            return;
+        }
         let base = self.draws[index].base;
-        let step = four(|k| usize::from(strip.step[k]));
-        let first = four(|k| base + usize::from(strip.first[k]));
-        for k in 0..strip.count / STRIP_LANES {
-            let fronts = u32::from(self.fronts[strip.patch + k]);
-            // four quadrilaterals are skipped at once, and their vertices may not even be projected
-            if fronts == 0 {
-                continue;
+        let step = four(|i| usize::from(strip.step[i]));
+        let at = four(|i| base + usize::from(strip.first[i]) + step[i] * STRIP_LANES * k);
+        // the same corner of four quadrilaterals lies side by side in memory, or is one vertex for all of them
+        let quads = Quads(four(|k| {
+            [lanes(&self.x, at[k], step[k]), lanes(&self.y, at[k], step[k])]
+        }));
+        let front = quads.front();
+        // most triangles of a distant shape are smaller than the gaps between samples: this test costs less than
+        // setting them up
+        let hit = match self.targets {
+            _ if front == [0; 2] => 0,
+            Targets { centre: false, .. } => quads.hit::<FourSamples>(),
+            Targets { colour: false, .. } => quads.hit::<PixelCentre>(),
+            _ => quads.hit::<FourSamples>() | quads.hit::<PixelCentre>(),
+        };
+        let first = front[0] & hit & fronts;
+        // in a fan around a pole the second triangle has no area
+        let second = if strip.fan { 0 } else { front[1] & hit & fronts };
+        let mut rest = first | second;
+        while rest != 0 {
+            let j = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let [a, b, c, d] = four(|k| at[k] + step[k] * j);
+            if first >> j & 1 == 1 {
+                self.wait(index, [a, b, d]);
             }
-            let at = four(|i| first[i] + step[i] * STRIP_LANES * k);
-            // the same corner of four quadrilaterals lies side by side in memory, or is one vertex for all of them
-            let quads = Quads(four(|k| {
-                [lanes(&self.x, at[k], step[k]), lanes(&self.y, at[k], step[k])]
-            }));
-            let front = quads.front();
-            // most triangles of a distant shape are smaller than the gaps between samples: this test costs less than
-            // setting them up
-            let hit = match self.targets {
-                _ if front == [0; 2] => 0,
-                Targets { centre: false, .. } => quads.hit::<FourSamples>(),
-                Targets { colour: false, .. } => quads.hit::<PixelCentre>(),
-                _ => quads.hit::<FourSamples>() | quads.hit::<PixelCentre>(),
-            };
-            let first = front[0] & hit & fronts;
-            // in a fan around a pole the second triangle has no area
-            let second = if strip.fan { 0 } else { front[1] & hit & fronts };
-            let mut rest = first | second;
-            while rest != 0 {
-                let j = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
-                let [a, b, c, d] = four(|k| at[k] + step[k] * j);
-                if first >> j & 1 == 1 {
-                    self.wait(index, [a, b, d]);
-                }
-                if second >> j & 1 == 1 {
-                    self.wait(index, [b, c, d]);
-                }
+            if second >> j & 1 == 1 {
+                self.wait(index, [b, c, d]);
             }
         }
     }
