@@ -147,16 +147,9 @@ impl Points {
     #[inline(never)]
     fn beyond(&self, cube: &Cube, level: [usize; 4], spots: &Spots, wanted: [bool; 4]) -> Vectors {
         let (left, top) = (spots.left.to_array(), spots.top.to_array());
-        let first = spots.first.to_array();
         let mut corners = [[0; 4]; 4];
         for k in (0..4).filter(|&k| wanted[k]) {
-            let image = &cube.faces[usize::from(self.side[k])][level[k]];
-            let found = if spots.inside >> k & 1 == 1 {
-                let at = |place: usize| image.pixels[first[k] as usize + place];
-                [at(0), at(1), at(image.width), at(image.width + 1)]
-            } else {
-                cube.block(self.side[k], level[k], left[k] as i32, top[k] as i32)
-            };
+            let found = cube.block(self.side[k], level[k], left[k] as i32, top[k] as i32);
             for i in 0..4 {
                 corners[i][k] = u32::from_le_bytes(found[i]);
             }

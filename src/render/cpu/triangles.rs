@@ -20,7 +20,7 @@ impl Frame {
     /// Draws a band that is not wholly in view.
     pub fn across(&mut self, mesh: &Mesh, rows: &[Row; 4], index: usize, band: &Band) {
         let triangles = &mesh.triangles[band.triangles.clone()];
-        // what is wound the other way is in no order of strips
+        // corners of strips stand for triangles that are wound as in the mesh
         let (loose, strips): (_, &[Strip]) = if self.draws[index].flip {
             (triangles.len(), &[])
         } else {
@@ -32,7 +32,7 @@ impl Frame {
         for strip in strips {
             for k in 0..strip.count / STRIP_LANES {
                 match self.place_of(index, strip, k) {
-                    Place::Inside => self.four(index, strip, k),
+                    Place::Inside => self.quadrilaterals(index, strip, k),
                     Place::Outside => {}
                     Place::Across => {
                         for j in STRIP_LANES * k..STRIP_LANES * (k + 1) {
@@ -106,14 +106,14 @@ impl Frame {
         }
         for strip in &band.strips {
             for k in 0..strip.count / STRIP_LANES {
-                self.four(index, strip, k);
+                self.quadrilaterals(index, strip, k);
             }
         }
     }
 
     /// Draws four quadrilaterals of a strip that are wholly in view.
     #[inline(always)]
-    fn four(&mut self, index: usize, strip: &Strip, k: usize) {
+    fn quadrilaterals(&mut self, index: usize, strip: &Strip, k: usize) {
         let fronts = u32::from(self.fronts[strip.patch + k]);
         // they are skipped at once, and their vertices may not even be projected
         if fronts == 0 {
