@@ -9,8 +9,8 @@ use std::sync::Arc;
 use babybench::Config;
 use babybench::config::{Behavior, Scene};
 use babybench::mimo::{build_model, embedded};
-use babybench::physics::rapier::rapier3d_f64::prelude::*; // the version of Rapier that the library is built with
-use babybench::physics::rapier::{Bridge, RapierOptions, Sets};
+use babybench::rapier::rapier3d_f64::prelude::*; // the version of Rapier that the library is built with
+use babybench::rapier::{Bridge, RapierOptions, Sets};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let config = Config {

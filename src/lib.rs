@@ -56,11 +56,13 @@
 //!
 //! # Without the environment
 //!
+//! The engine is a crate of its own, [mjcf-sim](https://docs.rs/mjcf-sim), which knows no infant: it loads any MJCF model, steps it and
+//! draws it. This crate re-exports it: [`mjcf_loader`], [`model`], [`physics`], [`render`], [`math`], [`assets`].
+//!
 //! Data flow one way: [`config`] -> [`mimo`] writes a document -> [`mjcf_loader`] reads MJCF into a
 //! [`Spec`](mjcf_loader::Spec) -> [`physics::compile`] turns it into a [`Model`] -> an [`Engine`](physics::Engine) steps a
 //! [`State`](physics::State), whose fields are those of MuJoCo's `mjData` -> [`sensors`] read it, [`render`] draws it. Each part
-//! works alone, with any MJCF of hinges, slides, free joints, primitive geoms, tendons and welds; whatever is not supported is
-//! an error with file, line and column. In a game loop, step the engine at its own time step and draw in between.
+//! works alone. In a game loop, step the engine at its own time step and draw in between.
 //!
 //! Names are the field's, and the search of this page knows MuJoCo's: try `mj_step`, `mjData` or `mj_applyFT`.
 //!
@@ -68,20 +70,16 @@
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `eval` (default) | [`runs`], [`policy`], [`eval`]: logs, policies, scores, evaluation |
-//! | `faces` (with `eval`) | the pictures of the six faces that MIMo does not make by default, 117 kB |
+//! | `eval` (default) | [`runs`], [`policy`], [`eval`]: logs, policies, scores, evaluation; serde for configurations and results |
 //! | `rapier` (default) | an engine that solves with [Rapier](https://rapier.rs)'s own pipeline; ray casts and shape queries |
-//! | `serde` (in `eval`) | configurations, information and scores are serialised |
 //! | `parallel` | threads in vectors of environments, and for the second eye |
-//! | `npz` | NumPy archives, for recordings and replays (with `internals`) |
+//! | `npz` | NumPy archives, for recordings and replays |
 //! | `report` | [`report`]: a page about a run |
 //! | `onnx` | policies that are ONNX models, run in pure Rust |
 //! | `wgpu` | images on a GPU: `renderer: wgpu`, [`env::draw_eyes`] |
-//! | `internals` | unstable: what only the project's own packages use |
 //!
-//! Items that need `internals` change in any release and have no semantic version: file formats, contact routines, meshes, parts of
-//! the senses and of the command line. `default-features = false` leaves the environments alone. In the dev profile a step takes
-//! thirty times as long; games want `[profile.dev.package.babybench] opt-level = 3`.
+//! `default-features = false` leaves the environments alone. Versions below 1.0 may change any item. In the dev profile a step takes
+//! thirty times as long; games want `[profile.dev.package."*"] opt-level = 3`.
 //!
 //! # Platforms
 //!
@@ -105,67 +103,40 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
-// Without `internals`, what only the other packages of the project use is private, and has no use here.
-#![cfg_attr(
-    not(feature = "internals"),
-    allow(dead_code, unused_imports, rustdoc::private_intra_doc_links)
-)]
-
-/// Re-exports what only the other packages of the project use: for all with the feature `internals`, for this crate alone without. What
-/// public values are made of, too, can be named by all (`hidden`), but has its page with that feature only: it changes in any release.
-macro_rules! internals {
-    (hidden use $($path:tt)+) => {
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
-        pub use $($path)+;
-    };
-    (use $($path:tt)+) => {
-        #[cfg(feature = "internals")]
-        pub use $($path)+;
-        #[cfg(not(feature = "internals"))]
-        pub(crate) use $($path)+;
-    };
-}
 
 pub mod actuation;
-pub mod assets;
 pub mod config;
 pub mod env;
 #[cfg(feature = "eval")]
 pub mod eval;
-mod files;
-#[cfg(feature = "internals")]
+#[cfg(feature = "eval")]
 pub mod formats;
-#[cfg(not(feature = "internals"))]
-mod formats;
 #[cfg(feature = "eval")]
 mod json;
-mod limits;
-pub mod math;
 pub mod mimo;
-pub mod mjcf_loader;
-pub mod model;
-pub mod physics;
 #[cfg(feature = "eval")]
 pub mod policy;
-pub mod render;
 #[cfg(feature = "report")]
 pub mod report;
 #[cfg(feature = "eval")]
 pub mod runs;
 pub mod sensors;
-mod shelf;
 pub mod spaces;
-mod text;
-mod threads;
 pub mod vector;
+
+/// The engine, which is the crate [mjcf-sim](https://docs.rs/mjcf-sim): it knows no infant.
+#[cfg(not(feature = "eval"))]
+pub use mjcf_sim::formats;
+#[cfg(feature = "rapier")]
+pub use mjcf_sim::rapier;
+pub use mjcf_sim::{Limits, Model, assets, files, math, mjcf_loader, model, physics, render};
+use mjcf_sim::{limits, shelf, text, threads};
 
 pub use config::table::Config;
 pub use env::error::EnvError;
 pub use env::info::Info;
 pub use env::observation::{Observation, Step};
 pub use env::{Blueprint, Env};
-pub use limits::Limits;
-pub use model::Model;
 #[cfg(feature = "eval")]
 pub use runs::make_env;
 pub use vector::VectorEnv;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use babybench::assets::MemoryAssets;
 use babybench::mjcf_loader::load_str;
-use babybench::physics::{Engine, RapierModel, RapierOptions, SoftEngine, SoftOptions, compile};
+use babybench::physics::{Engine, SoftEngine, SoftOptions, compile};
+use babybench::rapier::{RapierModel, RapierOptions};
 use libfuzzer_sys::fuzz_target;
 
 /// Larger models are left alone: their cost hides others.

@@ -12,10 +12,7 @@
 //! first physics step of an action and [`Actuation::substep`] before each further one. A model remembers nothing:
 //! activations, targets and forces are in the [`State`].
 
-#[cfg(feature = "internals")]
 pub mod curves;
-#[cfg(not(feature = "internals"))]
-pub(crate) mod curves;
 mod error;
 mod muscle;
 mod others;
@@ -28,9 +25,9 @@ use crate::physics::State;
 use crate::spaces::BoxSpace;
 
 pub use error::ActuationError;
-internals!(use muscle::{Muscle, MuscleParams});
-internals!(use positional::Positional);
-internals!(use spring_damper::SpringDamper);
+pub use muscle::{Muscle, MuscleParams};
+pub use positional::Positional;
+pub use spring_damper::SpringDamper;
 
 /// Turns actions into controls of a scene's actuators. The functions depend on model and state alone.
 pub trait Actuation: Send + Sync {

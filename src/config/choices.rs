@@ -11,7 +11,6 @@ macro_rules! choices {
             /// Every value, in the order of the documentation.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
             /// The names of [`Self::ALL`] in a configuration file.
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub const NAMES: &'static [&'static str] = &[$($text),*];
 
             /// Returns the name in a configuration file.
@@ -20,13 +19,12 @@ macro_rules! choices {
             }
 
             /// Returns the value with this name; `None` if there is none.
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($text => Some(Self::$variant),)* _ => None }
             }
         }
 
-        #[cfg(feature = "serde")]
+        #[cfg(feature = "eval")]
         #[automatically_derived]
         impl serde::Serialize for $name {
             /// Serializes the name.
@@ -35,7 +33,7 @@ macro_rules! choices {
             }
         }
 
-        #[cfg(feature = "serde")]
+        #[cfg(feature = "eval")]
         #[automatically_derived]
         impl<'de> serde::Deserialize<'de> for $name {
             /// Deserializes a value from its name.

@@ -49,8 +49,7 @@ impl Example {
 
     /// Parses the example.
     ///
-    #[cfg_attr(feature = "internals", doc = "```")]
-    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+    /// ```
     /// use babybench::config::{Behavior, Example};
     ///
     /// assert_eq!(Example::HAND_REGARD.config()?.behavior, Behavior::HandRegard);

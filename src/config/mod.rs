@@ -32,7 +32,7 @@ mod outputs;
 mod parts;
 mod scene;
 mod senses;
-#[cfg(feature = "serde")]
+#[cfg(feature = "eval")]
 mod serial;
 pub(crate) mod table;
 mod yaml;
@@ -45,13 +45,13 @@ pub use choices::{
     StartingPosition, TouchFunction, TouchResponse, VisionOutput,
 };
 pub use error::{ConfigError, Location};
-internals!(use examples::Example);
-internals!(use keys::Key);
-internals!(use kinds::{KeyKind, KeyValue});
+pub use examples::Example;
+pub use keys::Key;
+pub use kinds::{KeyKind, KeyValue};
 pub use outputs::VisionOutputs;
 pub use parts::{BodyParts, Part};
 pub use scene::Scene;
-internals!(use table::Config);
+pub use table::Config;
 pub use table::{
     CatchOptions, Delays, EyeOptions, MAX_AGE, Measurements, MobileOptions, NoiseLevels, PainOptions, PlayOptions,
     RollOverOptions,
@@ -102,7 +102,6 @@ impl Config {
     ///
     /// # Errors
     /// Fails like [`Config::from_yaml`], and if the name of the folder is needed and is not UTF-8.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn overlay_yaml_in(
         mut self,
         text: &str,
@@ -222,7 +221,6 @@ impl Config {
     }
 
     /// Returns every key with what it accepts and means, in the order of [`Config::to_yaml`].
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn keys() -> &'static [Key] {
         table::KEYS
     }
@@ -248,7 +246,6 @@ impl Config {
     }
 
     /// Returns whether touch is observed: it is active and its scale is not 0.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn touch_enabled(&self) -> bool {
         self.touch_active && self.touch_scale > 0.0
     }

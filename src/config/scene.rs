@@ -34,13 +34,10 @@ impl Scene {
     /// The scenes of BabyBench, in the order of the documentation.
     pub const ALL: &'static [Self] = &[Self::Base, Self::Crib, Self::Cubes];
     /// The library's own scenes, each of which has a task: `mobile` and `play`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const OWN: &'static [Self] = &[Self::Mobile, Self::Playroom];
     /// The names of [`Self::ALL`] and [`Self::OWN`] in a configuration file.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const NAMES: &'static [&'static str] = &["base", "crib", "cubes", "mobile", "playroom"];
     /// How the path of a document ends.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const ENDING: &'static str = ".xml";
 
     /// Returns the name in a configuration: that of a scene of the library, or a path.
@@ -57,7 +54,6 @@ impl Scene {
 
     /// Returns the scene of the library with this name, or else the document at this path; `None` if it is neither the one nor ends in
     /// `.xml`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn from_name(name: &str) -> Option<Self> {
         let known = Self::ALL.iter().chain(Self::OWN).find(|scene| scene.name() == name);
         let file = || name.ends_with(Self::ENDING).then(|| Self::File(name.to_string()));
@@ -82,7 +78,7 @@ impl fmt::Display for Scene {
     }
 }
 
-#[cfg(feature = "serde")]
+#[cfg(feature = "eval")]
 impl serde::Serialize for Scene {
     /// Serializes the name.
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -90,7 +86,7 @@ impl serde::Serialize for Scene {
     }
 }
 
-#[cfg(feature = "serde")]
+#[cfg(feature = "eval")]
 impl<'de> serde::Deserialize<'de> for Scene {
     /// Deserializes a scene from its name.
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

@@ -7,7 +7,6 @@ use super::table::{Config, Delays, EyeOptions};
 /// Length of a physics step of BabyBench's scenes, ms, in which delays are counted.
 const PHYSICS_STEP_MS: f64 = 5.0;
 
-#[cfg_attr(not(feature = "internals"), doc(hidden))]
 impl Delays {
     /// Returns a delay in steps of the environment, rounded to the nearest, half a step up.
     pub fn steps(&self, delay: f64, frame_skip: u32) -> usize {
@@ -52,7 +51,6 @@ impl Config {
     }
 }
 
-#[cfg_attr(not(feature = "internals"), doc(hidden))]
 impl EyeOptions {
     /// Age of the acuity of eyes of a MIMo without age, months.
     pub const DEFAULT_AGE: f64 = 18.0;

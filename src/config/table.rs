@@ -10,7 +10,7 @@ use super::kinds::KeyKind;
 use super::outputs::VisionOutputs;
 use super::parts::BodyParts;
 use super::scene::Scene;
-use crate::spaces::MAX_IMAGE_SIZE;
+use crate::render::MAX_SIZE;
 
 /// Greatest age that MIMo can have, months.
 pub const MAX_AGE: f64 = 24.0;
@@ -25,10 +25,10 @@ const SCENE: KeyKind = KeyKind::ChoiceOrFile {
 };
 const COUNT: KeyKind = whole_from_1_to(i64::MAX as u64); // steps and episodes are signed integers in numpy's logs
 const FRAMES: KeyKind = whole_from_1_to(10_000); // a step cannot be interrupted; these take about a second
-const PIXELS: KeyKind = whole_from_1_to(MAX_IMAGE_SIZE as u64);
+const PIXELS: KeyKind = whole_from_1_to(MAX_SIZE as u64);
 const OWN_PIXELS: KeyKind = KeyKind::NoneOrWhole {
     min: 1,
-    max: MAX_IMAGE_SIZE as u64,
+    max: MAX_SIZE as u64,
 };
 const FIELD: KeyKind = KeyKind::NoneOr { min: 1.0, max: 170.0 };
 const EYES: KeyKind = whole_from_1_to(2);

@@ -147,7 +147,6 @@ impl Env {
 
     /// Puts the generator of random choices to where it is after `drawn` numbers.
     #[cfg(all(feature = "eval", feature = "npz"))]
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn draw_from(&mut self, drawn: u64) {
         self.rng = NumpyRng::at(self.rng.seed_value(), drawn);
     }

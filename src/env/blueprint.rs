@@ -382,7 +382,6 @@ impl Blueprint {
     }
 
     /// Returns the parameters after a reset: the model's, with the configured locks active and the changes of the actuation model.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn params(&self) -> &Shared<Params> {
         &self.params
     }

@@ -103,7 +103,6 @@ impl<'a> Parts<'a> {
     }
 
     /// Ends the episode and returns how many steps it had. The next step needs a reset.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn end_episode(&mut self) -> u64 {
         self.env.end_episode()
     }
@@ -113,7 +112,6 @@ impl<'a> Parts<'a> {
     /// information stay.
     ///
     /// Under `compat: reference` a reset of the environment is this, [`Parts::forward`] at the settled state, and the start actions.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reset_data(&mut self) {
         self.env.senses.forget_picture();
         let mut scene = self.env.play().scene;
@@ -129,7 +127,6 @@ impl<'a> Parts<'a> {
     ///
     /// # Errors
     /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn forward(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
         self.set_position(qpos, qvel)?;
         self.env.senses.forget_picture();
@@ -142,7 +139,6 @@ impl<'a> Parts<'a> {
     ///
     /// # Errors
     /// Wrong lengths or numbers that are not finite, which change nothing.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
         self.env.set_position(qpos, qvel)
     }
@@ -152,7 +148,6 @@ impl<'a> Parts<'a> {
     ///
     /// # Errors
     /// A wrong length (motors and servos have none) or numbers that are not finite; nothing is changed then.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
         let state = self.env.physics.state_mut();
         check_vector("activity", activity, state.act.len())?;
@@ -264,19 +259,16 @@ impl<'a> Parts<'a> {
     }
 
     /// Returns whether a step may follow: there was a reset, and nothing diverged since.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn ready(&self) -> bool {
         self.env.ready()
     }
 
     /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn accumulate_info(&mut self, on: bool) {
         self.env.episode.accumulate = on;
     }
 
     /// Clears what the behavior has counted.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn clear_info(&mut self) {
         let env = &mut *self.env;
         env.task.forget();

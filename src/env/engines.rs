@@ -7,7 +7,7 @@ use crate::env::EnvError;
 use crate::model::Model;
 use crate::physics::{Engine, SoftModel, SoftOptions, State};
 #[cfg(feature = "rapier")]
-use crate::physics::{RapierModel, RapierOptions};
+use crate::rapier::{RapierModel, RapierOptions};
 use crate::shelf::Shelf;
 
 /// Where the steps of an environment get their engine from.

@@ -9,7 +9,7 @@ use crate::mimo::{GrowthError, LockError, RoomError, SceneError};
 use crate::mjcf_loader::LoadError;
 use crate::physics::EngineError;
 #[cfg(feature = "rapier")]
-use crate::physics::RapierError;
+use crate::rapier::RapierError;
 use crate::render::RenderError;
 use crate::sensors::touch::SkinError;
 use crate::sensors::transform::Sense;

@@ -45,8 +45,7 @@ pub type InfoField<'a> = (&'static str, InfoValue<'a>);
 impl BehaviorInfo {
     /// Iterates over keys and values, in the order of the reference; what a task measures comes last.
     ///
-    #[cfg_attr(feature = "internals", doc = "```")]
-    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+    /// ```
     /// use babybench::config::Behavior;
     /// use babybench::{Env, env::InfoValue};
     /// use babybench::Config;
@@ -58,7 +57,6 @@ impl BehaviorInfo {
     /// assert_eq!(fields[1], ("is_success", InfoValue::Flag(false)));
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn fields(&self) -> impl Iterator<Item = InfoField<'_>> {
         let values: [Option<InfoField<'_>>; 4] = match self {
             Self::None => [None; 4],
@@ -127,7 +125,7 @@ impl BehaviorInfo {
     }
 
     /// Returns whether a key is one of those of some behavior.
-    #[cfg(feature = "serde")]
+    #[cfg(feature = "eval")]
     pub(crate) fn is_key(key: &str) -> bool {
         [&TOUCHES[..], &EYE_HAND_PAIRS, &TASK].concat().contains(&key)
     }
@@ -135,7 +133,6 @@ impl BehaviorInfo {
 
 impl InfoDetails {
     /// Iterates over keys and values, those that there are.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn fields(&self) -> impl Iterator<Item = InfoField<'_>> {
         let parts = self.touched_parts.as_ref().map(PerHand::each_ref);
         let parts = parts.map(|parts| [0, 1].map(|hand| (PARTS[hand], InfoValue::Parts(parts[hand]))));
@@ -161,7 +158,6 @@ impl InfoDetails {
 impl Info {
     /// Iterates over keys and values as everything that this library writes has them: the behavior's, the details, if they are
     /// wanted, `steps`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn fields<'a>(&'a self, details: Option<&'a InfoDetails>) -> impl Iterator<Item = InfoField<'a>> {
         let details = details.into_iter().flat_map(InfoDetails::fields);
         let steps = (STEPS, InfoValue::Count(self.steps));
@@ -169,7 +165,7 @@ impl Info {
     }
 
     /// Reads information, without details.
-    #[cfg(feature = "serde")]
+    #[cfg(feature = "eval")]
     pub(crate) fn read<S: InfoSource>(source: &mut S) -> Result<Self, S::Error> {
         Ok(Self {
             behavior: BehaviorInfo::read(source)?,

@@ -6,7 +6,7 @@ use crate::env::{InfoDetails, Outcome};
 
 /// One value for each hand.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "eval", derive(serde::Serialize, serde::Deserialize))]
 pub struct PerHand<T> {
     /// The right hand's.
     pub right_hand: T,
@@ -16,7 +16,6 @@ pub struct PerHand<T> {
 
 impl<T> PerHand<T> {
     /// Computes the value of each hand: 0 is the right one, 1 the left one.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn from_fn(mut value: impl FnMut(usize) -> T) -> Self {
         Self {
             right_hand: value(0),
@@ -25,13 +24,11 @@ impl<T> PerHand<T> {
     }
 
     /// Returns the values, right hand first.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn each_ref(&self) -> [&T; 2] {
         [&self.right_hand, &self.left_hand]
     }
 
     /// Returns the values for writing, right hand first.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn each_mut(&mut self) -> [&mut T; 2] {
         [&mut self.right_hand, &mut self.left_hand]
     }
@@ -39,7 +36,7 @@ impl<T> PerHand<T> {
 
 /// One value for each pair of an eye and a hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "eval", derive(serde::Serialize, serde::Deserialize))]
 pub struct PerEyeAndHand<T> {
     /// Right eye, right hand.
     pub right_eye_right_hand: T,
@@ -61,7 +58,6 @@ pub const EYE_HAND_PAIRS: [&str; 4] = [
 
 impl<T> PerEyeAndHand<T> {
     /// Computes the value of each pair from the numbers of its eye and its hand: 0 is right, 1 is left.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn from_fn(mut value: impl FnMut(usize, usize) -> T) -> Self {
         Self {
             right_eye_right_hand: value(0, 0),

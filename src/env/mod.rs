@@ -27,7 +27,7 @@ mod placed;
 mod rapier;
 mod senses;
 mod sensing;
-#[cfg(feature = "serde")]
+#[cfg(feature = "eval")]
 mod serial;
 mod snapshot;
 mod stage;
@@ -37,29 +37,29 @@ mod viewer;
 pub use blueprint::{Blueprint, BlueprintOptions};
 pub use by_hand::Parts;
 pub use details::{InfoDetails, PartNames, Regards};
-internals!(use error::EnvError);
+pub use error::EnvError;
 pub use eyes::draw_eyes;
-internals!(use fields::{InfoField, InfoValue});
+pub use fields::{InfoField, InfoValue};
 #[cfg(feature = "eval")]
 pub(crate) use fields::{InfoSource, PARTS, STEPS};
+pub use info::Info;
 #[cfg(feature = "eval")]
 pub(crate) use info::SCORED_PARTS;
-internals!(use info::Info);
 pub use info::{BehaviorInfo, EYE_HAND_PAIRS, Measures, PerEyeAndHand, PerHand, TaskInfo};
+pub use model_change::CHANGEABLE;
 pub use model_change::ModelChangeError;
-pub use paths::PathError;
-internals!(use model_change::CHANGEABLE);
-internals!(use observation::{Observation, Step});
+pub use observation::{Observation, Step};
+pub use other::OtherInfant;
 #[cfg(feature = "eval")]
 pub(crate) use outcome::reports_outcome;
+pub use paths::PathError;
 pub use senses::Senses;
 pub use sensing::SensesMut;
-#[cfg(feature = "serde")]
-internals!(use serial::Detailed);
-pub use other::OtherInfant;
+#[cfg(feature = "eval")]
+pub use serial::Detailed;
+pub use snapshot::SnapshotInfo;
 pub use snapshot::{Snapshot, SnapshotError};
-internals!(use snapshot::SnapshotInfo);
-internals!(use stage::{EnvProbe, EnvStage});
+pub use stage::{EnvProbe, EnvStage};
 pub use task::{
     CloneTask, Goal, GoalError, Outcome, Task, TaskDocument, TaskEvent, TaskScene, TaskSizes, TaskView, Verdict,
 };

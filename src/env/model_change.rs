@@ -54,7 +54,6 @@ pub enum ModelChangeError {
 macro_rules! changeable {
     (parameters { $($own:literal = $($path:ident).+, $field:ident;)* } model { $($name:literal = $($at:ident).+;)* }) => {
         /// The names of what [`Env::change_model`] may change, as in [`Arrays`].
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub const CHANGEABLE: &[&str] = &[$($own,)* $($name),*];
 
         fn rows(arrays: &Arrays) -> Vec<&[f64]> {
@@ -228,13 +227,11 @@ fn shown(model: &Model, params: &Params) -> Arrays {
 impl Env {
     /// Returns the arrays of the model as they are now: with what [`Env::change_model`] has changed, and with the parameters of the actuation
     /// model after a reset.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn model_arrays(&self) -> Arrays {
         shown(self.model(), &self.physics.base)
     }
 
     /// Returns the names of what differs from the model of the scene.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn model_changes(&self) -> Vec<&'static str> {
         let (model, params) = self.blueprint.origin();
         let (first, now) = (shown(model, params), shown(self.model(), self.blueprint.params()));

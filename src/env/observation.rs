@@ -31,7 +31,6 @@ macro_rules! observation {
         impl<'a> Observation<'a> {
             /// Makes an observation of what `values` returns for each entry, in the order of [`ObservationEntry::ALL`]. Numbers of
             /// another type than the entry's are left out.
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<Values<'a>>) -> Self {
                 let mut entries = ObservationEntry::ALL.iter();
                 let mut next = || entries.next().and_then(&mut values);
@@ -42,7 +41,6 @@ macro_rules! observation {
             }
 
             /// Returns the numbers of each entry, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn values(&self) -> [Option<Values<'a>>; ObservationEntry::ALL.len()] {
                 [Some(self.$first.into()), $(self.$field.map(Values::from)),*]
             }

@@ -2,14 +2,14 @@
 
 use crate::env::{Env, EnvError};
 use crate::physics::contact::Quirks;
-use crate::physics::rapier::RapierScene;
+use crate::rapier::RapierScene;
 
 impl Env {
     /// Makes a mirror of the scene in Rapier, in step with [`Env::state`], for ray casts and shape queries. After a step,
     /// [`RapierScene::sync`] brings it up to date for much less than making it costs.
     ///
     /// ```
-    /// use babybench::physics::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
+    /// use babybench::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
     /// use babybench::{Config, Env};
     ///
     /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;

@@ -28,7 +28,6 @@ impl Senses {
     }
 
     /// Returns the bodies that pooled touch covers, if it is active.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn touch_pool(&self) -> Option<&TouchPool> {
         self.pool.as_ref()
     }
@@ -72,13 +71,11 @@ impl Senses {
     }
 
     /// Returns how often there was an observation: two are of one moment where it is the same.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn moment(&self) -> u64 {
         self.moment
     }
 
     /// Returns whether [`draw_eyes`](crate::env::draw_eyes) draws the eyes' images, not each step.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn vision_is_deferred(&self) -> bool {
         self.vision_deferred
     }
@@ -192,7 +189,6 @@ impl<'a> SensesMut<'a> {
     }
 
     /// Sets whether resets and steps leave the eyes' images as they are, for [`draw_eyes`](crate::env::draw_eyes) to draw, once for each.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn defer_vision(&mut self, deferred: bool) {
         self.senses.vision_deferred = deferred;
     }

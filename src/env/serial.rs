@@ -74,8 +74,7 @@ impl Serialize for InfoValue<'_> {
 
 /// An [`Info`] together with details, in one flat map: behavior, details, steps.
 ///
-#[cfg_attr(feature = "internals", doc = "```")]
-#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+/// ```
 /// use babybench::env::Detailed;
 /// use babybench::Info;
 ///

@@ -41,7 +41,6 @@ pub type EnvProbe = Arc<dyn Fn(Option<EnvStage>) + Send + Sync>;
 
 impl Env {
     /// Installs or removes a probe that is told when each stage of a step begins and when the step is done.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
         self.physics.own_engine().set_probe(probe.clone().map(|probe| -> Probe {
             Box::new(move |stage| {

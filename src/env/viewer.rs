@@ -185,7 +185,6 @@ impl Viewer {
     ///
     /// # Errors
     /// As [`Viewer::draw`].
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn eyes_rgba(&mut self, env: &Env) -> Result<&[u8], EnvError> {
         let sizes = env.config().eye_sizes();
         let optics = self.optics.take();

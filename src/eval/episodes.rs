@@ -29,7 +29,6 @@ pub struct Plan {
 
 impl Plan {
     /// Returns how many episodes run in parallel: as many as asked for, but no more than there are episodes and cores.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn parallel(&self) -> usize {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let episodes = usize::try_from(self.episodes).unwrap_or(usize::MAX);

@@ -172,7 +172,6 @@ impl<'f> Evaluation<'f> {
     }
 
     /// Returns the path of the video of an episode.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn video_path(&self, episode: u64) -> PathBuf {
         self.save_dir.join("videos").join(format!("evaluation_{episode}.avi"))
     }

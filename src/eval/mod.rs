@@ -42,10 +42,7 @@
 mod benchmark;
 mod episodes;
 mod evaluation;
-#[cfg(feature = "internals")]
 pub mod film;
-#[cfg(not(feature = "internals"))]
-pub(crate) mod film;
 #[cfg(feature = "npz")]
 mod measures;
 #[cfg(feature = "npz")]
@@ -53,17 +50,17 @@ mod pack;
 mod scores;
 
 #[cfg(feature = "npz")]
-internals!(hidden use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult});
+pub use benchmark::{Benchmark, BenchmarkError, BenchmarkPlan, Interval, Job, Metric, Row, RunResult};
 pub use episodes::{EpisodeError, Plan, run_episodes};
-internals!(use episodes::{Observer, run_episodes_watched});
+pub use episodes::{Observer, run_episodes_watched};
 pub use evaluation::{Evaluation, EvaluationError, eval_logs};
+pub use film::RoomFilm;
 pub use film::{Film, FilmError};
-internals!(use film::RoomFilm);
 #[cfg(feature = "npz")]
 pub use measures::{HandMeasures, Measures, RegionMeasures};
 #[cfg(feature = "npz")]
-internals!(hidden use pack::{PackError, PackOptions, Packed, pack});
+pub use pack::{PackError, PackOptions, Packed, pack};
+pub use scores::{MAX_EPISODES, steps};
 pub use scores::{Score, ScoreError, ScoreParts, Touchables};
-internals!(use scores::{MAX_EPISODES, steps});
 
 pub use crate::formats::avi::DEFAULT_FPS;

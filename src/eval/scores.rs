@@ -143,7 +143,6 @@ impl Score {
 
     /// Returns the records that count: the last 10,000, without the empty record with which the kit starts its logs; under
     /// [`Compat::Reference`] without the first record of the log, whatever it holds.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn counted(records: &[Info], compat: Compat) -> &[Info] {
         let left_out = match compat {
             Compat::Api => records.iter().take_while(|record| record.steps == 0).count(),
@@ -160,13 +159,11 @@ impl Score {
     }
 
     /// Returns the score that one episode would have alone; `None` without steps or behavior.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn of_episode(record: &Info, steps: u64) -> Option<f64> {
         record.behavior.score(steps)
     }
 
     /// Returns the shares of the steps in which each eye had each hand in view, if the behavior is `hand_regard`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn fractions(&self) -> Option<PerEyeAndHand<f64>> {
         match self.parts {
             ScoreParts::HandRegard { counts } => Some(counts.to_array().map(|c| c as f64 / self.steps as f64).into()),
@@ -281,7 +278,6 @@ impl Touchables {
     }
 
     /// Returns the geoms that the right (0) or left (1) palm can touch, ascending.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reachable(&self, hand: usize) -> &[usize] {
         self.reachable.get(hand).map_or(&[], Vec::as_slice)
     }

@@ -5,8 +5,7 @@
 //! constructors, none of which is ever looked up or called; everything else is an error. Memory is bounded by a multiple
 //! of the size of the file, and what a file shares stays shared.
 //!
-#![cfg_attr(feature = "internals", doc = "```")]
-#![cfg_attr(not(feature = "internals"), doc = "```ignore")]
+//! ```
 //! use babybench::formats::pickle::{self, Value};
 //!
 //! let record = Value::dict([("touches", Value::list([3, 7].map(Value::Int))), ("steps", Value::Int(20))]);

@@ -17,8 +17,7 @@ pub struct BodyKind {
 
 /// Returns the kind of a body of MIMo by its name, such as `left_hand`.
 ///
-#[cfg_attr(feature = "internals", doc = "```")]
-#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+/// ```
 /// use babybench::config::Part;
 /// use babybench::mimo::body_kind;
 ///

@@ -8,7 +8,7 @@ macro_rules! embed {
         const FILES: &[(&str, &[u8])] = &[
             $(($path, include_bytes!(concat!("../../assets/", $path))),)*
             // the documents name all faces, so that what is left out must be there by name
-            $(($face, if cfg!(feature = "faces") { include_bytes!(concat!("../../assets/", $face)) } else { &[] }),)*
+            $(($face, if cfg!(feature = "eval") { include_bytes!(concat!("../../assets/", $face)) } else { &[] }),)*
         ];
     };
 }
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "faces")]
+    #[cfg(feature = "eval")]
     #[test]
     fn every_asset_is_embedded() {
         let mut found = BTreeSet::new();

@@ -20,8 +20,7 @@ pub struct BodyFigures {
 impl BodyFigures {
     /// Measures the MIMo of a scene; `None` if it has none.
     ///
-    #[cfg_attr(feature = "internals", doc = "```")]
-    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+    /// ```
     /// use babybench::mimo::BodyFigures;
     /// use babybench::{Blueprint, Config};
     ///

@@ -48,8 +48,7 @@ pub struct GrowthStandard {
 impl GrowthStandard {
     /// Returns the standards of boys and of girls at an age from 0 to 24 months: the tables of whole months, linear between them.
     ///
-    #[cfg_attr(feature = "internals", doc = "```")]
-    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+    /// ```
     /// use babybench::mimo::GrowthStandard;
     ///
     /// let [boys, girls] = GrowthStandard::at(12.0);

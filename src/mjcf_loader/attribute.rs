@@ -92,7 +92,7 @@ pub(super) struct Words<T: 'static> {
 /// Pairs words with values: `words! { "fixed" => false, "targetbody" => true }`.
 macro_rules! words {
     ($($name:literal => $value:expr),* $(,)?) => {
-        $crate::mjcf_loader::attribute::Words { names: &[$($name),*], values: &[$($value),*] }
+        $crate::attribute::Words { names: &[$($name),*], values: &[$($value),*] }
     };
 }
 pub(super) use words;

@@ -15,10 +15,9 @@ use super::{compile, read};
 /// An MJCF document that was read and checked, with its default classes applied, and not yet compiled: sizes, positions,
 /// masses and strengths can be changed, as in MuJoCo's `mjSpec` before `mj_compile`. Names and ids stay.
 ///
-#[cfg_attr(feature = "internals", doc = "```")]
-#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
-/// use babybench::assets::MemoryAssets;
-/// use babybench::{mjcf_loader::Draft, physics};
+/// ```
+/// use mjcf_sim::assets::MemoryAssets;
+/// use mjcf_sim::{mjcf_loader::Draft, physics};
 ///
 /// let text = r#"<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1" mass="2"/></body></worldbody></mujoco>"#;
 /// let mut draft = Draft::read_str(text, "ball.xml", &MemoryAssets::new())?;
@@ -27,7 +26,7 @@ use super::{compile, read};
 /// }
 /// let model = physics::compile(draft.compile(&MemoryAssets::new())?)?;
 /// assert_eq!((model.geom_size[0][0], model.body_mass[1]), (0.05, 2.0));
-/// # Ok::<(), babybench::mjcf_loader::LoadError>(())
+/// # Ok::<(), mjcf_sim::mjcf_loader::LoadError>(())
 /// ```
 pub struct Draft {
     tree: Tree,
@@ -131,7 +130,7 @@ impl Draft {
     }
 
     /// Sets what the names of bodies, joints, sites, cameras and actuators begin with that are asked for from now on; others are left out.
-    pub(crate) fn set_prefix(&mut self, prefix: &str) {
+    pub fn set_prefix(&mut self, prefix: &str) {
         self.prefix = prefix.to_string();
     }
 
@@ -214,7 +213,7 @@ impl Draft {
     }
 
     /// Lists the names of the joints of a body and of all below it.
-    pub(crate) fn joints_below(&self, body: &str) -> Vec<String> {
+    pub fn joints_below(&self, body: &str) -> Vec<String> {
         let bodies = &self.document.bodies;
         // a parent comes before its children
         let mut inside = Vec::with_capacity(bodies.len());

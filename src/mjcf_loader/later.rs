@@ -146,7 +146,7 @@ pub(super) fn element(parent: &str, name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use crate::assets::MemoryAssets;
-    use crate::mjcf_loader::{LoadError, Spec, load_str};
+    use crate::{LoadError, Spec, load_str};
 
     fn load(content: &str) -> Result<Spec, LoadError> {
         let text = format!("<mujoco>{content}</mujoco>");

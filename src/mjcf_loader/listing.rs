@@ -32,9 +32,8 @@ pub struct AttributeInfo {
 
 /// Lists the elements and attributes that the loader understands; everything else in a document is an error.
 ///
-#[cfg_attr(feature = "internals", doc = "```")]
-#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
-/// use babybench::mjcf_loader::elements;
+/// ```
+/// use mjcf_sim::mjcf_loader::elements;
 /// let camera = elements().into_iter().find(|e| e.path == "worldbody/body/camera").unwrap();
 /// let fovy = camera.attributes.iter().find(|a| a.name == "fovy").unwrap();
 /// assert_eq!((fovy.values.as_str(), fovy.default.as_str()), ("1 number, positive", "45"));

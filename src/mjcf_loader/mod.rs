@@ -1,4 +1,4 @@
-//! MJCF text -> [`Spec`], of which [`crate::physics::compile`] makes a [`crate::Model`].
+//! MJCF text -> [`Spec`], of which `compile` of mjcf-sim-physics makes a `Model`.
 //!
 //! Three stages, each its own type: a tree of XML elements with includes spliced in, a typed document with default
 //! classes applied and references by name, and the [`Spec`] with MuJoCo 3.3.0's ids and units. Nothing here knows
@@ -15,16 +15,19 @@
 //! and memory.
 //!
 //! ```
-//! use babybench::assets::MemoryAssets;
-//! use babybench::{mjcf_loader, physics};
+//! use mjcf_sim::assets::MemoryAssets;
+//! use mjcf_sim::{mjcf_loader, physics};
 //!
 //! let text = r#"<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"#;
 //! let spec = mjcf_loader::load_str(text, "ball.xml", &MemoryAssets::new())?;
 //! assert_eq!((spec.nq(), spec.nv(), spec.nbody()), (7, 6, 2));
 //! let model = physics::compile(spec)?;
 //! assert_eq!(model.body("ball").map(|ball| model.body_mass[ball] > 4.0), Some(true));
-//! # Ok::<(), babybench::mjcf_loader::LoadError>(())
+//! # Ok::<(), mjcf_sim::mjcf_loader::LoadError>(())
 //! ```
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
 
 mod actuator;
 mod attached;
@@ -41,8 +44,6 @@ mod later;
 mod limit_tests;
 mod listing;
 mod mesh;
-#[cfg(test)]
-mod mesh_tests;
 mod read;
 mod relation;
 mod schema;
@@ -57,18 +58,20 @@ mod tests;
 mod words;
 mod xml;
 
-pub(crate) use compile::bounding_radius;
+pub use compile::bounding_radius;
 use compile::volume as geom_volume;
-internals!(use draft::{Draft, DraftActuator, DraftGeom});
+pub use draft::{Draft, DraftActuator, DraftGeom};
 pub use error::{ErrorKind, LoadError, Place};
-internals!(use listing::{AttributeInfo, ElementInfo, elements});
-pub(crate) use settings::{LengthRange, LengthRangeMode};
-pub(crate) use spec::Places;
+pub use listing::{AttributeInfo, ElementInfo, elements};
+pub use settings::{LengthRange, LengthRangeMode};
+pub use spec::Places;
 pub use spec::Spec;
-pub(crate) use xml::{Node, Tree};
+pub use xml::{Node, Tree};
 
-use crate::assets::AssetSource;
-use crate::limits::Limits;
+use mjcf_sim_model::assets::AssetSource;
+use mjcf_sim_model::limits::Limits;
+// Paths of other files of this crate begin with `crate` for these, too.
+use mjcf_sim_model::{assets, formats, limits, math, model, text};
 
 /// Loads the document at `path` in `source`.
 ///

@@ -43,9 +43,12 @@ table! {
 
 /// Which actuators get their `lengthrange` by simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LengthRangeMode {
+pub enum LengthRangeMode {
+    /// No actuator.
     None,
+    /// Muscles.
     Muscle,
+    /// All actuators.
     All,
 }
 
@@ -59,16 +62,26 @@ const LENGTH_RANGES: Words<LengthRangeMode> = words! {
 
 /// How the `lengthrange` of actuators is found that do not give it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LengthRange {
+pub struct LengthRange {
+    /// Which actuators get their `lengthrange`.
     pub mode: LengthRangeMode,
+    /// Whether a `lengthrange` that is given counts.
     pub useexisting: bool,
+    /// Whether the limit of the joint or the tendon counts.
     pub uselimit: bool,
+    /// Norm of the acceleration with which the actuator is pulled and pushed in a simulation.
     pub accel: f64,
+    /// Greatest norm of the force that does it; 0 for no bound.
     pub maxforce: f64,
+    /// Time constant at which velocities are slowed down, s.
     pub timeconst: f64,
+    /// Time step of the simulation, s; 0 for that of the model.
     pub timestep: f64,
+    /// Duration of the simulation in each direction, s.
     pub inttotal: f64,
+    /// Time at its end in which the length is measured, s.
     pub interval: f64,
+    /// How much the length may change in that time, relative to the range.
     pub tolrange: f64,
 }
 

@@ -8,7 +8,7 @@ use crate::model::Arrays;
 
 /// The content of an MJCF document, checked and with MuJoCo's ids and units, like MuJoCo's `mjSpec`.
 ///
-/// [`crate::physics::compile`] makes a [`crate::Model`] of it.
+/// `compile` of mjcf-sim-physics makes a [`Model`](mjcf_sim_model::Model) of it.
 #[doc(alias = "mjSpec")]
 #[derive(Clone, Debug)]
 pub struct Spec {
@@ -19,7 +19,7 @@ pub struct Spec {
 
 /// The places of the elements in their document.
 #[derive(Clone, Debug)]
-pub(crate) struct Places {
+pub struct Places {
     pub(super) tree: Tree,
     /// The body elements (nbody), the root for the world.
     pub(super) bodies: Vec<usize>,
@@ -55,7 +55,6 @@ macro_rules! counts {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {
         impl Spec {$(
             #[doc = concat!("Returns the number of ", $what, ".")]
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn $fun(&self) -> usize {
                 self.arrays.$field.len()
             }
@@ -91,7 +90,7 @@ impl Spec {
     }
 
     /// Returns the arrays, without the constants that need dynamics, the places of the elements, and how lengths of actuators are found.
-    pub(crate) fn into_parts(self) -> (Arrays, Places, LengthRange) {
+    pub fn into_parts(self) -> (Arrays, Places, LengthRange) {
         (self.arrays, self.places, self.lengthrange)
     }
 }

@@ -88,7 +88,7 @@ macro_rules! table {
 
         impl Default for $T {
             fn default() -> Self {
-                <Self as $crate::mjcf_loader::table::Table>::initial()
+                <Self as $crate::table::Table>::initial()
             }
         }
     };
@@ -100,20 +100,20 @@ macro_rules! table {
         $(check $($check:literal)|+, $check_form:expr, $check_meaning:literal;)*
         $(with $group:ident: $Group:ty;)*
     }) => {
-        impl $crate::mjcf_loader::table::Table for $T {
-            const ATTRIBUTES: &'static [&'static [$crate::mjcf_loader::attribute::Attr]] = &[
+        impl $crate::table::Table for $T {
+            const ATTRIBUTES: &'static [&'static [$crate::attribute::Attr]] = &[
                 &[
-                    $($crate::mjcf_loader::attribute::Attr::new(
+                    $($crate::attribute::Attr::new(
                         $set, $set_form.kind(), $set_meaning, Self::default_of
                     )$(.$set_flag())*,)*
-                    $($crate::mjcf_loader::attribute::Attr::new(
+                    $($crate::attribute::Attr::new(
                         $name, $form.kind(), $meaning, Self::default_of
                     )$(.$flag())*,)*
-                    $($($crate::mjcf_loader::attribute::Attr::new(
+                    $($($crate::attribute::Attr::new(
                         $check, $check_form.kind(), $check_meaning, Self::default_of
                     ),)+)*
                 ],
-                $(<$Group as $crate::mjcf_loader::table::Table>::ATTRIBUTES[0],)*
+                $(<$Group as $crate::table::Table>::ATTRIBUTES[0],)*
             ];
 
             #[inline(never)]
@@ -122,17 +122,17 @@ macro_rules! table {
                     $($at: 0,)?
                     $($extra: $extra_default,)*
                     $($field: { let default: $ty = $default; default },)*
-                    $($group: <$Group as $crate::mjcf_loader::table::Table>::initial(),)*
+                    $($group: <$Group as $crate::table::Table>::initial(),)*
                 }
             }
 
-            fn field(&mut self, name: &str, visit: $crate::mjcf_loader::attribute::Visit) -> bool {
+            fn field(&mut self, name: &str, visit: $crate::attribute::Visit) -> bool {
                 let _ = &visit;
                 match name {
                     $($set => $set_form.visit(&mut self.$to $(.$sub)* $([$k])?, visit),)*
                     $($name => $form.visit(&mut self.$field, visit),)*
                     $($($check)|+ => {})*
-                    _ => return false $(|| <$Group as $crate::mjcf_loader::table::Table>::field(&mut self.$group, name, visit))*,
+                    _ => return false $(|| <$Group as $crate::table::Table>::field(&mut self.$group, name, visit))*,
                 }
                 true
             }

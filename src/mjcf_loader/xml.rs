@@ -13,9 +13,12 @@ use parser::Parser;
 
 /// An element. Children may come from other files, the parent is the one in its own file.
 #[derive(Clone, Debug)]
-pub(crate) struct Node {
+pub struct Node {
+    /// Name of the element.
     pub name: String,
+    /// Names and values of its attributes, in the order of the file.
     pub attributes: Vec<(String, String)>,
+    /// Its children, by their index in [`Tree::nodes`].
     pub children: Vec<usize>,
     depth: usize,
     file: usize,
@@ -34,7 +37,8 @@ impl Node {
 
 /// All elements of a document and its includes, by index.
 #[derive(Clone, Debug)]
-pub(crate) struct Tree {
+pub struct Tree {
+    /// The elements; the root of the document is the first.
     pub nodes: Vec<Node>,
     /// Elements that this document may contain.
     pub limits: Limits,
@@ -45,7 +49,7 @@ pub(crate) struct Tree {
 
 /// The document, or a model that an `<asset><model>` names.
 #[derive(Clone, Debug)]
-pub(crate) struct ModelFile {
+pub struct ModelFile {
     /// The element that names it; its own root for the document.
     pub of: usize,
     /// Its root element.
@@ -160,7 +164,6 @@ impl Tree {
         }
     }
 
-    #[cfg(feature = "eval")]
     /// Appends the element `root` and all below it to `out`, one tag a line. `replace` is told an element, an
     /// attribute and its value, for which it may give another one.
     pub fn write<E>(
@@ -193,7 +196,6 @@ impl Tree {
         Ok(())
     }
 
-    #[cfg(feature = "eval")]
     fn write_start<E>(
         &self,
         at: usize,
@@ -212,7 +214,6 @@ impl Tree {
     }
 }
 
-#[cfg(feature = "eval")]
 fn indent(out: &mut String, depth: usize) {
     out.extend(std::iter::repeat_n("  ", depth));
 }

@@ -8,7 +8,6 @@ macro_rules! codes {
     ($($kind:ident is $name:literal,)*) => {$(
         impl $kind {
             #[doc = concat!("Returns MuJoCo's number (`", $name, "`).")]
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub const fn code(self) -> i32 {
                 self as i32
             }

@@ -8,11 +8,11 @@ use crate::math::{Mat3, Quat, Vec3};
 /// Owns the complete arrays of a compiled scene; they can be read, but not changed.
 ///
 /// Every array of [`Arrays`] can be read through the model (`model.body_mass[b]`, `model.nbody()`). Only
-/// [`crate::physics::compile`] makes a model, so that constants which need dynamics (`body_invweight0`, `dof_invweight0`,
+/// `compile` of mjcf-sim-physics makes a model, so that constants which need dynamics (`body_invweight0`, `dof_invweight0`,
 /// `tendon_invweight0`, `dof_m0`, statistics, poses of welds, damping from damping ratios, springs and dampers from time constants) are never missing:
 ///
 /// ```
-/// use babybench::{assets::MemoryAssets, mjcf_loader, physics};
+/// use mjcf_sim::{assets::MemoryAssets, mjcf_loader, physics};
 ///
 /// let text = "<mujoco><worldbody><body><freejoint/><geom size='.1' mass='2'/></body></worldbody></mujoco>";
 /// let model = physics::compile(mjcf_loader::load_str(text, "ball.xml", &MemoryAssets::new())?)?;
@@ -23,7 +23,7 @@ use crate::math::{Mat3, Quat, Vec3};
 /// To change a scene, change its MJCF text and compile it again. A model itself stays as it is:
 ///
 /// ```compile_fail,E0596
-/// fn lighten(model: &mut babybench::Model) {
+/// fn lighten(model: &mut mjcf_sim::Model) {
 ///     model.body_mass[1] = 0.0; // cannot borrow data in dereference of `Model` as mutable
 /// }
 /// ```
@@ -43,7 +43,7 @@ impl Deref for Model {
 
 /// Everything in a model that needs dynamics at `qpos0`.
 #[derive(Clone, Debug)]
-pub(crate) struct Constants {
+pub struct Constants {
     /// See [`Arrays::body_invweight0`].
     pub body_invweight0: Vec<[f64; 2]>,
     /// See [`Arrays::dof_invweight0`].
@@ -80,7 +80,7 @@ pub(crate) struct Constants {
 
 /// The relative pose of a weld at `qpos0`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WeldPose {
+pub struct WeldPose {
     /// Which equality it is.
     pub equality: usize,
     /// See [`EqualityKind::Weld`].
@@ -91,23 +91,29 @@ pub(crate) struct WeldPose {
 
 /// The part of its pose at `qpos0` that a camera keeps; see [`Arrays::cam_pos0`] and those after it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CameraPose {
+pub struct CameraPose {
+    /// Position relative to its body, in the world's axes, m.
     pub pos0: Vec3,
+    /// Position relative to the centre of mass of its body's subtree, in the world's axes, m.
     pub poscom0: Vec3,
+    /// Orientation in the world.
     pub mat0: Mat3,
 }
 
 /// The part of its pose at `qpos0` that a light keeps; see [`super::Light`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LightPose {
+pub struct LightPose {
+    /// Position relative to its body, in the world's axes, m.
     pub pos0: Vec3,
+    /// Position relative to the centre of mass of its body's subtree, in the world's axes, m.
     pub poscom0: Vec3,
+    /// Direction in the world, a unit vector.
     pub dir0: Vec3,
 }
 
 impl Model {
     /// Returns whether the options switch off the group of an actuator.
-    pub(crate) fn actuator_disabled(&self, actuator: usize) -> bool {
+    pub fn actuator_disabled(&self, actuator: usize) -> bool {
         let group = u32::try_from(self.actuator_group[actuator]).unwrap_or(u32::MAX);
         self.opt
             .disableactuator
@@ -116,7 +122,7 @@ impl Model {
     }
 
     /// Completes the arrays of a document with the constants that need dynamics.
-    pub(crate) fn new(mut arrays: Arrays, constants: Constants) -> Self {
+    pub fn new(mut arrays: Arrays, constants: Constants) -> Self {
         arrays.body_invweight0 = constants.body_invweight0;
         arrays.dof_invweight0 = constants.dof_invweight0;
         arrays.dof_m0 = constants.dof_m0;
@@ -151,14 +157,14 @@ impl Model {
     }
 
     /// Returns the model with other options, to simulate something of it.
-    pub(crate) fn with_options(&self, edit: impl FnOnce(&mut Options)) -> Self {
+    pub fn with_options(&self, edit: impl FnOnce(&mut Options)) -> Self {
         let mut arrays = self.arrays.clone();
         edit(&mut arrays.opt);
         Self { arrays }
     }
 
     /// Returns the model with the ranges of lengths of its actuators.
-    pub(crate) fn with_lengthrange(mut self, ranges: Vec<[f64; 2]>) -> Self {
+    pub fn with_lengthrange(mut self, ranges: Vec<[f64; 2]>) -> Self {
         self.arrays.actuator_lengthrange = ranges;
         self
     }
@@ -166,7 +172,6 @@ impl Model {
     /// Returns a model with other numbers: what a program has that writes into MuJoCo's `mjModel` between two steps. Constants that
     /// follow from numbers (`dof_invweight0`, statistics and the like) stay as they are, as there. `edit` has to keep lengths, ids
     /// and names.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     #[must_use]
     pub fn edited(&self, edit: impl FnOnce(&mut Arrays)) -> Self {
         let mut arrays = self.arrays.clone();

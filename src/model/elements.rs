@@ -26,7 +26,7 @@ impl JointType {
         }
     }
     /// Returns where in `qpos` the quaternion is of a joint whose coordinates begin at `adr`, if it has one.
-    pub(crate) fn quat(self, adr: usize) -> Option<usize> {
+    pub fn quat(self, adr: usize) -> Option<usize> {
         match self {
             Self::Free => Some(adr + 3),
             Self::Ball => Some(adr),
@@ -256,7 +256,7 @@ pub enum Wrap {
 
 impl Wrap {
     /// Returns the body of a site or a geom.
-    pub(crate) fn body(&self, model: &super::Arrays) -> Option<usize> {
+    pub fn body(&self, model: &super::Arrays) -> Option<usize> {
         match *self {
             Self::Site { site } => Some(model.site_bodyid[site]),
             Self::Sphere { geom, .. } | Self::Cylinder { geom, .. } => Some(model.geom_bodyid[geom]),

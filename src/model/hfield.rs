@@ -2,7 +2,6 @@
 
 /// A height field: heights on a rectangular grid, over a base.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct HField {
     /// Name.
     pub name: String,

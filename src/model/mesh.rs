@@ -5,7 +5,6 @@ use crate::math::{Quat, Vec3, order};
 /// A mesh that geoms show and touch with, centred and along its principal axes, as MuJoCo keeps it: its entry in each of the
 /// arrays `mesh_*`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Mesh {
     /// Name.
     pub name: String,
@@ -52,7 +51,6 @@ impl Mesh {
 /// The convex hull of a mesh as a graph of its corners, in MuJoCo's order, which Qhull makes: where several corners are equally
 /// far, it decides which is found first. Where Qhull's steps come to no hull, the order is that of the vertices.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct MeshHull {
     /// Vertex of the mesh that each corner is.
     pub vert: Vec<u32>,
@@ -68,7 +66,6 @@ pub struct MeshHull {
 
 /// The polygons of a hull, or of a mesh without one, in MuJoCo's order: its triangles, joined where they are on one plane.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub struct MeshPolygons {
     /// Unit normals (`mesh_polynormal`).
     pub normal: Vec<Vec3>,
@@ -84,22 +81,22 @@ pub struct MeshPolygons {
 
 impl MeshPolygons {
     /// Returns the number of polygons (`mesh_polynum`).
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.vert_adr.len().saturating_sub(1)
     }
 
     /// Returns the vertices of a polygon.
-    pub(crate) fn corners(&self, polygon: usize) -> &[u32] {
+    pub fn corners(&self, polygon: usize) -> &[u32] {
         slice(&self.vert_adr, &self.vert, polygon)
     }
 
     /// Returns the polygons of a vertex.
-    pub(crate) fn at(&self, vertex: usize) -> &[u32] {
+    pub fn at(&self, vertex: usize) -> &[u32] {
         slice(&self.map_adr, &self.map, vertex)
     }
 
     /// Appends a polygon.
-    pub(crate) fn push(&mut self, corners: &[u32]) {
+    pub fn push(&mut self, corners: &[u32]) {
         if self.vert_adr.is_empty() {
             self.vert_adr.push(0);
         }
@@ -108,7 +105,7 @@ impl MeshPolygons {
     }
 
     /// Lists the polygons of each of `vertices` vertices.
-    pub(crate) fn index(&mut self, vertices: usize) {
+    pub fn index(&mut self, vertices: usize) {
         let mut of = vec![Vec::new(); vertices];
         for polygon in 0..self.len() {
             for &vertex in self.corners(polygon) {
@@ -135,7 +132,7 @@ fn slice<'a>(adr: &[u32], all: &'a [u32], of: usize) -> &'a [u32] {
 
 impl MeshHull {
     /// Makes the graph of triangles that close a surface.
-    pub(crate) fn new(face: Vec<[u32; 3]>) -> Self {
+    pub fn new(face: Vec<[u32; 3]>) -> Self {
         let mut vert = face.as_flattened().to_vec();
         vert.sort_unstable();
         vert.dedup();
@@ -159,7 +156,7 @@ impl MeshHull {
     }
 
     /// Notes where the corners are, given the vertices of the mesh.
-    pub(crate) fn place(&mut self, vert: &[[f32; 3]]) {
+    pub fn place(&mut self, vert: &[[f32; 3]]) {
         let point = |&vertex: &u32| {
             let [x, y, z] = vert[vertex as usize];
             [x, y, z, 0.0]
@@ -169,7 +166,7 @@ impl MeshHull {
 
     /// Takes corners with their edges and the triangles in the order in which they were found. `None` unless every edge of a
     /// triangle is one of another in the other direction, and every corner is known.
-    pub(crate) fn ordered(vert: Vec<u32>, edges: &[Vec<u32>], face: Vec<[u32; 3]>) -> Option<Self> {
+    pub fn ordered(vert: Vec<u32>, edges: &[Vec<u32>], face: Vec<[u32; 3]>) -> Option<Self> {
         let plain = Self::new(face);
         let mut corner: Vec<(u32, u32)> = vert.iter().zip(0..).map(|(&vertex, at)| (vertex, at)).collect();
         order::sort(&mut corner);
@@ -201,13 +198,13 @@ impl MeshHull {
 
     /// Returns the neighbours of a corner.
     #[inline(always)]
-    pub(crate) fn neighbours(&self, corner: usize) -> &[u32] {
+    pub fn neighbours(&self, corner: usize) -> &[u32] {
         slice(&self.edge_adr, &self.edge, corner)
     }
 
     /// Returns where the corners are, m, each with a number that fills it up to four.
     #[inline(always)]
-    pub(crate) fn points(&self) -> &[[f32; 4]] {
+    pub fn points(&self) -> &[[f32; 4]] {
         &self.point
     }
 }

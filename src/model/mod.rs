@@ -2,8 +2,8 @@
 //!
 //! [`Arrays`] carry MuJoCo's names, ids and units (SI, radians), one entry per element in document order, so a number here
 //! can be laid beside the same number there. A [`Model`] owns complete arrays, lets them be read (`model.body_mass[b]`)
-//! and never be changed; [`crate::physics::compile`] alone makes one. It is shared in an [`std::sync::Arc`]; what changes at
-//! run time lives in [`crate::physics::State`].
+//! and never be changed; `compile` of mjcf-sim-physics makes one. It is shared in an [`std::sync::Arc`]; what changes at
+//! run time lives in the `State` of mjcf-sim-physics.
 
 mod actuator;
 mod arrays;
@@ -17,19 +17,19 @@ mod options;
 mod sensor;
 mod skin;
 
+pub use actuator::{BiasType, DynType, GainType, TrnType};
 pub use arrays::Arrays;
 pub use complete::Model;
-pub(crate) use complete::{CameraPose, Constants, LightPose, WeldPose};
-internals!(hidden use actuator::{BiasType, DynType, GainType, TrnType});
+pub use complete::{CameraPose, Constants, LightPose, WeldPose};
+pub use elements::{EqualityKind, SameFrame, Wrap};
 pub use elements::{GeomType, JointType, Keyframe};
-internals!(hidden use elements::{EqualityKind, SameFrame, Wrap});
-internals!(hidden use hfield::HField);
-internals!(hidden use look::{Builtin, CamLight, Light, Mark, Material, Texture, TextureType, Visual});
-internals!(hidden use mesh::{Mesh, MeshHull, MeshPolygons});
+pub use hfield::HField;
+pub use look::{Builtin, CamLight, Light, Mark, Material, Texture, TextureType, Visual};
+pub use mesh::{Mesh, MeshHull, MeshPolygons};
+pub use options::{ConeType, Flags, JacobianFormat, SolverType, Statistic};
 pub use options::{IntegratorType, Options};
-internals!(hidden use options::{ConeType, Flags, JacobianFormat, SolverType, Statistic});
-internals!(hidden use sensor::{DataType, ObjType, SensorType});
-internals!(hidden use skin::{Skin, SkinBone});
+pub use sensor::{DataType, ObjType, SensorType};
+pub use skin::{Skin, SkinBone};
 
 macro_rules! lookup {
     ($($fun:ident $field:ident $what:literal),* $(,)?) => {
@@ -82,13 +82,11 @@ sizes! {
 
 impl Arrays {
     /// Tells whether a tendon is spatial, its length one in space.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn tendon_is_spatial(&self, tendon: usize) -> bool {
         !matches!(self.tendon_wrap[tendon].first(), Some(Wrap::Joint { .. }))
     }
 
     /// Tells whether a sensor reads accelerations or wrenches of bodies, which follow from the constraint forces.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reads_accelerations(&self) -> bool {
         use SensorType::{Accelerometer, Force, FrameAngAcc, FrameLinAcc, Torque};
         let reads = |kind: &SensorType| matches!(kind, Accelerometer | Force | Torque | FrameLinAcc | FrameAngAcc);
@@ -96,13 +94,12 @@ impl Arrays {
     }
 
     /// Returns the number of what all tendons run along.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn nwrap(&self) -> usize {
         self.tendon_wrap.iter().map(Vec::len).sum()
     }
 
     /// Returns the joint of several coordinates that an actuator acts on, if it acts on one.
-    pub(crate) fn actuator_turns(&self, actuator: usize) -> Option<usize> {
+    pub fn actuator_turns(&self, actuator: usize) -> Option<usize> {
         let joint = self.actuator_joint(actuator);
         joint.filter(|&j| matches!(self.jnt_type[j], JointType::Free | JointType::Ball))
     }
@@ -143,7 +140,7 @@ impl Arrays {
     }
 
     /// Tells whether a body may move in the world: by joints, or because a program moves it or what it is fixed to.
-    pub(crate) fn moves(&self, body: usize) -> bool {
+    pub fn moves(&self, body: usize) -> bool {
         self.body_weldid[body] != 0 || self.body_mocapid[self.body_rootid[body]].is_some()
     }
 

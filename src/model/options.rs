@@ -46,40 +46,28 @@ pub struct Options {
     /// Gravity, m/s^2.
     pub gravity: Vec3,
     /// Greatest number of iterations of the solver per step.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub iterations: usize,
     /// Scaled improvement or gradient below which the solver stops.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub tolerance: f64,
     /// Greatest number of iterations of the solver against slip, which changes friction after the other; 0 for none.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub noslip_iterations: usize,
     /// Scaled improvement below which it stops.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub noslip_tolerance: f64,
     /// Greatest number of line-search iterations per Newton iteration.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ls_iterations: usize,
     /// Line-search tolerance.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ls_tolerance: f64,
     /// Ratio of frictional to normal constraint impedance.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub impratio: f64,
     /// Shape of the friction cones.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cone: ConeType,
     /// Format of the constraint Jacobian in MuJoCo.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub jacobian: JacobianFormat,
     /// Greatest number of iterations of the convex collision routine.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ccd_iterations: usize,
     /// Tolerance of the convex collision routine, m.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ccd_tolerance: f64,
     /// Solver of constraints.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub solver: SolverType,
     /// Method of integration.
     pub integrator: IntegratorType,
@@ -94,13 +82,12 @@ pub struct Options {
     /// Groups of actuators that exert no force (`actuatorgroupdisable`): bit `k` is group `k`, of 0 to 30.
     pub disableactuator: u32,
     /// Parts of the simulation that may be switched off.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub flags: Flags,
 }
 
 impl Options {
     /// Returns the least time constant that a `solref` may have, s: two time steps, unless the flag `refsafe` is off.
-    pub(crate) fn least_timeconst(&self) -> f64 {
+    pub fn least_timeconst(&self) -> f64 {
         if self.flags.refsafe { 2.0 * self.timestep } else { 0.0 }
     }
 }

@@ -7,7 +7,6 @@ macro_rules! sensors {
         /// The type of a sensor.
         #[doc(alias = "mjtSensor")]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[non_exhaustive]
         pub enum SensorType {
             $($(#[$doc])* $kind,)*
         }
@@ -132,7 +131,7 @@ sensors! {
 
 impl SensorType {
     /// Returns MuJoCo's number of the stage of a step after which such a sensor can be read: 1 positions, 2 velocities, 3 accelerations.
-    pub(crate) const fn needstage(self) -> usize {
+    pub const fn needstage(self) -> usize {
         use SensorType::*;
         match self {
             Velocimeter | Gyro | JointVel | TendonVel | ActuatorVel | BallAngVel | JointLimitVel | TendonLimitVel

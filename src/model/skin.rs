@@ -4,7 +4,6 @@ use crate::math::Vec3;
 
 /// A surface whose vertices follow bodies. Numbers are in single precision, as in MuJoCo's arrays `skin_*`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Skin {
     /// Name; may be empty.
     pub name: String,
@@ -28,7 +27,6 @@ pub struct Skin {
 
 /// A body that pulls vertices of a skin.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct SkinBone {
     /// Body, by id (`skin_bonebodyid`).
     pub body: usize,
@@ -44,5 +42,5 @@ pub struct SkinBone {
 
 impl Skin {
     /// Half lengths of a skin in MuJoCo's list of what is drawn, m, whatever the skin: a texture of uniform scale is scaled by them.
-    pub(crate) const SIZE: Vec3 = [0.1; 3];
+    pub const SIZE: Vec3 = [0.1; 3];
 }

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use crate::engine::{Engine, EngineError};
 use crate::model::Model;
-use crate::physics::engine::{Engine, EngineError};
-use crate::physics::soft::{SoftEngine, SoftModel, SoftOptions};
-use crate::physics::state::State;
+use crate::soft::{SoftEngine, SoftModel, SoftOptions};
+use crate::state::State;
 
 /// A state of a batch that could not be stepped. It stays as the failed step has left it; the others were stepped.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -26,12 +26,12 @@ pub struct BatchError {
 /// nothing is allocated.
 ///
 /// ```
-/// use babybench::assets::MemoryAssets;
-/// use babybench::physics::{Batch, SoftOptions, compile};
+/// use mjcf_sim::assets::MemoryAssets;
+/// use mjcf_sim::physics::{Batch, SoftOptions, compile};
 ///
 /// let text = "<mujoco><worldbody><body><joint name='hinge'/><geom size='.1' pos='1 0 0'/></body></worldbody>
 ///   <actuator><motor joint='hinge'/></actuator></mujoco>";
-/// let model = compile(babybench::mjcf_loader::load_str(text, "arm.xml", &MemoryAssets::new())?)?;
+/// let model = compile(mjcf_sim::mjcf_loader::load_str(text, "arm.xml", &MemoryAssets::new())?)?;
 /// let mut batch = Batch::new(model.into(), SoftOptions::default(), 64);
 ///
 /// // where does the arm end that is driven with -1 to 1 Nm for 50 steps, from here?

@@ -1,9 +1,9 @@
 //! The last step from a document to a model: the constants that need dynamics.
 
+use crate::dynamics::{MAX_WEIGHT, constants};
+use crate::length_range;
 use crate::mjcf_loader::{LoadError, Places, Spec};
 use crate::model::{Arrays, BiasType, Constants, GainType, JointType, Model, SameFrame, SolverType};
-use crate::physics::dynamics::{MAX_WEIGHT, constants};
-use crate::physics::length_range;
 
 const NO_ACCELERATION: &str =
     "the inertia at qpos0 is singular or ill-conditioned: redundant joints, or masses of extreme size or ratio";
@@ -20,9 +20,9 @@ const MIN_ACCELERATION: f64 = 1e-10;
 /// Compiles a document into a model, as MuJoCo's `mj_compile` does: the only way to a [`Model`].
 ///
 /// ```
-/// use babybench::assets::MemoryAssets;
-/// use babybench::mjcf_loader::load_str;
-/// use babybench::physics::{Engine, SoftEngine, SoftOptions, compile};
+/// use mjcf_sim::assets::MemoryAssets;
+/// use mjcf_sim::mjcf_loader::load_str;
+/// use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions, compile};
 ///
 /// let text = "<mujoco><worldbody><body pos='0 0 1'><freejoint/><geom size='.1'/></body></worldbody></mujoco>";
 /// let model = compile(load_str(text, "ball.xml", &MemoryAssets::new())?)?;

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
+use crate::MAXVAL;
 use crate::model::Model;
-use crate::physics::MAXVAL;
-use crate::physics::state::{Contact, State};
-use crate::physics::table::length;
-use crate::physics::topology::Topology;
-use crate::physics::world::PairTable;
+use crate::state::{Contact, State};
+use crate::table::length;
+use crate::topology::Topology;
+use crate::world::PairTable;
 
 /// Advances a [`State`] of a [`Model`]. An engine remembers nothing that changes a later step: the state is all there
 /// is.
@@ -18,11 +18,9 @@ pub trait Engine: Send + Sync {
     fn model(&self) -> &Arc<Model>;
 
     /// Returns what the engine derived from the tree of the model.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn topology(&self) -> &Topology;
 
     /// Returns the geom pairs that may touch, in contact order.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn pairs(&self) -> &PairTable;
 
     /// Returns a state at `qpos0`, at rest, of which nothing has been computed.
@@ -34,7 +32,6 @@ pub trait Engine: Send + Sync {
     /// Returns the joint-space inertia matrix in full (nv, nv), row by row, kg and kg m^2: MuJoCo's `mj_fullM`. It is empty
     /// if the state is of another model.
     #[doc(alias("mj_fullM", "qM"))]
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn full_m(&self, state: &State) -> Vec<f64> {
         if state.qm.len() == self.topology().tiles.tiles() {
             self.topology().full(&state.qm)
@@ -46,7 +43,6 @@ pub trait Engine: Send + Sync {
     /// Returns a row of the constraint Jacobian in full (nv), MuJoCo's `efc_J`; nothing if there are fewer rows, or the state
     /// is of another model.
     #[doc(alias("efc_J", "mj_mulJacVec"))]
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn efc_j(&self, state: &State, row: usize) -> Option<Vec<f64>> {
         state.efc.jacobian_row(self.topology(), row)
     }
@@ -55,12 +51,12 @@ pub trait Engine: Send + Sync {
     /// everything else that decides how a run goes on to what it is in a new state: forces, warm start and parameters.
     ///
     /// ```
-    /// use babybench::assets::MemoryAssets;
-    /// use babybench::physics::{Engine, SoftEngine, SoftOptions, compile};
+    /// use mjcf_sim::assets::MemoryAssets;
+    /// use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions, compile};
     ///
     /// let text = "<mujoco><worldbody><body><joint name='hinge'/><geom size='.1' pos='1 0 0'/></body></worldbody>
     ///   <keyframe><key name='up' qpos='-1.5' qvel='2'/></keyframe></mujoco>";
-    /// let model = compile(babybench::mjcf_loader::load_str(text, "arm.xml", &MemoryAssets::new())?)?;
+    /// let model = compile(mjcf_sim::mjcf_loader::load_str(text, "arm.xml", &MemoryAssets::new())?)?;
     /// let mut engine = SoftEngine::new(model.into(), SoftOptions::default());
     /// let mut state = engine.new_state();
     /// let up = engine.model().key("up").ok_or("no such keyframe")?;
@@ -90,7 +86,6 @@ pub trait Engine: Send + Sync {
     ///
     /// # Errors
     /// The first vector that has another length.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn check_shape(&self, state: &State) -> Result<(), EngineError> {
         check_shape(self.model(), self.topology(), state)
     }
@@ -111,7 +106,6 @@ pub trait Engine: Send + Sync {
     fn step(&mut self, state: &mut State) -> Result<(), EngineError>;
 
     /// Installs or removes a probe that is told when each stage of a step begins, and when the step is done.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     fn set_probe(&mut self, probe: Option<Probe>);
 }
 
@@ -293,7 +287,7 @@ pub(super) fn within(limit: usize, found: usize, what: &'static str, step: u64) 
 }
 
 /// Checks the sizes of all that a step reads and writes, and that what it reads is finite.
-pub(super) fn check_input(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
+pub fn check_input(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineError> {
     check_shape(m, topology, s)?;
     s.finite()?;
     s.params.finite()
@@ -309,13 +303,13 @@ fn check_shape(m: &Model, topology: &Topology, s: &State) -> Result<(), EngineEr
 }
 
 /// Reports the coordinate that left the bounds by most: positions first, as they drag the rest along.
-pub(super) fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
+pub fn check_output(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel), ("qacc", &s.qacc)])
 }
 
 /// Reports accelerations that are not finite, at an evaluation within a step. MuJoCo looks for large ones at the start of a
 /// step only.
-pub(super) fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineError> {
+pub fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineError> {
     if s.qacc.iter().all(|v| v.is_finite()) {
         return Ok(());
     }
@@ -323,7 +317,7 @@ pub(super) fn check_evaluation(model: &Model, s: &State) -> Result<(), EngineErr
 }
 
 /// Reports the first contact that is not finite. Bodies may be finite all the same: one of 1e30 kg does not feel it.
-pub(super) fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
+pub fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError> {
     let finite = |c: &Contact| {
         let numbers = c.pos.iter().chain(&c.frame).chain(&c.force);
         // an overflow of the sum is a divergence, too
@@ -340,7 +334,7 @@ pub(super) fn check_contacts(model: &Model, s: &State) -> Result<(), EngineError
 }
 
 /// Checks positions and velocities alone; see [`check_output`].
-pub(super) fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
+pub fn check_motion(model: &Model, s: &State) -> Result<(), EngineError> {
     check_bounds(model, s, &[("qpos", &s.qpos), ("qvel", &s.qvel)])
 }
 

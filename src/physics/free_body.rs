@@ -1,15 +1,15 @@
 //! Another mass, inertia and size for a body that nothing holds.
 
+use crate::engine::EngineError;
 use crate::math::{Vec3, column, cross, dot, quat_to_mat};
 use crate::mjcf_loader::bounding_radius;
 use crate::model::{GeomType, JointType, Model};
-use crate::physics::engine::EngineError;
-use crate::physics::state::State;
+use crate::state::State;
 
 /// The values of a body that [`State::set_free_body`] sets; `None` leaves one as it is.
 ///
 /// ```
-/// use babybench::physics::FreeBody;
+/// use mjcf_sim::physics::FreeBody;
 ///
 /// let ball = FreeBody::sphere(0.3, 0.02);
 /// assert_eq!((ball.mass, ball.size), (Some(0.3), Some([0.02, 0.0, 0.0])));
@@ -45,8 +45,8 @@ impl State {
     /// the solver's tolerance, which stays that of the model.
     ///
     /// ```
-    /// use babybench::physics::FreeBody;
-    /// use babybench::{Config, Env, config::{Behavior, Scene}};
+    /// use mjcf_sim::physics::FreeBody;
+    /// use mjcf_sim::{Config, Env, config::{Behavior, Scene}};
     ///
     /// let scene = Scene::Cubes;
     /// let mut env = Env::new(Config { scene, touch_active: false, vision_active: false, ..Config::default() })?;

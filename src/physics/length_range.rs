@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
+use crate::dynamics::once::{com_pos, crb, kinematics, solve, update};
+use crate::dynamics::{Articulated, Composite, dense_moment, tendons, transmissions};
+use crate::engine::Engine;
 use crate::math::MINVAL;
 use crate::mjcf_loader::{LengthRange, LengthRangeMode, LoadError, Places};
 use crate::model::{BiasType, GainType, IntegratorType, Model, TrnType};
-use crate::physics::dynamics::once::{com_pos, crb, kinematics, solve, update};
-use crate::physics::dynamics::{Articulated, Composite, dense_moment, tendons, transmissions};
-use crate::physics::engine::Engine;
-use crate::physics::soft::{SoftEngine, SoftOptions};
-use crate::physics::state::State;
+use crate::soft::{SoftEngine, SoftOptions};
+use crate::state::State;
 
 const UNSTABLE: &str = "the simulation that looks for its lengthrange is unstable: give lengthrange, or a smaller timestep in \
     <lengthrange> of <compiler>";

@@ -1,57 +1,56 @@
 //! `Model` + `State` -> next `State`.
 //!
-//! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space. With the feature `rapier`, `RapierEngine` lets
-//! Rapier's own pipeline solve the same model, as multibodies, and `RapierScene` mirrors a state for its queries.
+//! [`SoftEngine`] is MuJoCo's soft-constraint formulation in joint space. The crate mjcf-sim-rapier has a
+//! second engine, Rapier's own pipeline, and a mirror of a state for ray casts and shape queries.
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
 
 mod batch;
 mod compile;
-mod constraint;
-#[cfg(feature = "internals")]
+pub mod constraint;
 pub mod contact;
-#[cfg(not(feature = "internals"))]
-pub(crate) mod contact;
-mod dynamics;
-mod engine;
+pub mod dynamics;
+pub mod engine;
 mod free_body;
 mod length_range;
-mod params;
+pub mod params;
 mod patterns;
-#[cfg(feature = "rapier")]
-pub mod rapier;
 mod ray;
 mod shared;
-mod soft;
-mod spatial;
-mod state;
+pub mod soft;
+pub mod spatial;
+pub mod state;
 mod strings;
 mod table;
-mod tiles;
-mod topology;
+pub mod tiles;
+pub mod topology;
 mod vectorize;
-#[cfg(feature = "internals")]
 pub mod world;
-#[cfg(not(feature = "internals"))]
-pub(crate) mod world;
 
 pub use batch::{Batch, BatchError, BatchPart};
 pub use compile::compile;
+pub use constraint::{ConstraintType, EfcRow};
 pub use contact::Quirks;
-internals!(use constraint::{ConstraintType, EfcRow});
-internals!(use dynamics::once::{com_pos, kinematics});
-internals!(use dynamics::{cameras, once::rne_post_constraint});
+pub use dynamics::once::{com_pos, kinematics};
+pub use dynamics::{cameras, once::rne_post_constraint};
 pub use engine::{Engine, EngineError};
-internals!(use engine::{Probe, Stage});
+pub use engine::{Probe, Stage};
 pub use free_body::FreeBody;
 pub use params::Params;
-#[cfg(feature = "rapier")]
-internals!(use rapier::{RapierEngine, RapierError, RapierModel, RapierOptions, RapierScene});
 pub use shared::Shared;
+pub use soft::SoftModel;
 pub use soft::{SoftEngine, SoftOptions};
-internals!(use soft::SoftModel);
 pub use state::{Contact, State};
-pub(crate) use table::Row;
-internals!(use topology::Topology);
-pub(crate) use vectorize::vectorize;
+pub use table::Row;
+pub use topology::Topology;
+pub use vectorize::vectorize;
+
+// Paths of other files of this crate begin with `crate` for these, too.
+use mjcf_sim_loader as mjcf_loader;
+#[cfg(test)]
+use mjcf_sim_model::assets;
+use mjcf_sim_model::{limits, math, model};
 
 /// Distance that counts as infinite; coordinates and velocities beyond it count as divergence (MuJoCo's `mjMAXVAL`).
 const MAXVAL: f64 = 1e10;

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use crate::model::{Arrays, TrnType, Wrap};
-use crate::physics::topology::Topology;
+use crate::topology::Topology;
 
 /// A sparse row over the degrees of freedom for each of some elements.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct DofRows {
+pub struct DofRows {
     /// First entry of each row, and one past the last.
     adr: Vec<usize>,
     /// Degrees of freedom of each row, ascending.
@@ -30,18 +30,18 @@ impl DofRows {
 
     /// Returns the entries of a row among those of all rows.
     #[inline]
-    pub(crate) fn range(&self, row: usize) -> Range<usize> {
+    pub fn range(&self, row: usize) -> Range<usize> {
         self.adr[row]..self.adr[row + 1]
     }
 
     /// Returns the degrees of freedom of a row, ascending.
     #[inline]
-    pub(crate) fn row(&self, row: usize) -> &[u32] {
+    pub fn row(&self, row: usize) -> &[u32] {
         &self.dofs[self.range(row)]
     }
 
     /// Returns the number of entries of all rows.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.dofs.len()
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::math::*;
 use crate::model::{GeomType, HField, Mesh, Model};
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Returns the nearest geom that a ray meets, and its distance in lengths of `direction`, leaving out the geoms of one body and
 /// those that are invisible (MuJoCo's `mj_ray`).

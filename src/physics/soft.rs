@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use crate::model::{IntegratorType, Model, SolverType};
-use crate::physics::constraint::{Dual, Newton, RowBuilder, contact_forces};
-use crate::physics::contact::Quirks;
-use crate::physics::dynamics::*;
-use crate::physics::engine::{
+use crate::constraint::{Dual, Newton, RowBuilder, contact_forces};
+use crate::contact::Quirks;
+use crate::dynamics::*;
+use crate::engine::{
     Engine, EngineError, Probe, Stage, check_contacts, check_evaluation, check_input, check_motion, check_output,
 };
-use crate::physics::state::{RESERVED_CONTACTS, State};
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorized;
-use crate::physics::world::{PairTable, Sweep, contact_options};
+use crate::model::{IntegratorType, Model, SolverType};
+use crate::state::{RESERVED_CONTACTS, State};
+use crate::topology::Topology;
+use crate::vectorize::vectorized;
+use crate::world::{PairTable, Sweep, contact_options};
 
 /// The options of [`SoftEngine`]. The default is MuJoCo 3.3.0's contact geometry with physically right torque
 /// sensors.

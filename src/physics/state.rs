@@ -1,51 +1,46 @@
 //! Everything about a scene that changes while it runs.
 
+use crate::constraint::{Efc, EfcRow};
+use crate::engine::EngineError;
 use crate::math::{MAT3_ID, Mat3, QUAT_ID, Quat, Vec3, add, cross, sub};
 use crate::model::Arrays;
-use crate::physics::constraint::{Efc, EfcRow};
-use crate::physics::engine::EngineError;
-use crate::physics::params::Params;
-use crate::physics::shared::Shared;
-use crate::physics::table::table;
-use crate::physics::tiles::Tile;
-use crate::physics::topology::Topology;
+use crate::params::Params;
+use crate::shared::Shared;
+use crate::table::table;
+use crate::tiles::Tile;
+use crate::topology::Topology;
 
 /// Contacts for which memory is reserved, so that steps need not allocate. The cubes scene reaches about 100.
-pub(crate) const RESERVED_CONTACTS: usize = 192;
+pub const RESERVED_CONTACTS: usize = 192;
 
 /// A detected contact between two geoms.
 #[doc(alias = "mjContact")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The geoms: the one of lower [`crate::model::GeomType`] first, which the normal points away from.
+    /// The geoms (2), by id: the one of lower [`crate::model::GeomType`] first, which the normal points away from.
     pub geom: [usize; 2],
     /// Distance between the surfaces, m; negative is penetration.
     pub dist: f64,
-    /// Midpoint between the surfaces, world, m.
+    /// Midpoint between the surfaces (3), world frame, m.
     pub pos: Vec3,
-    /// Rows are the normal from the first to the second geom and two tangents, world.
+    /// Contact frame (9): its rows are the normal from the first to the second geom and two tangents, world frame, unit vectors.
     pub frame: Mat3,
     /// Dimension: 1 frictionless, 3 sliding, 4 with torsional, 6 with rolling friction.
     pub dim: usize,
-    /// Two sliding, one torsional, two rolling friction coefficients.
+    /// Friction coefficients (5): two sliding, no unit; one torsional, m; two rolling, m.
     pub friction: [f64; 5],
-    /// `solref` of the normal.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    /// `solref` of the normal (2); see [Solver parameters](Arrays#solver-parameters).
     pub solref: [f64; 2],
-    /// `solref` of friction; zeros mean that of the normal.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    /// `solref` of friction (2); zeros mean that of the normal.
     pub solreffriction: [f64; 2],
-    /// `solimp`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    /// `solimp` (5); see [Solver parameters](Arrays#solver-parameters).
     pub solimp: [f64; 5],
     /// Distance at which the contact becomes a constraint: margin minus gap, m.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub includemargin: f64,
-    /// First constraint row, when it is a constraint.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    /// First constraint row of the contact, an index into [`State::efc_rows`]; `None` if it is not a constraint, where MuJoCo has -1.
     pub efc_address: Option<usize>,
-    /// Force that the first geom exerts on the second, and torque, in the contact frame, N and N m. Filled by the
-    /// solver.
+    /// Force (3), N, and torque (3), N m, that the first geom exerts on the second, contact frame. Filled by the solver; MuJoCo computes it in
+    /// `mj_contactForce`.
     pub force: [f64; 6],
 }
 
@@ -62,175 +57,169 @@ table! {
     /// engine of another model, even of the same sizes, would go on with the wrong ones.
     ///
     /// Constraint rows are read with [`State::efc_rows`], their Jacobian and the inertia matrix with
-    /// [`Engine::efc_j`](crate::physics::Engine::efc_j) and [`Engine::full_m`](crate::physics::Engine::full_m).
+    /// [`Engine::efc_j`](crate::Engine::efc_j) and [`Engine::full_m`](crate::Engine::full_m).
     #[derive(Debug)]
     pub struct State, "";
     dynamic {
         /// Simulated time, s.
         pub time: (f64) = 0.0;
-        /// Steps done since construction or reset.
+        /// Steps done since construction or reset. Not in MuJoCo's `mjData`.
         pub step: (u64) = 0;
-        /// Positions (nq): m, rad, quaternions.
+        /// Positions (nq): m for slides and positions of free joints, world frame; rad for hinges; unit quaternions `w, x, y, z` for
+        /// balls and free joints.
         pub qpos: [f64; model.nq] finite => model.qpos0.clone();
-        /// Velocities (nv): m/s, rad/s.
+        /// Velocities (nv): m/s for translations; rad/s for rotations, those of balls and free joints in the body frame.
         pub qvel: [f64; model.nv] finite = 0.0;
-        /// Controls of the actuators (nu). With muscles 1 while they pull and 0 while they do not.
+        /// Controls of the actuators (nu), in the unit of each actuator's control. With MIMo's muscles 1 while they pull and 0 while
+        /// they do not.
         pub ctrl: [f64; model.nu()] finite = 0.0;
-        /// Activations of the actuators that have one (na), in their order. With MIMo's muscles theirs (2 nu), 0..1: muscle 1 of
-        /// every actuator, then muscle 2.
+        /// Activations of the actuators that have one (na), in their order and units. With MIMo's muscles theirs (2 nu), 0..1: muscle 1
+        /// of every actuator, then muscle 2.
         pub act: [f64; any] finite => vec![0.0; model.na];
-        /// Last targets of the actuators: excitations of muscles (2 nu), 0..1, or desired angles of position
-        /// servos (nu), rad. Empty for motors.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Last targets of MIMo's actuators: excitations of muscles (2 nu), 0..1, or desired angles of position servos (nu), rad. Empty
+        /// for motors. Not in MuJoCo's `mjData`.
         pub actuator_target: [f64; any];
-        /// Forces of the muscles (2 nu) at the last activation, relative to their isometric maxima. Empty without muscles.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Forces of MIMo's muscles (2 nu) at the last activation, as shares of their isometric maxima, no unit. Empty without muscles.
+        /// Not in MuJoCo's `mjData`.
         pub muscle_force: [f64; any];
-        /// Torques of the muscles on the joints of the actuators (nu), N m, which act at control 1 in place of the
-        /// actuators' own. Empty without muscles.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Torques of MIMo's muscles on the joints of the actuators (nu), N m, about the joint axes. They act at control 1 instead of
+        /// the actuators' own. Empty without muscles. Not in MuJoCo's `mjData`.
         pub muscle_torque: [f64; maybe model.nu()] finite;
-        /// Generalised force applied from outside (nv), N and N m.
+        /// Generalised forces applied from outside (nv): N for translations, N m for rotations, along the coordinates of `qvel`.
         pub qfrc_applied: [f64; model.nv] finite = 0.0;
-        /// Force and torque applied from outside to each body (nbody) at its centre of mass `xipos`, world: force, N, torque,
-        /// N m. They act in every step until they are changed; [`State::apply_force`] adds to them.
+        /// Force, N, and torque, N m, applied from outside to each body (nbody, 6) at its centre of mass `xipos`, world frame. They act
+        /// in every step until a program changes them; [`State::apply_force`] adds to them.
         pub xfrc_applied: [[f64; 6]; model.nbody()] finite = [0.0; 6];
-        /// Positions of the bodies that a program moves (nmocap), world, m; `body_mocapid` tells which they are. They have no velocity:
-        /// what is to be thrown or held by one hangs on it by an equality.
+        /// Positions of the mocap bodies (nmocap, 3), world frame, m; `body_mocapid` tells which they are. They have no velocity: what
+        /// a program throws or holds with one is attached to it by an equality.
         pub mocap_pos: [Vec3; model.nmocap] finite => mocap(model).map(|b| model.body_pos[b]).collect();
-        /// Orientations of the bodies that a program moves (nmocap); they need not have unit length.
+        /// Orientations of the mocap bodies (nmocap, 4), world frame, quaternions `w, x, y, z` of any length.
         pub mocap_quat: [Quat; model.nmocap] finite => mocap(model).map(|b| model.body_quat[b]).collect();
-        /// Start of the solver (nv): the last acceleration.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Accelerations from which the solver starts (nv), those of the last step: m/s^2 or rad/s^2.
         pub qacc_warmstart: [f64; model.nv] = 0.0;
-        /// Parameters that may change. States share them until one writes to its own.
+        /// Parameters that may change while the scene runs. States share them until one writes to its own.
         pub params: (Shared<Params>) = Params::new(model).into();
     }
     computed {
         // position stage
         /// Whether bodies, geoms and sites that never move have their poses.
-        pub(crate) fixed_placed: (bool) = false;
-        /// Body positions (nbody), world, m.
+        pub fixed_placed: (bool) = false;
+        /// Position of each body's frame (nbody, 3), world frame, m.
         pub xpos: [Vec3; model.nbody()] = [0.0; 3];
-        /// Body orientations (nbody).
+        /// Orientation of each body's frame (nbody, 4), world frame, unit quaternion `w, x, y, z`.
         pub xquat: [Quat; model.nbody()] = QUAT_ID;
-        /// Body orientations (nbody) as matrices.
+        /// Orientation of each body's frame (nbody, 9), world frame, rotation matrix row by row.
         pub xmat: [Mat3; model.nbody()] = MAT3_ID;
-        /// Centres of mass (nbody), world, m.
+        /// Centre of mass of each body (nbody, 3), world frame, m.
         pub xipos: [Vec3; model.nbody()] = [0.0; 3];
-        /// Orientations of the principal axes (nbody).
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Orientation of each body's principal axes of inertia (nbody, 9), world frame, rotation matrix row by row.
         pub ximat: [Mat3; model.nbody()] = MAT3_ID;
-        /// Joint anchors (njnt), world, m.
+        /// Anchor of each joint (njnt, 3), world frame, m.
         pub xanchor: [Vec3; model.njnt()] = [0.0; 3];
-        /// Joint axes (njnt), world.
+        /// Axis of each joint (njnt, 3), world frame, unit vector.
         pub xaxis: [Vec3; model.njnt()] = [0.0; 3];
-        /// Geom positions (ngeom), world, m.
+        /// Centre of each geom (ngeom, 3), world frame, m.
         pub geom_xpos: [Vec3; model.ngeom()] = [0.0; 3];
-        /// Geom orientations (ngeom).
+        /// Orientation of each geom (ngeom, 9), world frame, rotation matrix row by row.
         pub geom_xmat: [Mat3; model.ngeom()] = MAT3_ID;
-        /// Site positions (nsite), world, m.
+        /// Position of each site (nsite, 3), world frame, m.
         pub site_xpos: [Vec3; model.nsite()] = [0.0; 3];
-        /// Site orientations (nsite).
+        /// Orientation of each site (nsite, 9), world frame, rotation matrix row by row.
         pub site_xmat: [Mat3; model.nsite()] = MAT3_ID;
-        /// Camera positions (ncam), world, m.
+        /// Position of each camera (ncam, 3), world frame, m.
         pub cam_xpos: [Vec3; model.ncam()] = [0.0; 3];
-        /// Camera orientations (ncam); a camera looks along its -z.
+        /// Orientation of each camera (ncam, 9), world frame, rotation matrix row by row. A camera looks along its -z axis.
         pub cam_xmat: [Mat3; model.ncam()] = MAT3_ID;
-        /// Centre of mass of each subtree (nbody), world, m.
+        /// Centre of mass of each body with all bodies below it (nbody, 3), world frame, m.
         pub subtree_com: [Vec3; model.nbody()] = [0.0; 3];
-        /// Motion axes (nv) about the centre of mass of their tree: rotation, translation.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Motion axis of each degree of freedom (nv, 6) about the centre of mass of its tree, world axes: rotation (3), no unit,
+        /// translation (3), m or no unit.
         pub cdof: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Body inertias (nbody) about the centre of mass of their tree, along the axes of the world: `Ixx, Iyy, Izz, Ixy, Ixz, Iyz`,
-        /// kg m^2, mass times the offset of the body's centre of mass (3), kg m, mass, kg. Those of the world are zero.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Inertia of each body (nbody, 10) about the centre of mass of its tree, world axes: `Ixx, Iyy, Izz, Ixy, Ixz, Iyz`, kg m^2;
+        /// mass times the offset of the body's centre of mass (3), kg m; mass, kg. Zeros for the world.
         pub cinert: [[f64; 10]; model.nbody()] = [0.0; 10];
-        /// Lengths of the tendons (ntendon): coordinates of their joints, rad or m, times their coefficients; m for spatial ones.
+        /// Length of each tendon (ntendon): m for spatial tendons; for fixed ones coordinates of joints, rad or m, times coefficients.
         pub ten_length: [f64; model.ntendon()] = 0.0;
-        /// Rates of the lengths of the tendons (ntendon).
+        /// Rate of each tendon's length (ntendon), its unit per second.
         pub ten_velocity: [f64; model.ntendon()] = 0.0;
-        /// Derivatives of the lengths of the tendons by the degrees of freedom that change them, one tendon after another.
-        pub(crate) ten_j: [f64; topology.tendons.len()] = 0.0;
-        /// Whether the length of each tendon has a derivative (ntendon), be it zero: whether points that follow each other are on
-        /// different bodies of which one can move.
-        pub(crate) ten_entries: [bool; model.ntendon()] = true;
+        /// Derivatives of the lengths of the tendons by the degrees of freedom that change them, one tendon after another: MuJoCo's
+        /// `ten_J`, of which sparse entries alone are kept.
+        pub ten_j: [f64; topology.tendons.len()] = 0.0;
+        /// Whether the length of each tendon has a derivative (ntendon), even a zero one: whether points that follow each other are on
+        /// different bodies, one of which can move.
+        pub ten_entries: [bool; model.ntendon()] = true;
         /// First point of each tendon in `wrap_xpos` (ntendon).
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
         pub ten_wrapadr: [usize; model.ntendon()] = 0;
-        /// Number of points of each tendon (ntendon); none for fixed ones.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Number of points of each tendon in `wrap_xpos` (ntendon); 0 for fixed tendons.
         pub ten_wrapnum: [usize; model.ntendon()] = 0;
-        /// Points that spatial tendons run through (twice the number of what they run along), world, m: sites, and where a tendon comes
-        /// onto a geom and leaves it. Zeros for a pulley, where the tendon is interrupted.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Points on the paths of spatial tendons (2 nwrap, 3), world frame, m: sites, and where a tendon meets and leaves a geom.
+        /// Zeros for a pulley, where the path is interrupted.
         pub wrap_xpos: [Vec3; 2 * model.nwrap()] = [0.0; 3];
-        /// The object that each of these points is on: a geom, or -1 for a site, -2 for a pulley.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Object at each of these points (2 nwrap): the id of a geom, -1 for a site, -2 for a pulley.
         pub wrap_obj: [i32; 2 * model.nwrap()] = 0;
-        /// Derivatives of the lengths of actuators on sites, slider-cranks and contacts by the degrees of freedom, one after another.
-        pub(crate) actuator_moment: [f64; topology.actuators.len()] = 0.0;
-        /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal.
-        pub(crate) qm: [Tile; topology.tiles.tiles()] => topology.new_tiles();
-        /// Contacts in MuJoCo's order.
+        /// Derivatives of the lengths of actuators on sites, slider-cranks and contacts by the degrees of freedom, one actuator after
+        /// another.
+        pub actuator_moment: [f64; topology.actuators.len()] = 0.0;
+        /// Joint-space inertia in tiles ([`Topology::tiles`]), both triangles of those on the diagonal; MuJoCo's `qM` as a whole is
+        /// [`Engine::full_m`](crate::Engine::full_m).
+        pub qm: [Tile; topology.tiles.tiles()] => topology.new_tiles();
+        /// Contacts (ncon) in MuJoCo's order; [`Contact`] tells units and frames.
         pub contact: (Vec<Contact>) = Vec::with_capacity(RESERVED_CONTACTS);
         /// Constraint rows.
-        pub(crate) efc: (Efc) = Efc::with_capacity(model.nv, RESERVED_CONTACTS);
+        pub efc: (Efc) = Efc::with_capacity(model.nv, RESERVED_CONTACTS);
 
         // velocity stage
-        /// Body velocities (nbody) about the centre of mass of their tree: rotation, rad/s, translation, m/s.
+        /// Velocity of each body (nbody, 6) about the centre of mass of its tree, world axes: rotation (3), rad/s, translation (3),
+        /// m/s.
         pub cvel: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// Rates of the motion axes (nv): rotation, translation, 1/s.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Time derivative of each motion axis `cdof` (nv, 6), world axes: rotation (3), 1/s, translation (3), m/s or 1/s.
         pub cdof_dot: [[f64; 6]; model.nv] = [0.0; 6];
-        /// Lengths of the actuators (nu): the coordinate of the joint or the length of the tendon, rad or m, times the gear; of a site
-        /// its displacement from the reference site along the gears; of a slider-crank that of the slider.
+        /// Length of each actuator (nu): the coordinate of its joint or the length of its tendon, rad or m, times the gear; of a site
+        /// its displacement from the reference site along the gears; of a slider-crank that of the slider, m.
         pub actuator_length: [f64; model.nu()] = 0.0;
-        /// Rates of the lengths of the actuators (nu); zero where actuators are switched off.
+        /// Rate of each actuator's length (nu), its unit per second; 0 where actuators are switched off.
         pub actuator_velocity: [f64; model.nu()] = 0.0;
-        /// Coriolis, centrifugal and gravity force (nv).
+        /// Coriolis, centrifugal and gravity forces (nv): N or N m. They stand on the left of the equation of motion.
         pub qfrc_bias: [f64; model.nv] = 0.0;
-        /// Spring and damper force (nv).
+        /// Forces of springs, dampers, the medium and passive gravity compensation (nv): N or N m.
         pub qfrc_passive: [f64; model.nv] = 0.0;
-        /// Forces that compensate gravity: a part of `qfrc_passive`, or of `qfrc_actuator` where `jnt_actgravcomp` says so.
+        /// Forces that compensate gravity (nv): N or N m. They are part of `qfrc_passive`, or of `qfrc_actuator` on joints with
+        /// `jnt_actgravcomp`.
         pub qfrc_gravcomp: [f64; model.nv] = 0.0;
 
         // acceleration stage
-        /// Rates of the activations (na), 1/s. MIMo's muscles have none.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Time derivatives of the activations (na), their unit per second. MIMo's muscles have none.
         pub act_dot: [f64; model.na] = 0.0;
-        /// Actuator force before the gear (nu); with muscles their torque on the joint, N m.
+        /// Force of each actuator before the gear (nu): N or N m. With MIMo's muscles their torque on the joint, N m.
         pub actuator_force: [f64; model.nu()] = 0.0;
-        /// Actuator force on the joints (nv).
+        /// Forces of the actuators on the degrees of freedom (nv): N or N m.
         pub qfrc_actuator: [f64; model.nv] = 0.0;
-        /// All forces but those of constraints (nv).
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// All forces but those of constraints (nv): N or N m.
         pub qfrc_smooth: [f64; model.nv] = 0.0;
-        /// Acceleration without constraints (nv).
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Accelerations without constraints (nv): m/s^2 or rad/s^2.
         pub qacc_smooth: [f64; model.nv] = 0.0;
-        /// Constraint force (nv).
+        /// Forces of the constraints (nv): N or N m.
         pub qfrc_constraint: [f64; model.nv] = 0.0;
-        /// Acceleration (nv), without the implicit damping of the integrator.
+        /// Accelerations (nv), m/s^2 or rad/s^2, without the implicit damping of the integrator.
         pub qacc: [f64; model.nv] = 0.0;
-        /// Iterations of the solver in the last step, summed over islands.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Iterations of the solver in the last step, summed over islands: the sum of MuJoCo's `solver_niter`.
         pub solver_iterations: (usize) = 0;
 
         // after constraints
-        /// Body accelerations (nbody), gravity as upward acceleration of the world: rotation, rad/s^2, translation, m/s^2.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Acceleration of each body (nbody, 6) about the centre of mass of its tree, world axes: rotation (3), rad/s^2, translation
+        /// (3), m/s^2. Gravity is in it as an upward acceleration of the world.
         pub cacc: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// External wrench on each body (nbody), of contacts, welds and `xfrc_applied`: torque, N m, force, N. The default engine computes it, and
-        /// `cacc` and `cfrc_int`, where a sensor of the model reads one of them, as in environments, or where
-        /// [`SoftOptions::post_constraint`](crate::physics::SoftOptions::post_constraint) asks for it; else it is what it was.
+        /// External wrench on each body (nbody, 6) about the centre of mass of its tree, world axes: torque (3), N m, force (3), N, of
+        /// contacts, connects, welds and `xfrc_applied`. The default engine computes it, with `cacc` and `cfrc_int`, where a sensor of
+        /// the model reads one of them, as in environments, or where
+        /// [`SoftOptions::post_constraint`](crate::SoftOptions::post_constraint) asks for it; else it keeps its values.
         pub cfrc_ext: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// Wrench that the parent exerts on each body (nbody): torque, N m, force, N.
-        #[cfg_attr(not(feature = "internals"), doc(hidden))]
+        /// Wrench that the parent exerts on each body (nbody, 6) about the centre of mass of its tree, world axes: torque (3), N m,
+        /// force (3), N.
         pub cfrc_int: [[f64; 6]; model.nbody()] = [0.0; 6];
-        /// Values of the model's sensors (nsensordata), from `sensor_adr` of each on; [`SensorType`](crate::model::SensorType)
-        /// tells quantities, units and frames. Those of MIMo give three each, in the frame of their site: linear acceleration minus
-        /// gravity, m/s^2; angular velocity, rad/s; torque that the parent exerts on the site's body about the site, N m.
+        /// Values of the model's sensors (nsensordata), from `sensor_adr` of each on; [`SensorType`](crate::model::SensorType) tells
+        /// quantities, units and frames. Those of MIMo give three each, in the frame of their site: linear acceleration minus gravity,
+        /// m/s^2; angular velocity, rad/s; torque that the parent exerts on the site's body about the site, N m.
         pub sensordata: [f64; model.nsensordata()] = 0.0;
     }
 }
@@ -242,7 +231,6 @@ fn mocap(model: &Arrays) -> impl Iterator<Item = usize> {
 
 impl State {
     /// Returns the reference configuration at rest, of which nothing is computed yet: all frames are at the origin.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(model: &Arrays, topology: &Topology) -> Self {
         Self::first(model, topology)
     }
@@ -251,7 +239,6 @@ impl State {
     /// start and parameters. Everything else is computed anew by the next step. Between states of one model and one
     /// actuation model nothing is allocated.
     #[doc(alias("mj_copyData", "mj_setState"))]
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn copy_dynamic_from(&mut self, other: &State) {
         self.copy_dynamic(other);
     }
@@ -261,7 +248,7 @@ impl State {
     /// last step. The force acts in every step until [`State::release_forces`] or the next reset.
     ///
     /// ```
-    /// use babybench::{Config, Env};
+    /// use mjcf_sim::{Config, Env};
     ///
     /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
     /// env.reset(Some(0))?;
@@ -300,7 +287,7 @@ impl State {
     }
 
     /// Puts the bodies that a program moves back where the document has them.
-    pub(crate) fn rest_mocap(&mut self, model: &Arrays) {
+    pub fn rest_mocap(&mut self, model: &Arrays) {
         for (k, body) in mocap(model).enumerate() {
             self.mocap_pos[k] = model.body_pos[body];
             self.mocap_quat[k] = model.body_quat[body];
@@ -314,7 +301,6 @@ impl State {
 
     /// Returns the gears (nu) that the reference shows: its muscles act through the gears of the actuators, so with
     /// muscles these are the muscles' torques, N m, and otherwise `params.actuator_gear`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reference_gear(&self) -> &[f64] {
         if self.muscle_torque.is_empty() {
             &self.params.actuator_gear
@@ -329,7 +315,6 @@ impl State {
     }
 
     /// Returns the constraint rows of the last step, in MuJoCo's order.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn efc_rows(&self) -> impl Iterator<Item = EfcRow> + '_ {
         self.efc.rows()
     }

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use crate::math::{Vec3, add, norm, quat_rotate, sub};
 use crate::model::{Arrays, Wrap};
-use crate::physics::patterns::DofRows;
-use crate::physics::topology::Topology;
+use crate::patterns::DofRows;
+use crate::topology::Topology;
 
 /// The paths of all tendons.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Strings {
+pub struct Strings {
     /// First leg of each tendon, and one past the last.
     adr: Vec<usize>,
     legs: Vec<Leg>,
@@ -28,20 +28,20 @@ enum Leg {
 
 /// A part of a path between two sites.
 #[derive(Clone, Debug)]
-pub(crate) struct Stretch {
-    pub(crate) sites: [usize; 2],
+pub struct Stretch {
+    pub sites: [usize; 2],
     /// What its length is multiplied by.
-    pub(crate) share: f64,
+    pub share: f64,
     /// From one to the other.
-    pub(crate) straight: Span,
-    pub(crate) between: Between,
+    pub straight: Span,
+    pub between: Between,
     /// Whether the path ends at the second site, or goes on behind a pulley.
-    pub(crate) ends: bool,
+    pub ends: bool,
 }
 
 /// What is between two sites.
 #[derive(Clone, Debug)]
-pub(crate) enum Between {
+pub enum Between {
     Nothing,
     /// Nothing, and nothing moves them against each other: their distance, m.
     Constant(f64),
@@ -51,38 +51,38 @@ pub(crate) enum Between {
 
 /// A geom between two sites.
 #[derive(Clone, Debug)]
-pub(crate) struct Obstacle {
-    pub(crate) geom: usize,
+pub struct Obstacle {
+    pub geom: usize,
     /// A site on whose side the tendon stays.
-    pub(crate) side: Option<usize>,
-    pub(crate) cylinder: bool,
+    pub side: Option<usize>,
+    pub cylinder: bool,
     /// From the first site to the geom, and from there to the second one.
-    pub(crate) spans: [Span; 2],
+    pub spans: [Span; 2],
 }
 
 /// A straight part between points of two bodies.
 #[derive(Clone, Debug)]
-pub(crate) struct Span {
+pub struct Span {
     /// The roots of the trees of both bodies.
-    pub(crate) roots: [usize; 2],
+    pub roots: [usize; 2],
     /// What moves the first body and not the second.
     first: Range<usize>,
     /// What moves the second body and not the first.
     second: Range<usize>,
     /// Whether anything moves either body, be it both of them.
-    pub(crate) moves: bool,
+    pub moves: bool,
 }
 
 /// A degree of freedom, and its place in the row of the tendon.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moved {
-    pub(crate) dof: u32,
-    pub(crate) place: u32,
+pub struct Moved {
+    pub dof: u32,
+    pub place: u32,
 }
 
 impl Strings {
     /// Lists what the paths of a model consist of. `rows` are the degrees of freedom of each tendon.
-    pub(crate) fn new(model: &Arrays, topology: &Topology, rows: &DofRows) -> Self {
+    pub fn new(model: &Arrays, topology: &Topology, rows: &DofRows) -> Self {
         let mut all = Self::default();
         all.adr.push(0);
         for t in 0..model.ntendon() {
@@ -165,7 +165,7 @@ impl Strings {
 
     /// Iterates over the path of a spatial tendon; `None` is a pulley.
     #[inline]
-    pub(crate) fn path(&self, tendon: usize) -> impl Iterator<Item = Option<&Stretch>> {
+    pub fn path(&self, tendon: usize) -> impl Iterator<Item = Option<&Stretch>> {
         let legs = &self.legs[self.adr[tendon]..self.adr[tendon + 1]];
         legs.iter().map(|leg| match *leg {
             Leg::Pulley => None,
@@ -175,7 +175,7 @@ impl Strings {
 
     /// Returns what moves the first end of a span alone, and what moves the second one alone.
     #[inline]
-    pub(crate) fn apart(&self, span: &Span) -> [&[Moved]; 2] {
+    pub fn apart(&self, span: &Span) -> [&[Moved]; 2] {
         [&self.moved[span.first.clone()], &self.moved[span.second.clone()]]
     }
 }
@@ -201,7 +201,7 @@ mod tests {
     use crate::assets::MemoryAssets;
     use crate::math::{norm, sub};
     use crate::mjcf_loader::load_str;
-    use crate::physics::{Engine, SoftEngine, SoftOptions, compile};
+    use crate::{Engine, SoftEngine, SoftOptions, compile};
 
     #[test]
     fn lengths_are_those_between_sites_whatever_carries_them() {

@@ -17,10 +17,10 @@
 //!
 //! A row that `dynamic` gains, loses or moves changes the bytes of snapshots: their `VERSION` goes up with it.
 
-use crate::physics::engine::EngineError;
+use crate::engine::EngineError;
 
 /// A row, or a struct of rows, as snapshots see it: its numbers and flags, in order.
-pub(crate) trait Row {
+pub trait Row {
     /// Appends the numbers.
     fn numbers<'a>(&'a self, _: &mut Vec<&'a [f64]>) {}
 
@@ -142,8 +142,8 @@ macro_rules! table {
     ) => {
         $(#[$meta])*
         pub struct $name {
-            $($(#[$doc])* $vis $field: $crate::physics::table::row_type!($kind),)*
-            $($(#[$cdoc])* $cvis $cfield: $crate::physics::table::row_type!($ckind),)*
+            $($(#[$doc])* $vis $field: $crate::table::row_type!($kind),)*
+            $($(#[$cdoc])* $cvis $cfield: $crate::table::row_type!($ckind),)*
         }
 
         impl Clone for $name {
@@ -164,8 +164,8 @@ macro_rules! table {
         impl $name {
             fn first($($arg: $of),+) -> Self {
                 Self {
-                    $($field: $crate::physics::table::row_first!($kind $(, = $each)? $(, => $all)?),)*
-                    $($cfield: $crate::physics::table::row_first!($ckind $(, = $ceach)? $(, => $call)?),)*
+                    $($field: $crate::table::row_first!($kind $(, = $each)? $(, => $all)?),)*
+                    $($cfield: $crate::table::row_first!($ckind $(, = $ceach)? $(, => $call)?),)*
                 }
             }
 
@@ -175,46 +175,46 @@ macro_rules! table {
 
             /// Exchanges what decides how a run goes on, without copying a number.
             #[allow(dead_code, reason = "not every table is taken apart")]
-            pub(crate) fn swap_dynamic(&mut self, other: &mut Self) {
+            pub fn swap_dynamic(&mut self, other: &mut Self) {
                 $(std::mem::swap(&mut self.$field, &mut other.$field);)*
             }
 
             /// Gives back the memory of what every step computes anew.
             #[allow(dead_code, reason = "not every table is taken apart")]
-            pub(crate) fn drop_computed(&mut self) {
+            pub fn drop_computed(&mut self) {
                 $(self.$cfield = Default::default();)*
             }
 
             /// Checks the lengths of all vectors.
-            pub(in crate::physics) fn fits(&self $(, $arg: $of)+) -> Result<(), $crate::physics::EngineError> {
-                $($crate::physics::table::row_fits!(concat!($prefix, stringify!($field)), self.$field, $kind);)*
-                $($crate::physics::table::row_fits!(concat!($prefix, stringify!($cfield)), self.$cfield, $ckind);)*
+            pub fn fits(&self $(, $arg: $of)+) -> Result<(), $crate::EngineError> {
+                $($crate::table::row_fits!(concat!($prefix, stringify!($field)), self.$field, $kind);)*
+                $($crate::table::row_fits!(concat!($prefix, stringify!($cfield)), self.$cfield, $ckind);)*
                 Ok(())
             }
 
             /// Checks that what a step reads is finite.
-            pub(in crate::physics) fn finite(&self) -> Result<(), $crate::physics::EngineError> {
-                $($($crate::physics::table::$finite(concat!($prefix, stringify!($field)), &self.$field)?;)?)*
+            pub fn finite(&self) -> Result<(), $crate::EngineError> {
+                $($($crate::table::$finite(concat!($prefix, stringify!($field)), &self.$field)?;)?)*
                 Ok(())
             }
         }
 
         /// The fields that decide how a run goes on.
-        impl $crate::physics::table::Row for $name {
+        impl $crate::table::Row for $name {
             fn numbers<'a>(&'a self, out: &mut Vec<&'a [f64]>) {
-                $($crate::physics::table::Row::numbers(&self.$field, out);)*
+                $($crate::table::Row::numbers(&self.$field, out);)*
             }
 
             fn numbers_mut<'a>(&'a mut self, out: &mut Vec<&'a mut [f64]>) {
-                $($crate::physics::table::Row::numbers_mut(&mut self.$field, out);)*
+                $($crate::table::Row::numbers_mut(&mut self.$field, out);)*
             }
 
             fn flags<'a>(&'a self, out: &mut Vec<&'a [bool]>) {
-                $($crate::physics::table::Row::flags(&self.$field, out);)*
+                $($crate::table::Row::flags(&self.$field, out);)*
             }
 
             fn flags_mut<'a>(&'a mut self, out: &mut Vec<&'a mut [bool]>) {
-                $($crate::physics::table::Row::flags_mut(&mut self.$field, out);)*
+                $($crate::table::Row::flags_mut(&mut self.$field, out);)*
             }
         }
     };
@@ -247,11 +247,11 @@ macro_rules! row_fits {
     ($what:expr, $value:expr, [$element:ty; any]) => {};
     ($what:expr, $value:expr, [$element:ty; maybe $len:expr]) => {
         if !$value.is_empty() {
-            $crate::physics::table::length($what, $value.len(), $len)?;
+            $crate::table::length($what, $value.len(), $len)?;
         }
     };
     ($what:expr, $value:expr, [$element:ty; $len:expr]) => {
-        $crate::physics::table::length($what, $value.len(), $len)?;
+        $crate::table::length($what, $value.len(), $len)?;
     };
     ($what:expr, $value:expr, ($type:ty)) => {};
 }

@@ -1,7 +1,7 @@
 //! Sparse symmetric matrices in tiles of four by four.
 //!
 //! Degrees of freedom are dealt to *lanes*, four to a tile, so that those of a tile follow each other in a chain of the
-//! tree ([`crate::physics::Topology::slot`]); lanes left over have a unit diagonal and nothing else. A limb touches
+//! tree ([`crate::Topology::slot`]); lanes left over have a unit diagonal and nothing else. A limb touches
 //! only its own chain, so few tiles are nonzero, and every operation runs on tiles of fixed size, which compilers
 //! unroll into vector instructions.
 

@@ -1,10 +1,10 @@
 //! The structure of a model's tree, derived once for the dynamics: ancestor chains, trees, the layout of the inertia.
 
 use crate::model::Arrays;
-use crate::physics::params::Params;
-use crate::physics::patterns::{self, DofRows};
-use crate::physics::strings::Strings;
-use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
+use crate::params::Params;
+use crate::patterns::{self, DofRows};
+use crate::strings::Strings;
+use crate::tiles::{Lanes, Pattern, Tile, ZERO};
 
 /// The structure of the tree of a [`crate::Model`], derived for the dynamics: ancestor chains, trees, the layout of matrices.
 ///
@@ -14,36 +14,36 @@ use crate::physics::tiles::{Lanes, Pattern, Tile, ZERO};
 #[derive(Clone, Debug)]
 pub struct Topology {
     /// First degree of freedom of each tree, and one past the last: `ntree + 1` values.
-    pub(crate) tree_adr: Vec<usize>,
+    pub tree_adr: Vec<usize>,
     /// Tree of each degree of freedom.
-    pub(crate) dof_tree: Vec<usize>,
+    pub dof_tree: Vec<usize>,
     /// Start of each degree of freedom in `chain`; `nv + 1` values.
     row_adr: Vec<usize>,
     /// Ancestors of each degree of freedom, ascending, itself last.
     chain: Vec<u32>,
     /// The last degree of freedom that moves a body, if any does.
-    pub(crate) body_last_dof: Vec<Option<usize>>,
+    pub body_last_dof: Vec<Option<usize>>,
     /// Lane of each degree of freedom: four times its tile, plus its place there. Those of a tile follow each other.
-    pub(crate) slot: Vec<u32>,
+    pub slot: Vec<u32>,
     /// First degree of freedom of each tile, and one past the last.
-    pub(crate) tile_dof: Vec<usize>,
+    pub tile_dof: Vec<usize>,
     /// First tile of each tree, and one past the last: `ntree + 1` values.
-    pub(crate) tile_adr: Vec<usize>,
+    pub tile_adr: Vec<usize>,
     /// Tiles of the inertia: each row of tiles has the tiles of its ancestors, which are a prefix of its descendants'.
-    pub(crate) tiles: Pattern,
+    pub tiles: Pattern,
     /// Tiles that move each body, with how many of their lanes do.
     body_tiles: Vec<(u32, u32)>,
     body_tile_adr: Vec<usize>,
     /// Degrees of freedom that can change the length of each tendon.
-    pub(crate) tendons: DofRows,
+    pub tendons: DofRows,
     /// The paths of spatial tendons.
-    pub(crate) strings: Strings,
+    pub strings: Strings,
     /// Degrees of freedom on which actuators act that have a moment of their own; none of those on joints and tendons.
-    pub(crate) actuators: DofRows,
+    pub actuators: DofRows,
     /// Those actuators, by id.
-    pub(crate) own_moments: Vec<usize>,
+    pub own_moments: Vec<usize>,
     /// Coordinate and degree of freedom of the hinge or slide that each actuator acts on, if it acts on one.
-    pub(crate) actuator_scalar: Vec<Option<[u32; 2]>>,
+    pub actuator_scalar: Vec<Option<[u32; 2]>>,
 }
 
 impl Topology {
@@ -142,13 +142,13 @@ impl Topology {
 
     /// Returns the tiles that move `body`, ascending, with how many of their lanes do: the first ones.
     #[inline]
-    pub(crate) fn body_tiles(&self, body: usize) -> &[(u32, u32)] {
+    pub fn body_tiles(&self, body: usize) -> &[(u32, u32)] {
         &self.body_tiles[self.body_tile_adr[body]..self.body_tile_adr[body + 1]]
     }
 
     /// Returns the trace of a tree's inverse inertia at `qpos0`, a bound on its acceleration under unit forces.
     #[inline]
-    pub(crate) fn mobility(&self, params: &Params, tree: usize) -> f64 {
+    pub fn mobility(&self, params: &Params, tree: usize) -> f64 {
         params.dof_invweight0[self.tree_adr[tree]..self.tree_adr[tree + 1]]
             .iter()
             .sum()
@@ -156,18 +156,18 @@ impl Topology {
 
     /// Returns the number of lanes of a tile that have a degree of freedom.
     #[inline]
-    pub(crate) fn lanes(&self, tile: usize) -> usize {
+    pub fn lanes(&self, tile: usize) -> usize {
         self.tile_dof[tile + 1] - self.tile_dof[tile]
     }
 
     /// Returns the tree of a tile.
     #[inline]
-    pub(crate) fn tile_tree(&self, tile: usize) -> usize {
+    pub fn tile_tree(&self, tile: usize) -> usize {
         self.dof_tree[self.tile_dof[tile]]
     }
 
     /// Returns the tiles of a matrix without entries: ones on the diagonal of the lanes that have no degree of freedom.
-    pub(crate) fn new_tiles(&self) -> Vec<Tile> {
+    pub fn new_tiles(&self) -> Vec<Tile> {
         let mut tiles = vec![ZERO; self.tiles.tiles()];
         for row in 0..self.tiles.rows() {
             let diagonal = &mut tiles[self.tiles.start(row + 1) - 1];
@@ -179,7 +179,7 @@ impl Topology {
     }
 
     /// Iterates over row `dof` of a matrix in tiles, over the ancestors of `dof` and itself, ascending.
-    pub(crate) fn row<'a>(&'a self, tiles: &'a [Tile], dof: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
+    pub fn row<'a>(&'a self, tiles: &'a [Tile], dof: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
         let (row, r) = (self.slot[dof] as usize / 4, self.slot[dof] as usize % 4);
         let cols = self.tiles.cols(row);
         self.dof_chain(dof).iter().map(move |&a| {
@@ -190,7 +190,7 @@ impl Topology {
     }
 
     /// Expands the symmetric matrix in `tiles` to the full matrix (nv, nv), row by row.
-    pub(crate) fn full(&self, tiles: &[Tile]) -> Vec<f64> {
+    pub fn full(&self, tiles: &[Tile]) -> Vec<f64> {
         let nv = self.dof_tree.len();
         let mut matrix = vec![0.0; nv * nv];
         for i in 0..nv {
@@ -204,7 +204,7 @@ impl Topology {
 
     /// Copies a vector over the degrees of freedom to `lanes`; lanes without a degree of freedom keep their values.
     #[inline]
-    pub(crate) fn to_lanes(&self, x: &[f64], lanes: &mut [Lanes]) {
+    pub fn to_lanes(&self, x: &[f64], lanes: &mut [Lanes]) {
         for (&slot, &v) in self.slot.iter().zip(x) {
             lanes[slot as usize / 4][slot as usize % 4] = v;
         }
@@ -212,32 +212,32 @@ impl Topology {
 
     /// Copies the values of the degrees of freedom from `lanes` to the vector `x`.
     #[inline]
-    pub(crate) fn read_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
+    pub fn read_lanes(&self, lanes: &[Lanes], x: &mut [f64]) {
         for (&slot, v) in self.slot.iter().zip(x) {
             *v = lanes[slot as usize / 4][slot as usize % 4];
         }
     }
 
     /// Returns the number of trees.
-    pub(crate) fn ntree(&self) -> usize {
+    pub fn ntree(&self) -> usize {
         self.tree_adr.len() - 1
     }
 
     /// Returns the ancestors of `dof`, ascending, itself last.
     #[inline]
-    pub(crate) fn dof_chain(&self, dof: usize) -> &[u32] {
+    pub fn dof_chain(&self, dof: usize) -> &[u32] {
         &self.chain[self.row_adr[dof]..self.row_adr[dof + 1]]
     }
 
     /// Returns where the chain of `dof` begins among the entries of all chains; for `dof = nv` their number.
     #[inline]
-    pub(crate) fn chain_start(&self, dof: usize) -> usize {
+    pub fn chain_start(&self, dof: usize) -> usize {
         self.row_adr[dof]
     }
 
     /// Returns where `ancestor` stands among the entries of all chains in that of `dof`, if it is there.
     #[inline]
-    pub(crate) fn chain_place(&self, ancestor: usize, dof: usize) -> Option<usize> {
+    pub fn chain_place(&self, ancestor: usize, dof: usize) -> Option<usize> {
         // the chain of an ancestor is a prefix, so its length tells the place
         let place = self.row_adr[ancestor + 1] - self.row_adr[ancestor] - 1;
         let there = self.dof_chain(dof).get(place).is_some_and(|&d| d as usize == ancestor);
@@ -246,7 +246,7 @@ impl Topology {
 
     /// Returns the degrees of freedom that move `body`, ascending.
     #[inline]
-    pub(crate) fn body_chain(&self, body: usize) -> &[u32] {
+    pub fn body_chain(&self, body: usize) -> &[u32] {
         match self.body_last_dof[body] {
             Some(d) => self.dof_chain(d),
             None => &[],
@@ -254,7 +254,7 @@ impl Topology {
     }
 
     /// Returns the degrees of freedom that move each of two bodies and not the other, ascending.
-    pub(crate) fn apart(&self, a: usize, b: usize) -> (&[u32], &[u32]) {
+    pub fn apart(&self, a: usize, b: usize) -> (&[u32], &[u32]) {
         let (chain_a, chain_b) = (self.body_chain(a), self.body_chain(b));
         let shared = chain_a.iter().zip(chain_b).take_while(|(a, b)| a == b).count();
         (&chain_a[shared..], &chain_b[shared..])

@@ -7,7 +7,7 @@
 /// and `work` is a closure with the same attribute. The bits are those of any other target: the compiler neither reorders
 /// sums nor fuses products with them.
 #[inline(always)]
-pub(crate) fn vectorize<R>(work: impl FnOnce() -> R) -> R {
+pub fn vectorize<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx2) = fearless_simd::Level::new().as_avx2() {
         return fearless_simd::Simd::vectorize(avx2, work);
@@ -18,7 +18,7 @@ pub(crate) fn vectorize<R>(work: impl FnOnce() -> R) -> R {
 /// Evaluates an expression with [`vectorize`]. It borrows the fields that it names, one by one.
 macro_rules! vectorized {
     ($work:expr) => {
-        $crate::physics::vectorize::vectorize(
+        $crate::vectorize::vectorize(
             #[inline(always)]
             || $work,
         )

@@ -12,11 +12,11 @@ use std::time::Duration;
 
 pub use babbling::Babbling;
 pub use command::CommandPolicy;
+pub use command::DEFAULT_LIMIT;
 #[cfg(fuzzing)]
 pub use command::answers;
-internals!(use command::DEFAULT_LIMIT);
 #[cfg(feature = "onnx")]
-internals!(hidden use onnx::OnnxError);
+pub use onnx::OnnxError;
 #[cfg(feature = "onnx")]
 pub use onnx::OnnxPolicy;
 use thiserror::Error;
@@ -210,7 +210,6 @@ impl Policy for NoisePolicy {
 
 /// A policy as the command line names it.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(not(feature = "internals"), doc(hidden))]
 pub enum PolicySource {
     /// `random`
     Random,

@@ -201,7 +201,6 @@ impl OnnxPolicy {
     ///
     /// # Errors
     /// An input that is not a sense, or of another shape or type.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn connect(&mut self, spaces: &[ObservationSpace]) -> Result<(), PolicyError> {
         self.inputs = self.match_inputs(spaces).map_err(|e| self.error(e))?;
         Ok(())
@@ -212,7 +211,6 @@ impl OnnxPolicy {
     ///
     /// # Errors
     /// The model fails, or its output is not an action.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn decide(
         &self,
         observation: &Observation,

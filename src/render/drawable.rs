@@ -2,9 +2,9 @@
 
 use crate::math::{MAT3_ID, Mat3, Vec3};
 use crate::model::{GeomType, Model, Skin};
-use crate::render::scenery::single;
-use crate::render::texture::TexturePixels;
-use crate::render::view::Poses;
+use crate::scenery::single;
+use crate::texture::TexturePixels;
+use crate::view::Poses;
 
 /// Default colour of a geom; a geom that has it takes the colour of its material.
 const DEFAULT_RGBA: [f32; 4] = [0.5, 0.5, 0.5, 1.0];
@@ -34,22 +34,22 @@ pub enum Element {
 /// The mesh that a [`Drawable`] uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shape {
-    /// A rectangle: [`Mesh::plane`](crate::render::Mesh::plane).
+    /// A rectangle: [`Mesh::plane`](crate::Mesh::plane).
     Plane,
-    /// A sphere or ellipsoid: [`Mesh::sphere`](crate::render::Mesh::sphere).
+    /// A sphere or ellipsoid: [`Mesh::sphere`](crate::Mesh::sphere).
     Sphere,
-    /// A capsule: [`Mesh::capsule`](crate::render::Mesh::capsule).
+    /// A capsule: [`Mesh::capsule`](crate::Mesh::capsule).
     Capsule,
-    /// A cylinder: [`Mesh::cylinder`](crate::render::Mesh::cylinder).
+    /// A cylinder: [`Mesh::cylinder`](crate::Mesh::cylinder).
     Cylinder,
-    /// A box: [`Mesh::cube`](crate::render::Mesh::cube).
+    /// A box: [`Mesh::cube`](crate::Mesh::cube).
     Box,
     /// A mesh, a height field or a skin of the model, or a part of a large one.
     Mesh,
 }
 
 impl Shape {
-    /// The shapes that all scenes have, in the order of [`Scenery::meshes`](crate::render::Scenery::meshes).
+    /// The shapes that all scenes have, in the order of [`Scenery::meshes`](crate::Scenery::meshes).
     pub const ALL: [Self; 5] = [Self::Plane, Self::Sphere, Self::Capsule, Self::Cylinder, Self::Box];
 }
 
@@ -60,7 +60,7 @@ pub struct Drawable {
     pub element: Element,
     /// Shape.
     pub shape: Shape,
-    /// Index into [`Scenery::meshes`](crate::render::Scenery::meshes), after which the parts of all skins are counted.
+    /// Index into [`Scenery::meshes`](crate::Scenery::meshes), after which the parts of all skins are counted.
     pub mesh: usize,
     /// Scale of the unit shape as the model has it, m; 1 for meshes of the model; a capsule's is radius, radius, half length, which is 1
     /// for a piece of a tendon. Images follow [`Drawable::placed`].
@@ -75,7 +75,7 @@ pub struct Drawable {
     pub specular: f32,
     /// Exponent of highlights.
     pub exponent: f32,
-    /// Index into [`Scenery::textures`](crate::render::Scenery::textures).
+    /// Index into [`Scenery::textures`](crate::Scenery::textures).
     pub texture: Option<usize>,
     /// Scale of texture coordinates: they are those of the unit shape times this, plus `texture_offset`.
     pub texture_scale: [f32; 3],

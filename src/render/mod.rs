@@ -1,10 +1,10 @@
 //! Rendering: a [`Scenery`] is built once from a [`Model`](crate::Model), and drawn from poses.
 //!
 //! ```
-//! use babybench::Config;
-//! use babybench::mimo::{build_model, embedded};
-//! use babybench::physics::{Engine, SoftEngine, SoftOptions};
-//! use babybench::render::{Poses, RenderRequest, Renderer, Scenery, View};
+//! use mjcf_sim::Config;
+//! use mjcf_sim::mimo::{build_model, embedded};
+//! use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions};
+//! use mjcf_sim::render::{Poses, RenderRequest, Renderer, Scenery, View};
 //!
 //! let model = build_model(&Config::default(), &embedded())?;
 //! let mut renderer = Renderer::cpu(Scenery::new(&model, &embedded())?.into());
@@ -25,13 +25,14 @@
 //! samples per pixel, no shadows, no gamma. [`Renderer::cpu`] is pure Rust and gives the same bytes on every target.
 //!
 //! Not drawn: shadows, reflections, fog, haze. Planes without a size are drawn as far as the far plane.
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
 
 mod cpu;
 mod drawable;
-#[cfg(all(feature = "wgpu", feature = "internals"))]
+#[cfg(feature = "wgpu")]
 pub mod gpu;
-#[cfg(all(feature = "wgpu", not(feature = "internals")))]
-pub(crate) mod gpu;
 #[cfg_attr(all(feature = "wgpu", not(target_arch = "wasm32")), path = "native_gpu.rs")]
 #[cfg_attr(not(all(feature = "wgpu", not(target_arch = "wasm32"))), path = "no_gpu.rs")]
 mod gpu_of_build;
@@ -48,27 +49,29 @@ mod tendon;
 mod texture;
 mod view;
 
-internals!(use cpu::CpuRenderer);
-#[cfg(any(feature = "eval", feature = "wgpu"))]
-pub(crate) use cpu::luma;
-internals!(use drawable::{Drawable, Element, Shape});
+pub use cpu::CpuRenderer;
+pub use cpu::luma;
+pub use drawable::{Drawable, Element, Shape};
 #[cfg(feature = "wgpu")]
-internals!(use gpu::GpuError);
-internals!(use gpu_of_build::SharedGpu);
-pub(crate) use gpu_of_build::{draw_on, open_gpu};
-internals!(use mesh::{Mesh, MeshPart});
-internals!(use skin::Worn);
+pub use gpu::GpuError;
+pub use gpu_of_build::SharedGpu;
+pub use gpu_of_build::{draw_on, open_gpu};
+pub use mesh::{Mesh, MeshPart};
 pub use renderer::Renderer;
-pub(crate) use renderer::SharedMemory;
-internals!(use texture::{Face, Level, MAX_TEXTURE, TexturePixels});
+pub use renderer::SharedMemory;
 pub use scenery::Scenery;
+pub use scenery::{Aim, Camera, LightSource};
+pub use skin::Worn;
+pub use texture::{Face, Level, MAX_TEXTURE, TexturePixels};
 pub use view::{FreeCamera, ImageBuffers, Poses, RenderRequest, View};
-internals!(use scenery::{Aim, Camera, LightSource});
 
-use crate::assets::AssetError;
-use crate::text::quoted;
+use mjcf_sim_model::assets::AssetError;
+use mjcf_sim_model::text::quoted;
+// Paths of other files of this crate begin with `crate` for these, too.
+use mjcf_sim_model::{assets, formats, limits, math, model, shelf, threads};
 
-internals!(use crate::spaces::MAX_IMAGE_SIZE as MAX_SIZE);
+/// Longest side of a picture, pixels.
+pub const MAX_SIZE: usize = 4096;
 
 /// A reason why something cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -10,7 +10,10 @@ use super::{ImageBuffers, RenderError, RenderRequest, Scenery};
 pub type SharedGpu = Arc<Mutex<GpuRenderer>>;
 
 /// Opens a GPU for a scene.
-pub(crate) fn open_gpu(scenery: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
+///
+/// # Errors
+/// Fails where there is no GPU, or none that can draw the scene.
+pub fn open_gpu(scenery: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
     Ok(Arc::new(Mutex::new(GpuRenderer::new(scenery)?)))
 }
 
@@ -24,7 +27,10 @@ pub(super) fn scenery_of(gpu: &SharedGpu) -> Arc<Scenery> {
 }
 
 /// Draws images on a GPU, in one submission for each kind.
-pub(crate) fn draw_on<'o>(
+///
+/// # Errors
+/// Fails if a request does not fit the scene or the GPU is lost.
+pub fn draw_on<'o>(
     gpu: &SharedGpu,
     requests: &[RenderRequest],
     images: impl IntoIterator<Item = ImageBuffers<'o>>,

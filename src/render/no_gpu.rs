@@ -12,8 +12,11 @@ pub enum NoGpu {}
 /// A renderer on a GPU that several environments share, of which there is none in this build.
 pub type SharedGpu = Arc<NoGpu>;
 
-/// Says why there is no GPU.
-pub(crate) fn open_gpu(_: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
+/// Returns the reason why there is no GPU.
+///
+/// # Errors
+/// Always.
+pub fn open_gpu(_: Arc<Scenery>) -> Result<SharedGpu, RenderError> {
     Err(if cfg!(feature = "wgpu") {
         RenderError::CannotWait
     } else {
@@ -25,7 +28,11 @@ pub(super) fn scenery_of(gpu: &SharedGpu) -> Arc<Scenery> {
     match **gpu {}
 }
 
-pub(crate) fn draw_on<'o>(
+/// Draws nothing: there is no GPU to call it with.
+///
+/// # Errors
+/// None.
+pub fn draw_on<'o>(
     gpu: &SharedGpu,
     _: &[RenderRequest],
     _: impl IntoIterator<Item = ImageBuffers<'o>>,

@@ -5,9 +5,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::math::{Mat3, Vec3};
-use crate::render::view::ImageBuffers;
-use crate::render::{CpuRenderer, Poses, RenderError, RenderRequest, Scenery, View};
 use crate::threads::{Job, PARALLEL, Pool};
+use crate::view::ImageBuffers;
+use crate::{CpuRenderer, Poses, RenderError, RenderRequest, Scenery, View};
 
 /// A thread that draws images, and the drawing it works on. The thread starts with the first pair of images.
 #[derive(Default)]

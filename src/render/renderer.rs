@@ -27,7 +27,7 @@ enum Backend {
 }
 
 /// Renderers on the CPU whose memory those who draw the same scene in turn share.
-pub(crate) type SharedMemory = Arc<Shelf<CpuRenderer>>;
+pub type SharedMemory = Arc<Shelf<CpuRenderer>>;
 
 /// The memory in which a renderer draws.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ impl Renderer {
     }
 
     /// Creates a renderer on the CPU that draws in memory which others use, too.
-    pub(crate) fn sharing(scenery: Arc<Scenery>, memory: SharedMemory) -> Self {
+    pub fn sharing(scenery: Arc<Scenery>, memory: SharedMemory) -> Self {
         Self::in_memory(scenery, Memory::Shared(memory))
     }
 
@@ -96,7 +96,6 @@ impl Renderer {
     }
 
     /// Creates a renderer on a GPU that others may share.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn gpu(gpu: SharedGpu) -> Self {
         Self {
             scenery: scenery_of(&gpu),
@@ -122,7 +121,6 @@ impl Renderer {
 
     /// Signals that two images will be requested within about 0.1 ms, so that the second thread can wake up in the meantime. Does
     /// nothing with one thread.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn prepare(&self) {
         if let Backend::Cpu { pair: Some(pair), .. } = &self.backend {
             pair.wake();
@@ -138,7 +136,6 @@ impl Renderer {
     }
 
     /// Returns the number of passes over the scene's geometry on the CPU; 0 if images are drawn on a GPU.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn passes(&self) -> u64 {
         match &self.backend {
             Backend::Cpu { passes, pair, .. } => passes + pair.as_ref().map_or(0, Pair::passes),
@@ -147,7 +144,6 @@ impl Renderer {
     }
 
     /// Returns the renderer on the GPU; `None` if images are drawn on the CPU.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn shared_gpu(&self) -> Option<&SharedGpu> {
         match &self.backend {
             Backend::Gpu(gpu) => Some(gpu),

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
+use crate::RenderError;
 use crate::assets::AssetSource;
+use crate::drawable::{Drawable, Element, OPAQUE, Shape, material};
 use crate::math::{Vec3, order, unit};
+use crate::mesh::Mesh;
 use crate::model::{CamLight, Model, TextureType};
-use crate::render::RenderError;
-use crate::render::drawable::{Drawable, Element, OPAQUE, Shape, material};
-use crate::render::mesh::Mesh;
-use crate::render::model_mesh::ModelMeshes;
-use crate::render::skin::SkinLook;
-use crate::render::tendon::{pieces, ropes};
-use crate::render::texture::{Loader, TexturePixels};
-use crate::render::view::{Poses, View};
+use crate::model_mesh::ModelMeshes;
+use crate::skin::SkinLook;
+use crate::tendon::{pieces, ropes};
+use crate::texture::{Loader, TexturePixels};
+use crate::view::{Poses, View};
 
 /// Groups of geoms, sites, tendons and skins that are visible.
 const VISIBLE_GROUPS: std::ops::Range<usize> = 0..3;
@@ -107,36 +107,26 @@ impl Camera {
 #[derive(Clone, Debug)]
 pub struct Scenery {
     /// Visible geoms, sites and tendons, in the order of the model, then the parts of skins.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub drawables: Vec<Drawable>,
-    /// Meshes: those of [`Shape::ALL`](crate::render::Shape::ALL) in its order, then those of the model that are visible.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    /// Meshes: those of [`Shape::ALL`](crate::Shape::ALL) in its order, then those of the model that are visible.
     pub meshes: Vec<Mesh>,
     /// Skins that are visible.
     pub(super) skins: Vec<SkinLook>,
     /// Textures in use.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub textures: Vec<TexturePixels>,
     /// Index of the background in `textures`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub sky: Option<usize>,
     /// Lights; the headlight, if it is on, is not among them.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub lights: Vec<LightSource>,
     /// Ambient, diffuse and specular colour of the headlight, which shines along every camera; `None` if it is off.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub headlight: Option<[[f32; 3]; 3]>,
     /// Vertical field of view of the free camera, degrees.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fovy: f64,
     /// Cameras of the model.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cameras: Vec<Camera>,
     /// Distance of the near plane, m.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub near: f64,
     /// Distance of the far plane, m.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub far: f64,
     /// Numbers of geoms, sites, bodies, tendons and points of tendons that poses must have.
     sizes: [usize; 5],
@@ -152,12 +142,11 @@ impl Scenery {
         Self::build(model, Some(Loader::new(assets)))
     }
 
-    #[cfg(feature = "report")]
     /// Leaves textures out, as if the model had none.
     ///
     /// # Errors
     /// None: only textures can fail.
-    pub(crate) fn without_textures(model: &Model) -> Result<Self, RenderError> {
+    pub fn without_textures(model: &Model) -> Result<Self, RenderError> {
         Self::build(model, None)
     }
 
@@ -221,8 +210,7 @@ impl Scenery {
         })
     }
 
-    /// Returns the mesh of a drawable; that of a skin is as the model has it, and has no normals: [`Worn`](crate::render::Worn) has those of a moment.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
+    /// Returns the mesh of a drawable; that of a skin is as the model has it, and has no normals: [`Worn`](crate::Worn) has those of a moment.
     pub fn mesh_of(&self, drawable: &Drawable) -> Option<&Mesh> {
         let worn = self.skins.iter().flat_map(SkinLook::meshes);
         self.meshes.iter().chain(worn).nth(drawable.mesh)
@@ -239,7 +227,6 @@ impl Scenery {
     }
 
     /// Returns the memory used by all textures, bytes.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn texture_bytes(&self) -> usize {
         let mut faces: Vec<_> = self
             .textures

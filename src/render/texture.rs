@@ -10,7 +10,7 @@ use crate::assets::AssetSource;
 use crate::formats::png::{decode_png, is_opaque};
 use crate::limits::Limits;
 use crate::model::{Builtin, Texture as Recipe, TextureType};
-use crate::render::{RenderError, plain};
+use crate::{RenderError, plain};
 pub use cube::{Cube, components};
 use pattern::{Mt19937, cube_builtin, flat_builtin, truncated};
 
@@ -312,13 +312,16 @@ impl<'a> Loader<'a> {
 }
 
 fn decode(path: &str, bytes: &[u8]) -> Result<Level, RenderError> {
-    let rgb = decode_png(bytes, &Limits::DEFAULT).map_err(|message| RenderError::Image {
+    let picture = decode_png(bytes, &Limits::DEFAULT).map_err(|message| RenderError::Image {
         path: path.to_string(),
         message,
     })?;
-    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
-    let pixels = rgb.pixels().map(|p| [p[0], p[1], p[2], 255]).collect();
-    Ok(Level { width, height, pixels })
+    let (pixels, _) = picture.rgb.as_chunks::<3>();
+    Ok(Level {
+        width: picture.width,
+        height: picture.height,
+        pixels: pixels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),
+    })
 }
 
 /// Seed of random marks.

@@ -1,7 +1,9 @@
 //! Requests for images: camera, size, poses.
 
 use crate::math::{Mat3, Vec3, add_scaled, cross};
-use crate::render::{MAX_SIZE, RenderError};
+use crate::model::Model;
+use crate::{MAX_SIZE, RenderError};
+use mjcf_sim_physics::State;
 
 /// A camera and the size of an image from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +17,7 @@ pub struct View {
 }
 
 impl View {
-    /// The camera that [`Poses::free`] places, with the field of view of [`Scenery::fovy`](crate::render::Scenery::fovy).
+    /// The camera that [`Poses::free`] places, with the field of view of [`Scenery::fovy`](crate::Scenery::fovy).
     pub const FREE: usize = usize::MAX;
 
     /// Returns the number of pixels; it saturates for sizes that [`View::check`] refuses.
@@ -27,7 +29,6 @@ impl View {
     ///
     /// # Errors
     /// Fails if the width or height is 0 or above [`MAX_SIZE`].
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn check(&self) -> Result<(), RenderError> {
         let fine = 1..=MAX_SIZE;
         if fine.contains(&self.width) && fine.contains(&self.height) {
@@ -49,16 +50,16 @@ impl View {
 /// A camera that looks at a point from anywhere, as MuJoCo's `mjvCamera`: the one that people steer.
 ///
 /// ```
-/// use babybench::env::Viewer;
-/// use babybench::render::FreeCamera;
-/// use babybench::{Config, Env};
+/// use mjcf_sim::env::Viewer;
+/// use mjcf_sim::render::FreeCamera;
+/// use mjcf_sim::{Config, Env};
 ///
 /// let mut env = Env::new(Config { touch_active: false, vision_active: false, ..Config::default() })?;
 /// env.reset(Some(0))?;
 /// let camera = FreeCamera { lookat: [0.0, 0.0, 0.3], distance: 1.5, azimuth: 135.0, elevation: -20.0 };
 /// let mut viewer = Viewer::new(env.blueprint())?;
 /// assert_eq!(viewer.draw(&env, camera, 32, 24)?.len(), 3 * 32 * 24);
-/// # Ok::<(), babybench::EnvError>(())
+/// # Ok::<(), mjcf_sim::EnvError>(())
 /// ```
 #[doc(alias("mjvCamera", "mjCAMERA_FREE"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +75,18 @@ pub struct FreeCamera {
 }
 
 impl FreeCamera {
+    /// Returns the camera with which MuJoCo's viewer begins: it looks at the centre of the model from 1.5 times its extent, from behind and
+    /// above.
+    #[doc(alias = "mjv_defaultFreeCamera")]
+    pub fn of(model: &Model) -> Self {
+        Self {
+            lookat: model.stat.center,
+            distance: 1.5 * model.stat.extent,
+            azimuth: 90.0,
+            elevation: -45.0,
+        }
+    }
+
     /// Returns position (m) and orientation in the world.
     ///
     /// # Errors
@@ -103,49 +116,58 @@ impl FreeCamera {
 #[derive(Clone, Copy, Debug)]
 pub struct Poses<'a> {
     /// Positions of the geoms.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geom_xpos: &'a [Vec3],
     /// Orientations of the geoms.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geom_xmat: &'a [Mat3],
     /// Sizes of the geoms, m, which a program may change: [`Params::geom_size`](crate::physics::Params::geom_size).
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geom_size: &'a [Vec3],
     /// Positions of the sites.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub site_xpos: &'a [Vec3],
     /// Orientations of the sites.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub site_xmat: &'a [Mat3],
     /// First point of each tendon in `wrap_xpos`.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ten_wrapadr: &'a [usize],
     /// Number of points of each tendon; none for fixed ones.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub ten_wrapnum: &'a [usize],
     /// Points that spatial tendons run through.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub wrap_xpos: &'a [Vec3],
     /// The geom that each of these points is on, -1 for a site, -2 for a pulley.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub wrap_obj: &'a [i32],
     /// Positions of the cameras.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cam_xpos: &'a [Vec3],
     /// Orientations of the cameras.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub cam_xmat: &'a [Mat3],
     /// Position and orientation of the free camera, if there is one: [`FreeCamera::pose`].
     pub free: Option<(Vec3, Mat3)>,
     /// Positions of the bodies, which carry the lights.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub xpos: &'a [Vec3],
     /// Orientations of the bodies.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub xmat: &'a [Mat3],
     /// Centres of mass of the bodies with those below them, which some lights follow.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub subtree_com: &'a [Vec3],
+}
+
+impl<'a> From<&'a State> for Poses<'a> {
+    /// Returns the poses at the start of the last physics step.
+    fn from(s: &'a State) -> Self {
+        Self {
+            geom_xpos: &s.geom_xpos,
+            geom_xmat: &s.geom_xmat,
+            geom_size: &s.params.geom_size,
+            site_xpos: &s.site_xpos,
+            site_xmat: &s.site_xmat,
+            ten_wrapadr: &s.ten_wrapadr,
+            ten_wrapnum: &s.ten_wrapnum,
+            wrap_xpos: &s.wrap_xpos,
+            wrap_obj: &s.wrap_obj,
+            cam_xpos: &s.cam_xpos,
+            cam_xmat: &s.cam_xmat,
+            free: None,
+            xpos: &s.xpos,
+            xmat: &s.xmat,
+            subtree_com: &s.subtree_com,
+        }
+    }
 }
 
 /// Memory for images of one view, each with rows from the top; those that are `None` are not drawn.

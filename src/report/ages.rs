@@ -1,11 +1,10 @@
 //! A row of infants of several ages, on the same scale.
 
-use image::ExtendedColorType;
 use maud::html;
 
 use super::page::embed;
 use crate::assets::AssetSource;
-use crate::formats::png::png;
+use crate::formats::png::{ColorType, png};
 use crate::mimo::BodyFigures;
 use crate::model::Model;
 use crate::report::doll::{Doll, Side};
@@ -35,10 +34,7 @@ pub fn draw_ages(infants: &[(f64, &Model)], assets: &dyn AssetSource) -> Option<
     for (_, model) in infants {
         let span = ground as f64 / SCALE;
         let pixels = Doll::dressed(model, assets, [wide, ground], span)?.cut_out(Side::Front)?;
-        dolls.push(embed(
-            "png",
-            &png(&pixels, wide, ground, ExtendedColorType::Rgba8).ok()?,
-        ));
+        dolls.push(embed("png", &png(&pixels, wide, ground, ColorType::Rgba).ok()?));
     }
     let (right, end) = (LEFT + wide * infants.len(), LEFT / 2);
     let size = [right + end, ground + BELOW];

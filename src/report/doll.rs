@@ -1,9 +1,7 @@
 //! Pictures of MIMo with parts of the body in colour.
 
-use image::ExtendedColorType;
-
 use crate::assets::AssetSource;
-use crate::formats::png::png;
+use crate::formats::png::{ColorType, png};
 use crate::math::*;
 use crate::mimo::{JOINT_PREFIX, upright_extent};
 use crate::model::Model;
@@ -151,7 +149,7 @@ impl Doll {
             }
         }
         let [width, height] = self.size;
-        png(&self.cut_out(side)?, width, height, ExtendedColorType::Rgba8).ok()
+        png(&self.cut_out(side)?, width, height, ColorType::Rgba).ok()
     }
 
     /// Draws MIMo in his colours with a transparent background: red, green, blue and opacity.

@@ -1,10 +1,7 @@
 //! A report of a run: one HTML page that needs no other file, with the score, the learning curve, what the hands
 //! touched or the eyes saw, and key frames of the video.
 
-#[cfg(feature = "internals")]
 pub mod ages;
-#[cfg(not(feature = "internals"))]
-mod ages;
 #[cfg(feature = "npz")]
 mod benchmark;
 mod curve;
@@ -12,10 +9,7 @@ mod doll;
 mod gaze;
 mod page;
 mod run;
-#[cfg(feature = "internals")]
 pub mod skin;
-#[cfg(not(feature = "internals"))]
-mod skin;
 mod strip;
 mod svg;
 
@@ -25,7 +19,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 #[cfg(feature = "npz")]
-internals!(use benchmark::benchmark_page);
+pub use benchmark::benchmark_page;
 
 use crate::files::replace_file;
 use run::Run;

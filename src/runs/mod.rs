@@ -43,10 +43,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(feature = "internals")]
 pub mod logs;
-#[cfg(not(feature = "internals"))]
-pub(crate) mod logs;
 mod many;
 #[cfg(feature = "npz")]
 mod motion;
@@ -57,22 +54,22 @@ mod replay;
 mod scene_file;
 mod training;
 
+pub use logs::{EvaluationLog, TrainingTotals};
 pub use logs::{LogError, TrainingLog, read_training};
-internals!(use logs::{EvaluationLog, TrainingTotals});
 pub use many::RunVector;
 #[cfg(feature = "npz")]
-internals!(hidden use motion::{Motion, MotionError, Played, Playing, play_motion});
+pub use motion::{Motion, MotionError, Played, Playing, play_motion};
+#[cfg(feature = "npz")]
+pub use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest};
 #[cfg(feature = "npz")]
 pub use record::{Record, RecordError, RecordOptions, Recorder, Replayed, VectorRecorder};
 #[cfg(feature = "npz")]
-internals!(use record::{ArrayDescription, EpisodeDescription, GeomDescription, JointDescription, Manifest});
-#[cfg(feature = "npz")]
-internals!(use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images});
+pub use replay::{EpisodeStart, Recording, Replay, ReplayError, TaskRows, TouchRows, replay, replay_with_images};
 #[cfg(feature = "report")]
 pub(crate) use scene_file::scene_config;
-pub use scene_file::{SceneFileError, write_scene};
-internals!(use scene_file::{read_config, read_scene});
-internals!(use scene_file::{
+pub use scene_file::{
     KeptScene, SceneFile, complete_scene, complete_scene_from, keep_scene, scene_compat, write_scene_from,
-});
+};
+pub use scene_file::{SceneFileError, write_scene};
+pub use scene_file::{read_config, read_scene};
 pub use training::{RunEnv, RunError, for_evaluation, make_env, start_training};

@@ -204,7 +204,6 @@ impl Recorder {
 
     /// Returns another recorder into the same folder, for an environment of the same blueprint that runs beside.
     #[must_use]
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn another(&self) -> Self {
         Self {
             shared: self.shared.clone(),

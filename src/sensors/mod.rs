@@ -12,11 +12,11 @@ mod vestibular;
 mod vision;
 
 pub use pain::Pain;
+pub use proprioception::limit_activation;
 pub use proprioception::{Component, Entry, Proprioception};
-internals!(use proprioception::limit_activation);
 pub use sense::ObservationEntry;
 pub(crate) use sense::observation_entries;
+pub use touch::TouchPool;
 pub use touch::{SkinLayout, SkinValues, Touch};
-internals!(use touch::TouchPool);
 pub use vestibular::Vestibular;
 pub use vision::{EYES, EyeImages, Vision};

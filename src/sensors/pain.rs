@@ -29,7 +29,6 @@ pub struct Pain {
 
 impl Pain {
     /// Creates the sense for a skin; every body has the softness and the sensitivity 1.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(model: &Model, layout: Arc<SkinLayout>, config: &Config) -> Self {
         let (compat, response) = (config.compat, config.touch_response);
         Self {

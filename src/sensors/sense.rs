@@ -194,7 +194,6 @@ impl ObservationEntry {
     }
 
     /// Returns the entry under a key.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn of_key(key: &str) -> Option<&'static Self> {
         Self::ALL.iter().find(|entry| entry.key == key)
     }

@@ -9,29 +9,6 @@ use crate::physics::State;
 use crate::render::{ImageBuffers, Poses, RenderError, RenderRequest, Renderer, Scenery, View};
 use crate::spaces::Values;
 
-impl<'a> From<&'a State> for Poses<'a> {
-    /// Returns the poses at the start of the last physics step.
-    fn from(s: &'a State) -> Self {
-        Self {
-            geom_xpos: &s.geom_xpos,
-            geom_xmat: &s.geom_xmat,
-            geom_size: &s.params.geom_size,
-            site_xpos: &s.site_xpos,
-            site_xmat: &s.site_xmat,
-            ten_wrapadr: &s.ten_wrapadr,
-            ten_wrapnum: &s.ten_wrapnum,
-            wrap_xpos: &s.wrap_xpos,
-            wrap_obj: &s.wrap_obj,
-            cam_xpos: &s.cam_xpos,
-            cam_xmat: &s.cam_xmat,
-            free: None,
-            xpos: &s.xpos,
-            xmat: &s.xmat,
-            subtree_com: &s.subtree_com,
-        }
-    }
-}
-
 /// Images of one eye, or of several one after the other, each with rows from the top; those that are not observed are
 /// empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -56,7 +33,6 @@ impl EyeImages {
     };
 
     /// Makes room for images of `pixels` pixels each.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(outputs: VisionOutputs, pixels: usize) -> Self {
         let len = |output| if outputs.contains(output) { pixels } else { 0 };
         Self {
@@ -79,7 +55,6 @@ impl EyeImages {
     }
 
     /// Returns the memory of the images that are observed, for a renderer.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn buffers(&mut self) -> ImageBuffers<'_> {
         fn wanted<T>(values: &mut [T]) -> Option<&mut [T]> {
             (!values.is_empty()).then_some(values)
@@ -93,7 +68,6 @@ impl EyeImages {
     }
 
     /// Copies images of the same sizes.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn copy_from(&mut self, other: &Self) {
         self.rgb.clone_from(&other.rgb);
         self.gray.clone_from(&other.gray);
@@ -102,7 +76,6 @@ impl EyeImages {
     }
 
     /// Returns the memory that the images take, bytes.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn bytes(&self) -> usize {
         self.rgb.len() + self.gray.len() + 4 * (self.depth.len() + self.segmentation.len())
     }
@@ -123,7 +96,6 @@ impl Vision {
     }
 
     /// Creates the eyes of `model`, drawn by any renderer of its look.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn with_renderer(model: &Model, renderer: Renderer, sizes: [[usize; 2]; 2]) -> Option<Self> {
         let view = |eye: usize| {
             let [width, height] = sizes[eye];
@@ -147,7 +119,6 @@ impl Vision {
     }
 
     /// Returns the renderer that draws the images.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
     }
@@ -205,7 +176,6 @@ impl Vision {
     }
 
     /// Returns the images that [`Self::observe`] draws, left and right.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn requests<'a>(&self, s: &'a State) -> [RenderRequest<'a>; 2] {
         self.views.map(|view| RenderRequest {
             poses: Poses::from(s),

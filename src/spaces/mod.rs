@@ -9,11 +9,7 @@ pub use noise::{ActionNoise, Noise, NoiseError};
 pub use rng::NumpyRng;
 pub(crate) use values::Number;
 pub use values::Values;
-internals!(use values::{Array, ValuesMut});
-
-/// Largest width and height of an image, pixels.
-#[cfg_attr(not(feature = "internals"), doc(hidden))]
-pub const MAX_IMAGE_SIZE: usize = 4096;
+pub use values::{Array, ValuesMut};
 
 /// A box of single-precision vectors with bounds of their own for each component.
 #[derive(Clone, Debug, PartialEq)]

@@ -30,7 +30,6 @@ impl NumpyRng {
     }
 
     /// Creates the generator of a seed in the state it has after `drawn` numbers.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn at(seed: u64, drawn: u64) -> Self {
         let mut rng = Self::seed(seed);
         rng.generator.advance(u128::from(drawn));
@@ -39,13 +38,11 @@ impl NumpyRng {
     }
 
     /// Returns the seed the generator was made from.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn seed_value(&self) -> u64 {
         self.seed
     }
 
     /// Returns how many numbers were drawn.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn drawn(&self) -> u64 {
         self.drawn
     }

@@ -80,7 +80,6 @@ macro_rules! numbers {
             }
 
             /// Returns row `row` of `rows` rows of equal length; none of its numbers, if there is no such row.
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn row(self, row: usize, rows: usize) -> Self {
                 let len = self.len() / rows.max(1);
                 match self {
@@ -91,7 +90,6 @@ macro_rules! numbers {
             }
 
             /// Returns the bytes of the numbers, the lowest of each first.
-            #[cfg_attr(not(feature = "internals"), doc(hidden))]
             pub fn to_le_bytes(self) -> Vec<u8> {
                 match self {
                     $(Self::$kind(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),)*
@@ -178,7 +176,6 @@ impl Values<'_> {
     }
 
     /// Returns the numbers in single precision.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn to_f32(self) -> Vec<f32> {
         match self {
             Self::F64(values) => values.iter().map(|&v| v as f32).collect(),

@@ -33,7 +33,6 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::reset_where`]; memory of another shape.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reset_into<'s>(
         &mut self,
         mask: Option<&[bool]>,
@@ -102,8 +101,7 @@ impl VectorEnv {
     /// Applies an action in each environment and writes the results into the caller's memory; the
     /// results of [`VectorEnv::infos`], [`VectorEnv::finals`] and [`VectorEnv::failures`] belong to the same step.
     ///
-    #[cfg_attr(feature = "internals", doc = "```")]
-    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+    /// ```
     /// use babybench::vector::Buffers;
     /// use babybench::{Blueprint, Config, VectorEnv, VectorOptions};
     ///
@@ -118,7 +116,6 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::step`]; memory of another shape.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn step_into(&mut self, actions: &[f32], mut buffers: Buffers<'_>) -> Result<(), VectorError> {
         buffers.check(self.len(), &self.layout)?;
         self.submit_all(actions)?;
@@ -170,7 +167,6 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::recv`]; memory of another shape.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn recv_into(&mut self, n: usize, mut buffers: Buffers<'_>) -> Result<&[usize], VectorError> {
         self.check_sent(n)?;
         buffers.check(n, &self.layout)?;
@@ -240,7 +236,6 @@ impl VectorEnv {
     ///
     /// # Errors
     /// Environments in flight.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn start_noises(&mut self, noises: &mut [ActionNoise], mask: Option<&[bool]>) -> Result<(), VectorError> {
         self.check_home()?;
         for (i, (noise, slot)) in noises.iter_mut().zip(self.slots.iter_mut().flatten()).enumerate() {

@@ -38,14 +38,12 @@ impl VectorEnv {
     ///
     /// # Errors
     /// As [`VectorEnv::look`]; memory of another shape.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn look_into(&mut self, mut buffers: Buffers<'_>) -> Result<(), VectorError> {
         buffers.check(self.ids.len(), &self.layout)?;
         self.look_for(&mut buffers)
     }
 
     /// Returns whether pictures wait for [`VectorEnv::look`].
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn unseen(&self) -> bool {
         self.unseen
     }

@@ -33,10 +33,10 @@ mod single;
 mod slot;
 
 pub use batch::{Batch, Failure, Finals};
-internals!(use buffers::Buffers);
+pub use buffers::Buffers;
 pub use error::VectorError;
 pub use infos::Infos;
-internals!(use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions});
+pub use options::{AutoresetMode, ClippedThreads, ThreadLimit, VectorOptions};
 pub use seeds::Seeds;
 
 use crate::config::RendererKind;
@@ -195,7 +195,6 @@ impl VectorEnv {
     }
 
     /// Returns why there are fewer threads than asked for, if there are.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn clipped_threads(&self) -> Option<ClippedThreads> {
         self.clipped
     }

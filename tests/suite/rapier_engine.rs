@@ -9,9 +9,8 @@ use babybench::config::{Behavior, EngineKind, Part, Scene};
 use babybench::math::mat_t_vec;
 use babybench::mimo::{build_model, embedded};
 use babybench::mjcf_loader::load_str;
-use babybench::physics::{
-    Engine, EngineError, RapierEngine, RapierModel, RapierOptions, SoftEngine, SoftOptions, State, compile,
-};
+use babybench::physics::{Engine, EngineError, SoftEngine, SoftOptions, State, compile};
+use babybench::rapier::{RapierEngine, RapierModel, RapierOptions};
 use babybench::{Blueprint, Config, Env, EnvError, Model};
 
 use crate::common::*;

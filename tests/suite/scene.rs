@@ -8,8 +8,9 @@ use babybench::Env;
 use babybench::config::{Behavior, Scene};
 use babybench::math::{Vec3, column, norm, sub};
 use babybench::model::GeomType;
-use babybench::physics::rapier::rapier3d_f64::prelude::{ColliderHandle, QueryFilter, Ray, Vector};
-use babybench::physics::{EngineError, FreeBody, RapierScene};
+use babybench::physics::{EngineError, FreeBody};
+use babybench::rapier::RapierScene;
+use babybench::rapier::rapier3d_f64::prelude::{ColliderHandle, QueryFilter, Ray, Vector};
 use babybench::spaces::NumpyRng;
 
 /// Steps of every model that the tests look at.

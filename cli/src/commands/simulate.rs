@@ -347,13 +347,7 @@ impl Film {
             renderer: Renderer::cpu(Arc::new(Scenery::new(model, assets)?)),
             writer: AviWriter::new(BufWriter::new(file), side, side, FPS)?,
             camera,
-            // where MuJoCo's viewer stands at first
-            free: FreeCamera {
-                lookat: model.stat.center,
-                distance: 1.5 * model.stat.extent,
-                azimuth: 90.0,
-                elevation: -45.0,
-            },
+            free: FreeCamera::of(model),
             size,
             rgb: vec![0; 3 * size * size],
             next: 0.0,

@@ -6,7 +6,8 @@ use babybench::Model;
 use babybench::config::{Behavior, BodyParts, Config, Part, Scene};
 use babybench::mimo::{DOCUMENT, Version, build_model, embedded, lock, scene_xml};
 use babybench::mjcf_loader::load_str;
-use babybench::physics::{Engine, Params, RapierEngine, RapierOptions, Shared, SoftEngine, SoftOptions, compile};
+use babybench::physics::{Engine, Params, Shared, SoftEngine, SoftOptions, compile};
+use babybench::rapier::{RapierEngine, RapierOptions};
 
 use crate::mujoco::{Mujoco, Release, Simulation};
 

@@ -71,7 +71,6 @@ impl Blueprint {
     ///
     /// # Errors
     /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
         if let Some(gpu) = self.surface.gpu.get() {
             return Ok(gpu.clone());

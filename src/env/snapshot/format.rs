@@ -30,7 +30,7 @@ pub struct Snapshot {
 
 /// The description that a [`Snapshot`] carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "eval", derive(serde::Serialize, serde::Deserialize))]
 pub struct SnapshotInfo {
     /// Version of the layout of its bytes.
     pub version: u32,
@@ -96,7 +96,6 @@ impl Snapshot {
     /// assert_eq!((info.steps, info.seed, info.ready), (1, 7, true));
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn info(&self) -> SnapshotInfo {
         // a snapshot has its header and its whole numbers, or it would not be one
         let mut header = Reader(self.bytes.get(MAGIC.len()..HEADER).unwrap_or_default());

@@ -76,7 +76,6 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Returns whether to follow the Python code where it disagrees with its description.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn follows_reference(&self) -> bool {
         self.config.compat == Compat::Reference
     }
@@ -210,7 +209,6 @@ impl<'a> TaskScene<'a> {
     ///
     /// # Errors
     /// The simulation diverged.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn relax(&mut self, steps: u32) -> Result<(), EnvError> {
         if self.follows_reference() {
             return self.rest(steps);
@@ -226,7 +224,6 @@ impl<'a> TaskScene<'a> {
     ///
     /// # Errors
     /// The simulation diverged.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn random_step(&mut self) -> Result<(), EnvError> {
         self.with_action(|scene, action| {
             scene.actuation.action_space().sample(scene.rng, action);
@@ -259,7 +256,6 @@ impl<'a> TaskScene<'a> {
     }
 
     /// Lets the actuators rest.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn reset_actuators(&mut self) {
         self.actuation.reset(self.model, self.state);
     }

@@ -24,8 +24,7 @@ pub struct Interval {
 impl Interval {
     /// Computes mean and interval, the same for the same values in the same order; `None` without values.
     ///
-    #[cfg_attr(feature = "internals", doc = "```")]
-    #[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+    /// ```
     /// use babybench::eval::Interval;
     ///
     /// let interval = Interval::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).expect("values");

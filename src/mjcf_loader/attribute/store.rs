@@ -3,10 +3,10 @@
 use super::Value;
 
 /// What is done with a field.
-pub(in crate::mjcf_loader) type Visit<'a> = &'a mut dyn FnMut(&mut dyn Store);
+pub(crate) type Visit<'a> = &'a mut dyn FnMut(&mut dyn Store);
 
 /// A field that an attribute can be stored in.
-pub(in crate::mjcf_loader) trait Store {
+pub(crate) trait Store {
     /// Stores a value. A value of another kind, which the tables rule out, changes nothing.
     fn store(&mut self, value: &Value);
 

@@ -1,9 +1,9 @@
 //! Compiles actuators.
 
 use super::context::{Context, Ids, User};
-use crate::mjcf_loader::actuator::{Actuator, Target};
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
+use crate::actuator::{Actuator, Target};
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, BiasType, DynType, GainType, TrnType};
 
 const FILTERED: &str =

@@ -1,8 +1,8 @@
 //! Moves the frame of a free body into its centre of mass and along its principal axes, where the document asks for it.
 
 use super::context::Context;
+use crate::document::{Document, Tri};
 use crate::math::{Quat, Vec3, add, quat_mul, quat_rotate, sub};
-use crate::mjcf_loader::document::{Document, Tri};
 use crate::model::{Arrays, JointType};
 
 /// Aligns a body of the document that has just been compiled as `id`; one with others in it stays as it is, as in MuJoCo.

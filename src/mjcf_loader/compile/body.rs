@@ -7,11 +7,11 @@ use super::fuse::{Place, places};
 use super::geom::{check_size, compile_geom, place};
 use super::geometry::{Solid, merge, orientation, principal};
 use super::joint::compile_joints;
+use crate::document::{Body, BodyFrame, Copied, Document, Frame, Geom, Orientation, Site, Tri};
+use crate::error::LoadError;
 use crate::math::{MINVAL, QUAT_ID, Quat, Vec3, add, quat_rotate};
-use crate::mjcf_loader::document::{Body, BodyFrame, Copied, Document, Frame, Geom, Orientation, Site, Tri};
-use crate::mjcf_loader::error::LoadError;
-use crate::mjcf_loader::settings::single;
 use crate::model::Arrays;
+use crate::settings::single;
 
 /// Compiles all bodies in order, so that ids are grouped by body; returns their elements.
 pub(super) fn compile(

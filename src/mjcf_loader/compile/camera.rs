@@ -3,12 +3,12 @@
 use super::body::quat_of;
 use super::context::{Context, Ids};
 use super::geometry::{EPS, normalize};
-use crate::mjcf_loader::document::{Camera, Light};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::schema::Element;
-use crate::mjcf_loader::settings::single;
-use crate::mjcf_loader::table::Table;
+use crate::document::{Camera, Light};
+use crate::error::{ErrorKind, LoadError};
 use crate::model::{self, Arrays};
+use crate::schema::Element;
+use crate::settings::single;
+use crate::table::Table;
 
 /// Compiles a camera.
 pub(super) fn compile_camera(
@@ -123,7 +123,7 @@ impl Camera {
     ///
     /// # Errors
     /// A part of its optics is given without the attribute that it is relative to.
-    pub(in crate::mjcf_loader) fn look(&mut self, e: &Element) -> Result<(), &'static str> {
+    pub(crate) fn look(&mut self, e: &Element) -> Result<(), &'static str> {
         let (focal, principal) = (self.focal, self.principal);
         self.apply(e);
         let given = |name: &str| e.values().any(|(other, _)| other == name);

@@ -1,9 +1,9 @@
 //! Compiles contact pairs and excludes.
 
 use super::context::{Context, Ids};
+use crate::document::Document;
+use crate::error::LoadError;
 use crate::math::order;
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::LoadError;
 use crate::model::Arrays;
 
 /// Compiles explicit pairs and excludes, both sorted by the pair of bodies.

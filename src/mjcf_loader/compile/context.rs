@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::compile::hfield::hfield_name;
+use crate::compile::mesh::mesh_name;
+use crate::document::{Compiler, Document, Tri};
+use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, add, order, quat_mul, quat_rotate};
-use crate::mjcf_loader::compile::hfield::hfield_name;
-use crate::mjcf_loader::compile::mesh::mesh_name;
-use crate::mjcf_loader::document::{Compiler, Document, Tri};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::surface::Texture;
-use crate::mjcf_loader::xml::Tree;
 use crate::model::{Arrays, JointType};
+use crate::surface::Texture;
+use crate::xml::Tree;
 
 /// Ids by name for one kind of element.
 pub(super) struct Names {

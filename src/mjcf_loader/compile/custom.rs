@@ -2,13 +2,13 @@
 
 use super::context::{Context, Ids};
 use super::geometry::normalize;
+use crate::attached::{AttachedKey, KeyPart, Keyed};
+use crate::custom::{Key, Named, TupleElement};
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, quat_at, quat_normalize};
-use crate::mjcf_loader::attached::{AttachedKey, KeyPart, Keyed};
-use crate::mjcf_loader::custom::{Key, Named, TupleElement};
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::table::Table;
 use crate::model::{Arrays, Keyframe};
+use crate::table::Table;
 
 /// Compiles `<custom>`: numbers and texts for programs.
 pub(super) fn compile_custom(

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use super::context::Names;
+use crate::custom::Named;
+use crate::document::{Document, Geom};
+use crate::error::{ErrorKind, LoadError};
 use crate::math::order;
-use crate::mjcf_loader::custom::Named;
-use crate::mjcf_loader::document::{Document, Geom};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::relation::Along;
-use crate::mjcf_loader::sensor::{FrameOf, Object};
-use crate::mjcf_loader::xml::Tree;
 use crate::model::{Arrays, GeomType, ObjType};
+use crate::relation::Along;
+use crate::sensor::{FrameOf, Object};
+use crate::xml::Tree;
 
 const MATERIAL: &str = "discardvisual=\"true\" leaves out all materials, and MuJoCo then finds none but those of geoms: remove this material";
 const MESH: &str =
@@ -20,7 +20,7 @@ const SHIFTED: &str = "discardvisual=\"true\" leaves out geoms in front of the o
 
 /// Marks what a document leaves out as MuJoCo 3.3.0 does with `discardvisual`: textures, materials, and geoms that collide by no mask and that
 /// nothing names. Such geoms still weigh.
-pub(in crate::mjcf_loader) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
+pub(crate) fn leave_out(tree: &Tree, document: &mut Document) -> Result<(), LoadError> {
     if !document.compilers[0].discardvisual {
         return Ok(());
     }

@@ -1,10 +1,10 @@
 //! Compiles equalities.
 
 use super::context::{Context, Ids};
+use crate::error::LoadError;
 use crate::math::{Quat, Vec3, quat_conj, quat_mul, quat_normalize};
-use crate::mjcf_loader::error::LoadError;
-use crate::mjcf_loader::relation::{Ends, Equality, Held, JointEquality, TendonEquality, WeldEquality};
 use crate::model::{Arrays, EqualityKind};
+use crate::relation::{Ends, Equality, Held, JointEquality, TendonEquality, WeldEquality};
 
 /// Compiles an equality. What bodies have of each other at `qpos0` needs kinematics: until then the point of a connection in its second
 /// body is its origin, and the quaternion of a weld without a pose of its own is zero.

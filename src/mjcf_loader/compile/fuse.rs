@@ -3,9 +3,9 @@
 use super::body::quat_of;
 use super::context::Context;
 use super::geometry::{Solid, merge};
+use crate::document::Document;
+use crate::error::LoadError;
 use crate::math::{MINVAL, Quat, Vec3, add, quat_mul, quat_rotate};
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::LoadError;
 
 /// A body that stays one.
 pub(super) struct Place {

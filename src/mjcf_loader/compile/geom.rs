@@ -6,11 +6,11 @@ use super::fluid::fluid;
 use super::geometry::{EPS, Solid, bounding_box, bounding_radius, inertia, segment, size_count, volume};
 use super::mesh::fit;
 use super::shell;
+use crate::document::{Frame, Geom};
+use crate::error::{ErrorKind, LoadError};
 use crate::math::{Quat, Vec3, add, mat_vec, quat_mul, quat_to_mat};
-use crate::mjcf_loader::document::{Frame, Geom};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::settings::single;
 use crate::model::{Arrays, GeomType, HField};
+use crate::settings::single;
 
 /// Returns the position, orientation and size of a shape, from its frame or from `fromto`.
 pub(super) fn place(

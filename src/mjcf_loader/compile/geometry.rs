@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use crate::math::{Mat3, Quat, Vec3, cross, mat_mul, quat_mul, quat_to_mat, sub, transpose};
 use crate::model::GeomType;
 
-use crate::mjcf_loader::attribute::ZERO_QUAT;
-use crate::mjcf_loader::document::{Compiler, Orientation};
+use crate::attribute::ZERO_QUAT;
+use crate::document::{Compiler, Orientation};
 
 /// Greatest coordinate (MuJoCo's `mjMAXVAL`).
 const MAXVAL: f64 = 1e10;
@@ -15,7 +15,7 @@ const MAXVAL: f64 = 1e10;
 pub(super) const EPS: f64 = 1e-14;
 
 /// Normalises by division; leaves vectors alone that are (nearly) zero or unit. Returns the old length, 0 if tiny.
-pub(in crate::mjcf_loader) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
+pub(crate) fn normalize<const N: usize>(vector: &mut [f64; N]) -> f64 {
     let mut square = 0.0;
     for value in vector.iter() {
         square += value * value;
@@ -105,7 +105,7 @@ pub(super) fn z_to_quat(direction: Vec3) -> Quat {
 }
 
 /// Converts orthonormal axes to a quaternion, by the best conditioned of four formulas.
-pub(in crate::mjcf_loader) fn frame_to_quat(x: Vec3, y: Vec3, z: Vec3) -> Quat {
+pub(crate) fn frame_to_quat(x: Vec3, y: Vec3, z: Vec3) -> Quat {
     let mut q = if x[0] + y[1] + z[2] > 0.0 {
         let w = 0.5 * (1.0 + x[0] + y[1] + z[2]).sqrt();
         [
@@ -164,7 +164,7 @@ pub(super) fn size_count(kind: GeomType) -> usize {
 }
 
 /// Computes the volume of a shape, m^3; 0 for planes, and for meshes, which know theirs.
-pub(in crate::mjcf_loader) fn volume(kind: GeomType, size: &Vec3) -> f64 {
+pub(crate) fn volume(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {
         GeomType::Plane | GeomType::Mesh => 0.0,
@@ -218,7 +218,7 @@ pub(super) fn inertia(kind: GeomType, size: &Vec3, mass: f64) -> Vec3 {
 }
 
 /// Computes the radius of the bounding sphere, m; 0 for planes.
-pub(crate) fn bounding_radius(kind: GeomType, size: &Vec3) -> f64 {
+pub fn bounding_radius(kind: GeomType, size: &Vec3) -> f64 {
     let [a, b, c] = *size;
     match kind {
         GeomType::Plane => 0.0,

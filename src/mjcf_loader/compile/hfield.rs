@@ -4,13 +4,13 @@ use super::context::Context;
 use super::mesh::stem;
 use super::surface::asset_path;
 use crate::assets::AssetSource;
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
 use crate::formats::heights::{HeightFormat, Heights};
 use crate::limits::Limits;
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::mesh::HField;
-use crate::mjcf_loader::xml::Tree;
+use crate::mesh::HField;
 use crate::model;
+use crate::xml::Tree;
 
 /// Returns the name of a height field; one without a name is called after its file.
 pub(super) fn hfield_name(tree: &Tree, hfield: &HField) -> Result<String, LoadError> {

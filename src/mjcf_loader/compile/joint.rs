@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use super::context::{Context, User};
 use super::geometry::{EPS, normalize};
+use crate::document::{Body, Joint, Tri};
+use crate::error::LoadError;
 use crate::math::{QUAT_ID, Vec3};
-use crate::mjcf_loader::document::{Body, Joint, Tri};
-use crate::mjcf_loader::error::LoadError;
 use crate::model::{Arrays, JointType};
 
 /// Compiles the joints of a body. `last` is the last degree of freedom that moves its parent; returns that of the body itself.

@@ -24,7 +24,7 @@ mod tendon;
 
 use context::{Context, Ids, User};
 pub(super) use discard::leave_out;
-pub(crate) use geometry::bounding_radius;
+pub use geometry::bounding_radius;
 pub(super) use geometry::{frame_to_quat, normalize, volume};
 pub(super) use mesh::stem;
 

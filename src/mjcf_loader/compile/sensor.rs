@@ -1,10 +1,10 @@
 //! Compiles sensors.
 
 use super::context::{Context, Ids, User};
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::sensor::{Between, FrameOf, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, DataType, GeomType, JointType, ObjType, SensorType};
+use crate::sensor::{Between, FrameOf, InFrame, InPicture, Object, OfFrame, OfUser, Sensor};
 
 /// Compiles the sensors, whose values follow one another.
 pub(super) fn compile_sensors(

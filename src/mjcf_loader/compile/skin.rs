@@ -4,12 +4,12 @@ use super::context::{Context, Ids, Names, named};
 use super::mesh::{indices, rows};
 use super::surface::asset_path;
 use crate::assets::AssetSource;
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
 use crate::formats::skn::{BoneFile, SkinFile};
 use crate::math::MINVAL;
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::skin::{SKIN_ELEMENTS, Skin};
 use crate::model::{self, SkinBone};
+use crate::skin::{SKIN_ELEMENTS, Skin};
 
 const NO_DATA: &str = "a skin needs a file, or vertices, faces and bones";
 const TWICE: &str = "a skin has a file or vertices, faces, texture coordinates and bones, not both";

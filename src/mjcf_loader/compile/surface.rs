@@ -2,10 +2,10 @@
 
 use super::context::{Context, Ids};
 use crate::assets::{AssetError, AssetSource};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::settings::single;
-use crate::mjcf_loader::surface;
+use crate::error::{ErrorKind, LoadError};
 use crate::model::{self, Builtin, TextureType};
+use crate::settings::single;
+use crate::surface;
 
 /// Compiles a texture. Its images are looked up in `source`, and not decoded.
 pub(super) fn compile_texture(

@@ -1,10 +1,10 @@
 //! Compiles tendons.
 
 use super::context::{Context, Ids, User, named};
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::relation::{Along, Tendon};
-use crate::mjcf_loader::settings::single;
+use crate::error::{ErrorKind, LoadError};
 use crate::model::{Arrays, GeomType, Wrap};
+use crate::relation::{Along, Tendon};
+use crate::settings::single;
 
 /// MuJoCo takes such a tendon, but lets its length depend on both coefficients and its force on the last alone.
 const JOINT_TWICE: &str = "the tendon names this joint twice";

@@ -1,12 +1,12 @@
 //! Appends constraint rows: blocks, Jacobians, impedance.
 
+use crate::constraint::impedance::Impedance;
+use crate::constraint::{Block, ConeShape, ConstraintType, Efc, impedance};
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::constraint::impedance::Impedance;
-use crate::physics::constraint::{Block, ConeShape, ConstraintType, Efc, impedance};
-use crate::physics::state::State;
-use crate::physics::tiles::Lanes;
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::tiles::Lanes;
+use crate::topology::Topology;
 
 /// Parameters shared by the rows of a block.
 #[derive(Clone, Copy)]

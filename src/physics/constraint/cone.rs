@@ -1,6 +1,6 @@
 //! Contacts with an elliptic friction cone: cost, force, curvature, slopes along a line.
 
-use crate::physics::constraint::{Block, ConeShape, Efc};
+use crate::constraint::{Block, ConeShape, Efc};
 
 /// The zone of its cost in which a contact is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -211,7 +211,7 @@ impl Cone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::constraint::ConstraintType;
+    use crate::constraint::ConstraintType;
 
     /// Builds a contact with torsional friction, regularised as the row builder does it.
     fn contact(jar: [f64; 4]) -> Cone {

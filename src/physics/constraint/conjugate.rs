@@ -1,12 +1,12 @@
 //! Directions of conjugate gradients (MuJoCo's solver `CG`).
 
+use crate::constraint::island::Island;
+use crate::dynamics::{Articulated, Damping};
 use crate::math::MINVAL;
 use crate::model::Model;
-use crate::physics::constraint::island::Island;
-use crate::physics::dynamics::{Articulated, Damping};
-use crate::physics::state::State;
-use crate::physics::tiles::{Lanes, total};
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::tiles::{Lanes, total};
+use crate::topology::Topology;
 
 /// Finds directions by the rule of Polak and Ribiere, with the inertia as preconditioner; holds the working memory. There is one
 /// island, of all trees.

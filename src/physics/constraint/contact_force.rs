@@ -1,7 +1,7 @@
 //! Forces of contacts from those of their rows.
 
 use crate::model::{ConeType, Model};
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Fills in the force of each contact (MuJoCo's `mj_contactForce`).
 #[inline(always)]

@@ -5,8 +5,8 @@ use super::impedance::is_solref;
 use super::{ConstraintType, impedance};
 use crate::math::{MINVAL, row};
 use crate::model::{ConeType, Model};
-use crate::physics::state::{Contact, State};
-use crate::physics::tiles::Lanes;
+use crate::state::{Contact, State};
+use crate::tiles::Lanes;
 
 /// Appends the rows of contact `i`.
 #[inline(always)]

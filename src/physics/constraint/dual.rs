@@ -6,16 +6,16 @@
 
 use std::ops::Range;
 
+use crate::constraint::cone::Cone;
+use crate::constraint::friction::Quadratic;
+use crate::constraint::{Block, ConeShape, ConstraintType, Efc};
+use crate::dynamics::{Articulated, Damping, Four};
+use crate::engine::EngineError;
 use crate::math::MINVAL;
 use crate::model::Model;
-use crate::physics::constraint::cone::Cone;
-use crate::physics::constraint::friction::Quadratic;
-use crate::physics::constraint::{Block, ConeShape, ConstraintType, Efc};
-use crate::physics::dynamics::{Articulated, Damping, Four};
-use crate::physics::engine::EngineError;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorized;
+use crate::state::State;
+use crate::topology::Topology;
+use crate::vectorize::vectorized;
 
 mod matrix;
 mod noslip;
@@ -314,7 +314,7 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use crate::assets::MemoryAssets;
     use crate::mjcf_loader::load_str;
-    use crate::physics::{Engine, SoftEngine, SoftOptions, State, compile};
+    use crate::{Engine, SoftEngine, SoftOptions, State, compile};
 
     fn engine(text: &str) -> SoftEngine {
         let model = load_str(text, "m.xml", &MemoryAssets::new()).and_then(compile);

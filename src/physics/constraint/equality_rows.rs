@@ -5,7 +5,7 @@ use super::tendon_rows::tendons;
 use super::{ConstraintType, connected_points, impedance, weld_points};
 use crate::math::sub;
 use crate::model::EqualityKind;
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Appends the rows of the active equalities.
 #[inline(always)]

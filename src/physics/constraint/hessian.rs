@@ -1,14 +1,14 @@
 //! The Hessian `M + J' C J` of an island: sparsity, assembly, factorisation.
 
-use crate::physics::constraint::cone::Zone;
-use crate::physics::constraint::island::Island;
-use crate::physics::constraint::jacobian::Jacobian;
-use crate::physics::constraint::{Efc, MAX_ROWS};
-use crate::physics::tiles::{
+use crate::constraint::cone::Zone;
+use crate::constraint::island::Island;
+use crate::constraint::jacobian::Jacobian;
+use crate::constraint::{Efc, MAX_ROWS};
+use crate::tiles::{
     Lanes, Pattern, Tile, ZERO, add_outer_products, factor_diagonal, scale_rows, solve, solve_columns,
     sub_transposed_product, sub_transposed_product_diagonal,
 };
-use crate::physics::vectorize::vectorize;
+use crate::vectorize::vectorize;
 
 mod pattern;
 mod weigh;

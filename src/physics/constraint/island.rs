@@ -1,13 +1,13 @@
 //! The problem of one island, in lanes: what the solver minimises, and its value, force and slopes at a point.
 
-use crate::physics::constraint::cone::{Cone, Zone};
-use crate::physics::constraint::jacobian::{Jacobian, Single, add_transposed_product, product};
-use crate::physics::constraint::scalar_rows::{NO_ROWS, NONE, ScalarRows};
-use crate::physics::constraint::{Block, ConstraintType, Efc, MAX_ROWS};
-use crate::physics::state::State;
-use crate::physics::tiles::{Lanes, Pattern, Tile, mul, total};
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorize;
+use crate::constraint::cone::{Cone, Zone};
+use crate::constraint::jacobian::{Jacobian, Single, add_transposed_product, product};
+use crate::constraint::scalar_rows::{NO_ROWS, NONE, ScalarRows};
+use crate::constraint::{Block, ConstraintType, Efc, MAX_ROWS};
+use crate::state::State;
+use crate::tiles::{Lanes, Pattern, Tile, mul, total};
+use crate::topology::Topology;
+use crate::vectorize::vectorize;
 
 mod start;
 

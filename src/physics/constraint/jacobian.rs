@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use crate::physics::constraint::Efc;
-use crate::physics::tiles::{Lanes, total};
+use crate::constraint::Efc;
+use crate::tiles::{Lanes, total};
 
 /// A row on one degree of freedom.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use super::ConstraintType;
 use super::append::{Rows, Spec};
 use crate::math::{QUAT_ID, quat_at, quat_normalize, rotation_between, unit};
 use crate::model::JointType;
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Appends a row for each limit of a joint that is within its margin.
 #[inline(always)]

@@ -1,8 +1,8 @@
 //! Exact search along a direction.
 
+use crate::constraint::island::Island;
 use crate::math::MINVAL;
-use crate::physics::constraint::island::Island;
-use crate::physics::tiles::total;
+use crate::tiles::total;
 
 /// The cost of an island restricted to a line.
 pub(super) struct LineSearch<'a> {
@@ -85,9 +85,9 @@ impl LineSearch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::constraint::cone::Cone;
-    use crate::physics::constraint::jacobian::Jacobian;
-    use crate::physics::constraint::{Block, ConeShape, ConstraintType, Efc};
+    use crate::constraint::cone::Cone;
+    use crate::constraint::jacobian::Jacobian;
+    use crate::constraint::{Block, ConeShape, ConstraintType, Efc};
 
     /// Builds a contact that slides more and more slowly along the line, and turns round at `turn`.
     fn turning(d: f64, mu: f64, pressed: f64, [turn, aside]: [f64; 2]) -> (Cone, Jacobian) {

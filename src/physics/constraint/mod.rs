@@ -35,12 +35,11 @@ pub use impedance::impedance;
 pub use newton::Newton;
 pub use rows::RowBuilder;
 pub use view::EfcRow;
-#[cfg(feature = "rapier")]
 pub use weld::Weld;
 pub use weld::{connected_points, weld_points};
 
-use crate::physics::tiles::Lanes;
-use crate::physics::topology::Topology;
+use crate::tiles::Lanes;
+use crate::topology::Topology;
 
 /// The type of a constraint row: what it constrains, as in MuJoCo's `efc_type`. Rows stand in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -66,13 +65,13 @@ pub enum ConstraintType {
 
 impl ConstraintType {
     /// Tells whether it is dry friction, which has no position.
-    pub(crate) fn is_friction(self) -> bool {
+    pub fn is_friction(self) -> bool {
         matches!(self, Self::FrictionDof | Self::FrictionTendon)
     }
 }
 
 /// Most rows of a block: the edges of a pyramid with six dimensions.
-pub(crate) const MAX_ROWS: usize = 10;
+pub const MAX_ROWS: usize = 10;
 
 /// Rows that belong together and share their columns.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

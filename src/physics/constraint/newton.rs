@@ -2,18 +2,18 @@
 
 use std::ops::Range;
 
+use crate::constraint::cone::Cone;
+use crate::constraint::conjugate::Conjugate;
+use crate::constraint::hessian::Hessian;
+use crate::constraint::island::{AlongSearch, Island};
+use crate::constraint::line_search::LineSearch;
+use crate::constraint::{Block, ConstraintType, Efc};
+use crate::dynamics::Articulated;
 use crate::math::MINVAL;
 use crate::model::{Model, SolverType};
-use crate::physics::constraint::cone::Cone;
-use crate::physics::constraint::conjugate::Conjugate;
-use crate::physics::constraint::hessian::Hessian;
-use crate::physics::constraint::island::{AlongSearch, Island};
-use crate::physics::constraint::line_search::LineSearch;
-use crate::physics::constraint::{Block, ConstraintType, Efc};
-use crate::physics::dynamics::Articulated;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorize;
+use crate::state::State;
+use crate::topology::Topology;
+use crate::vectorize::vectorize;
 
 /// Solves for the accelerations under constraints; holds the working memory.
 #[derive(Clone, Debug, Default)]

@@ -7,11 +7,11 @@ use super::jacobian::{Jacobian, product};
 use super::joint_rows::joint_limits;
 use super::tendon_rows::{tendon_friction, tendon_limits};
 use super::{Block, ConstraintType, Efc, MAX_ROWS};
+use crate::dynamics::Composite;
 use crate::model::Model;
-use crate::physics::dynamics::Composite;
-use crate::physics::state::State;
-use crate::physics::tiles::Lanes;
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::tiles::Lanes;
+use crate::topology::Topology;
 
 /// Builds the constraint rows. Keeps those of dry friction of joints, which are always the same.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Constraint rows without a friction cone, four at a time.
 
-use crate::physics::constraint::{Block, ConstraintType, Efc};
-use crate::physics::tiles::{Lanes, total};
+use crate::constraint::{Block, ConstraintType, Efc};
+use crate::tiles::{Lanes, total};
 
 /// No row.
 pub(super) const NONE: u32 = u32::MAX;

@@ -2,7 +2,7 @@
 
 use super::ConstraintType;
 use super::append::{Rows, Spec};
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Starts a block with one row on the lengths of tendons, each with a scale. Returns whether there is one: as with equalities without
 /// effect, MuJoCo drops a row that nothing moves, where the Jacobian is dense.

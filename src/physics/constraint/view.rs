@@ -1,7 +1,7 @@
 //! Constraint rows as programs read them.
 
-use crate::physics::constraint::{ConstraintType, Efc};
-use crate::physics::topology::Topology;
+use crate::constraint::{ConstraintType, Efc};
+use crate::topology::Topology;
 
 /// A constraint row of the last step; the fields are MuJoCo's `efc_*`.
 #[doc(alias("efc_pos", "efc_force"))]

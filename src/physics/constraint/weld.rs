@@ -2,7 +2,7 @@
 
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
-use crate::physics::state::State;
+use crate::state::State;
 
 /// The pose error of a weld and what its Jacobian needs.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use crate::math::{Mat3, Vec3, add_scaled, cross, dot, norm, unit};
 /// Returns a frame with the given normal as first row; the tangents follow the world's y axis, or z if the normal is
 /// near y.
 #[inline]
-pub(crate) fn from_normal(normal: Vec3) -> Mat3 {
+pub fn from_normal(normal: Vec3) -> Mat3 {
     let x = unit(normal).0;
     complete(x, default_hint(x))
 }

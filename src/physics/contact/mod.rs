@@ -24,11 +24,10 @@
 //! a hull's edges is that of Qhull, as in MuJoCo: where several corners are equally far in a direction, it decides which is found first, and where more
 //! than two neighbours of the deepest corner are below a plane, which of them touch it.
 //!
-#![cfg_attr(feature = "internals", doc = "```")]
-#![cfg_attr(not(feature = "internals"), doc = "```ignore")]
-//! use babybench::math::MAT3_ID;
-//! use babybench::model::GeomType;
-//! use babybench::physics::contact::{ContactOptions, PlacedGeom, Scratch, collide};
+//! ```
+//! use mjcf_sim::math::MAT3_ID;
+//! use mjcf_sim::model::GeomType;
+//! use mjcf_sim::physics::contact::{ContactOptions, PlacedGeom, Scratch, collide};
 //!
 //! let floor = PlacedGeom { kind: GeomType::Plane, size: [0.0; 3], pos: [0.0; 3], mat: &MAT3_ID, mesh: None, hfield: None };
 //! let ball = PlacedGeom { kind: GeomType::Sphere, size: [0.5, 0.0, 0.0], pos: [0.0, 0.0, 0.25], mat: &MAT3_ID, mesh: None, hfield: None };
@@ -48,7 +47,7 @@ mod distance;
 mod epa;
 mod faces;
 mod fix_normal;
-pub(crate) mod frame;
+pub mod frame;
 mod gjk;
 mod hfield;
 mod mesh;
@@ -66,9 +65,9 @@ mod whole;
 
 pub use distance::distance;
 
+use crate::MAXVAL as BIG;
 use crate::math::{Mat3, Vec3, add_scaled, column, dot, sub};
 use crate::model::{GeomType, HField, Mesh};
-use crate::physics::MAXVAL as BIG;
 
 /// A geom with its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,22 +161,17 @@ impl Default for ContactOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quirks {
     /// Box on box face: `dist` is half of the depth. Off: the whole depth.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub half_box_face_depth: bool,
     /// Box edge on box edge: once a corner of the reference face has been looked at, its squared distance stands in for
     /// the determinant by which the remaining corners are located. Off: the determinant is used throughout.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub box_edge_determinant_reuse: bool,
     /// Capsule on box: a box edge whose nearest point moved back off the corner is still treated as that corner when the
     /// second contact is sought. Off: it is treated as an edge.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub stale_box_corner: bool,
     /// Convex pairs: geoms with the same centre do not touch. Off: they are treated like others.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub same_centre_is_no_contact: bool,
     /// Convex pairs: overlapping geoms for which EPA finds no depth do not touch. Off: the least overlap along the
     /// geoms' axes and the line of centres is taken, an upper bound of the depth.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub failed_depth_is_no_contact: bool,
 }
 
@@ -250,7 +244,7 @@ pub fn bounding_test(a: &PlacedGeom, radius_a: f64, b: &PlacedGeom, radius_b: f6
 }
 
 /// Tells whether contacts of two kinds of geoms, in any order, come from the routine for all convex shapes (MuJoCo's `mjc_Convex`).
-pub(crate) fn needs_convex(a: GeomType, b: GeomType) -> bool {
+pub fn needs_convex(a: GeomType, b: GeomType) -> bool {
     use GeomType::{Box, Capsule, Cylinder, Ellipsoid, HField, Mesh, Sphere};
     matches!(
         (a.min(b), a.max(b)),

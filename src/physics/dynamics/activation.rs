@@ -1,8 +1,8 @@
 //! Activations of actuators: their rates, and one step in time.
 
+use crate::dynamics::muscle;
 use crate::math::MINVAL;
 use crate::model::{DynType, Model};
-use crate::physics::dynamics::muscle;
 
 /// Returns the time constant of an actuator's filter, s, which is never 0.
 fn time_constant(model: &Model, actuator: usize) -> f64 {
@@ -68,7 +68,7 @@ mod tests {
     use crate::assets::MemoryAssets;
     use crate::mjcf_loader::load_str;
     use crate::model::Model;
-    use crate::physics::{Engine, SoftEngine, SoftOptions, compile};
+    use crate::{Engine, SoftEngine, SoftOptions, compile};
 
     fn model(actuators: &str) -> Arc<Model> {
         let text = format!(
@@ -157,31 +157,6 @@ mod tests {
     #[test]
     fn a_copied_state_continues_its_activations() {
         continues(&mut soft(ALL));
-    }
-
-    #[cfg(feature = "rapier")]
-    #[test]
-    fn the_rapier_engine_has_the_same_activations() {
-        use crate::physics::rapier::{RapierEngine, RapierOptions};
-
-        // rapier's joints are hinges
-        let text = format!(
-            "<mujoco><worldbody><body><joint name='j'/><geom size='.1' pos='.2 0 0'/></body></worldbody><actuator>{ALL}</actuator></mujoco>"
-        );
-        let model = load_str(&text, "m.xml", &MemoryAssets::new())
-            .and_then(compile)
-            .expect("a model");
-        let model = Arc::new(model);
-        let mut engine = RapierEngine::new(model.clone(), RapierOptions::default()).expect("an engine");
-        continues(&mut engine);
-        let mut other = SoftEngine::new(model, SoftOptions::default());
-        let (mut ours, mut theirs) = (engine.new_state(), other.new_state());
-        (ours.ctrl, theirs.ctrl) = (vec![1.0; 5], vec![1.0; 5]);
-        for _ in 0..10 {
-            engine.step(&mut ours).expect("a step");
-            other.step(&mut theirs).expect("a step");
-        }
-        assert_eq!(ours.act, theirs.act);
     }
 
     #[test]

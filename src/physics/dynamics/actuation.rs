@@ -1,11 +1,11 @@
 //! From controls to joint forces and unconstrained acceleration.
 
+use crate::dynamics::applied::xfrc_accumulate;
+use crate::dynamics::articulated::{Articulated, Damping};
+use crate::dynamics::{activation, muscle, transmission};
 use crate::model::{BiasType, GainType, Model};
-use crate::physics::dynamics::applied::xfrc_accumulate;
-use crate::physics::dynamics::articulated::{Articulated, Damping};
-use crate::physics::dynamics::{activation, muscle, transmission};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Computes `act_dot, actuator_force, qfrc_actuator, qfrc_smooth, qacc_smooth`.
 ///

@@ -2,8 +2,8 @@
 
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::spatial::*;
-use crate::physics::state::State;
+use crate::spatial::*;
+use crate::state::State;
 
 /// Iterates over the bodies on which [`State::xfrc_applied`] acts: body, force, torque. The world does not move.
 pub(super) fn applied(s: &State) -> impl Iterator<Item = (usize, Vec3, Vec3)> {

@@ -4,10 +4,10 @@ mod four;
 
 use std::ops::Range;
 
+use crate::dynamics::Composite;
 use crate::model::{Arrays, JointType};
-use crate::physics::dynamics::Composite;
-use crate::physics::spatial::{Inertia, Spatial, axpy6, dot6};
-use crate::physics::state::State;
+use crate::spatial::{Inertia, Spatial, axpy6, dot6};
+use crate::state::State;
 
 pub use four::Four;
 
@@ -320,9 +320,9 @@ fn release(inertia: &mut [Pair; 21], force: [Pair; 6], felt: Pair, left: Range<u
 mod tests {
     use super::*;
     use crate::assets::MemoryAssets;
+    use crate::dynamics::mul_m;
     use crate::mjcf_loader::load_str;
-    use crate::physics::dynamics::mul_m;
-    use crate::physics::{Engine, SoftEngine, SoftOptions, Topology, compile};
+    use crate::{Engine, SoftEngine, SoftOptions, Topology, compile};
 
     /// A free trunk with limbs that branch, of joints with and without damping, and with rigid parts; bodies beside it, one of them on a
     /// base that is fixed.
@@ -357,7 +357,7 @@ mod tests {
         }
         engine.forward(&mut s).expect("finite");
         let (mut bodies, mut composite) = (Articulated::new(model), Composite::default());
-        crate::physics::dynamics::crb(model, &Topology::new(model), &mut s, &mut composite);
+        crate::dynamics::crb(model, &Topology::new(model), &mut s, &mut composite);
         bodies.update(model, &s, &composite);
         let x: Vec<f64> = (0..model.nv).map(|d| (d % 7) as f64 - 3.0).collect();
         let (mut b, mut found) = (vec![0.0; model.nv], vec![0.0; model.nv]);

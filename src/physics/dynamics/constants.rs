@@ -2,23 +2,23 @@
 
 use std::ops::Range;
 
+use crate::MAXVAL;
+use crate::dynamics::kinematics::local_to_global;
+use crate::dynamics::once::{com_pos, crb, kinematics, solve, update};
+use crate::dynamics::springs::{bias, slack, springs};
+use crate::dynamics::transmission::{dense_moment, length, transmissions};
+use crate::dynamics::{Articulated, Composite, tendons};
 use crate::math::*;
 use crate::model::{
     Arrays, CameraPose, Constants, EqualityKind, GeomType, JointType, Light, LightPose, SameFrame, Statistic, WeldPose,
 };
-use crate::physics::MAXVAL;
-use crate::physics::dynamics::kinematics::local_to_global;
-use crate::physics::dynamics::once::{com_pos, crb, kinematics, solve, update};
-use crate::physics::dynamics::springs::{bias, slack, springs};
-use crate::physics::dynamics::transmission::{dense_moment, length, transmissions};
-use crate::physics::dynamics::{Articulated, Composite, tendons};
-use crate::physics::spatial::{angular, velocity_at};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::spatial::{angular, velocity_at};
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Computes inverse weights, the diagonal of the inertia, the statistics that are not given (zero), and the poses of welds
 /// that have none of their own (MuJoCo's `mj_setConst`).
-pub(in crate::physics) fn constants(model: &Arrays) -> Constants {
+pub fn constants(model: &Arrays) -> Constants {
     let topology = Topology::new(model);
     let mut s = State::new(model, &topology);
     kinematics(model, &mut s);
@@ -103,7 +103,7 @@ fn connect_anchors(model: &Arrays, s: &State) -> Vec<(usize, Vec3)> {
 
 /// Largest inverse weight of a degree of freedom, times its inertia, of a model that is taken. It is 1 where the others hold
 /// still on their own, and grows with the condition of the inertia; beyond this it consists of rounding errors.
-pub(in crate::physics) const MAX_WEIGHT: f64 = 1e13;
+pub const MAX_WEIGHT: f64 = 1e13;
 
 /// Computes inverse weights: the mean acceleration per unit force at `qpos0`, that is, the diagonal of `J M^-1 J'`, averaged
 /// over the three directions of translation and of rotation. The solver scales constraints by it.

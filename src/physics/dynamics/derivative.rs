@@ -1,15 +1,15 @@
 //! Derivatives of the smooth forces by the velocities, for the implicit integrators.
 
+use crate::dynamics::constants::is_simple;
+use crate::dynamics::ellipsoid::{swim_slopes, swims};
+use crate::dynamics::fluid::medium_slopes;
+use crate::dynamics::tree_matrix::TreeMatrix;
+use crate::dynamics::{muscle, transmission};
 use crate::math::*;
 use crate::model::{BiasType, GainType, IntegratorType, Model};
-use crate::physics::dynamics::constants::is_simple;
-use crate::physics::dynamics::ellipsoid::{swim_slopes, swims};
-use crate::physics::dynamics::fluid::medium_slopes;
-use crate::physics::dynamics::tree_matrix::TreeMatrix;
-use crate::physics::dynamics::{muscle, transmission};
-use crate::physics::spatial::*;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::spatial::*;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Computes `d (qfrc_actuator + qfrc_passive - qfrc_bias) / d qvel`; holds the working memory.
 ///
@@ -201,7 +201,7 @@ mod tests {
     use super::*;
     use crate::assets::MemoryAssets;
     use crate::mjcf_loader::load_str;
-    use crate::physics::{Engine, SoftEngine, SoftOptions, compile};
+    use crate::{Engine, SoftEngine, SoftOptions, compile};
 
     /// A free body with limbs that branch, dampers, a medium, tendons along a limb, actuators with velocity terms.
     const LIMBS: &str = r#"<mujoco><option density="300" viscosity="2" wind="0.3 0.1 0"><flag contact="disable"/></option><worldbody><site name="fixed" pos=".1 -.5 .8"/>

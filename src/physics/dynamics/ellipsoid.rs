@@ -3,13 +3,13 @@
 
 use std::f64::consts::PI;
 
+use crate::dynamics::applied::add_force;
+use crate::dynamics::tree_matrix::TreeMatrix;
 use crate::math::*;
 use crate::model::{GeomType, Model};
-use crate::physics::dynamics::applied::add_force;
-use crate::physics::dynamics::tree_matrix::TreeMatrix;
-use crate::physics::spatial::*;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::spatial::*;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Derivatives of torque (3) and force (3) by angular velocity (3) and velocity (3).
 type Slopes = [[f64; 6]; 6];

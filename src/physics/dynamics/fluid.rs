@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
+use crate::dynamics::applied::add_force;
+use crate::dynamics::ellipsoid::{swim, swims};
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::dynamics::applied::add_force;
-use crate::physics::dynamics::ellipsoid::{swim, swims};
-use crate::physics::spatial::*;
-use crate::physics::state::State;
+use crate::spatial::*;
+use crate::state::State;
 
 /// Adds to `qfrc_passive` what a medium does to bodies that move in it: viscous resistance of a sphere and drag of a box, both of
 /// the size of the box that has the body's mass and inertia ("inertia-based model" in MuJoCo's documentation).

@@ -1,12 +1,11 @@
 //! The joint-space inertia matrix.
 
 use crate::model::Arrays;
-use crate::physics::spatial::{Inertia, inertia_mul};
-use crate::physics::state::State;
-use crate::physics::tiles::{Lanes, ZERO, add_outer_products};
-#[cfg(any(test, feature = "rapier"))]
-use crate::physics::tiles::{Tile, mul};
-use crate::physics::topology::Topology;
+use crate::spatial::{Inertia, inertia_mul};
+use crate::state::State;
+use crate::tiles::{Lanes, ZERO, add_outer_products};
+use crate::tiles::{Tile, mul};
+use crate::topology::Topology;
 
 /// What is known of inertia within a step alone. It belongs to an engine: states take turns in the caches of a core, and what each of them
 /// writes is fetched from memory first and goes back there.
@@ -75,7 +74,6 @@ pub fn crb(model: &Arrays, topology: &Topology, s: &mut State, composite: &mut C
 }
 
 /// Computes `out = M x` (nv), for a matrix in tiles. Allocates: the solvers work in lanes throughout.
-#[cfg(any(test, feature = "rapier"))]
 pub fn mul_m(topology: &Topology, m: &[Tile], x: &[f64], out: &mut [f64]) {
     let mut lanes = vec![[0.0; 4]; topology.tiles.rows()];
     let mut product = lanes.clone();

@@ -1,13 +1,13 @@
 //! Integration: semi-implicit Euler with implicit joint damping, implicit methods, and Runge and Kutta's; activations of actuators.
 
+use crate::dynamics::activation;
+use crate::dynamics::articulated::{Articulated, Damping};
+use crate::dynamics::derivative::Derivative;
+use crate::dynamics::tree_matrix::TreeMatrix;
 use crate::math::{axis_angle_to_quat, quat_at, quat_mul, quat_normalize, unit};
 use crate::model::{IntegratorType, Model};
-use crate::physics::dynamics::activation;
-use crate::physics::dynamics::articulated::{Articulated, Damping};
-use crate::physics::dynamics::derivative::Derivative;
-use crate::physics::dynamics::tree_matrix::TreeMatrix;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Advances a state by one time step.
 #[derive(Clone, Debug, Default)]

@@ -5,8 +5,8 @@
 
 use crate::math::*;
 use crate::model::{Arrays, CamLight, JointType, Model, SameFrame};
-use crate::physics::spatial::spatial;
-use crate::physics::state::State;
+use crate::spatial::spatial;
+use crate::state::State;
 
 /// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`. What never moves is placed in the first call
 /// for a state.

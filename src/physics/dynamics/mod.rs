@@ -1,7 +1,7 @@
 //! Joint-space dynamics: kinematics, inertia, bias and passive forces, actuation, integration.
 //!
-//! Each function computes one group of quantities of [`crate::physics::State`] from the ones before it, in the order in
-//! which [`crate::physics::SoftEngine`] calls them.
+//! Each function computes one group of quantities of [`crate::State`] from the ones before it, in the order in
+//! which [`crate::SoftEngine`] calls them.
 
 mod activation;
 mod actuation;
@@ -27,8 +27,7 @@ mod wrap;
 
 pub use actuation::fwd_actuation;
 pub use articulated::{Articulated, Damping, Four};
-pub(in crate::physics) use constants::{MAX_WEIGHT, constants};
-#[cfg(any(test, feature = "rapier"))]
+pub use constants::{MAX_WEIGHT, constants};
 pub use inertia::mul_m;
 pub use inertia::{Composite, crb};
 pub use integrate::{Integrator, RungeKutta};
@@ -36,6 +35,6 @@ pub use kinematics::{cameras, com_pos, kinematics};
 pub use post_constraint::rne_post_constraint;
 pub use sensor::{SensorScratch, sensors};
 pub use tendon::tendons;
-pub(in crate::physics) use transmission::dense_moment;
+pub use transmission::dense_moment;
 pub use transmission::transmissions;
 pub use velocity::{BiasScratch, fwd_velocity};

@@ -3,8 +3,8 @@
 
 use super::{Articulated, BiasScratch, Composite, Damping};
 use crate::model::{Arrays, Model};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Computes `xpos, xquat, xmat, xipos, ximat, xanchor, xaxis, geom_*, site_*` from `qpos`.
 #[doc(alias = "mj_kinematics")]

@@ -1,12 +1,12 @@
 //! Body accelerations and internal wrenches after the constraint solver: what accelerometers and torque sensors read.
 
+use crate::constraint::{ConstraintType, connected_points, weld_points};
+use crate::dynamics::BiasScratch;
+use crate::dynamics::applied::applied;
 use crate::math::*;
 use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::{ConstraintType, connected_points, weld_points};
-use crate::physics::dynamics::BiasScratch;
-use crate::physics::dynamics::applied::applied;
-use crate::physics::spatial::*;
-use crate::physics::state::State;
+use crate::spatial::*;
+use crate::state::State;
 
 /// Computes `cacc, cfrc_ext, cfrc_int` from `qacc`, the constraint forces and what the velocity stage left (recursive Newton-Euler with
 /// the joint accelerations known).

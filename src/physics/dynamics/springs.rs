@@ -1,12 +1,12 @@
 //! Parameters of springs and servos that follow from their rest configuration and the inertia at `qpos0`.
 
+use crate::dynamics::once::{com_pos, kinematics};
+use crate::dynamics::tendons;
+use crate::dynamics::transmission::moment;
 use crate::math::MINVAL;
 use crate::model::Arrays;
-use crate::physics::dynamics::once::{com_pos, kinematics};
-use crate::physics::dynamics::tendons;
-use crate::physics::dynamics::transmission::moment;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Returns the bias of an actuator, with the damping that its damping ratio asks for.
 ///

@@ -1,12 +1,12 @@
 //! Tendons: their lengths, the Jacobians of these, and the points that spatial tendons pass.
 
+use crate::dynamics::wrap::{Round, wrap};
 use crate::math::*;
 use crate::model::{Arrays, Wrap};
-use crate::physics::dynamics::wrap::{Round, wrap};
-use crate::physics::spatial::{Spatial, angular, linear};
-use crate::physics::state::State;
-use crate::physics::strings::{Between, Moved, Span};
-use crate::physics::topology::Topology;
+use crate::spatial::{Spatial, angular, linear};
+use crate::state::State;
+use crate::strings::{Between, Moved, Span};
+use crate::topology::Topology;
 
 /// Computes lengths, Jacobians and rates of all tendons, and the points of spatial ones: `ten_length, ten_j, ten_velocity,
 /// ten_wrapadr, ten_wrapnum, wrap_xpos, wrap_obj`. Poses and `cdof` must be up to date.

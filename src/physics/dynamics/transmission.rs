@@ -2,9 +2,9 @@
 
 use crate::math::*;
 use crate::model::{Arrays, JointType, TrnType};
-use crate::physics::spatial::{Spatial, angular, velocity_at};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::spatial::{Spatial, angular, velocity_at};
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Returns the gear by which an actuator's length follows from what it acts on. Muscles of an actuation model act on joints themselves.
 pub(super) fn gear(s: &State, actuator: usize) -> f64 {
@@ -61,13 +61,7 @@ pub(super) fn moment(
 }
 
 /// Computes the derivative of an actuator's length by the degrees of freedom (nv).
-pub(in crate::physics) fn dense_moment(
-    model: &Arrays,
-    topology: &Topology,
-    s: &State,
-    actuator: usize,
-    out: &mut [f64],
-) {
+pub fn dense_moment(model: &Arrays, topology: &Topology, s: &State, actuator: usize, out: &mut [f64]) {
     out.fill(0.0);
     let gear = s.params.actuator_gear[actuator];
     moment(model, topology, s, (actuator, gear), |d, arm| out[d] += arm);

@@ -1,7 +1,7 @@
 //! Matrices over the degrees of freedom with the pattern of the tree, which need not be symmetric, and their factors.
 
-use crate::physics::tiles::Tile;
-use crate::physics::topology::Topology;
+use crate::tiles::Tile;
+use crate::topology::Topology;
 
 /// A matrix (nv, nv) that is zero but for pairs of a degree of freedom and one of its ancestors, on both sides of the diagonal.
 #[derive(Clone, Debug, Default)]

@@ -1,12 +1,12 @@
 //! Velocities, bias forces and passive forces.
 
+use crate::dynamics::fluid::{gravity_compensation, medium};
+use crate::dynamics::transmission;
 use crate::math::{quat_at, quat_normalize, rotation_between};
 use crate::model::{JointType, Model};
-use crate::physics::dynamics::fluid::{gravity_compensation, medium};
-use crate::physics::dynamics::transmission;
-use crate::physics::spatial::*;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::spatial::*;
+use crate::state::State;
+use crate::topology::Topology;
 
 /// Computes `cvel` and `cdof_dot` from `qvel`.
 #[inline(always)]

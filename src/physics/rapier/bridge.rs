@@ -6,19 +6,19 @@ use rapier3d_f64::dynamics::{FrictionModel, IntegrationParameters};
 use rapier3d_f64::geometry::NarrowPhase;
 use rapier3d_f64::pipeline::{EventHandler, PhysicsWorld};
 
-use crate::model::Model;
-use crate::physics::constraint::RowBuilder;
-use crate::physics::contact::{ContactOptions, Quirks};
-use crate::physics::dynamics::*;
-use crate::physics::engine::{EngineError, Stage, check_contacts, check_input, check_motion, check_output};
-use crate::physics::params::Params;
-use crate::physics::rapier::contacts::{ContactAims, ContactHooks, read_contacts};
-use crate::physics::rapier::rig::Rig;
-use crate::physics::rapier::rows::{RapierRows, read_welds, softness};
-use crate::physics::rapier::{ContactDispatcher, RapierError, RapierOptions, Sets};
-use crate::physics::state::{RESERVED_CONTACTS, State};
-use crate::physics::topology::Topology;
-use crate::physics::world::{PairTable, Sweep, contact_options};
+use crate::contacts::{ContactAims, ContactHooks, read_contacts};
+use crate::rig::Rig;
+use crate::rows::{RapierRows, read_welds, softness};
+use crate::{ContactDispatcher, RapierError, RapierOptions, Sets};
+use mjcf_sim_model::model::Model;
+use mjcf_sim_physics::constraint::RowBuilder;
+use mjcf_sim_physics::contact::{ContactOptions, Quirks};
+use mjcf_sim_physics::dynamics::*;
+use mjcf_sim_physics::engine::{EngineError, Stage, check_contacts, check_input, check_motion, check_output};
+use mjcf_sim_physics::params::Params;
+use mjcf_sim_physics::state::{RESERVED_CONTACTS, State};
+use mjcf_sim_physics::topology::Topology;
+use mjcf_sim_physics::world::{PairTable, Sweep, contact_options};
 
 /// A model in a Rapier world that may hold anything else: it hands a [`State`] to Rapier before a step of the world,
 /// and takes the result out of it.
@@ -108,13 +108,11 @@ impl Bridge {
     }
 
     /// Returns the topology of the model's kinematic tree.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn topology(&self) -> &Topology {
         &self.topology
     }
 
     /// Returns the geom pairs that may touch, in contact order.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn pairs(&self) -> &PairTable {
         &self.pairs
     }
@@ -133,7 +131,6 @@ impl Bridge {
 
     /// Chooses the geom that stands in `State::contacts` for colliders that are not the model's: by default the first
     /// of the world's. Without one, such contacts act but are not sensed.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn set_stranger(&mut self, geom: Option<usize>) {
         self.stranger = geom.filter(|&g| g < self.model.ngeom());
     }

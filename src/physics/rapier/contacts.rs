@@ -7,13 +7,13 @@ use rapier3d_f64::geometry::{ContactData, ContactManifold, NarrowPhase, SolverFl
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks};
 
-use crate::math::*;
-use crate::model::{ConeType, Model};
-use crate::physics::constraint::ConstraintType;
-use crate::physics::contact::frame::from_normal;
-use crate::physics::rapier::rig::Rig;
-use crate::physics::rapier::scene::{geom_pose, pose};
-use crate::physics::state::{Contact, State};
+use crate::rig::Rig;
+use crate::scene::{geom_pose, pose};
+use mjcf_sim_model::math::*;
+use mjcf_sim_model::model::{ConeType, Model};
+use mjcf_sim_physics::constraint::ConstraintType;
+use mjcf_sim_physics::contact::frame::from_normal;
+use mjcf_sim_physics::state::{Contact, State};
 
 /// The aim of Rapier's solver for one contact.
 #[derive(Clone, Copy, Debug)]

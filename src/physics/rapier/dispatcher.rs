@@ -9,12 +9,12 @@ use rapier3d_f64::parry::query::{
 };
 use rapier3d_f64::parry::shape::{PackedFeatureId, Shape, TypedShape};
 
-use crate::math::{MAT3_ID, Mat3, Vec3, add_scaled};
-use crate::model::GeomType;
-use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
-use crate::physics::rapier::hull::{HullShape, plain};
+use crate::hull::{HullShape, plain};
+use mjcf_sim_model::math::{MAT3_ID, Mat3, Vec3, add_scaled};
+use mjcf_sim_model::model::GeomType;
+use mjcf_sim_physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
 
-/// A query dispatcher with the contact manifolds of [`crate::physics::contact`], and Parry's for everything else.
+/// A query dispatcher with the contact manifolds of [`mjcf_sim_physics::contact`], and Parry's for everything else.
 ///
 /// It keeps no memory of earlier steps, unlike Parry's own manifolds, and ignores the prediction distance: a contact is
 /// a contact when the shapes touch. Points come in the same order as from [`collide`]; those of one normal share a

@@ -9,14 +9,14 @@ use rapier3d_f64::geometry::{BroadPhaseBvh, ColliderSet};
 use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::pipeline::PhysicsPipeline;
 
-use crate::model::{IntegratorType, Model};
-use crate::physics::engine::{Engine, EngineError, Probe, Stage};
-use crate::physics::rapier::bridge::Bridge;
-use crate::physics::rapier::rig::Rig;
-use crate::physics::rapier::{RapierError, RapierOptions, Sets};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
-use crate::physics::world::PairTable;
+use crate::bridge::Bridge;
+use crate::rig::Rig;
+use crate::{RapierError, RapierOptions, Sets};
+use mjcf_sim_model::model::{IntegratorType, Model};
+use mjcf_sim_physics::engine::{Engine, EngineError, Probe, Stage};
+use mjcf_sim_physics::state::State;
+use mjcf_sim_physics::topology::Topology;
+use mjcf_sim_physics::world::PairTable;
 
 /// The sets of a world of our own.
 #[derive(Clone, Debug, Default)]

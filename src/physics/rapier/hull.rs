@@ -9,8 +9,8 @@ use rapier3d_f64::parry::math::Vector;
 use rapier3d_f64::parry::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use rapier3d_f64::parry::shape::{FeatureId, Shape, ShapeType, SupportMap, TypedShape};
 
-use crate::math::Vec3;
-use crate::model::Mesh;
+use mjcf_sim_model::math::Vec3;
+use mjcf_sim_model::model::Mesh;
 
 /// The convex hull of a mesh.
 #[derive(Clone)]

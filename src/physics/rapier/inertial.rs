@@ -2,9 +2,9 @@
 
 use rapier3d_f64::parry::math::{Pose, Vector};
 
-use crate::math::{quat_mul, quat_normalize};
-use crate::model::Model;
-use crate::physics::rapier::scene::pose;
+use crate::scene::pose;
+use mjcf_sim_model::math::{quat_mul, quat_normalize};
+use mjcf_sim_model::model::Model;
 
 /// Returns the principal axes of a body, with the moments ascending, and the moments.
 ///

@@ -1,6 +1,6 @@
 //! Rapier's own pipeline as a physics engine.
 //!
-//! [`RapierEngine`] simulates a model behind the [`Engine`](crate::physics::Engine) trait; [`Bridge`] puts a model into
+//! [`RapierEngine`] simulates a model behind the [`Engine`](mjcf_sim_physics::Engine) trait; [`Bridge`] puts a model into
 //! a Rapier world of your own, beside anything else. [`RapierScene`] is the other direction: a mirror of a state, for
 //! Rapier's ray casts and shape queries.
 //!
@@ -23,7 +23,12 @@
 //!
 //! Positions are integrated from Rapier's accelerations as MuJoCo does. `State::efc` holds the rows with the forces of
 //! contacts and welds; Rapier does not tell those of single joints, whose sum is in `State::qfrc_constraint`.
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
 
+#[cfg(test)]
+mod activation_tests;
 mod bridge;
 mod contacts;
 mod dispatcher;
@@ -42,9 +47,9 @@ use thiserror::Error;
 
 pub use bridge::Bridge;
 pub use contacts::ContactHooks;
-internals!(use dispatcher::ContactDispatcher);
+pub use dispatcher::ContactDispatcher;
 pub use engine::RapierEngine;
-internals!(use engine::RapierModel);
+pub use engine::RapierModel;
 /// Rapier, as it is part of this interface: [`rapier3d_f64::parry`] is the Parry beneath it.
 pub use rapier3d_f64;
 pub use rig::Rig;
@@ -83,7 +88,7 @@ pub struct RapierOptions {
     /// `(1 - 0.95) / 0.95`.
     pub contact_compliance: f64,
     /// Whether torque sensors count a weld's torque twice, see
-    /// [`SoftOptions`](crate::physics::SoftOptions::double_weld_torque).
+    /// [`SoftOptions`](mjcf_sim_physics::SoftOptions::double_weld_torque).
     pub double_weld_torque: bool,
     /// Whether to detect no contacts between geoms of the model.
     pub disable_contacts: bool,

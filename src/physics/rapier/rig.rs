@@ -8,15 +8,15 @@ use rapier3d_f64::parry::mass_properties::MassProperties;
 use rapier3d_f64::parry::math::{Pose, Rotation, Vector};
 use rapier3d_f64::pipeline::ActiveHooks;
 
-use crate::math::*;
-use crate::model::{EqualityKind, JointType, Model};
-use crate::physics::dynamics::mul_m;
-use crate::physics::rapier::inertial::inertial;
-use crate::physics::rapier::scene::{collider_order, geom_pose, pose, shape};
-use crate::physics::rapier::support::check;
-use crate::physics::rapier::{RapierError, Sets};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::inertial::inertial;
+use crate::scene::{collider_order, geom_pose, pose, shape};
+use crate::support::check;
+use crate::{RapierError, Sets};
+use mjcf_sim_model::math::*;
+use mjcf_sim_model::model::{EqualityKind, JointType, Model};
+use mjcf_sim_physics::dynamics::mul_m;
+use mjcf_sim_physics::state::State;
+use mjcf_sim_physics::topology::Topology;
 
 /// A free joint of the model.
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +112,6 @@ impl Rig {
     ///
     /// # Errors
     /// Fails if the model has elements that Rapier's multibodies cannot represent.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn insert(model: &Model, topology: &Topology, sets: &mut Sets) -> Result<Self, RapierError> {
         check(model, topology)?;
         let nb = model.nbody();

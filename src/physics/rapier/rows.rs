@@ -11,14 +11,14 @@ use rapier3d_f64::dynamics::{
 };
 use rapier3d_f64::parry::math::{Pose, Vector};
 
-use crate::math::*;
-use crate::model::{EqualityKind, Model};
-use crate::physics::constraint::{Block, ConstraintType, Weld, weld_points};
-use crate::physics::dynamics::{Articulated, Damping};
-use crate::physics::rapier::Sets;
-use crate::physics::rapier::rig::Rig;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
+use crate::Sets;
+use crate::rig::Rig;
+use mjcf_sim_model::math::*;
+use mjcf_sim_model::model::{EqualityKind, Model};
+use mjcf_sim_physics::constraint::{Block, ConstraintType, Weld, weld_points};
+use mjcf_sim_physics::dynamics::{Articulated, Damping};
+use mjcf_sim_physics::state::State;
+use mjcf_sim_physics::topology::Topology;
 
 /// Index of the rotation about x among the axes of a joint.
 const ANG_X: usize = 3;

@@ -12,14 +12,14 @@ use rapier3d_f64::pipeline::{
     ActiveHooks, CollisionPipeline, PairFilterContext, PhysicsHooks, QueryFilter, QueryPipeline,
 };
 
-use crate::math::{Quat, Vec3};
-use crate::model::{GeomType, Model};
-use crate::physics::Quirks;
-use crate::physics::engine::EngineError;
-use crate::physics::rapier::ContactDispatcher;
-use crate::physics::rapier::hull::HullShape;
-use crate::physics::state::State;
-use crate::physics::world::{ContactRules, contact_options};
+use crate::ContactDispatcher;
+use crate::hull::HullShape;
+use mjcf_sim_model::math::{Quat, Vec3};
+use mjcf_sim_model::model::{GeomType, Model};
+use mjcf_sim_physics::Quirks;
+use mjcf_sim_physics::engine::EngineError;
+use mjcf_sim_physics::state::State;
+use mjcf_sim_physics::world::{ContactRules, contact_options};
 
 /// A filter that lets Rapier test exactly the pairs of geoms that may touch.
 struct PairFilter {
@@ -50,7 +50,7 @@ pub struct SceneContact {
 }
 
 /// A mirror of a model in Rapier's sets, for ray casts, shape queries and debug rendering, which
-/// [`Env::rapier_scene`](crate::Env::rapier_scene) makes for an environment.
+/// `Env::rapier_scene` of babybench makes for an environment.
 ///
 /// [`RapierScene::sync`] gives it the poses of a state; nothing flows back. Bodies are kinematic (fixed where nothing
 /// moves them); `user_data` of a body and of a collider is the id of the body and of the geom. Rapier's collision pipeline
@@ -60,12 +60,12 @@ pub struct SceneContact {
 /// ```
 /// use std::sync::Arc;
 ///
-/// use babybench::mimo::{build_model, embedded};
-/// use babybench::physics::Quirks;
-/// use babybench::physics::rapier::RapierScene;
-/// use babybench::physics::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
-/// use babybench::physics::{Engine, SoftEngine, SoftOptions};
-/// use babybench::Config;
+/// use mjcf_sim::mimo::{build_model, embedded};
+/// use mjcf_sim::physics::Quirks;
+/// use mjcf_sim::rapier::RapierScene;
+/// use mjcf_sim::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
+/// use mjcf_sim::physics::{Engine, SoftEngine, SoftOptions};
+/// use mjcf_sim::Config;
 ///
 /// let model = Arc::new(build_model(&Config::default(), &embedded())?);
 /// let mut scene = RapierScene::new(model.clone(), Quirks::default());

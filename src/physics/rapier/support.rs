@@ -1,8 +1,8 @@
 //! Checks that Rapier's multibodies can represent a model.
 
-use crate::model::{EqualityKind, GeomType, JointType, Model, Wrap};
-use crate::physics::rapier::RapierError;
-use crate::physics::topology::Topology;
+use crate::RapierError;
+use mjcf_sim_model::model::{EqualityKind, GeomType, JointType, Model, Wrap};
+use mjcf_sim_physics::topology::Topology;
 
 /// Refuses what Rapier's multibodies cannot represent.
 pub(super) fn check(model: &Model, topology: &Topology) -> Result<(), RapierError> {

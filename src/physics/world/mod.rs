@@ -1,6 +1,6 @@
 //! Which geoms may touch, and which do.
 //!
-//! A sweep over the boxes of all geoms finds the pairs that may touch; the routines of [`crate::physics::contact`] work
+//! A sweep over the boxes of all geoms finds the pairs that may touch; the routines of [`crate::contact`] work
 //! on world poses, as contact geometry is discontinuous in their last bits.
 
 mod boxes;
@@ -8,15 +8,15 @@ mod pairs;
 mod sweep;
 mod trees;
 
+use crate::contact::{ContactOptions, Quirks};
 use crate::model::Model;
-use crate::physics::contact::{ContactOptions, Quirks};
 
 pub use pairs::{ContactRules, Pair, PairTable};
-pub(crate) use sweep::Sweep;
-pub(in crate::physics) use sweep::placed;
+pub use sweep::Sweep;
+pub use sweep::placed;
 
 /// Returns the options of the contact routines that a model asks for, with the given peculiarities.
-pub(super) fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {
+pub fn contact_options(model: &Model, quirks: Quirks) -> ContactOptions {
     ContactOptions {
         ccd_tolerance: model.opt.ccd_tolerance,
         ccd_iterations: model.opt.ccd_iterations,

@@ -3,10 +3,10 @@
 mod rules;
 
 use super::trees::Trees;
+use crate::contact::needs_convex;
 use crate::math::{MINVAL, order};
 use crate::model::{GeomType, Model};
-use crate::physics::contact::needs_convex;
-use crate::physics::state::Contact;
+use crate::state::Contact;
 pub use rules::ContactRules;
 
 /// Scenes of up to this many geoms have a table of all their pairs; the pairs of larger ones are made as geoms come near

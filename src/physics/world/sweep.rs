@@ -2,13 +2,13 @@
 
 use super::boxes;
 use super::pairs::Order;
+use crate::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
+use crate::engine::{EngineError, within};
 use crate::limits::Limits;
 use crate::math::Vec3;
 use crate::model::{GeomType, Model};
-use crate::physics::contact::{ContactOptions, ContactPoint, PlacedGeom, Scratch, bounding_test, collide};
-use crate::physics::engine::{EngineError, within};
-use crate::physics::state::{Contact, RESERVED_CONTACTS, State};
-use crate::physics::world::{Pair, PairTable};
+use crate::state::{Contact, RESERVED_CONTACTS, State};
+use crate::world::{Pair, PairTable};
 
 /// Enlargement of boxes, m: more than rounding, so that the exact routines decide. The tolerance of the convex routines comes on top, as far as
 /// which they may find a contact where there is a gap.
@@ -242,7 +242,7 @@ fn overlaps(boxes: &[Bounds], mut found: impl FnMut(usize, usize) -> bool) {
 
 /// Returns a geom with its pose.
 #[inline(always)]
-pub(in crate::physics) fn placed<'a>(model: &'a Model, s: &'a State, g: usize) -> PlacedGeom<'a> {
+pub fn placed<'a>(model: &'a Model, s: &'a State, g: usize) -> PlacedGeom<'a> {
     PlacedGeom {
         kind: model.geom_type[g],
         size: s.params.geom_size[g],

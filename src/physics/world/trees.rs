@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::Pair;
 use super::boxes::Oriented;
+use crate::contact::PlacedGeom;
 use crate::math::{Vec3, add, order, quat_conj, quat_rotate, sub};
 use crate::model::Model;
-use crate::physics::contact::PlacedGeom;
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Lengths that differ by less are equal (MuJoCo's `mjEPS`), m.
 const EPS: f64 = 1e-14;

@@ -2,9 +2,9 @@
 //! vertices fall on the same 1/256 of a pixel.
 
 use crate::math::{MAT3_ID, Mat3, Vec3, column};
-use crate::render::mesh::MeshPart;
-use crate::render::scenery::Scenery;
-use crate::render::view::{Poses, View};
+use crate::mesh::MeshPart;
+use crate::scenery::Scenery;
+use crate::view::{Poses, View};
 
 pub type V3 = [f32; 3];
 /// Coefficients of x, y, z and the constant.

@@ -6,7 +6,7 @@ use wide::{f32x4, i32x4, u32x4};
 use super::lanes::{at_least, four, integers, three};
 use super::light::Vectors;
 use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather_squares, upward, whole};
-use crate::render::texture::{Cube, components};
+use crate::texture::{Cube, components};
 
 /// Looks up the pixels of a block that are `wanted`: red, green, blue; 0..255.
 #[inline(always)]

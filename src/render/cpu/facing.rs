@@ -7,9 +7,9 @@ use wide::f32x4;
 
 use super::camera::{Eye, V3, dot};
 use super::frame::PlacedDrawable;
-use crate::render::drawable::{Drawable, Shape};
-use crate::render::mesh::{Band, MeshPart};
-use crate::render::patch::{ALL, Patch};
+use crate::drawable::{Drawable, Shape};
+use crate::mesh::{Band, MeshPart};
+use crate::patch::{ALL, Patch};
 
 /// Bound on the relative rounding of distances from a plane.
 const ROUNDING: f32 = 1e-5;

@@ -6,7 +6,7 @@ use wide::{f32x4, i32x4, u16x8, u32x4};
 use super::lanes::{at_least, integers};
 use super::light::Vectors;
 use super::sample::{Coordinates, MipLevels, across, are_settled, channels, floor, gather, upward};
-use crate::render::texture::{Face, Level};
+use crate::texture::{Face, Level};
 
 /// Weights are parts of this.
 const ONE: u16 = 256;

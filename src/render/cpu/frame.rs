@@ -6,11 +6,11 @@ use super::camera::{Eye, Row, V3, dot, single};
 use super::group::Waiting;
 use super::plane::{Basis, Vertex};
 use super::target::{Target, Triangle};
-use crate::render::RenderError;
-use crate::render::drawable::{BEHIND, Drawable, OPAQUE, Shape};
-use crate::render::scenery::Scenery;
-use crate::render::skin::Worn;
-use crate::render::view::{Poses, View};
+use crate::RenderError;
+use crate::drawable::{BEHIND, Drawable, OPAQUE, Shape};
+use crate::scenery::Scenery;
+use crate::skin::Worn;
+use crate::view::{Poses, View};
 
 /// The geometry of an image.
 #[derive(Debug, Default)]

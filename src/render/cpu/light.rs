@@ -5,11 +5,11 @@ use wide::f32x4;
 use super::camera::{Eye, V3, single, unit};
 use super::frame::PlacedDrawable;
 use super::lanes::{four, three};
+use crate::drawable::Drawable;
 use crate::math::{Vec3, add, mat_vec, sub};
-use crate::render::drawable::Drawable;
-use crate::render::mesh::MeshPart;
-use crate::render::scenery::{Aim, LightSource, Scenery};
-use crate::render::view::Poses;
+use crate::mesh::MeshPart;
+use crate::scenery::{Aim, LightSource, Scenery};
+use crate::view::Poses;
 
 /// Weakest highlight that is computed.
 const FAINT: f32 = 1e-4;

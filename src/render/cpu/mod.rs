@@ -34,10 +34,10 @@ use frame::{Frame, Targets};
 pub(super) use light::{PlacedLight, place as place_lights};
 use shade::{Pixels, Shader};
 
-use crate::render::RenderError;
-use crate::render::drawable::Element;
-use crate::render::scenery::Scenery;
-use crate::render::view::{ImageBuffers, Poses, View, fits};
+use crate::RenderError;
+use crate::drawable::Element;
+use crate::scenery::Scenery;
+use crate::view::{ImageBuffers, Poses, View, fits};
 
 /// A renderer on the CPU. It keeps its buffers, so that drawing allocates nothing once the largest image has been
 /// drawn.
@@ -211,6 +211,6 @@ impl CpuRenderer {
 }
 
 /// Returns the brightness of a colour, as `rgb2gray` computes it.
-pub(crate) fn luma([r, g, b]: [u8; 3]) -> u8 {
+pub fn luma([r, g, b]: [u8; 3]) -> u8 {
     (0.2989 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) as u8
 }

@@ -11,10 +11,10 @@ use super::frame::Frame;
 use super::lanes::at_least;
 use super::plane::Vertex;
 use super::raster::LIMIT;
-use crate::render::drawable::Drawable;
-use crate::render::mesh::{Band, LANES, Mesh};
-use crate::render::patch::ALL;
-use crate::render::scenery::Scenery;
+use crate::drawable::Drawable;
+use crate::mesh::{Band, LANES, Mesh};
+use crate::patch::ALL;
+use crate::scenery::Scenery;
 
 impl Frame {
     /// Projects and draws a drawable, of which the index is given, too.

@@ -7,8 +7,8 @@ use super::cube;
 use super::flat;
 use super::lanes::{four, three};
 use super::light::Vectors;
-use crate::render::plain::SETTLED;
-use crate::render::texture::{Level, TexturePixels};
+use crate::plain::SETTLED;
+use crate::texture::{Level, TexturePixels};
 
 /// The mip levels to blend at each pixel of a block, and their blend weights.
 #[derive(Clone, Copy, Debug)]

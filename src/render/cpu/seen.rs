@@ -8,10 +8,10 @@ use super::lanes::{four, three};
 use super::light::{self, Corners, PlacedLight};
 use super::shade::Pixels;
 use super::target::{NONE, Target};
-use crate::render::drawable::Drawable;
-use crate::render::mesh::Mesh;
-use crate::render::scenery::Scenery;
-use crate::render::view::Poses;
+use crate::drawable::Drawable;
+use crate::mesh::Mesh;
+use crate::scenery::Scenery;
+use crate::view::Poses;
 
 /// The triangles and vertices that an image shows.
 #[derive(Debug, Default)]

@@ -11,9 +11,9 @@ use super::sample::channels;
 use super::seen::Seen;
 use super::sky::Rays;
 use super::target::{NONE, Triangle};
-use crate::render::scenery::Scenery;
-use crate::render::texture::TexturePixels;
-use crate::render::view::Poses;
+use crate::scenery::Scenery;
+use crate::texture::TexturePixels;
+use crate::view::Poses;
 
 /// Computes the colours of a frame.
 #[derive(Debug, Default)]

@@ -6,7 +6,7 @@ use super::camera::Eye;
 use super::lanes::three;
 use super::light::Vectors;
 use super::sample::Coordinates;
-use crate::render::scenery::Scenery;
+use crate::scenery::Scenery;
 
 /// The directions in which the pixels of an image look: what all blocks of a column have in common, and all of a row.
 #[derive(Debug, Default)]

@@ -13,8 +13,8 @@ use super::raster::{Sink, is_counterclockwise};
 use super::sampling::{FourSamples, PixelCentre, Sampling};
 use super::small::Quads;
 use super::target::{NONE, Opaque, Target, Transparent, Triangle, Writer};
-use crate::render::mesh::{Band, Mesh};
-use crate::render::strip::{STRIP_LANES, Strip};
+use crate::mesh::{Band, Mesh};
+use crate::strip::{STRIP_LANES, Strip};
 
 impl Frame {
     /// Draws a band that is not wholly in view.

@@ -1,7 +1,7 @@
 //! The layout of images: side by side in a few large textures, so that many cost one pass.
 
 use super::GpuError;
-use crate::render::View;
+use crate::View;
 
 /// Largest side of a texture that holds several images: every device allows it, and with four samples and depth it
 /// takes 128 MiB.

@@ -1,7 +1,7 @@
 //! The kinds of images: colour, brightness, depth, geom ids.
 
 use super::pipelines::Output;
-use crate::render::luma;
+use crate::luma;
 
 /// A kind of image: [`Rgb`], [`Gray`], [`Depth`] or [`Segmentation`].
 pub trait Channel: sealed::Channel {}

@@ -3,11 +3,11 @@
 use super::atlas::{Atlas, Tile};
 use super::pipelines::Output;
 use super::scene::{GpuScene, LIGHTS, VERTEX, add_vertices};
-use crate::render::RenderRequest;
-use crate::render::cpu::{Eye, PlacedLight, V3, dot, place_lights, single};
-use crate::render::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
-use crate::render::scenery::Scenery;
-use crate::render::skin::Worn;
+use crate::RenderRequest;
+use crate::cpu::{Eye, PlacedLight, V3, dot, place_lights, single};
+use crate::drawable::{BEHIND, Drawable, Element, OPAQUE, Shape};
+use crate::scenery::Scenery;
+use crate::skin::Worn;
 
 /// Number of values per instance: the attributes of the shader's `Vertex` from `row_x` on.
 pub const INSTANCE: usize = 44;

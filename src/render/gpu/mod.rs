@@ -1,10 +1,9 @@
 //! Rendering on a GPU, many images at once: any number of views of any number of environments in one submission and
 //! one transfer (cargo feature `wgpu`).
 //!
-#![cfg_attr(feature = "internals", doc = "```no_run")]
-#![cfg_attr(not(feature = "internals"), doc = "```ignore")]
-//! use babybench::render::gpu::{GpuRenderer, Rgb};
-//! use babybench::{Blueprint, Config, Env};
+//! ```no_run
+//! use mjcf_sim::render::gpu::{GpuRenderer, Rgb};
+//! use mjcf_sim::{Blueprint, Config, Env};
 //!
 //! let blueprint = Blueprint::new(Config { vision_active: true, ..Config::default() })?;
 //! let mut environments: Vec<Env> = (0..64).map(|_| blueprint.env()).collect::<Result<_, _>>()?;
@@ -55,7 +54,7 @@ use pipelines::{Layouts, Output, Pipelines, Style};
 use scene::GpuScene;
 use target::Target;
 
-use crate::render::{RenderError, RenderRequest, Scenery};
+use crate::{RenderError, RenderRequest, Scenery};
 
 /// Format of colours: linear, without gamma.
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -7,7 +7,7 @@ use std::task::{Context, Poll, Waker};
 
 use super::device::Gpu;
 use super::{Channel, GpuError};
-use crate::render::RenderError;
+use crate::RenderError;
 
 /// The rows of an image in the buffer, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

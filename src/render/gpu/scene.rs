@@ -7,11 +7,11 @@ use wgpu::util::DeviceExt;
 
 use super::device::Gpu;
 use super::pipelines::Layouts;
-use crate::render::drawable::{Drawable, Shape};
-use crate::render::mesh::{Mesh, MeshPart};
-use crate::render::scenery::Scenery;
-use crate::render::skin::SkinLook;
-use crate::render::texture::{Face, Level, TexturePixels};
+use crate::drawable::{Drawable, Shape};
+use crate::mesh::{Mesh, MeshPart};
+use crate::scenery::Scenery;
+use crate::skin::SkinLook;
+use crate::texture::{Face, Level, TexturePixels};
 
 /// Number of lights in the shader.
 pub const LIGHTS: usize = 8;

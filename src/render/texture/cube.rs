@@ -139,7 +139,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::render::texture::Level;
+    use crate::texture::Level;
 
     /// A cube of which each texel says on which side, in which row and in which column it is.
     fn atlas(n: usize) -> Cube {

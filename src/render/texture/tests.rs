@@ -5,7 +5,7 @@ fn pattern(kind: TextureType, width: usize) -> Recipe {
     let text = format!(
         "<mujoco><asset><texture name='t' type='2d' builtin='flat' width='{width}' height='{width}'/></asset></mujoco>"
     );
-    let spec = crate::mjcf_loader::load_str(&text, "t.xml", &crate::assets::MemoryAssets::new());
+    let spec = mjcf_sim_loader::load_str(&text, "t.xml", &crate::assets::MemoryAssets::new());
     let recipe = spec.expect("it is valid").into_parts().0.textures.remove(0);
     Recipe { kind, ..recipe }
 }
@@ -33,7 +33,7 @@ fn a_grid_deals_its_squares_to_the_faces_of_a_cube() {
     assets.insert("a.png", bytes.into_inner()).expect("a path");
     let cube = |grid: &str| {
         let text = format!("<mujoco><asset><texture file='a.png' rgb1='1 0 0' {grid}/></asset></mujoco>");
-        let spec = crate::mjcf_loader::load_str(&text, "t.xml", &assets).expect("valid");
+        let spec = mjcf_sim_loader::load_str(&text, "t.xml", &assets).expect("valid");
         let recipe = spec.into_parts().0.textures.remove(0);
         match Loader::new(&assets).texture(&recipe) {
             Ok(TexturePixels::Cube(cube)) => Ok(cube
@@ -71,7 +71,7 @@ fn four_channels_look_like_three() {
     assets.insert("full.png", picture(255)).expect("a path");
     let recipe = |texture: &str, channels: usize| {
         let text = format!("<mujoco><asset><texture name='t' {texture} nchannel='{channels}'/></asset></mujoco>");
-        let spec = crate::mjcf_loader::load_str(&text, "t.xml", &assets);
+        let spec = mjcf_sim_loader::load_str(&text, "t.xml", &assets);
         spec.map(|spec| spec.into_parts().0.textures.remove(0))
             .map_err(|e| e.to_string())
     };

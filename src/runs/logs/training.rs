@@ -73,7 +73,6 @@ pub struct TrainingLog {
 
 impl TrainingLog {
     /// How many records [`TrainingLog::recent`] has at most: as many as scores look at.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub const RECENT: usize = 10_001;
 
     /// Creates a log in the configuration's `save_dir`, which is created too; an existing log is overwritten. Until the
@@ -261,7 +260,6 @@ impl TrainingLog {
     }
 
     /// Returns the last records, at most [`TrainingLog::RECENT`], and the number of all.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn recent(&self) -> RecentRecords {
         RecentRecords {
             total: self.totals.records,
@@ -270,7 +268,6 @@ impl TrainingLog {
     }
 
     /// Returns the totals over the records so far.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn totals(&self) -> &TrainingTotals {
         &self.totals
     }

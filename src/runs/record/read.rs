@@ -70,7 +70,6 @@ impl Record {
     }
 
     /// Returns whether a folder has a record, readable or not.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn is_in(dir: impl AsRef<Path>) -> bool {
         dir.as_ref().join(MANIFEST).is_file()
     }
@@ -81,7 +80,6 @@ impl Record {
     }
 
     /// Returns the description.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
@@ -104,7 +102,6 @@ impl Record {
     ///
     /// # Errors
     /// No such episode, an archive that cannot be read.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn npz(&self, episode: u64) -> Result<Npz, RecordError> {
         Ok(Npz::open(self.path(episode)?)?)
     }

@@ -78,7 +78,6 @@ pub struct SkinBody {
     /// Index of its first sensor, counted over all bodies.
     pub offset: usize,
     /// Its geoms, in id order.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub geoms: Vec<SkinGeom>,
     pub(super) positions: Vec<Vec3>,
     pub(super) grid: Grid,
@@ -101,7 +100,6 @@ impl SkinBody {
     }
 
     /// Returns the index in [`Self::geoms`] of the geom that carries a sensor (counted within the body).
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn geom_of(&self, sensor: usize) -> usize {
         self.geoms.iter().position(|g| sensor < g.sensors.end).unwrap_or(0)
     }
@@ -140,7 +138,6 @@ impl SkinLayout {
     ///
     /// # Errors
     /// Fails if a distance is not finite and positive, or so small that there are more than [`MAX_SENSORS`].
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn with_spacing(model: &Model, spacing: impl Fn(&str) -> Option<f64>) -> Result<Self, SkinError> {
         Self::place(model, |body| spacing(&model.body_name[body]))
     }
@@ -214,7 +211,6 @@ impl SkinLayout {
     }
 
     /// Returns the index in [`Self::bodies`] of a body of the model; `None` if it has no sensors.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn index(&self, body: usize) -> Option<usize> {
         (*self.of_body.get(body)? as usize).checked_sub(1)
     }
@@ -230,7 +226,6 @@ impl SkinLayout {
     }
 
     /// Returns the body of a sensor and the sensor's index within it.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn locate(&self, sensor: usize) -> Option<(&SkinBody, usize)> {
         let body = self.bodies.partition_point(|b| b.offset + b.len() <= sensor);
         self.bodies.get(body).map(|b| (b, sensor - b.offset))

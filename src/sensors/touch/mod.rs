@@ -41,12 +41,12 @@ use std::sync::Arc;
 
 pub(crate) use contact::MIN_FORCE;
 pub use contact::TouchContact;
-internals!(use contact::touch_contacts);
-internals!(use hull::Hull);
+pub use contact::touch_contacts;
+pub use hull::Hull;
+pub use layout::{MAX_SENSORS, SkinGeom};
 pub use layout::{SkinBody, SkinError, SkinLayout};
-internals!(use layout::{MAX_SENSORS, SkinGeom});
-internals!(use points::surface_points);
-internals!(use pooled::{POOLED, TouchPool});
+pub use points::surface_points;
+pub use pooled::{POOLED, TouchPool};
 pub use values::SkinValues;
 
 use crate::config::{Compat, Config, TouchFunction, TouchResponse};
@@ -112,7 +112,6 @@ impl Touch {
     }
 
     /// Creates the sense that `touch_function`, `touch_response` and `compat` ask for.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn configured(layout: Arc<SkinLayout>, config: &Config) -> Self {
         Self::new(layout, config.touch_function, config.touch_response, config.compat)
     }
@@ -211,7 +210,6 @@ impl Touch {
     /// Senses `contacts`, with body poses `xpos` (m) and `xmat` of the same instant, in place of earlier values.
     ///
     /// The cost grows with the number of contacts, not of sensors; nothing is allocated after a few calls.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn sense(&mut self, model: &Model, contacts: &[Contact], xpos: &[Vec3], xmat: &[Mat3]) {
         self.clear();
         let layout = self.layout.clone();
@@ -236,7 +234,6 @@ impl Touch {
 
     /// Adds `value` (in the frame of the body, N), pressed on the skin of a body at `point` (same frame, m), to what is
     /// felt already; [`Self::contacts`] do not change.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn press(&mut self, body: usize, point: Vec3, value: Vec3) {
         let layout = self.layout.clone();
         if let Some(skin) = layout.body(body) {

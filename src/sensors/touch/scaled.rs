@@ -5,7 +5,6 @@ use super::layout::{SkinBody, SkinLayout};
 use crate::math::{Vec3, add, mat_t_vec, mat_vec, quat_normalize, quat_to_mat, sub};
 use crate::model::{GeomType, Model};
 
-#[cfg_attr(not(feature = "internals"), doc(hidden))]
 impl SkinLayout {
     /// Returns the same sensors on a model whose geoms have other sizes and places: as many, in the same order, each where it
     /// was on its geom. The models have the same bodies and geoms.

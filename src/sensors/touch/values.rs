@@ -14,7 +14,6 @@ pub struct SkinValues {
 
 impl SkinValues {
     /// Creates zeros for a number of sensors with `width` numbers each.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn new(sensors: usize, width: usize) -> Self {
         Self {
             width,
@@ -50,7 +49,6 @@ impl SkinValues {
     }
 
     /// Returns the values of a sensor to be changed, which counts as written from now on.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn of_mut(&mut self, sensor: usize) -> &mut [f32] {
         if !self.is_touched[sensor] {
             self.is_touched[sensor] = true;
@@ -61,7 +59,6 @@ impl SkinValues {
     }
 
     /// Calls `change` with the values of each sensor that was written, in that order.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn for_each_touched(&mut self, mut change: impl FnMut(&mut [f32])) {
         for k in 0..self.touched.len() {
             let range = self.range(self.touched[k] as usize);
@@ -70,7 +67,6 @@ impl SkinValues {
     }
 
     /// Sets all sensors to zero.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn clear(&mut self) {
         for k in 0..self.touched.len() {
             let sensor = self.touched[k] as usize;
@@ -82,7 +78,6 @@ impl SkinValues {
     }
 
     /// Takes over the values of a skin of the same size.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn copy_from(&mut self, other: &Self) {
         self.clear();
         for &sensor in &other.touched {
@@ -91,7 +86,6 @@ impl SkinValues {
     }
 
     /// Takes out of the list the sensors whose values are zero.
-    #[cfg_attr(not(feature = "internals"), doc(hidden))]
     pub fn forget_zeros(&mut self) {
         let (values, is_touched, width) = (&self.values, &mut self.is_touched, self.width);
         self.touched.retain(|&sensor| {

@@ -191,8 +191,7 @@ impl<T: Waiting + Clone> Ring<T> {
 
 /// Vectors of single-precision numbers, such as actions, that come out a number of steps after they went in.
 ///
-#[cfg_attr(feature = "internals", doc = "```")]
-#[cfg_attr(not(feature = "internals"), doc = "```ignore")]
+/// ```
 /// use babybench::sensors::transform::DelayLine;
 ///
 /// let mut line = DelayLine::new(3, 1);

@@ -37,12 +37,12 @@ mod foveation;
 mod hold;
 mod noise;
 
-internals!(use acuity::{Acuity, AcuityOptions, acuity_cutoff});
+pub use acuity::{Acuity, AcuityOptions, acuity_cutoff};
 pub(super) use delay::Waiting;
-internals!(use delay::{Delay, DelayLine});
-internals!(use foveation::Foveation);
+pub use delay::{Delay, DelayLine};
+pub use foveation::Foveation;
 pub(crate) use hold::Hold;
-internals!(use noise::Noise);
+pub use noise::Noise;
 
 pub use crate::sensors::sense::Sense;
 use crate::sensors::{EyeImages, SkinValues};

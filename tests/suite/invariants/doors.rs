@@ -99,21 +99,27 @@ fn doors() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
     for entry in std::fs::read_dir(&src).expect("the sources") {
         let path = entry.expect("readable").path();
         let room = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        if room == "lib" {
+        // crates of their own look after themselves
+        if room == "lib" || path.join("Cargo.toml").exists() {
             continue;
         }
         let mut sources = Vec::new();
         files(&path, &mut sources);
         let known = doors.entry(room.clone()).or_default();
         for file in sources {
-            for other in named_behind(&code(&file), "crate::") {
+            let code = code(&file);
+            for other in named_behind(&code, "crate::") {
                 let other = room_of(other);
                 if other != room {
                     known.insert(other.to_string(), file.clone());
                 }
             }
+            if code.contains("mjcf_sim::") {
+                known.insert("engine".to_string(), file.clone());
+            }
         }
     }
+    doors.insert("engine".to_string(), BTreeMap::new());
     doors
 }
 
@@ -121,8 +127,9 @@ fn doors() -> BTreeMap<String, BTreeMap<String, PathBuf>> {
 fn room_of(name: &str) -> &str {
     match name {
         "Config" => "config",
-        "Model" => "model",
-        "Limits" => "limits",
+        // what lib.rs re-exports of the engine's crates
+        "Limits" | "Model" | "assets" | "files" | "limits" | "math" | "mjcf_loader" | "model" | "physics"
+        | "rapier" | "render" | "shelf" | "text" | "threads" => "engine",
         "Env" | "Blueprint" | "EnvError" | "Info" | "Observation" | "Step" => "env",
         "AutoresetMode" | "VectorEnv" | "VectorOptions" => "vector",
         "make_env" => "runs",

@@ -5,9 +5,9 @@ use babybench::env::{EnvError, Snapshot, SnapshotError};
 use babybench::eval::{EvaluationError, ScoreError};
 use babybench::mjcf_loader::LoadError;
 use babybench::physics::{Engine, EngineError, Params, SoftEngine, State};
-#[cfg(feature = "rapier")]
-use babybench::physics::{RapierEngine, RapierModel, RapierScene};
 use babybench::policy::PolicyError;
+#[cfg(feature = "rapier")]
+use babybench::rapier::{RapierEngine, RapierModel, RapierScene};
 use babybench::render::{CpuRenderer, RenderError, Renderer, Scenery};
 use babybench::runs::LogError;
 use babybench::sensors::transform::Transform;

@@ -4,7 +4,7 @@ use crate::math::{Vec3, add, norm, sub};
 use crate::model::{GeomType, Mesh};
 
 /// A shape that stands for a mesh.
-pub(in crate::mjcf_loader::compile) struct Fitted {
+pub(in crate::compile) struct Fitted {
     /// Size, m.
     pub size: Vec3,
     /// Where the mesh is said to be from then on, m.
@@ -12,7 +12,7 @@ pub(in crate::mjcf_loader::compile) struct Fitted {
 }
 
 /// Fits a shape to a mesh: to the box with its inertia, or to the box around it; `None` for a shape that cannot be fitted.
-pub(in crate::mjcf_loader::compile) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> Option<Fitted> {
+pub(in crate::compile) fn fit(kind: GeomType, mesh: &Mesh, to_bounds: bool, scale: f64) -> Option<Fitted> {
     let (size, pos) = if to_bounds {
         let [low, high] = mesh.bounds;
         let centre: Vec3 = std::array::from_fn(|k| (low[k] + high[k]) / 2.0);

@@ -1,8 +1,8 @@
 //! Volume, centre and inertia of meshes.
 
+use crate::compile::geometry::diagonalize;
 use crate::math::{MINVAL, Quat, Vec3, cross, dot};
-use crate::mjcf_loader::compile::geometry::diagonalize;
-use crate::mjcf_loader::mesh::MeshInertia;
+use crate::mesh::MeshInertia;
 
 /// Mass properties of a mesh, for a density of one.
 pub(super) struct Solid {

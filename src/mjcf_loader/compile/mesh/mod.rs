@@ -15,15 +15,15 @@ pub(super) use source::{indices, rows};
 use super::context::{Context, Ids};
 use super::surface::asset_path;
 use crate::assets::AssetSource;
+use crate::compile::geometry::normalize;
+use crate::document::Document;
+use crate::error::{ErrorKind, LoadError};
 use crate::math::hull::quickhull;
 use crate::math::qhull;
 use crate::math::{Vec3, mat_t_vec, mat_vec, quat_to_mat};
-use crate::mjcf_loader::compile::geometry::normalize;
-use crate::mjcf_loader::document::Document;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::mesh::{Mesh, MeshInertia};
-use crate::mjcf_loader::xml::Tree;
+use crate::mesh::{Mesh, MeshInertia};
 use crate::model::{self, Arrays, GeomType, MeshHull, MeshPolygons};
+use crate::xml::Tree;
 use inertia::Solid;
 use source::Surface;
 
@@ -61,7 +61,7 @@ pub(super) fn mesh_name(tree: &Tree, mesh: &Mesh) -> Result<String, LoadError> {
 }
 
 /// Returns a name, or, where it is empty, the name of a file without directory and extension.
-pub(in crate::mjcf_loader) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> &'n str {
+pub(crate) fn stem<'n>(name: &'n str, file: Option<&'n str>) -> &'n str {
     if !name.is_empty() {
         return name;
     }

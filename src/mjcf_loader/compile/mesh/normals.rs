@@ -1,8 +1,8 @@
 //! Normals of vertices, and the sense of faces.
 
 use super::inertia::{Triangle, corners};
+use crate::compile::geometry::normalize;
 use crate::math::{MINVAL, Vec3, cross, dot};
-use crate::mjcf_loader::compile::geometry::normalize;
 
 /// Least cosine between a face and the mean of the faces around a vertex for the face to count.
 const NEAR: f64 = 0.8;

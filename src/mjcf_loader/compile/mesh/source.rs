@@ -1,11 +1,11 @@
 //! Vertices, faces and texture coordinates of a mesh, from its file and from its attributes.
 
 use crate::assets::AssetSource;
+use crate::compile::context::Context;
+use crate::error::{ErrorKind, LoadError};
 use crate::formats::mesh::{MeshFormat, Triangles};
 use crate::limits::Limits;
-use crate::mjcf_loader::compile::context::Context;
-use crate::mjcf_loader::error::{ErrorKind, LoadError};
-use crate::mjcf_loader::mesh::Mesh;
+use crate::mesh::Mesh;
 
 /// Triangles as they are read.
 pub(super) type Surface = Triangles;

@@ -1,14 +1,14 @@
 //! The matrix and the right side of the dual problem.
 
 use super::{Dual, product};
+use crate::constraint::Efc;
+use crate::dynamics::Articulated;
+use crate::engine::{EngineError, within};
 use crate::limits::Limits;
 use crate::model::Model;
-use crate::physics::constraint::Efc;
-use crate::physics::dynamics::Articulated;
-use crate::physics::engine::{EngineError, within};
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorized;
+use crate::state::State;
+use crate::topology::Topology;
+use crate::vectorize::vectorized;
 
 impl Dual {
     /// Computes the matrix and the right side.

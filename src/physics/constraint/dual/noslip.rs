@@ -1,15 +1,15 @@
 //! The solver against slip: friction without regularisation, which cannot creep, at the normal forces that another solver found.
 
 use super::{CONE_ROWS, Dual, product, scale, settle};
+use crate::constraint::friction::{DIRECTIONS, Quadratic};
+use crate::constraint::{Block, ConstraintType, Efc};
+use crate::dynamics::Articulated;
+use crate::engine::EngineError;
 use crate::math::MINVAL;
 use crate::model::Model;
-use crate::physics::constraint::friction::{DIRECTIONS, Quadratic};
-use crate::physics::constraint::{Block, ConstraintType, Efc};
-use crate::physics::dynamics::Articulated;
-use crate::physics::engine::EngineError;
-use crate::physics::state::State;
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorized;
+use crate::state::State;
+use crate::topology::Topology;
+use crate::vectorize::vectorized;
 
 /// Least diagonal entry of the matrix of a contact's friction, 1/kg, as in MuJoCo.
 const LEAST: f64 = 1e-10;

@@ -1,7 +1,7 @@
 //! Jacobians times curvatures.
 
-use crate::physics::constraint::hessian::Hessian;
-use crate::physics::tiles::Lanes;
+use crate::constraint::hessian::Hessian;
+use crate::tiles::Lanes;
 
 impl Hessian {
     /// Computes `weighted = diag(weight) J`.

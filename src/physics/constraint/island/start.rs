@@ -1,16 +1,16 @@
 //! Where Newton's method starts.
 
-use crate::physics::constraint::Efc;
-use crate::physics::constraint::island::Island;
-use crate::physics::tiles::{mul, total};
-use crate::physics::topology::Topology;
-use crate::physics::vectorize::vectorize;
+use crate::constraint::Efc;
+use crate::constraint::island::Island;
+use crate::tiles::{mul, total};
+use crate::topology::Topology;
+use crate::vectorize::vectorize;
 
 impl Island {
     /// Starts at `qacc_warmstart` (nv) or at the acceleration without constraints, whichever costs less. Returns the cost and
     /// the length of its gradient.
     #[inline(always)]
-    pub(in crate::physics::constraint) fn start(
+    pub(in crate::constraint) fn start(
         &mut self,
         topology: &Topology,
         qacc_warmstart: &[f64],

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::{Articulated, Link};
-use crate::physics::spatial::Spatial;
-use crate::physics::state::State;
+use crate::spatial::Spatial;
+use crate::state::State;
 
 /// A number of each of four right sides, or solutions.
 pub type Four = [f64; 4];

@@ -2,8 +2,8 @@
 
 use crate::math::*;
 use crate::model::{JointType, Model};
-use crate::physics::spatial::*;
-use crate::physics::state::State;
+use crate::spatial::*;
+use crate::state::State;
 
 /// Returns the energy of heights, and of the springs of joints and tendons, J.
 pub(super) fn potential(model: &Model, s: &State) -> f64 {

@@ -3,8 +3,8 @@
 use super::vector;
 use crate::math::*;
 use crate::model::{Model, ObjType, SensorType};
-use crate::physics::spatial::*;
-use crate::physics::state::State;
+use crate::spatial::*;
+use crate::state::State;
 
 /// An object that has a frame.
 struct Framed {

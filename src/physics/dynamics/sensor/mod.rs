@@ -7,12 +7,12 @@ mod picture;
 mod subtree;
 mod touch;
 
+use crate::constraint::ConstraintType;
 use crate::math::*;
 use crate::model::{DataType, Model, SensorType};
-use crate::physics::constraint::ConstraintType;
-use crate::physics::ray::nearest_geom;
-use crate::physics::spatial::{angular, linear, torque_at};
-use crate::physics::state::State;
+use crate::ray::nearest_geom;
+use crate::spatial::{angular, linear, torque_at};
+use crate::state::State;
 
 use frame::{frame, spatial_acceleration, spatial_velocity};
 use subtree::SubtreeScratch;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::state::State;
+use crate::state::State;
 
 /// Returns where a site is in the picture of a camera, pixels to the right and down from the upper left corner, with zeros behind it.
 pub(super) fn projection(model: &Model, s: &State, site: usize, camera: usize) -> [f64; 4] {

@@ -2,8 +2,8 @@
 
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::spatial::*;
-use crate::physics::state::State;
+use crate::spatial::*;
+use crate::state::State;
 
 /// Velocities and angular momenta of subtrees.
 #[derive(Clone, Debug, Default)]

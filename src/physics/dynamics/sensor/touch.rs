@@ -2,8 +2,8 @@
 
 use crate::math::*;
 use crate::model::Model;
-use crate::physics::ray::ray_shape;
-use crate::physics::state::State;
+use crate::ray::ray_shape;
+use crate::state::State;
 
 /// Returns the sum of the normal forces of contacts of the site's body whose line of force, from the contact into the body, meets
 /// the volume of the site, N.

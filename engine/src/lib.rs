@@ -1,0 +1,14 @@
+#![doc = include_str!("../README.md")]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod simulation;
+
+pub use mjcf_sim_loader as mjcf_loader;
+pub use mjcf_sim_model::{Limits, Model, assets, files, formats, limits, math, model, shelf, text, threads};
+pub use mjcf_sim_physics as physics;
+#[cfg(feature = "rapier")]
+pub use mjcf_sim_rapier as rapier;
+pub use mjcf_sim_render as render;
+pub use simulation::{Simulation, SimulationError};
