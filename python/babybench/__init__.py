@@ -15,7 +15,7 @@ Importing the package tells Gymnasium the names ``babybench/SelfTouch-v0``,
 ``babybench/Standup-v0``, ``babybench/SelfBody-v0``, ``babybench/Catch-v0``, ``babybench/RollOver-v0``,
 ``babybench/Mobile-v0`` and ``babybench/Play-v0``.
 ``babybench.utils``, ``babybench.eval``, ``babybench.build_xml`` and ``mimoEnv`` are those of the BabyBench starter
-kit, for scripts written for it.
+kit, for scripts written for it: ``pip install "babybench[kit]"``.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from babybench_core._native import __version__, config_examples, config_keys
 from babybench_core._paths import extended as _extended
-from babybench_core.swap import claim as _claim
+from babybench_core.starter_kit import claim as _claim
 
 if TYPE_CHECKING:
     from babybench_core.env import Env, make

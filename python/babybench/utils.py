@@ -1,15 +1,18 @@
-"""Environments, pictures and videos for scripts that were written for BabyBench's Python kit."""
+"""Environments, pictures and videos, for scripts for BabyBench's Python kit (``pip install "babybench[kit]"``)."""
 
-from babybench.build_xml import build
-from babybench_core.mimo.pictures import (
-    evaluation_img,
-    evaluation_video,
-    render,
-    to_grayscale,
-    view_binocular,
-    view_touches,
-)
-from babybench_core.mimo.runs import ENVS, make_dir, make_env, make_save_dirs
+from babybench_core.starter_kit import needed as _needed
+
+with _needed(__name__):
+    from babybench_kit.build_xml import build
+    from babybench_kit.pictures import (
+        evaluation_img,
+        evaluation_video,
+        render,
+        to_grayscale,
+        view_binocular,
+        view_touches,
+    )
+    from babybench_kit.runs import ENVS, make_dir, make_env, make_save_dirs
 
 __all__ = [
     "ENVS",

@@ -1,1 +1,1 @@
-"""The implementation of the packages ``babybench`` and ``mimoEnv``; import those."""
+"""The implementation of the package ``babybench``; import that."""

@@ -11,13 +11,13 @@ import sys
 from collections.abc import Sequence
 from typing import Optional
 
-from babybench_core import _native, swap
+from babybench_core import _native, starter_kit
 
 _SCRIPTS = """
 figures RESULTS ... --out DIR draws figures for papers of runs, records and benchmarks.
 export RECORD --to FORMATS --out DIR writes a record as Parquet, HDF5, NWB, for Rerun, TensorBoard or Minari.
 run [-m] SCRIPT [ARGUMENT ...] runs a Python script that was written for the starter kit on the engine of this package,
-wherever MIMo is installed; processes that the script starts inherit that."""
+wherever MIMo is installed; processes that the script starts inherit that (pip install "babybench[kit]")."""
 
 
 def _parser(program: str) -> argparse.ArgumentParser:
@@ -32,6 +32,11 @@ def _parser(program: str) -> argparse.ArgumentParser:
 
 def _run(script: str, arguments: Sequence[str], module: bool) -> None:
     """Runs a script as Python does, but for who serves ``mimoEnv``; processes that it starts inherit that."""
+    try:
+        with starter_kit.needed("babybench run SCRIPT"):
+            from babybench_kit import swap
+    except ModuleNotFoundError as error:
+        raise SystemExit(f"error: {error}") from None
     os.environ[swap.CHOICE] = "babybench"
     swap.watch()
     sys.argv = [script, *arguments]

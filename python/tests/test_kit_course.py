@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from kit_scripts import Make, steps
 
-from babybench_core.mimo import course
-from babybench_core.mimo.course import Copy, Course, IllegalChange, Moment, Share, Turn
+from babybench_kit import course
+from babybench_kit.course import Copy, Course, IllegalChange, Moment, Share, Turn
 
 PARTS: tuple[tuple[str, type[Enum]], ...] = (("moment", Moment), ("copy", Copy), ("turn", Turn))
 

@@ -57,7 +57,7 @@ def test_what_would_be_ignored_is_refused() -> None:
 
 
 def test_the_others_name_what_to_use() -> None:
-    from babybench_core.mimo.experiments import ELSEWHERE
+    from babybench_kit.experiments import ELSEWHERE
 
     for name in ELSEWHERE:
         with pytest.raises(NotImplementedError, match=rf"{name} is not part of babybench: .*make\("):

@@ -59,7 +59,7 @@ def test_mimo_serves_where_it_is_installed_in_either_order(
     for name in MIMO:
         shutil.rmtree(site / name)
     done = run(kit_python, "-c", WHERE, cwd=tmp_path, path=(site,))
-    assert done.stdout.split()[1] == "babybench_core.mimo.touch"
+    assert done.stdout.split()[1] == "babybench_kit.touch"
     place_mimo(whole, site)
     for name in STAND_INS:
         (site / f"{name}.py").unlink()
@@ -76,7 +76,7 @@ def test_an_editable_mimo_serves_too_unless_told_otherwise(kit_python: str, whol
     done = run(kit_python, "-c", editable, cwd=tmp_path, path=(site,))
     assert done.stdout.split()[1] == "mimoTouch.touch"
     done = run(kit_python, "-c", editable, cwd=tmp_path, path=(site,), BABYBENCH_MIMO="babybench")
-    assert done.stdout.split()[1] == "babybench_core.mimo.touch"
+    assert done.stdout.split()[1] == "babybench_kit.touch"
 
 
 def test_environments_of_an_installed_mimo_are_made_with_a_warning(
@@ -96,7 +96,7 @@ def test_environments_of_an_installed_mimo_are_made_with_a_warning(
     for how in ({"BABYBENCH_MIMO": "babybench"}, {}):
         first = make if how else make.replace("import mimoEnv, ", "import ")
         done = run(kit_python, "-c", first, cwd=checkout, **how)
-        assert done.stdout.split()[-1] == "babybench_core.mimo.env"
+        assert done.stdout.split()[-1] == "babybench_kit.env"
         assert "BABYBENCH_MIMO" not in done.stderr
 
 

@@ -112,7 +112,7 @@ def test_modules_of_a_checkout_are_found_beside_the_package(checkout: Path) -> N
         "print(u.make_env.__module__, BONUS)\n"
     )
     done = run(sys.executable, script, cwd=checkout)
-    assert done.stdout.split() == ["babybench_core.mimo.runs", "3"]
+    assert done.stdout.split() == ["babybench_kit.runs", "3"]
 
 
 def test_what_is_trained_here_is_evaluated_by_the_kit(

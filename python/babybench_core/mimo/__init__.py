@@ -1,1 +1,0 @@
-"""The modules that run under the names of the Python kit."""

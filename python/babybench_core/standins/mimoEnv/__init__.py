@@ -1,5 +1,0 @@
-"""MIMo's environments, run by this library; registers the ids of BabyBench with Gymnasium."""
-
-from babybench_core.mimo.registration import register_kit
-
-register_kit()

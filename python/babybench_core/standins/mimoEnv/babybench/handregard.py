@@ -1,5 +1,0 @@
-"""The environment of hand regard."""
-
-from babybench_core.mimo.env import DEFAULT_SIZE, BabyBenchEnv, BabyBenchHandRegardEnv
-
-__all__ = ["DEFAULT_SIZE", "BabyBenchEnv", "BabyBenchHandRegardEnv"]

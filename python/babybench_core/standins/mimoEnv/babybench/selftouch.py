@@ -1,5 +1,0 @@
-"""The environment of self-touch."""
-
-from babybench_core.mimo.env import DEFAULT_SIZE, BabyBenchEnv, BabyBenchSelfTouchEnv
-
-__all__ = ["DEFAULT_SIZE", "BabyBenchEnv", "BabyBenchSelfTouchEnv"]

@@ -1,5 +1,0 @@
-"""Catching a ball."""
-
-from babybench_core.mimo.experiments import MIMoCatchEnv
-
-__all__ = ["MIMoCatchEnv"]

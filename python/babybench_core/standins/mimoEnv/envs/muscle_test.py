@@ -1,7 +1,0 @@
-"""Tests of MIMo's muscles, which this package does not have."""
-
-from babybench_core.mimo.experiments import missing
-
-
-def __getattr__(name: str) -> object:
-    return missing(__name__, name)

@@ -1,5 +1,0 @@
-"""Touching a part of the body."""
-
-from babybench_core.mimo.experiments import MIMoSelfBodyEnv
-
-__all__ = ["MIMoSelfBodyEnv"]

@@ -1,0 +1,38 @@
+"""The way to the package ``babybench-kit``, which serves the modules of the BabyBench starter kit; this one runs without it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+PACKAGE = "babybench_kit"
+
+
+@contextmanager
+def needed(by: str) -> Iterator[None]:
+    """Says how to install ``babybench-kit`` where an import inside fails for want of it.
+
+    Args:
+        by: What needs it, for the message.
+
+    Raises:
+        ModuleNotFoundError: It is not installed.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if error.name != PACKAGE:
+            raise
+        text = f'{by} needs the package babybench-kit, which is not installed: pip install "babybench[kit]"'
+        raise ModuleNotFoundError(text, name=PACKAGE) from None
+
+
+def claim() -> None:
+    """Takes note, where ``babybench-kit`` is installed, that ``import babybench`` came: its ``mimoEnv`` serves from now on."""
+    try:
+        from babybench_kit import swap
+    except ModuleNotFoundError as error:
+        if error.name != PACKAGE:
+            raise
+        return
+    swap.claim()

@@ -1,0 +1,1 @@
+"""The implementation of ``mimoEnv`` and its siblings, ``babybench.utils`` and ``babybench.eval``; import those."""

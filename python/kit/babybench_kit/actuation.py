@@ -1,0 +1,267 @@
+"""MIMo's actuation models: ``mimoActuation``.
+
+They run in the engine; these classes show what they do, and let subclasses change an action on its way.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import ArrayLike, NDArray
+
+from babybench_core import _native
+
+from .utils import JOINT_EQUALITY
+
+if TYPE_CHECKING:
+    from .mimo_env import MIMoEnv
+
+Array = NDArray[np.float64]
+
+
+class ActuationModel:
+    """The interface of actuation models.
+
+    Attributes:
+        env: The environment.
+        actuators: Ids of the actuators, (n,).
+        n_actuators: Their number.
+        action_space: The bounds of an action.
+    """
+
+    _engine_name = ""
+    """The value of ``actuation_model`` in a configuration."""
+
+    def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_], *args: Any) -> None:
+        """Belongs to an environment and drives some of its actuators."""
+        self.env = env
+        self._core = env._core
+        self.actuators = actuators
+        self.n_actuators = actuators.shape[0]
+        self.action_space = self.get_action_space()
+
+    def get_action_space(self) -> spaces.Box:
+        """Returns the bounds of an action."""
+        raise NotImplementedError
+
+    def action(self, action: ArrayLike) -> None:
+        """Takes an action for the next step."""
+        raise NotImplementedError
+
+    def substep_update(self) -> None:
+        """Updates the actuators before each physics step of a step but the first."""
+
+    def observations(self) -> Array:
+        """Returns what proprioception says of the actuators."""
+        raise NotImplementedError
+
+    def cost(self) -> float:
+        """Returns the cost of the present controls."""
+        raise NotImplementedError
+
+    def reset(self) -> None:
+        """Puts the actuators to rest."""
+        raise NotImplementedError
+
+
+class EngineActuation(ActuationModel):
+    """An actuation model that runs in the engine.
+
+    Attributes:
+        control_input: The last action, clipped to the action space.
+    """
+
+    def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
+        """Belongs to an environment and drives some of its actuators."""
+        self.control_input: NDArray[Any] = np.zeros(0)
+        super().__init__(env, actuators)
+
+    def get_action_space(self) -> spaces.Box:
+        """Returns a new space with the bounds of an action."""
+        low, high = self._core.engine.action_bounds
+        self.control_input = np.zeros(low.shape)
+        return spaces.Box(low=low, high=high, dtype=np.float32)
+
+    def action(self, action: ArrayLike) -> None:
+        """Takes an action, (n,), clipped to the action space, for the next step."""
+        space = self.action_space
+        control = np.asarray(action)
+        if control.shape != space.shape:
+            # a number stands for all
+            control = np.broadcast_to(control, space.shape)
+        self.control_input = control.clip(space.low, space.high)
+        self._core.set_action(self.control_input)
+
+    def substep_update(self) -> None:
+        """Updates the actuators before each physics step of a step but the first."""
+        self._core.substep()
+
+    def observations(self) -> Array:
+        """Returns what proprioception says of the actuators."""
+        self._core.observe()
+        return np.array(self._core.proprioception()[self._core.layout["actuation"]])
+
+    def cost(self) -> float:
+        """Returns the cost of the present controls, 0 to 1."""
+        return float(self._core.parts.cost)
+
+    def reset(self) -> None:
+        """Puts the actuators to rest."""
+        self.action(np.zeros_like(self.control_input))
+
+
+class SpringDamperModel(EngineActuation):
+    """Torque motors: an action is the torque over the gear, within the force range of each motor.
+
+    Attributes:
+        max_torque: Gear of each motor, (n,), N m.
+    """
+
+    _engine_name = "spring_damper"
+
+    def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
+        """Belongs to an environment and drives some of its actuators."""
+        super().__init__(env, actuators)
+        self.max_torque: Array = np.asarray(env._core.blueprint.model_array("actuator_gear"))[actuators]
+
+    def observations(self) -> Array:
+        """Returns controls and torques (N m), (2 n,)."""
+        return np.concatenate([self.control_input.flatten(), self.simulation_torque()])
+
+    def simulation_torque(self) -> Array:
+        """Returns the torque of each motor, (n,), N m."""
+        torque: Array = self.max_torque * self._core.engine.state_array("ctrl")[self.actuators]
+        return torque
+
+
+class PositionalModel(EngineActuation):
+    """Position servos: an action is an angle for each joint, rad. Joints that a constraint holds do not follow.
+
+    Attributes:
+        actuated_joints: Ids of the joints, (n,).
+        locked_joints: Ids of those that a constraint holds.
+    """
+
+    _engine_name = "positional"
+
+    def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
+        """Belongs to an environment and drives some of its actuators."""
+        self.actuated_joints: NDArray[np.int_] = np.asarray(env._core.blueprint.model_array("actuator_trnid"))[
+            actuators
+        ]
+        super().__init__(env, actuators)
+        self.locked_joints = self.get_locked_joints()
+
+    def get_locked_joints(self) -> NDArray[np.int_]:
+        """Returns the ids of the actuated joints that a constraint holds."""
+        equalities = _native.model_extras(self._core.blueprint)
+        holding = (equalities["eq_type"] == JOINT_EQUALITY) & (self._core.parts.eq_active0 == 1)
+        held = np.concatenate([equalities["eq_obj1id"][holding], equalities["eq_obj2id"][holding]])
+        return np.intersect1d(held, self.actuated_joints)
+
+    def substep_update(self) -> None:
+        """Returns to 0 rad after the first physics step of a step, as MIMo's own does."""
+        self.action(np.zeros_like(self.control_input))
+
+    def observations(self) -> Array:
+        """Returns the angles of the last action, (n,), rad."""
+        return self.control_input.flatten()
+
+    def cost(self) -> float:
+        """Returns 0."""
+        return 0
+
+
+class MuscleModel(EngineActuation):
+    """Two opposing muscles for each actuator: an action is their excitations, 0 to 1, first those that pull to the negative side.
+
+    Attributes:
+        tau: Time constant of activation, s.
+        lmin, lmax: Shortest and longest length at which a muscle pulls, relative to its optimum.
+        fvmax, fpmax: Largest factors of lengthening and of passive force.
+        lce_min, lce_max: Lengths at the ends of a joint's range.
+    """
+
+    _engine_name = "muscle"
+    lmin, lmax = 0.5, 1.6
+    fvmax, fpmax = 1.2, 1.3
+    lce_min, lce_max = 0.75, 1.05
+    tau = 0.01
+
+    def __init__(self, env: MIMoEnv, actuators: NDArray[np.int_]) -> None:
+        """Belongs to an environment and drives some of its actuators."""
+        super().__init__(env, actuators)
+        model = env._core.blueprint.model_array
+        user = np.asarray(model("actuator_user"))[actuators]
+        joints = np.asarray(model("actuator_trnid"))[actuators]
+        self.time_step = float(env._core.blueprint.model_options["timestep"])
+        self.vmax: Array = user[:, 0].copy()
+        self.fmax: Array = np.concatenate([user[:, 1], user[:, 2]])
+        self.mimo_actuated_joints = joints
+        self.mimo_actuated_qpos = np.asarray(model("jnt_qposadr"))[joints]
+        self.mimo_actuated_qvel = np.asarray(model("jnt_dofadr"))[joints]
+        spring = np.asarray(model("qpos_spring"))[self.mimo_actuated_qpos]
+        limits = np.asarray(model("jnt_range"))[joints]
+        self.phi_min, self.phi_max = limits[:, 0] - spring, limits[:, 1] - spring
+        self._spring = spring
+        span = (self.lce_max - self.lce_min + 1e-10) / (self.phi_max - self.phi_min + 1e-10)
+        self._moments = np.concatenate([span, -span])
+        self._offsets = np.concatenate([self.lce_min - span * self.phi_min, self.lce_min + span * self.phi_max])
+
+    @property
+    def activity(self) -> Array:
+        """Returns the activations of the muscles, (2 n,), 0 to 1."""
+        return np.asarray(self._core.engine.state_array("act"))
+
+    @property
+    def target_activity(self) -> Array:
+        """Returns the excitations that the activations follow, (2 n,)."""
+        return np.asarray(self._core.engine.state_array("actuator_target"))
+
+    @property
+    def joint_torque(self) -> Array:
+        """Returns the torques of the muscles on the joints, (n,), N m."""
+        return np.asarray(self._core.engine.state_array("muscle_torque"))
+
+    def observations(self) -> Array:
+        """Returns activations and forces, (4 n,)."""
+        return np.concatenate([self.activity, self.muscle_forces()])
+
+    def muscle_activations(self) -> Array:
+        """Returns the activations of the muscles, (2 n,), 0 to 1."""
+        return self.activity
+
+    def muscle_lengths(self) -> Array:
+        """Returns the lengths of the muscles, (2 n,), relative to their optimum."""
+        angles = self._core.engine.state_array("qpos")[self.mimo_actuated_qpos] - self._spring
+        return np.asarray(np.tile(angles, 2) * self._moments + self._offsets)
+
+    def muscle_velocities(self) -> Array:
+        """Returns the velocities of the muscles, (2 n,), optimal lengths per s."""
+        return np.asarray(np.tile(self._core.engine.state_array("qvel")[self.mimo_actuated_qvel], 2) * self._moments)
+
+    def muscle_forces(self) -> Array:
+        """Returns the forces of the muscles, (2 n,), as proprioception reports them."""
+        return np.asarray(self._core.engine.state_array("muscle_force").astype(np.float32) * self.fmax)
+
+    def simulation_torque(self) -> Array:
+        """Returns the torque on each joint, (n,), N m."""
+        return self.joint_torque
+
+    def set_fmax(self, fmax: ArrayLike) -> None:
+        """Refuses other strengths: they stand in the files of the scene."""
+        raise NotImplementedError("the strengths of muscles are `user` of the actuators in the MJCF: change them there")
+
+    def set_vmax(self, vmax: ArrayLike) -> None:
+        """Refuses other velocities: they stand in the files of the scene."""
+        raise NotImplementedError(
+            "the velocities of muscles are `user` of the actuators in the MJCF: change them there"
+        )
+
+
+MODELS: dict[str, type[EngineActuation]] = {
+    model._engine_name: model for model in (SpringDamperModel, PositionalModel, MuscleModel)
+}
+"""The actuation models by the names that they have in configurations."""

@@ -1,0 +1,39 @@
+"""The engine as the model and the state that scripts see need it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from babybench_core import _native
+
+from .course import Course
+
+
+class Beneath(Protocol):
+    """The engine under one environment, as its model and its state know it: :class:`babybench_kit.core.Core`."""
+
+    config: dict[str, Any]
+    assets: Path | None
+    blueprint: _native.Blueprint
+    engine: _native.Env
+    parts: _native.Parts
+    place: list[float] | None
+    timestep: float
+    width: int
+    height: int
+    mimo_joints: NDArray[np.int_]
+    course: Course
+
+    @property
+    def model(self) -> Any:
+        """Returns the model that scripts see."""
+
+    def written(self) -> None:
+        """Takes note that a script has written to the state."""
+
+    def show_normals(self, frames: NDArray[np.float64]) -> None:
+        """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""

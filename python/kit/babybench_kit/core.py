@@ -1,0 +1,230 @@
+"""The engine under an environment: its parts, what it knows of the scene, and the state that scripts hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from babybench_core import _native
+
+from .course import Course, Turn
+from .live import Live, ViewLive
+from .models import Watched, make_model, mujoco_module
+from .mujoco_live import MujocoLive
+from .scene import Scene
+from .settings import blueprint
+from .views import ModelView
+
+Array = NDArray[np.float64]
+
+
+class Poses:
+    """The poses of bodies and geoms at the start of the last physics step, as ``MjData`` gives them."""
+
+    def __init__(self, engine: _native.Env) -> None:
+        """Reads all poses."""
+        self.xpos, self.xmat = engine.state_array("xpos"), engine.state_array("xmat")
+        self.geom_xpos, self.geom_xmat = engine.state_array("geom_xpos"), engine.state_array("geom_xmat")
+
+    def body(self, number: int) -> SimpleNamespace:
+        """Returns position and orientation of a body."""
+        return SimpleNamespace(xpos=self.xpos[number], xmat=self.xmat[number])
+
+    def geom(self, number: int) -> SimpleNamespace:
+        """Returns position and orientation of a geom."""
+        return SimpleNamespace(xpos=self.geom_xpos[number], xmat=self.geom_xmat[number])
+
+
+class Core:
+    """The engine under one environment.
+
+    Attributes:
+        config: The complete configuration of the engine.
+        assets: The folder of MJCF files and textures; nothing for the embedded ones.
+        engine: The environment in Rust; ``parts`` are the parts of its reset and step.
+        names: Names of all elements, by kind.
+        course: What is known of the present instant, and who may write to it.
+        observed: Number of observations so far.
+        frames: What returns the frames of all contacts, (n, 9), as touch has left them, with or without reading back what a
+            script has written; ``None`` without touch.
+        width, height: Size of pictures for people, pixels.
+    """
+
+    def __init__(self, config: dict[str, Any], scene: Scene, width: int, height: int) -> None:
+        """Compiles a scene, or takes a compiled one."""
+        self.config, self.assets, self.width, self.height = config, scene.assets, width, height
+        self.blueprint = blueprint(config, scene.assets)
+        self.engine = _native.Env(self.blueprint)
+        self.parts = _native.Parts(self.engine)
+        self.names: dict[str, list[str]] = {kind: list(names) for kind, names in self.blueprint.model_names.items()}
+        self.place: list[float] | None = None if scene.place is None else scene.place["pos"]
+        self.course = Course()
+        self.observed = 0
+        self.frames: Callable[[bool], Array] | None = None
+        self.plain_actuation = True
+        self.timestep = float(self.blueprint.model_options["timestep"])
+        array = self.blueprint.model_array
+        self.body_of_geom: NDArray[np.int32] = array("geom_bodyid")
+        self.tree = SimpleNamespace(
+            body_parentid=array("body_parentid"), body_geomadr=array("body_geomadr"), body_geomnum=array("body_geomnum")
+        )
+        joints = self.names["joint"]
+        self.mimo_joints: NDArray[np.int_] = np.asarray(
+            [i for i, name in enumerate(joints) if name.startswith("robot:")]
+        )
+        self._contacts: dict[str, NDArray[Any]] | None = None
+        self._poses: Poses | None = None
+        self._watched: Watched | None = None
+        self._live: Live | None = None
+        self.layout = self._proprioception_layout()
+
+    def _proprioception_layout(self) -> dict[str, slice]:
+        """Returns where each part of proprioception stands: in alphabetical order of their names."""
+        joints = len(self.mimo_joints)
+        torques = 3 * sum(name.startswith("proprio:") for name in self.names["sensor"])
+        total = len(self.parts.proprioception)
+        sizes = {
+            "actuation": total - 3 * joints - torques,
+            "limits": joints,
+            "qpos": joints,
+            "qvel": joints,
+            "torques": torques,
+        }
+        layout, at = {}, 0
+        for name, size in sizes.items():
+            layout[name] = slice(at, at + size)
+            at += size
+        return layout
+
+    # --- moving on ---
+
+    def _change(self, change: str) -> None:
+        """Forgets what was read of the state, which is another one now."""
+        self.course.change(change)
+        self._contacts = self._poses = None
+
+    def changed(self) -> None:
+        """Takes note that the state is another one, and computed."""
+        self._change("compute")
+        if self._live is not None:
+            self._live.advance()
+
+    def written(self) -> None:
+        """Takes note that a script has written to the state."""
+        self._change("write")
+
+    def pull(self) -> None:
+        """Reads back what a script has written to the model and to the state."""
+        if self.course.turn is not Turn.SCRIPT:
+            return
+        if self._watched is not None:
+            self._watched.follow()
+        if self._live is not None:
+            self._live.pull()
+
+    def reset_data(self) -> None:
+        """Forgets the past; see ``mujoco.mj_resetData``. Locks that a script has set begin to hold."""
+        if self._watched is not None:
+            self._watched.check()
+        self.parts.reset_data()
+        self.course.change("advance")
+        self._change("clear")
+
+    def forward(self, qpos: Any, qvel: Any) -> None:
+        """Computes everything at positions and velocities."""
+        self.parts.forward(qpos, qvel)
+        self.changed()
+
+    def set_action(self, action: Any) -> None:
+        """Gives an action to the actuators."""
+        self.parts.set_action(action)
+        self._show_controls()
+
+    def substep(self) -> None:
+        """Updates the actuators, as before each physics step of a step but the first."""
+        self.parts.substep()
+        self._show_controls()
+
+    def _show_controls(self) -> None:
+        """Shows new controls to whoever holds the state, lest the old ones be read back."""
+        if self._live is not None and self.course.copy.present:
+            self._live.data.ctrl[:] = self.engine.state_array("ctrl")
+
+    def physics_step(self) -> None:
+        """Advances by one physics step."""
+        self.pull()
+        self.parts.physics_step()
+        self.changed()
+
+    # --- senses ---
+
+    def observe(self) -> None:
+        """Senses the present state, if that has not been done."""
+        self.pull()
+        if not self.course.moment.sensed:
+            self.parts.observe()
+            self.observed += 1
+            self.course.change("sense")
+
+    def observation(self) -> dict[str, NDArray[Any]]:
+        """Returns what was sensed last, in fresh arrays."""
+        return self.engine.observation()
+
+    def proprioception(self) -> Array:
+        """Returns the last proprioception, (n,)."""
+        return self.parts.proprioception
+
+    def touch(self) -> NDArray[np.float32]:
+        """Returns what was felt last, (n,), N."""
+        felt = self.parts.touch
+        return np.zeros(0, np.float32) if felt is None else felt
+
+    def contacts(self, pull: bool = True) -> dict[str, NDArray[Any]]:
+        """Returns the contacts of the present state as columns; by choice without reading back what a script has written."""
+        if pull:
+            self.pull()
+        if self._contacts is None:
+            self._contacts = self.engine.contacts()
+        return self._contacts
+
+    def show_normals(self, frames: Array) -> None:
+        """Inverts normals in the frames that a script sees, (n, 9), where feeling has inverted them at this instant."""
+        if self.frames is None or not self.course.moment.felt:
+            return
+        known = self.frames(False)
+        if len(known) == len(frames):
+            frames[np.einsum("ij,ij->i", known[:, :3], frames[:, :3]) < 0, :3] *= -1
+
+    @property
+    def poses(self) -> Poses:
+        """Returns the poses of the present state."""
+        if self._poses is None:
+            self._poses = Poses(self.engine)
+        return self._poses
+
+    # --- what scripts hold ---
+
+    @property
+    def model(self) -> Any:
+        """Returns the model that scripts see."""
+        if self._watched is None:
+            self._watched = Watched(self, make_model(self))
+        return self._watched.model
+
+    @property
+    def data(self) -> Any:
+        """Returns the state that scripts see, up to date."""
+        if self._live is None:
+            self._live = self._make_live()
+        elif not self.course.copy.present:
+            self._live.refresh()
+        return self._live.data
+
+    def _make_live(self) -> Live:
+        """Makes the state that scripts hold: MuJoCo's own where it is installed."""
+        mujoco = mujoco_module()
+        return ViewLive(self) if mujoco is None or isinstance(self.model, ModelView) else MujocoLive(self, mujoco)

@@ -1,0 +1,400 @@
+"""The base of MIMo's environments: ``mimoEnv.envs.mimo_env``.
+
+They go through a reset and a step as the kit's do, method by method, so that subclasses can replace any of them; the
+work behind each method is the engine's.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from babybench_core import _native
+
+from . import tables
+from .actuation import MODELS, ActuationModel, SpringDamperModel
+from .core import Core
+from .course import Share
+from .renderer import MujocoRenderer
+from .scene import Scene, read_scene
+from .sensing import Observation, SensingEnv
+from .settings import engine_config
+
+Array = NDArray[np.float64]
+
+DEFAULT_SIZE = 480
+"""Width and height of pictures for people, pixels."""
+
+SCENE_NAME = "babybench.xml"
+"""The scene of environments without a configuration."""
+
+EMOTES = {"default": "tex_head_default"} | {
+    emotion: f"tex_head_{emotion}" for emotion in ("happy", "sad", "surprised", "angry", "disgusted", "scared")
+}
+"""The textures of facial expressions."""
+
+_WITHIN_STEP = (
+    "do_simulation",
+    "_set_action",
+    "_single_mujoco_step",
+    "_substep_callback",
+    "_step_callback",
+    "_get_obs",
+)
+"""Methods between the start of a step and its observation."""
+
+_DEFAULT_SCENE = Scene(
+    keys={"scene": "base", **{f"act_{part}": True for part in tables.PARTS}},
+    place={"pos": [0.0, 0.0, 0.075]},
+    servos=False,
+)
+"""Description of :data:`SCENE_NAME`."""
+
+
+def _known_scene(model_path: str | os.PathLike[str]) -> Scene:
+    path = Path(model_path)
+    if path.is_file():
+        return read_scene(path)
+    if path.name == SCENE_NAME:
+        return _DEFAULT_SCENE
+    raise FileNotFoundError(f"File {path} does not exist")
+
+
+class MIMoEnv(SensingEnv):
+    """MIMo in a scene, with the senses and the actuation that the arguments ask for.
+
+    Args:
+        model_path: The scene, as ``babybench.build_xml.build`` writes it.
+        initial_qpos: Joint angles at the start by the joints' names, rad.
+        frame_skip: Physics steps of 5 ms for each step.
+        render_mode: ``rgb_array`` or ``depth_array``, for :meth:`render`.
+        camera_id: The camera of :meth:`render`, by id.
+        camera_name: The camera of :meth:`render`, by name.
+        width, height: Size of pictures for people, pixels.
+        default_camera_config: Not used.
+        proprio_params, touch_params, vision_params, vestibular_params: Parameters of the senses; ``None`` turns one off.
+        actuation_model: The class of the actuation model.
+        goals_in_observation: Whether ``achieved_goal`` and ``desired_goal`` are part of the observation.
+        done_active: Whether success and failure end an episode.
+
+    Attributes:
+        model, data: MuJoCo's ``MjModel`` and ``MjData`` of the present state where MuJoCo is installed, or what stands for them.
+            ``qpos``, ``qvel``, ``ctrl`` and ``qfrc_applied`` of ``data`` can be written to.
+        init_qpos, init_qvel: The state in which episodes start.
+        touch, proprioception, vestibular, vision, actuation_model: The senses and the actuation.
+        mimo_joints, mimo_actuators: Ids of MIMo's joints and actuators.
+        facial_expressions: Ids of the textures of MIMo's faces.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "depth_array"], "render_fps": 200}  # noqa: RUF012
+    _engine_behavior = "none"
+    _forwards_attributes = True
+    _ezpickle_args: tuple[Any, ...]
+    _ezpickle_kwargs: dict[str, Any]
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> MIMoEnv:
+        """Remembers the arguments, for copies and pickles."""
+        env = super().__new__(cls)
+        env._ezpickle_args, env._ezpickle_kwargs = args, kwargs
+        return env
+
+    def __init__(
+        self,
+        model_path: str | os.PathLike[str] = SCENE_NAME,
+        initial_qpos: Mapping[str, ArrayLike] | None = None,
+        frame_skip: int = 2,
+        render_mode: str | None = None,
+        camera_id: int | None = None,
+        camera_name: str | None = None,
+        width: int = 500,
+        height: int = 500,
+        default_camera_config: dict[str, Any] | None = None,
+        proprio_params: dict[str, Any] | None = None,
+        touch_params: dict[str, Any] | None = None,
+        vision_params: dict[str, Any] | None = None,
+        vestibular_params: dict[str, Any] | None = None,
+        actuation_model: type[ActuationModel] = SpringDamperModel,
+        goals_in_observation: bool = True,
+        done_active: bool = False,
+        *,
+        config: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Compiles the scene and settles nothing yet: MIMo is where the scene puts it."""
+        self.frame_skip = frame_skip
+        self.proprio_params, self.touch_params = proprio_params, touch_params
+        self.vision_params, self.vestibular_params = vision_params, vestibular_params
+        self.goals_in_observation, self.done_active = goals_in_observation, done_active
+        self.width, self.height = width, height
+        self.render_mode, self.camera_id, self.camera_name = render_mode, camera_id, camera_name
+        self.fullpath = os.path.abspath(model_path)
+        self._core = self._compile(_known_scene(model_path), actuation_model, config or {})
+        self._name_parts()
+        self._initial_qpos = initial_qpos
+        self._set_initial_position(initial_qpos)
+        self.actuation_model: ActuationModel = actuation_model(self, self.mimo_actuators)
+        self._core.plain_actuation = actuation_model in MODELS.values()
+        self._set_action_space()
+        self._own_seed = self.action_space.np_random
+        self.mujoco_renderer = MujocoRenderer(self._core, default_camera_config)
+        self.proprioception = self.touch = self.vision = self.vestibular = None
+        self._core.reset_data()
+        self._core.forward(self.init_qpos, self.init_qvel)
+        self._env_setup()
+        self.goal = self.sample_goal()
+        self._share = self._share_of_the_script()
+        self._set_observation_space()
+
+    def _share_of_the_script(self) -> Share:
+        """Returns what of this environment a subclass has replaced."""
+        if not self._observes_plainly():
+            return Share.SENSES
+        kept = all(getattr(type(self), method) is getattr(MIMoEnv, method) for method in _WITHIN_STEP)
+        return Share.NOTHING if kept else Share.STEP
+
+    def _compile(self, scene: Scene, actuation_model: type[ActuationModel], config: Mapping[str, Any]) -> Core:
+        """Compiles a scene for the senses and the actuation that the arguments ask for."""
+        names = (name for cls in actuation_model.__mro__ if (name := getattr(cls, "_engine_name", "")))
+        settings = engine_config(
+            config,
+            scene,
+            behavior=self._engine_behavior,
+            frame_skip=self.frame_skip,
+            size=max(self.width, self.height),
+            touch=self.touch_params,
+            vision=self.vision_params,
+            balance=self.vestibular_params,
+            actuation=next(names, "spring_damper"),
+        )
+        return Core(settings, scene, self.width, self.height)
+
+    def _name_parts(self) -> None:
+        """Finds what is MIMo's in the scene."""
+        core = self._core
+        self.metadata = {**type(self).metadata, "render_fps": round(1 / self.dt)}
+        self.mimo_joints = core.mimo_joints
+        actuators = core.names["actuator"]
+        self.mimo_actuators = np.asarray([i for i, name in enumerate(actuators) if name.startswith("act:")])
+        self._find_faces()
+        self.init_qpos: Array = np.array(core.blueprint.model_array("qpos0"))
+        self.init_qvel: Array = np.zeros(core.blueprint.model_options["nv"])
+        if core.place is not None:
+            self.init_qpos[:3] = core.place
+
+    # --- what scripts see ---
+
+    @property
+    def model(self) -> Any:
+        """Returns MuJoCo's model of the scene, or what stands for it."""
+        return self._core.model
+
+    @property
+    def data(self) -> Any:
+        """Returns MuJoCo's present state, or what stands for it."""
+        return self._core.data
+
+    @property
+    def dt(self) -> float:
+        """Returns the duration of a step, s."""
+        return self._core.timestep * self.frame_skip
+
+    @property
+    def n_actuators(self) -> int:
+        """Returns the number of MIMo's actuators."""
+        return int(self.mimo_actuators.shape[0])
+
+    def get_body_com(self, body_name: str) -> Array:
+        """Returns the position of a body's frame in the world, m."""
+        return np.array(self._core.poses.xpos[self._core.names["body"].index(body_name)])
+
+    def state_vector(self) -> Array:
+        """Returns positions and velocities, (nq + nv,)."""
+        self._core.pull()
+        engine = self._core.engine
+        return np.concatenate([engine.state_array("qpos"), engine.state_array("qvel")])
+
+    def swap_facial_expression(self, emotion: str) -> None:
+        """Lets MIMo make another face, one of :attr:`facial_expressions`, in all that is drawn from now on."""
+        assert emotion in self.facial_expressions, f"{emotion} is not a valid facial expression!"
+        self._core.pull()
+        self._core.engine.swap_facial_expression(emotion)
+        self._core.changed()  # poses and contacts are those of the state now, no longer of the last step's start
+
+    # --- construction ---
+
+    def _find_faces(self) -> None:
+        textures: list[str] = _native.model_extras(self._core.blueprint)["texture"]
+        self.facial_expressions = {
+            emotion: textures.index(name) for emotion, name in EMOTES.items() if name in textures
+        }
+
+    def _set_initial_position(self, initial_qpos: Mapping[str, ArrayLike] | None) -> None:
+        array, joints = self._core.blueprint.model_array, self._core.names["joint"]
+        for name, position in (initial_qpos or {}).items():
+            first = array("jnt_qposadr")[joints.index(name)]
+            self.init_qpos[first : first + np.size(position)] = position
+
+    def _set_action_space(self) -> None:
+        """Makes :attr:`action_space`."""
+        self.action_space = self.actuation_model.get_action_space()
+
+    # --- physics ---
+
+    def _set_action(self, action: ArrayLike) -> None:
+        """Gives an action to the actuation model."""
+        self._core.pull()
+        self.actuation_model.action(action)
+
+    def _single_mujoco_step(self) -> None:
+        """Advances by one physics step."""
+        self._core.physics_step()
+
+    def do_simulation(self, action: ArrayLike, n_frames: int) -> None:
+        """Applies an action for a number of physics steps."""
+        self._set_action(action)
+        self._single_mujoco_step()
+        self._substep_callback()
+        for _ in range(n_frames - 1):
+            self.actuation_model.substep_update()
+            self._single_mujoco_step()
+            self._substep_callback()
+
+    def set_state(self, qpos: ArrayLike, qvel: ArrayLike) -> None:
+        """Puts the scene at positions (nq,) and velocities (nv,), and computes everything there."""
+        self._core.forward(qpos, qvel)
+
+    def _reset_simulation(self) -> None:
+        """Forgets the past, puts the actuators to rest, and samples a goal."""
+        self._core.reset_data()
+        self.actuation_model.reset()
+        self.goal = self.sample_goal()
+
+    def _step_callback(self) -> None:
+        """Is called after the physics steps of a step."""
+
+    def _substep_callback(self) -> None:
+        """Is called after each physics step."""
+
+    def _obs_callback(self) -> None:
+        """Is called after the observation of a step."""
+
+    # --- Gymnasium ---
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Starts an episode.
+
+        The random start actions come from the generator of :attr:`action_space`, as the kit's do. A seed reaches that generator
+        unless a script has seeded it: ``env.action_space.seed(7)`` makes episodes repeatable as with the kit.
+
+        Returns:
+            The observation, and no information.
+        """
+        super().reset(seed=seed)
+        if seed is not None and self.action_space._np_random is self._own_seed:
+            self.action_space.seed(seed)
+            self._own_seed = self.action_space._np_random
+        self._reset_simulation()
+        return self.reset_model(), {}
+
+    def _advance(self, action: ArrayLike) -> Observation:
+        """Applies an action, and returns what is sensed then."""
+        core = self._core
+        core.pull()
+        if self._share is not Share.NOTHING:
+            return self._acted(action)
+        # as no subclass takes part, nobody writes to the state before the observation
+        core.course.change("begin")
+        try:
+            return self._acted(action)
+        finally:
+            core.course.change("end")
+
+    def _acted(self, action: ArrayLike) -> Observation:
+        self.do_simulation(action, self.frame_skip)
+        self._step_callback()
+        return self._get_obs()
+
+    def step(self, action: ArrayLike) -> tuple[Observation, Any, bool, bool, dict[str, Any]]:
+        """Applies an action, (n,), for ``frame_skip`` physics steps.
+
+        Returns:
+            Observation, reward, whether the episode has ended, whether it was cut, and information.
+        """
+        observation = self._advance(action)
+        self._obs_callback()
+        achieved = self.get_achieved_goal()
+        info = {"is_success": self.is_success(achieved, self.goal), "is_failure": self.is_failure(achieved, self.goal)}
+        if not self.goals_in_observation:
+            info.update(achieved_goal=achieved, desired_goal=self.goal)
+        terminated, truncated = self._is_done(achieved, self.goal, info)
+        return observation, self.compute_reward(achieved, self.goal, info), terminated, truncated, info
+
+    def _is_done(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> tuple[bool, bool]:
+        """Returns whether the episode has ended, and whether it was cut."""
+        return bool(self.done_active and (info["is_success"] or info["is_failure"])), self.is_truncated()
+
+    def render(self) -> NDArray[Any] | None:  # type: ignore[override,unused-ignore]
+        """Draws the scene for people, in the mode and from the camera of the constructor."""
+        return self.mujoco_renderer.render(self.render_mode, self.camera_id, self.camera_name)
+
+    def close(self) -> None:
+        """Closes the renderer."""
+        renderer = getattr(self, "mujoco_renderer", None)
+        if renderer is not None:
+            renderer.close()
+
+    # --- what subclasses say ---
+
+    def reset_model(self) -> Observation:
+        """Puts the scene at the start of an episode, and returns the observation."""
+        raise NotImplementedError
+
+    def is_success(self, achieved_goal: Any, desired_goal: Any) -> bool:
+        """Returns whether a goal is reached."""
+        raise NotImplementedError
+
+    def is_failure(self, achieved_goal: Any, desired_goal: Any) -> bool:
+        """Returns whether a goal cannot be reached any more."""
+        raise NotImplementedError
+
+    def is_truncated(self) -> bool:
+        """Returns whether the episode ends for another reason."""
+        raise NotImplementedError
+
+    def sample_goal(self) -> Any:
+        """Returns a goal."""
+        raise NotImplementedError
+
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: dict[str, Any]) -> Any:
+        """Returns the reward of a step."""
+        raise NotImplementedError
+
+    # --- copies ---
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Returns what a copy continues with: the arguments, the state of the engine, and what else the environment holds."""
+        kept = {name: value for name, value in self.__dict__.items() if name not in _REMADE}
+        engine = self._core.engine
+        return {"snapshot": engine.snapshot(), "changes": engine.model_changes, "kept": kept}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Makes the environment anew and continues there."""
+        kept = state["kept"]
+        self.__init__(*kept["_ezpickle_args"], **kept["_ezpickle_kwargs"])  # type: ignore[misc,unused-ignore]
+        self.__dict__.update(kept)
+        self._core.engine.change_model(state["changes"])
+        self._core.engine.restore(state["snapshot"])
+        self._own_seed = self.action_space._np_random
+        self._core.changed()
+
+
+_REMADE = frozenset(
+    {"_core", "mujoco_renderer", "touch", "proprioception", "vision", "vestibular", "actuation_model", "_own_seed"}
+)
+"""Attributes that a copy makes anew."""

@@ -1,0 +1,212 @@
+"""The model that scripts see, ``env.model``: MuJoCo's own, or what stands for it."""
+
+from __future__ import annotations
+
+import os
+from types import ModuleType
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import NDArray
+
+from babybench_core import _native
+
+from .beneath import Beneath
+from .standin import MUJOCO
+from .utils import JOINT_EQUALITY
+from .views import ModelView
+
+_CHECKED = ("body", "jnt", "dof", "geom", "site", "cam", "tendon", "actuator", "pair", "eq", "qpos0", "qpos")
+_ALLOWED = frozenset({"eq_active0", "eq_data", "geom_rgba", "site_rgba"})
+"""Arrays that scripts may write to, too: those of locks are read back, colours are MuJoCo's own pictures' business."""
+
+
+def mujoco_module() -> ModuleType | None:
+    """Returns MuJoCo's bindings if they are installed; ``BABYBENCH_MUJOCO=off`` does without."""
+    if os.environ.get(MUJOCO) == "off":
+        return None
+    try:
+        import mujoco
+    except ImportError:
+        return None
+    return None if getattr(mujoco, "stands_in", False) else mujoco
+
+
+def _textures(xml: str) -> dict[str, ElementTree.Element]:
+    found = ElementTree.fromstring(xml).iter("texture")
+    return {texture.get("name", ""): texture for texture in found}
+
+
+def _with_small_textures(config: dict[str, Any], xml: str, images: dict[str, bytes]) -> tuple[str, dict[str, bytes]]:
+    """Replaces textures by the library's own of the same names: MIMo's take gigabytes of memory once they are decoded."""
+    own_xml, own_images = _native.scene_file(config, None)
+    own = _textures(own_xml)
+    root = ElementTree.fromstring(xml)
+    for parent in list(root.iter()):
+        for index, texture in enumerate(list(parent)):
+            replacement = own.get(texture.get("name", "")) if texture.tag == "texture" else None
+            if replacement is not None and texture.get("name"):
+                parent[index] = replacement
+    named = {value for texture in root.iter("texture") for value in texture.attrib.values()}
+    kept = {name: image for name, image in images.items() if name in named}
+    return ElementTree.tostring(root, encoding="unicode"), {**kept, **own_images}
+
+
+def mujoco_model(mujoco: ModuleType, core: Beneath) -> Any:
+    """Compiles the scene of an environment with MuJoCo; pictures on surfaces are the library's small ones."""
+    xml, images = _native.scene_file(core.config, core.assets)
+    if core.assets is not None:
+        xml, images = _with_small_textures(core.config, xml, images)
+    model = mujoco.MjModel.from_xml_string(xml, images)
+    model.vis.global_.offwidth, model.vis.global_.offheight = core.width, core.height
+    if core.place is not None:
+        model.body_pos[1] = core.place
+        model.qpos0[:3] = model.qpos_spring[:3] = core.place
+    if core.config["actuation_model"] == "muscle":
+        # muscles take the place of the springs in the joints
+        joints = core.mimo_joints
+        model.jnt_stiffness[joints] = 0
+        model.dof_damping[model.jnt_dofadr[joints]] /= 20
+        model.actuator_forcelimited[:] = 0
+    return model
+
+
+def view_model(core: Beneath) -> ModelView:
+    """Returns what stands for MuJoCo's model."""
+    model = ModelView(core.blueprint)
+    if core.place is not None:
+        for name in ("body_pos", "qpos0", "qpos_spring"):
+            array = np.array(getattr(model, name))
+            (array[1] if array.ndim > 1 else array)[:3] = core.place
+            array.flags.writeable = False
+            model.__dict__[name] = array
+    return model
+
+
+class Watched:
+    """A model that a script has: what it writes goes to the engine before the next step, or is refused."""
+
+    def __init__(self, core: Beneath, model: Any) -> None:
+        """Remembers what the model is."""
+        self.core = core
+        self.model = model
+        self.locks = self._locks()
+        # muscles set the gears in each step
+        muscles = core.config["actuation_model"] == "muscle"
+        free = [name for name in _native.CHANGEABLE if not (muscles and name == "actuator_gear")]
+        self.names = [name for name in free if isinstance(_get(model, name), np.ndarray)]
+        """Arrays that can change."""
+        self.changeable = [_get(model, name) for name in self.names]
+        self.watch = _native.Watch(self.changeable)
+        self.seen = [array.copy() for array in self.changeable]
+        self.option_names = [name for name in free if name not in self.names]
+        self.options = self._options()
+        self.fixed = {} if isinstance(model, ModelView) else self._fix()
+
+    def _fix(self) -> dict[str, NDArray[Any]]:
+        """Makes MuJoCo's other arrays read-only, and remembers them, as they can be written in other ways."""
+        fixed = {}
+        for name in dir(self.model):
+            known = name.split("_")[0] in _CHECKED and name not in _ALLOWED and name not in _native.CHANGEABLE
+            array = getattr(self.model, name) if known else None
+            if isinstance(array, np.ndarray):
+                fixed[name] = array.copy()
+                array.flags.writeable = False
+        return fixed
+
+    def _options(self) -> tuple[float, ...]:
+        opt = self.model.opt
+        return tuple(getattr(opt, name[4:]) for name in self.option_names)
+
+    def follow(self) -> None:
+        """Gives the engine what a script has written into the model.
+
+        Raises:
+            ValueError: Numbers that the engine does not have, that are not finite or too small.
+        """
+        options, changed = self._options(), self.watch.changed(self.changeable)
+        if not changed and options == self.options:
+            return
+        engine = self.core.engine
+        changes = {
+            name: np.asarray(now, np.float64)
+            for name, now, before in zip(self.option_names, options, self.options)
+            if now != before
+        }
+        for number in changed:
+            name, now = self.names[number], self.changeable[number]
+            whole = engine.model_array(name)
+            # the last bits of what is left alone may be others in MuJoCo
+            written = now != self.seen[number]
+            if name == "actuator_gear":
+                if written[:, 1:].any():
+                    raise ValueError("actuator_gear: the engine has the first number of each row only")
+                now, written = now[:, 0], written[:, 0]
+            whole[written] = now[written]
+            changes[name] = whole
+        engine.change_model(changes)
+        self.options = options
+        self.seen = [array.copy() for array in self.changeable]
+        self.core.timestep = engine.dt / self.core.config["frame_skip"]
+
+    def _locks(self) -> list[tuple[int, float]]:
+        active = np.asarray(self.model.eq_active0).tolist()
+        return list(zip(active, np.asarray(self.model.eq_data)[:, 0].tolist()))
+
+    def check(self) -> None:
+        """Applies changes, and changed locks, to the engine.
+
+        Raises:
+            ValueError: Something else was changed.
+        """
+        self.follow()
+        changed = [name for name, array in self.fixed.items() if not np.array_equal(getattr(self.model, name), array)]
+        if changed:
+            raise ValueError(
+                f"env.model was changed ({', '.join(changed)}), but what the engine takes over are "
+                f"{', '.join(_native.CHANGEABLE)}: for the rest change the configuration or the MJCF files that the scene "
+                "includes, or run this with MuJoCo and the original kit"
+            )
+        now = self._locks()
+        for number, (before, after) in enumerate(zip(self.locks, now)):
+            if before != after:
+                self._lock(number, *after)
+        self.locks = now
+
+    def _lock(self, number: int, active: int, angle: float) -> None:
+        joint = self.model.equality(number).name
+        if int(np.ravel(self.model.eq_type)[number]) != JOINT_EQUALITY or not joint:
+            raise ValueError(
+                f"equality {number} of env.model was changed; only joints that have a name can be locked and unlocked"
+            )
+        if active:
+            self.core.engine.lock(joint, angle)
+        else:
+            self.core.engine.unlock(joint)
+
+
+def make_model(core: Beneath) -> Any:
+    """Makes the model that scripts see: MuJoCo's own where it is installed."""
+    mujoco = mujoco_module()
+    model = mujoco_model(mujoco, core) if mujoco is not None else view_model(core)
+    active = np.asarray(core.parts.eq_active0)
+    model.eq_active0[:] = active
+    for name, array in core.engine.model_changes.items():
+        _put(model, name, array)  # of the environment that this one is a copy of
+    return model
+
+
+def _get(model: Any, name: str) -> Any:
+    """Returns an array of a model, or one of its options."""
+    return getattr(model.opt, name[4:]) if name.startswith("opt.") else getattr(model, name)
+
+
+def _put(model: Any, name: str, array: NDArray[Any]) -> None:
+    """Writes an array of a model, or one of its options."""
+    if name == "actuator_gear":
+        model.actuator_gear[:, 0] = array
+    elif name.startswith("opt.") and not array.ndim:
+        setattr(model.opt, name[4:], float(array))
+    else:
+        _get(model, name)[:] = array

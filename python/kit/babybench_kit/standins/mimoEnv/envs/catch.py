@@ -1,0 +1,5 @@
+"""Catching a ball."""
+
+from babybench_kit.experiments import MIMoCatchEnv
+
+__all__ = ["MIMoCatchEnv"]

@@ -1,0 +1,49 @@
+"""The base of MIMo's environments, and the default parameters of the senses."""
+
+from babybench_kit import tables
+from babybench_kit.actuation import ActuationModel, SpringDamperModel
+from babybench_kit.assets import assets_folder
+from babybench_kit.mimo_env import EMOTES, MIMoEnv
+from babybench_kit.senses import (
+    Proprioception,
+    SimpleProprioception,
+    SimpleVestibular,
+    SimpleVision,
+    Vestibular,
+    Vision,
+)
+from babybench_kit.touch import Touch, TrimeshTouch
+
+__all__ = [
+    "DEFAULT_PROPRIOCEPTION_PARAMS",
+    "DEFAULT_SIZE",
+    "DEFAULT_TOUCH_PARAMS",
+    "DEFAULT_TOUCH_PARAMS_V2",
+    "DEFAULT_VESTIBULAR_PARAMS",
+    "DEFAULT_VISION_PARAMS",
+    "EMOTES",
+    "ActuationModel",
+    "MIMoEnv",
+    "Proprioception",
+    "SimpleProprioception",
+    "SimpleVestibular",
+    "SimpleVision",
+    "SpringDamperModel",
+    "Touch",
+    "TrimeshTouch",
+    "Vestibular",
+    "Vision",
+]
+
+DEFAULT_TOUCH_PARAMS = tables.touch_params()
+DEFAULT_TOUCH_PARAMS_V2 = tables.touch_params(tables.SPACING_V2)
+DEFAULT_VISION_PARAMS = tables.vision_params(256)
+DEFAULT_VESTIBULAR_PARAMS = tables.vestibular_params()
+DEFAULT_PROPRIOCEPTION_PARAMS = tables.proprioception_params()
+DEFAULT_SIZE = 500
+
+
+def __getattr__(name: str) -> str:
+    if name == "SCENE_DIRECTORY":
+        return str(assets_folder())
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

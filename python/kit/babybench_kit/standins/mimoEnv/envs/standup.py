@@ -1,0 +1,5 @@
+"""Standing up."""
+
+from babybench_kit.experiments import MIMoStandupEnv
+
+__all__ = ["MIMoStandupEnv"]

@@ -1,0 +1,3 @@
+"""Names, subtrees and frames of models and states."""
+
+from babybench_kit.utils import *  # noqa: F403

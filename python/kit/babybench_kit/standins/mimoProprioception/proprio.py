@@ -1,0 +1,5 @@
+"""MIMo's proprioception."""
+
+from babybench_kit.senses import Proprioception, SimpleProprioception
+
+__all__ = ["Proprioception", "SimpleProprioception"]

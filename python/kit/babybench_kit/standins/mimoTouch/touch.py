@@ -1,0 +1,5 @@
+"""MIMo's sense of touch."""
+
+from babybench_kit.touch import DiscreteTouch, Touch, TrimeshTouch, scale_linear
+
+__all__ = ["DiscreteTouch", "Touch", "TrimeshTouch", "scale_linear"]

@@ -1,0 +1,384 @@
+"""MIMo's sense of touch: ``mimoTouch``.
+
+It runs in the engine. These classes show where the sensors are and what they feel, and let subclasses compute it in another way.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from babybench_core import _native
+
+from . import utils
+from .course import Share
+from .utils import EPS
+
+if TYPE_CHECKING:
+    from .sensing import SensingEnv
+
+Array = NDArray[np.float64]
+
+_LEAST_FORCE = 1e-9
+"""Least normal force of a contact that is felt, N."""
+
+
+class SensorMesh:
+    """The sensors of a body.
+
+    Attributes:
+        vertices: Their positions, (n, 3), frame of the body, m.
+    """
+
+    def __init__(self, vertices: Array) -> None:
+        """Takes the positions."""
+        self.vertices = vertices
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(
+            f"{name}: the engine knows the touch sensors of a body as points (vertices), not as a mesh; "
+            "trimesh.convex.convex_hull(mesh.vertices) makes one"
+        )
+
+    def __repr__(self) -> str:
+        return f"<SensorMesh of {len(self.vertices)} sensors>"
+
+
+def scale_linear(force: ArrayLike, distances: ArrayLike, scale: float, **_: Any) -> Array:
+    """Returns a force (3,) at each distance (n,), m, falling to zero at ``scale``: (n, 3)."""
+    weights = np.maximum(0.0, 1.0 - np.asarray(distances) / scale)
+    return np.asarray(weights[:, None] * np.asarray(force))
+
+
+class Touch:
+    """The interface of touch.
+
+    Attributes:
+        env: The environment.
+        sensor_scales: Distance between the sensors of each body, by its id, m.
+        touch_type: What a sensor reports; ``touch_function`` is the method, ``touch_size`` how many numbers.
+        response_type: How a force spreads; ``response_function`` is the method.
+        sensor_positions: Where the sensors of each body are, (n, 3), frame of the body, m.
+        sensor_outputs: What they felt last, (n, touch_size), N.
+    """
+
+    VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {}
+    VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = []
+
+    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
+        """Belongs to an environment."""
+        self.env = env
+        self._core = env._core
+        ids = {name: number for number, name in enumerate(env._core.names["body"])}
+        self.sensor_scales = {ids[body]: scale for body, scale in touch_params["scales"].items()}
+        self.touch_type: str = touch_params["touch_function"]
+        self.response_type: str = touch_params["response_function"]
+        for value, valid in (
+            (self.touch_type, self.VALID_TOUCH_TYPES),
+            (self.response_type, self.VALID_RESPONSE_FUNCTIONS),
+        ):
+            if value not in valid:
+                raise AssertionError(f"touch: {value} does not exist; there are {', '.join(valid)}")
+        self.touch_function: Callable[..., Array] = getattr(self, self.touch_type)
+        self.touch_size = self.VALID_TOUCH_TYPES[self.touch_type]
+        self.response_function: Callable[..., None] = getattr(self, self.response_type)
+        self.sensor_positions: dict[int, Array] = {}
+
+    def get_touch_obs(self) -> NDArray[np.float32]:
+        """Feels, and returns the output, (sensors, touch_size)."""
+        raise NotImplementedError
+
+
+class DiscreteTouch(Touch):
+    """MIMo's touch by geoms; the kit's own does not run, so nobody has it."""
+
+    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
+        """Refuses.
+
+        Raises:
+            NotImplementedError: Always.
+        """
+        raise NotImplementedError("DiscreteTouch does not run in the kit either: use TrimeshTouch")
+
+
+class TrimeshTouch(Touch):
+    """Sensors spread over the surface of the bodies, which feel the forces of contacts near them.
+
+    MIMo's own asks for normals by :meth:`get_contact_normal`, which inverts them in place where the sensing body is the first
+    of a contact. So what uses the frame of a contact, and what is felt a second time at one instant, has such normals inverted.
+    """
+
+    VALID_TOUCH_TYPES: ClassVar[dict[str, int]] = {"force_vector": 3, "force_vector_global": 3, "normal_force": 3}
+    VALID_RESPONSE_FUNCTIONS: ClassVar[list[str]] = ["nearest", "spread_linear"]
+
+    _steps = (
+        "force_vector",
+        "force_vector_global",
+        "normal_force",
+        "nearest",
+        "spread_linear",
+        "get_contacts",
+        "get_raw_force",
+        "get_contact_normal",
+        "get_contact_position_relative",
+        "get_nearest_sensor",
+        "get_sensors_within_distance",
+    )
+
+    def __init__(self, env: SensingEnv, touch_params: dict[str, Any]) -> None:
+        """Belongs to an environment."""
+        super().__init__(env, touch_params)
+        layout = {skin["body"]: skin for skin in env._core.engine.touch_layout()}
+        missing = [env._core.names["body"][body] for body in self.sensor_scales if body not in layout]
+        if missing:
+            raise ValueError(f"touch: the engine has no sensors on {', '.join(missing)}")
+        self.sensor_positions = {body: np.asarray(layout[body]["positions"]) for body in self.sensor_scales}
+        self.meshes = {body: SensorMesh(positions) for body, positions in self.sensor_positions.items()}
+        self.active_vertices = {body: np.ones(len(p), dtype=bool) for body, p in self.sensor_positions.items()}
+        self.plotting_limits: dict[int, float] = {}
+        self._sensor_counts = {body: len(positions) for body, positions in self.sensor_positions.items()}
+        places = [(body, layout[body]["offset"], count) for body, count in self._sensor_counts.items()]
+        self._skin = _native.Blocks(env._core.engine, True, [(body, at, at + count) for body, at, count in places])
+        self._shape = (-1, self.touch_size)
+        self._shown = self._felt = -1
+        self._outputs: dict[int, NDArray[np.float32]] = {}
+        self._contacts: list[tuple[int, int, Array]] = []
+        self._inverted: dict[str, NDArray[Any]] | None = None
+        env._core.frames = self._frames
+        self._sensed = np.isin(env._core.body_of_geom, list(self.sensor_positions))
+        # a subclass that changes a step computes all of them in Python
+        kept = all(getattr(type(self), step) is getattr(TrimeshTouch, step) for step in self._steps)
+        self._share = Share.NOTHING if kept else Share.SENSES
+
+    # --- sensors ---
+
+    def sensing_bodies(self) -> list[int]:
+        """Returns the ids of the bodies with sensors."""
+        return list(self.meshes)
+
+    def has_sensors(self, body_id: int) -> bool:
+        """Tells whether a body has sensors."""
+        return body_id in self.sensor_positions
+
+    def get_sensor_count(self, body_id: int) -> int:
+        """Returns the number of sensors of a body."""
+        return self._sensor_counts[body_id]
+
+    def get_total_sensor_count(self) -> int:
+        """Returns the number of all sensors."""
+        return sum(self._sensor_counts.values())
+
+    def _distances(self, contact_pos: ArrayLike, body_id: int) -> Array:
+        return np.asarray(np.linalg.norm(self.sensor_positions[body_id] - np.asarray(contact_pos), axis=-1))
+
+    def get_nearest_sensor(self, contact_pos: ArrayLike, body_id: int) -> tuple[int, float]:
+        """Returns the sensor of a body that is nearest to a point, frame of the body, and its distance, m."""
+        distances = self._distances(contact_pos, body_id)
+        nearest = int(distances.argmin())
+        return nearest, float(distances[nearest])
+
+    def get_k_nearest_sensors(
+        self, contact_pos: ArrayLike, body_id: int, k: int, k_margin: float = 1.4
+    ) -> tuple[NDArray[np.int_], Array]:
+        """Returns the k sensors of a body that are nearest to a point, frame of the body, and their distances, m."""
+        distances = self._distances(contact_pos, body_id)
+        nearest = np.argsort(distances, kind="stable")[:k]
+        return nearest, distances[nearest]
+
+    def get_sensors_within_distance(
+        self, contact_pos: ArrayLike, body_id: int, distance_limit: float, distance_margin: float = 1.5
+    ) -> tuple[NDArray[np.int_], Array]:
+        """Returns the sensors of a body within a distance of a point, frame of the body, and their distances, m."""
+        distances = self._distances(contact_pos, body_id)
+        near = np.flatnonzero(distances < distance_limit)
+        return near, distances[near]
+
+    # --- contacts ---
+
+    def _sides(self, contact_id: int, body_id: int) -> float:
+        """Returns the sign of a contact's force on a body: -1 for the body of the first geom, 1 for that of the second."""
+        first = self._core.contacts()["geom1"][contact_id]
+        return -1.0 if self._core.body_of_geom[first] == body_id else 1.0
+
+    def get_contact_position_world(self, contact_id: int) -> Array:
+        """Returns the point of a contact, halfway between the surfaces, world, m."""
+        return np.array(self._core.contacts()["pos"][contact_id])
+
+    def get_contact_position_relative(self, contact_id: int, body_id: int) -> Array:
+        """Returns the point of a contact on the surface of a body, frame of the body, m."""
+        contacts = self._core.contacts()
+        point = utils.world_pos_to_body(self._core.poses, contacts["pos"][contact_id], body_id)
+        distance = contacts["dist"][contact_id]
+        if distance >= 0:
+            return point
+        return np.asarray(point + self.get_contact_normal(contact_id, body_id) * distance / 2)
+
+    def get_raw_force(self, contact_id: int, body_id: int) -> Array:
+        """Returns the force of a contact on a body in the frame of the contact, N: normal, two tangents."""
+        return np.asarray(self._core.contacts()["force"][contact_id][:3] * self._sides(contact_id, body_id))
+
+    def get_contact_normal(self, contact_id: int, body_id: int) -> Array:
+        """Returns the unit normal of a contact into a body, frame of the body; inverts it in place for that of the first geom."""
+        normal = self._frames()[contact_id][:3]
+        normal *= self._sides(contact_id, body_id)
+        return utils.world_rot_to_body(self._core.poses, normal, body_id)
+
+    def _frames(self, pull: bool = True) -> Array:
+        """Returns the frames of all contacts, (n, 9), as MIMo's own has left them."""
+        contacts = self._core.contacts(pull)
+        if self._felt_by_engine() and self._inverted is not contacts:
+            self._inverted = contacts  # as the engine, which felt first, does not
+            self._invert(contacts)
+        return contacts["frame"]
+
+    def _felt_by_engine(self) -> bool:
+        return self._core.course.moment.felt and self._share is Share.NOTHING
+
+    def _invert(self, contacts: dict[str, NDArray[Any]]) -> None:
+        """Inverts the normals that are inverted when everything is felt once."""
+        active = (abs(contacts["force"][:, 0]) >= _LEAST_FORCE) & (contacts["dist"] < 0)
+        contacts["frame"][active & self._sensed[contacts["geom1"]], :3] *= -1
+
+    def force_vector_global(self, contact_id: int, body_id: int) -> Array:
+        """Returns the force of a contact on a body, world, N."""
+        frame = np.reshape(self._frames()[contact_id], (3, 3))
+        return np.asarray(frame.T.dot(self.get_raw_force(contact_id, body_id)))
+
+    def force_vector(self, contact_id: int, body_id: int) -> Array:
+        """Returns the force of a contact on a body, frame of the body, N."""
+        return utils.world_rot_to_body(self._core.poses, self.force_vector_global(contact_id, body_id), body_id)
+
+    def normal_force(self, contact_id: int, body_id: int) -> Array:
+        """Returns MIMo's normal force of a contact on a body: along the first column of the contact's frame; body frame, N."""
+        frame = np.reshape(self._frames()[contact_id], (3, 3))
+        force = self.get_raw_force(contact_id, body_id)[0] * frame[:, 0]
+        return utils.world_rot_to_body(self._core.poses, force, body_id)
+
+    def get_contacts(self) -> list[tuple[int, int, Array]]:
+        """Returns contact, body and force (``touch_function``) for each sensing side of each contact that is felt."""
+        contacts = self._core.contacts()
+        sides = []
+        for number, normal in enumerate(contacts["force"][:, 0].tolist()):
+            if abs(normal) < _LEAST_FORCE:
+                continue
+            for geom in (contacts["geom1"][number], contacts["geom2"][number]):
+                body = int(self._core.body_of_geom[geom])
+                if self.has_sensors(body):
+                    sides.append((number, body, self.touch_function(number, body)))
+        self._contacts, self._felt = sides, self._core.observed
+        return sides
+
+    @property
+    def contact_tuples(self) -> list[tuple[int, int, Array]]:
+        """Returns what :meth:`get_contacts` found when touch was last felt."""
+        if self._felt == self._core.observed:
+            return self._contacts
+        felt = self._felt_by_engine()
+        self._frames()
+        contacts = self._core.contacts()
+        if felt:  # as they were before
+            self._invert(contacts)
+        sides = self.get_contacts()
+        if felt:
+            self._invert(contacts)
+        return sides
+
+    # --- output ---
+
+    @property
+    def sensor_outputs(self) -> dict[int, NDArray[np.float32]]:
+        """Returns what the sensors of each body felt last, (n, touch_size), N, in the order of ``sensor_positions``."""
+        moment = self._core.observed
+        return self._outputs if self._shown == moment else self._skin.felt(moment)
+
+    @sensor_outputs.setter
+    def sensor_outputs(self, outputs: dict[int, NDArray[np.float32]]) -> None:
+        self._outputs, self._shown = outputs, self._core.observed
+
+    def get_empty_sensor_dict(self, size: int) -> dict[int, NDArray[np.float32]]:
+        """Returns zeros for each body, (n, size)."""
+        return {body: np.zeros((count, size), dtype=np.float32) for body, count in self._sensor_counts.items()}
+
+    def flatten_sensor_dict(self, sensor_dict: dict[int, NDArray[Any]]) -> NDArray[Any]:
+        """Returns the arrays of all bodies, by ascending id, as one: (sensors, size)."""
+        return np.concatenate([sensor_dict[body] for body in sorted(self.meshes)])
+
+    def get_touch_obs(self) -> NDArray[np.float32]:
+        """Feels, and returns the output of all bodies, by ascending id: (sensors, touch_size), N."""
+        core = self._core
+        core.observe()
+        first = not core.course.moment.felt
+        core.course.change("feel")
+        if first and self._share is Share.NOTHING:
+            return core.touch().reshape(self._shape)
+        sides = self.get_contacts()
+        self.sensor_outputs = self.get_empty_sensor_dict(self.touch_size)
+        for contact, body, force in sides:
+            self.response_function(contact, body, force)
+        return self.flatten_sensor_dict(self.sensor_outputs)
+
+    def spread_linear(self, contact_id: int, body_id: int, force: ArrayLike) -> None:
+        """Adds a force to the sensors within twice their distance of a contact, the less the farther they are."""
+        point = self.get_contact_position_relative(contact_id, body_id)
+        scale = self.sensor_scales[body_id]
+        sensors, distances = self.get_sensors_within_distance(point, body_id, 3 * scale)
+        spread = scale_linear(force, distances, 2 * scale)
+        total = abs(spread[:, 0].sum())
+        factor = abs(np.asarray(force)[0] / total) if total > EPS else 0.0
+        self.sensor_outputs[body_id][sensors] += spread * factor
+
+    def nearest(self, contact_id: int, body_id: int, force: ArrayLike) -> None:
+        """Adds a force to the sensor that is nearest to a contact."""
+        sensor, _ = self.get_nearest_sensor(self.get_contact_position_relative(contact_id, body_id), body_id)
+        self.sensor_outputs[body_id][sensor] += np.asarray(force)
+
+    # --- plots ---
+
+    def _bodies(self, ids: list[int], names: list[str]) -> list[int]:
+        known = self._core.names["body"]
+        return list(ids) + [known.index(name) for name in names]
+
+    def _plot(self, bodies: list[int], title: str, forces: bool) -> tuple[Any, Any]:
+        """Plots the sensors of bodies, about the first of them."""
+        poses = self._core.poses
+        bodies = [body for body in bodies if self.has_sensors(body)]
+        if not bodies:
+            raise ValueError("none of these bodies has touch sensors")
+        origin = utils.get_body_position(poses, bodies[0])
+        points = [utils.body_pos_to_world(poses, self.sensor_positions[body], body) - origin for body in bodies]
+        limit = float(np.abs(np.concatenate(points)).max())
+        if not forces:
+            return utils.plot_points(np.concatenate(points), limit=limit, title=title, show=False)
+        felt = [utils.body_rot_to_world(poses, self.sensor_outputs[body], body) for body in bodies]
+        return utils.plot_forces(np.concatenate(points), np.concatenate(felt), limit=limit, title=title, show=False)
+
+    def plot_sensors_body(
+        self, body_id: int | None = None, body_name: str | None = None, title: str = ""
+    ) -> tuple[Any, Any]:
+        """Plots the sensors of a body with matplotlib, and returns figure and axes."""
+        return self._plot([self._bodies([], [body_name or ""])[0] if body_id is None else body_id], title, forces=False)
+
+    def plot_force_body(
+        self, body_id: int | None = None, body_name: str | None = None, title: str = ""
+    ) -> tuple[Any, Any]:
+        """Plots what the sensors of a body feel with matplotlib, and returns figure and axes."""
+        return self._plot([self._bodies([], [body_name or ""])[0] if body_id is None else body_id], title, forces=True)
+
+    def plot_force_bodies(
+        self, body_ids: list[int] | None = None, body_names: list[str] | None = None, title: str = "", **_: Any
+    ) -> tuple[Any, Any]:
+        """Plots what the sensors of several bodies feel with matplotlib, and returns figure and axes."""
+        return self._plot(self._bodies(body_ids or [], body_names or []), title, forces=True)
+
+    def plot_force_body_subtree(
+        self,
+        body_id: int | None = None,
+        body_name: str | None = None,
+        title: str = "",
+        show_contact_points: bool = False,
+    ) -> tuple[Any, Any]:
+        """Plots what the sensors of a body and of those below it feel with matplotlib, and returns figure and axes."""
+        root = self._bodies([], [body_name or ""])[0] if body_id is None else body_id
+        return self._plot(utils.get_child_bodies(self._core.tree, root), title, forces=True)

@@ -1,0 +1,237 @@
+"""What stands for MuJoCo's ``MjModel`` and ``MjData`` where MuJoCo is not installed.
+
+Names, shapes, number types and units are MuJoCo's. The arrays of a state show the present after every step; ``qpos``, ``qvel``,
+``ctrl`` and ``qfrc_applied`` can be written. Of a model ``eq_active0`` and ``eq_data`` can be written, which lock joints, and
+what the engine takes over in the next step: gravity, timestep, mass, inertia, size, friction, damping, stiffness, armature,
+gears, softness.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from babybench_core import _native
+from babybench_core.contacts import ContactList
+from babybench_core.named import KINDS as _KINDS
+from babybench_core.named import PREFIX as _PREFIX
+from babybench_core.named import Named as _Named
+from babybench_core.named import accessor as _accessor
+from babybench_core.named import numbers as _numbers
+from babybench_core.named import span as _span
+from babybench_core.named import widened as _widened
+
+_MODEL_HELP = (
+    "{name}: the stand-in for MjModel does not have it; install mujoco (pip install mujoco), "
+    "and env.model is MuJoCo's own"
+)
+_DATA_HELP = (
+    "{name}: the stand-in for MjData does not have it; install mujoco (pip install mujoco) and env.data is MuJoCo's own"
+)
+_FIXED = "the engine's model cannot be changed: {name}; change the configuration or the MJCF files of the scene and make another"
+
+# what MuJoCo stores in another way than the engine
+_BYTES = frozenset(
+    {
+        "jnt_limited",
+        "eq_active0",
+        "tendon_limited",
+        "actuator_ctrllimited",
+        "actuator_forcelimited",
+    }
+)
+_SINGLES = frozenset({"geom_rgba", "site_rgba"})
+_WIDTHS = {"actuator_gear": 6, "actuator_gainprm": 10, "actuator_biasprm": 10}
+_SIZES = {
+    "nq": "nq",
+    "nv": "nv",
+    "nu": "nu",
+    "nbody": "nbody",
+    "njnt": "njnt",
+    "ngeom": "ngeom",
+    "nsite": "nsite",
+    "ncam": "ncam",
+    "neq": "neq",
+    "ntendon": "ntendon",
+    "nsensor": "nsensor",
+    "nsensordata": "nsensordata",
+    "npair": "npair",
+}
+_WRITABLE = frozenset({"eq_active0", "eq_data"}).union(_native.CHANGEABLE)
+OPTIONS = tuple(name[4:] for name in _native.CHANGEABLE if name.startswith("opt."))
+"""The options that can be written."""
+
+
+class Options:
+    """The options of a model, ``model.opt``."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        """Takes the values over."""
+        self.__dict__.update(values)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in OPTIONS:
+            raise AttributeError(_FIXED.format(name=f"opt.{name}"))
+        if isinstance(self.__dict__[name], np.ndarray):
+            self.__dict__[name][...] = value
+        else:
+            self.__dict__[name] = float(value)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(_MODEL_HELP.format(name=f"opt.{name}"))
+
+
+class ModelView(_Named):
+    """The compiled scene under the names of ``MjModel``."""
+
+    def __init__(self, blueprint: _native.Blueprint) -> None:
+        """Shows the scene of a blueprint."""
+        own = self.__dict__
+        options = dict(blueprint.model_options)
+        extras = _native.model_extras(blueprint)
+        names = {kind: list(names) for kind, names in blueprint.model_names.items()}
+        names.update(texture=extras["texture"], material=extras["material"])
+        own["_names"] = names
+        own["_numbers"] = _numbers(names)
+        own["_blueprint"] = blueprint
+        own.update({name: int(options[key]) for name, key in _SIZES.items()})
+        own.update(
+            na=0,
+            nmocap=options["nmocap"],
+            nlight=extras["nlight"],
+            ntex=len(names["texture"]),
+            nmat=len(names["material"]),
+        )
+        own.update({name: array for name, array in extras.items() if name.startswith("eq_")})
+        keys = ("iterations", "tolerance", "ls_iterations", "ls_tolerance", "ccd_iterations", "ccd_tolerance")
+        own["opt"] = Options({key: options[key] for key in (*keys, *OPTIONS)})
+
+    def __getattr__(self, name: str) -> Any:
+        """Returns an array by MuJoCo's name; it is read once."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        array = self._derived(name)
+        if array is None:
+            if name not in self._blueprint.MODEL_ARRAYS:
+                raise AttributeError(_MODEL_HELP.format(name=name))
+            array = np.asarray(self._blueprint.model_array(name))
+            if name in _BYTES:
+                array = array.astype(np.uint8)
+            elif name in _SINGLES:
+                array = array.astype(np.float32)
+            elif name in _WIDTHS:
+                array = _widened(array, _WIDTHS[name])
+        if name in _WRITABLE:
+            array = array.copy()  # it owns its numbers, as what is written to has to
+        else:
+            array.flags.writeable = False
+        self.__dict__[name] = array
+        return array
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in _WRITABLE:
+            raise AttributeError(_FIXED.format(name=name))
+        getattr(self, name)[...] = value
+
+    def _derived(self, name: str) -> NDArray[Any] | None:
+        """Returns arrays that MuJoCo has and the engine keeps in another form."""
+        read = self._blueprint.model_array
+        if name == "dof_M0":
+            return np.asarray(read("dof_m0"))
+        if name == "sensor_dim":
+            return np.full(self.nsensor, 3, dtype=np.int32)
+        if name == "actuator_trnid":
+            return np.stack([np.asarray(read(name)), np.full(self.nu, -1, np.int32)], axis=1)
+        if name in ("pair_geom1", "pair_geom2"):
+            return np.array(read("pair_geom")[:, int(name[-1]) - 1])
+        return None
+
+    def _part(self, kind: str, number: int, name: str) -> NDArray[Any]:
+        """Returns the part of an array that belongs to an element."""
+        if kind == "joint" and name in ("qpos0", "qpos_spring"):
+            return _span(getattr(self, name), self.jnt_qposadr, number)
+        if kind == "joint" and name in ("armature", "damping", "frictionloss", "invweight0", "M0"):
+            return _span(getattr(self, f"dof_{name}"), self.jnt_dofadr, number)
+        array: NDArray[Any] = getattr(self, f"{_PREFIX.get(kind, kind)}_{name}")
+        return array[number] if array.ndim > 1 else array[number : number + 1]
+
+
+_DATA_FIELDS = {
+    "body": ("xpos", "xquat", "xmat", "xipos", "ximat", "subtree_com", "cvel", "cacc", "cfrc_ext", "cfrc_int"),
+    "geom": ("xpos", "xmat"),
+    "site": ("xpos", "xmat"),
+    "camera": ("xpos", "xmat"),
+}
+_JOINT_ROWS = ("xanchor", "xaxis")
+
+
+class DataView(_Named):
+    """The present state under the names of ``MjData``."""
+
+    def __init__(self, env: _native.Env, model: ModelView, shapes: dict[str, tuple[int, ...]]) -> None:
+        """Makes room for the arrays in one piece of memory, which tells whether somebody holds one of them."""
+        own = self.__dict__
+        sizes = {name: int(np.prod(shape)) for name, shape in shapes.items()}
+        memory = np.zeros(sum(sizes.values()))
+        arrays, at = {}, 0
+        for name, shape in shapes.items():
+            arrays[name] = memory[at : at + sizes[name]].reshape(shape)
+            at += sizes[name]
+        own.update(model=model, _names=model._names, _numbers=model._numbers, _env=env, _memory=memory, _arrays=arrays)
+        own.update(time=0.0, act=np.zeros(0), _sync=None)
+        own["_contacts"] = None
+
+    def __getattr__(self, name: str) -> Any:
+        """Returns a view of an array."""
+        arrays = self.__dict__.get("_arrays", {})
+        if name in arrays:
+            return arrays[name][...]
+        raise AttributeError(_DATA_HELP.format(name=name))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self._arrays:
+            raise AttributeError(f"{name} of the state cannot be replaced")
+        self._arrays[name][...] = value
+
+    @property
+    def contact(self) -> ContactList:
+        """Returns the contacts of the start of the last physics step."""
+        if self._contacts is None:
+            self.__dict__["_contacts"] = ContactList(self._env.contacts())
+        contacts: ContactList = self._contacts
+        if self._sync is not None:
+            self._sync.core.show_normals(contacts.frame)
+        return contacts
+
+    @property
+    def ncon(self) -> int:
+        """Returns the number of contacts."""
+        return len(self.contact)
+
+    def _part(self, kind: str, number: int, name: str) -> Any:
+        """Returns the part of an array that belongs to an element."""
+        arrays = self._arrays
+        if kind == "joint":
+            if name == "qpos":
+                return _span(self.qpos, self.model.jnt_qposadr, number)
+            if name in _JOINT_ROWS:
+                return arrays[name][number]
+            return _span(getattr(self, name), self.model.jnt_dofadr, number)
+        if kind == "sensor" and name == "data":
+            first = self.model.sensor_adr[number]
+            return self.sensordata[first : first + 3]
+        if kind == "actuator":
+            full = "ctrl" if name == "ctrl" else f"actuator_{name}"
+            return getattr(self, full)[number : number + 1]
+        if name not in _DATA_FIELDS.get(kind, ()):
+            raise AttributeError(_DATA_HELP.format(name=f"{kind}(...).{name}"))
+        full = name if kind == "body" else f"{_PREFIX.get(kind, kind)}_{name}"
+        return arrays[full][number]
+
+
+for _name, _kind in _KINDS.items():
+    setattr(ModelView, _name, _accessor(_kind))
+    if _kind not in ("texture", "material", "equality", "tendon"):
+        setattr(DataView, _name, _accessor(_kind))

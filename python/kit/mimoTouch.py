@@ -1,0 +1,5 @@
+"""Stands in for MIMo's package ``mimoTouch`` where MIMo is not installed."""
+
+from babybench_kit.standin import serve
+
+serve(__name__)

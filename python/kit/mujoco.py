@@ -1,0 +1,5 @@
+"""Stands in for MuJoCo's bindings where they are not installed, for scripts that import them beside BabyBench."""
+
+from babybench_kit.standin import serve
+
+serve(__name__)

@@ -1,5 +1,0 @@
-"""Stands in for MIMo's package ``mimoActuation`` where MIMo is not installed."""
-
-from babybench_core.standin import serve
-
-serve(__name__)

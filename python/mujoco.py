@@ -1,5 +1,0 @@
-"""Stands in for MuJoCo's bindings where they are not installed, for scripts that import them beside BabyBench."""
-
-from babybench_core.standin import serve
-
-serve(__name__)
