@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
-# Builds the wheels of the Python package, each for every Python from 3.9 on, and checks that the package compiles for the systems whose wheels
+# Builds the wheels of the Python packages, each for every Python from 3.9 on, and checks that babybench compiles for the systems whose wheels
 # are built on them. A wheel for the processor and the system that run this is installed and tried.
 #   scripts/wheels.sh [--out FOLDER] [WHAT...]     # the wheels go to FOLDER, target/wheels by default
 # WHAT, by default all but native and sdist:
+#   kit                                    babybench-kit, for every system
 #   manylinux-x86_64, manylinux-aarch64    Linux with glibc 2.17 or later
 #   musllinux-x86_64, musllinux-aarch64    Linux with musl 1.2, as Alpine's
 #   check                                  the package compiles for macOS and Windows: no linker, no Python of theirs
 #   native                                 the wheel of the system that runs this: universal2 on macOS, whatever pip calls it elsewhere
-#   sdist                                  the source distribution
-# The linker of the first four is Zig's, with the C library that the name says. Needs rustup, Python 3 with venv, and the network for crates and
+#   sdist                                  the source distributions of both packages
+# The linker for Linux is Zig's, with the C library that the name says. Needs rustup, Python 3 with venv, and the network for crates and
 # wheels of tools. A wheel takes about ten minutes of one core.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 usage() { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-all='manylinux-x86_64 manylinux-aarch64 musllinux-x86_64 musllinux-aarch64 check'
+all='kit manylinux-x86_64 manylinux-aarch64 musllinux-x86_64 musllinux-aarch64 check'
 wheels=target/wheels wanted=''
 while [ $# -gt 0 ]; do
   case $1 in
@@ -40,18 +41,27 @@ get_tools() {
   [ -z "$tools" ] || return 0
   [ -d "$work/tools" ] || "$python" -m venv "$work/tools"
   tools=$(programs "$work/tools")
-  "$tools/pip" install maturin==1.16.0 ziglang==0.15.2
+  "$tools/pip" install maturin==1.16.0 ziglang==0.15.2 hatchling==1.33.0
 }
 
+hand_out() { # FILES: moves what was made to the others, and prints their paths
+  local made
+  for made in "$@"; do
+    mv "$made" "$wheels"
+    echo "$wheels/$(basename "$made")"
+  done
+}
 wheel() { # OPTION OF MATURIN...: prints the path of the wheel
   rm -rf "$work/made"
   # A folder of its own, as it may be another compiler. Without looking at a Python, as one wheel serves them all.
   env PATH="$tools:$PATH" CARGO_TARGET_DIR="$work/build" "$tools/maturin" build --quiet --release --locked \
     --manifest-path python/Cargo.toml --out "$work/made" "$@" >&2
-  local made
-  made=$(echo "$work"/made/*.whl)
-  mv "$made" "$wheels"
-  echo "$wheels/$(basename "$made")"
+  hand_out "$work"/made/*.whl
+}
+kit() { # TARGET OF HATCHLING
+  rm -rf "$work/made"
+  (cd python/kit && "$tools/hatchling" build --target "$1" --directory "$work/made" >&2)
+  hand_out "$work"/made/*
 }
 linux() { # TARGET COMPATIBILITY
   local rustc
@@ -61,10 +71,8 @@ linux() { # TARGET COMPATIBILITY
 sdist() {
   rm -rf "$work/made"
   "$tools/maturin" sdist --manifest-path python/Cargo.toml --out "$work/made" >&2
-  local made
-  made=$(echo "$work"/made/*.tar.gz)
-  mv "$made" "$wheels"
-  echo "$wheels/$(basename "$made")"
+  hand_out "$work"/made/*
+  kit sdist
 }
 native() {
   if [ "$(uname -s)" = Darwin ]; then
@@ -97,13 +105,16 @@ for what in ${wanted:-$all}; do
   [ "$what" = check ] || get_tools
   # Bash does not stop at errors in $(...) unless it is told there.
   case $what in
+    kit) made=$(set -e; kit wheel) ;;
     manylinux-*) made=$(set -e; linux "${what#*-}-unknown-linux-gnu" manylinux2014) ;;
     musllinux-*) made=$(set -e; linux "${what#*-}-unknown-linux-musl" musllinux_1_2) ;;
     native) made=$(set -e; native) ;;
     sdist) made=$(set -e; sdist) ;;
     check) scripts/other_systems.sh aarch64-apple-darwin x86_64-apple-darwin x86_64-pc-windows-msvc ;;
   esac
-  [ -z "$made" ] || echo "$what: $(basename "$made"), $(($(wc -c <"$made") / 1000)) kB ($((SECONDS - started)) s)"
+  [ -z "$made" ] || while read -r file; do
+    echo "$what: $(basename "$file"), $(($(wc -c <"$file") / 1000)) kB ($((SECONDS - started)) s)"
+  done <<<"$made"
   case $what in
     native) try "$made" ;;
     manylinux-*) [ "$here" != "Linux-${what#*-}" ] || try "$made" ;;

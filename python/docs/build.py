@@ -1,6 +1,6 @@
 """Makes a page for each module, and one with the guides: ``python docs/build.py FOLDER``.
 
-Needs pdoc and the installed package. Warnings are errors.
+Needs pdoc and the installed packages babybench and babybench-kit. Warnings are errors.
 """
 
 from __future__ import annotations

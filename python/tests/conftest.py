@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from kit_scripts import Make, maker
 
 import babybench
+
+if TYPE_CHECKING:
+    from kit_scripts import Make
 
 SMALL: dict[str, object] = {
     "behavior": "self_touch",
@@ -41,4 +44,6 @@ def env() -> babybench.Env:
 @pytest.fixture
 def make(tmp_path: Path) -> Make:
     """Makes an environment as scripts for the starter kit do, with changes of the configuration."""
+    from kit_scripts import maker  # needs babybench-kit, which most tests do without
+
     return maker(tmp_path / "run")

@@ -148,6 +148,7 @@ print(np.array_equal(one[0], two[0]), again.archive.lists.keys() == {0, 1, None}
 
 
 def test_recordings_are_compared(tmp_path):
+    pytest.importorskip("babybench_kit", reason="babybench-kit is not installed")
     config = tmp_path / "config.yml"
     config.write_text("behavior: self_touch\nscene: crib\nvision_active: False\ntouch_function: force_vector\n"
                       "touch_fingers: True\nsave_dir: results\n", "utf-8")  # fmt: skip

@@ -17,9 +17,9 @@ WHERE = "import mimoEnv.utils, mimoTouch.touch as t; print(mimoEnv.utils.__file_
 
 def own_files() -> list[Path]:
     """Returns the modules of this package at the top of its folder, wherever it is installed or developed."""
-    import babybench_core
+    import babybench_kit
 
-    return [Path(babybench_core.__file__).parent.parent / f"{name}.py" for name in STAND_INS]
+    return [Path(babybench_kit.__file__).parent.parent / f"{name}.py" for name in STAND_INS]
 
 
 def place_own(site: Path) -> None:
@@ -35,14 +35,23 @@ def place_mimo(whole: Path, site: Path) -> None:
         shutil.copytree(whole / "MIMo" / name, site / name, ignore=ignored, dirs_exist_ok=True)
 
 
-def test_no_file_of_the_package_lies_where_mimo_puts_its_own(kit: Path) -> None:
+def tops(distribution: str) -> set[str]:
+    """Returns what a distribution has put at the top of ``site-packages``."""
     try:
-        files = importlib.metadata.files("babybench") or []
+        files = importlib.metadata.files(distribution) or []
     except importlib.metadata.PackageNotFoundError:
         pytest.skip("the package is not installed: it is run from its sources")
-    tops = {file.parts[0] for file in files}
-    assert not tops & {*STAND_INS}
-    assert {f"{name}.py" for name in STAND_INS} <= tops
+    return {file.parts[0] for file in files if file.parts[0] != ".." and not file.parts[0].endswith(".dist-info")}
+
+
+def test_no_file_lies_where_mimo_or_mujoco_put_their_own() -> None:
+    assert tops("babybench") == {"babybench", "babybench_core"}
+    compiled = {"__pycache__"}  # where an installer compiles
+    assert tops("babybench-kit") - compiled == {
+        "babybench_kit",
+        "babybench_kit.pth",
+        *(f"{name}.py" for name in STAND_INS),
+    }
 
 
 @pytest.mark.parametrize("first", ["mimo", "babybench"])
@@ -109,7 +118,7 @@ def test_a_checkout_with_mimo_and_babybench_of_its_own_reaches_the_package(kit_p
         done = run(kit_python, *arguments, script, cwd=whole, **env)
         utils, mimo = done.stdout.split()
         assert utils == str(whole / "babybench" / "utils.py")
-        assert "babybench_core" in mimo
+        assert "babybench_kit" in mimo
     done = run(kit_python, script, cwd=whole)
     assert done.stdout.split()[1] == str(whole / "MIMo" / "mimoEnv" / "__init__.py")
     assert "python -m babybench_core run SCRIPT" in done.stderr
