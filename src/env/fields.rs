@@ -107,11 +107,11 @@ impl BehaviorInfo {
                 is_failure: source.flag(TASK[2])?,
             };
             let episode_return = source.number(TASK[3])?;
-            let (names, mut values) = (measures_of(&task), Vec::new());
-            for name in names {
-                // logs of earlier versions may lack one
-                values.push(if source.has(name) { source.measure(name)? } else { 0.0 });
-            }
+            let names = measures_of(&task);
+            let values = names
+                .iter()
+                .map(|name| source.measure(name))
+                .collect::<Result<Vec<_>, _>>()?;
             let mut measures = Measures::default();
             measures.set(names, values);
             return Ok(Self::Task(TaskInfo {

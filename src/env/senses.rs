@@ -139,10 +139,9 @@ impl Senses {
         self.numbers[sense as usize].as_deref().unwrap_or_default()
     }
 
-    /// Iterates over what every sense reports in numbers, to be written.
-    pub(super) fn numbers_mut(&mut self) -> impl Iterator<Item = (Sense, &mut [f64])> {
-        let all = Sense::ALL.into_iter().zip(&mut self.numbers);
-        all.filter_map(|(sense, numbers)| Some((sense, numbers.as_deref_mut()?)))
+    /// Iterates over what every sense reports in numbers, in the order of [`Sense::ALL`], to be written.
+    pub(super) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        self.numbers.iter_mut().filter_map(Option::as_deref_mut)
     }
 
     /// Adds a transform to a sense that is on.

@@ -26,12 +26,6 @@ const WHOLE: usize = 6 + COUNTS;
 /// The largest counter: no run gets there, and counting on from it does not overflow.
 const MAX_COUNT: u64 = 1 << 62;
 
-/// Iterates over the senses whose numbers stand at the end of the numbers: all but the two of the first layout.
-fn later_senses() -> impl Iterator<Item = Sense> {
-    let first = [Sense::Proprioception, Sense::Vestibular];
-    Sense::ALL.into_iter().filter(move |sense| !first.contains(sense))
-}
-
 impl Env {
     /// Returns what the task remembers.
     fn task_memory(&self) -> Vec<f64> {
@@ -44,45 +38,32 @@ impl Env {
     fn numbers<'a>(&'a self, memory: &'a [f64]) -> Vec<&'a [f64]> {
         let mut out = Vec::with_capacity(VECTORS);
         self.physics.dynamic().numbers(&mut out);
+        out.push(&self.physics.base.eq_offset);
+        out.extend(Sense::ALL.map(|sense| self.senses.numbers(sense)));
         out.extend([
-            &self.physics.base.eq_offset[..],
-            self.senses.numbers(Sense::Proprioception),
-            self.senses.numbers(Sense::Vestibular),
-            &self.goals.achieved,
+            &self.goals.achieved[..],
             &self.goals.desired,
             &self.goals.terms,
             memory,
             std::slice::from_ref(&self.episode.reward),
         ]);
-        out.extend(later_senses().map(|sense| self.senses.numbers(sense)));
         out
     }
 
     /// Returns the vectors of [`Env::numbers`], to write to.
     fn numbers_mut<'a>(&'a mut self, memory: &'a mut [f64]) -> Vec<&'a mut [f64]> {
-        let [mut proprioception, mut vestibular]: [&mut [f64]; 2] = Default::default();
-        let mut later = Vec::new();
-        for (sense, numbers) in self.senses.numbers_mut() {
-            match sense {
-                Sense::Proprioception => proprioception = numbers,
-                Sense::Vestibular => vestibular = numbers,
-                _ => later.push(numbers),
-            }
-        }
         let mut out = Vec::with_capacity(VECTORS);
         let (_, state, _, base) = self.physics.parts();
         state.numbers_mut(&mut out);
+        out.push(&mut base.eq_offset);
+        out.extend(self.senses.numbers_mut());
         out.extend([
-            &mut base.eq_offset[..],
-            proprioception,
-            vestibular,
-            &mut self.goals.achieved,
+            &mut self.goals.achieved[..],
             &mut self.goals.desired,
             &mut self.goals.terms,
             memory,
             std::slice::from_mut(&mut self.episode.reward),
         ]);
-        out.extend(later);
         out
     }
 

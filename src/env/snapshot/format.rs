@@ -5,9 +5,7 @@ use thiserror::Error;
 /// First bytes of a snapshot.
 pub(super) const MAGIC: [u8; 8] = *b"BBSNAP\r\n";
 /// Layout of the bytes that follow.
-pub(super) const VERSION: u32 = 5;
-/// The oldest layout that is read: the same without the keys at its end.
-const OLDEST: u32 = 4;
+pub(super) const VERSION: u32 = 1;
 /// Magic, version, a zero, fingerprint, checksum.
 pub(super) const HEADER: usize = 32;
 
@@ -58,7 +56,7 @@ pub enum SnapshotError {
     #[error("these bytes are not a snapshot: they do not begin with the magic bytes of one")]
     NotASnapshot,
     /// Written by another version of this library.
-    #[error("the snapshot has layout {found}, but this library reads layouts {OLDEST} to {VERSION}")]
+    #[error("the snapshot has layout {found}, but this library reads layout {VERSION}")]
     Version {
         /// Version found.
         found: u32,
@@ -75,7 +73,7 @@ pub enum SnapshotError {
         /// The differences: each key with its value of then and of now.
         differences: String,
     },
-    /// Taken from an environment of another scene, or, in a layout that does not tell, of another configuration.
+    /// Taken from an environment whose configuration is the same, but whose scene is another one.
     #[error(
         "the snapshot was taken with another behavior, scene, actuation model, compat, set of actuators or of senses"
     )]
@@ -129,7 +127,7 @@ impl Snapshot {
         }
         let mut header = Reader(bytes.get(MAGIC.len()..HEADER).ok_or(CUT)?);
         let version = header.u32().ok_or(CUT)?;
-        if !(OLDEST..=VERSION).contains(&version) {
+        if version != VERSION {
             return Err(SnapshotError::Version { found: version });
         }
         let (zero, _, sum) = (header.u32(), header.u64(), header.u64());
@@ -142,17 +140,14 @@ impl Snapshot {
         Ok(Self { bytes })
     }
 
-    /// Returns what follows the header: the numbers, and the keys of the configuration, which the oldest layout does not have.
-    pub(super) fn content(&self) -> Result<(&[u8], Option<&str>), SnapshotError> {
+    /// Returns what follows the header: the numbers, and the keys of the configuration.
+    pub(super) fn content(&self) -> Result<(&[u8], &str), SnapshotError> {
         let bytes = self.bytes.get(HEADER..).ok_or(CUT)?;
-        if self.info().version == OLDEST {
-            return Ok((bytes, None));
-        }
         let (rest, length) = bytes.split_last_chunk().ok_or(CUT)?;
         let length = u32::from_le_bytes(*length) as usize;
         let (numbers, keys) = rest.split_at(rest.len().checked_sub(length).ok_or(CUT)?);
         let keys = std::str::from_utf8(keys).map_err(|_| damaged("its keys are not text"))?;
-        Ok((numbers, Some(keys)))
+        Ok((numbers, keys))
     }
 
     pub(super) fn fingerprint(&self) -> Option<u64> {
