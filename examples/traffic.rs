@@ -1,7 +1,10 @@
 //! Prints how many bytes an observation has that travels between machines, as it is and packed: touch as the sensors that feel something
 //! (their numbers and forces), pictures as PNG, which loses nothing. The rest is as it is.
 
-use babybench::{Config, Env, Observation};
+use babybench::config::VisionOutput;
+use babybench::sensors::transform::Sense;
+use babybench::spaces::Values;
+use babybench::{Config, Env};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
@@ -48,28 +51,23 @@ struct Sizes {
 
 impl Sizes {
     fn add(&mut self, env: &Env) -> Result<(), Box<dyn std::error::Error>> {
-        let seen: Observation = env.observation();
-        let numbers = [
-            seen.vestibular,
-            seen.touch_pooled,
-            seen.achieved_goal,
-            seen.desired_goal,
-        ];
-        self.numbers += 8 * numbers
-            .iter()
-            .flatten()
-            .fold(seen.proprioception.len(), |n, v| n + v.len());
-        if let Some(felt) = env.senses().touch_observed() {
-            self.touch[0] += size_of_val(felt.values());
-            // two bytes say which sensor it is
-            self.touch[1] += felt.touched().len() * (2 + 4 * felt.width());
-        }
-        for eye in [seen.eye_left, seen.eye_right].into_iter().flatten() {
-            let side = env.config().vision_resolution;
-            let mut packed = Vec::new();
-            PngEncoder::new(&mut packed).write_image(eye, side, side, ExtendedColorType::Rgb8)?;
-            self.eyes[0] += eye.len();
-            self.eyes[1] += packed.len();
+        for (entry, values) in env.observation().entries() {
+            match (entry.sense, entry.image, values) {
+                (Some(Sense::Touch), ..) => {
+                    let felt = env.senses().touch_observed().ok_or("touch is observed")?;
+                    self.touch[0] += size_of_val(felt.values());
+                    // two bytes say which sensor it is
+                    self.touch[1] += felt.touched().len() * (2 + 4 * felt.width());
+                }
+                (_, Some(VisionOutput::Rgb), Values::U8(eye)) => {
+                    let side = env.config().vision_resolution;
+                    let mut packed = Vec::new();
+                    PngEncoder::new(&mut packed).write_image(eye, side, side, ExtendedColorType::Rgb8)?;
+                    self.eyes[0] += eye.len();
+                    self.eyes[1] += packed.len();
+                }
+                _ => self.numbers += values.len() * values.dtype().bytes(),
+            }
         }
         self.observations += 1;
         Ok(())

@@ -1,5 +1,6 @@
 //! The bits of an environment, folded into a number.
 
+use babybench::spaces::Values;
 use babybench::{Env, Observation};
 
 /// Folds positions, velocities and all senses.
@@ -29,39 +30,23 @@ impl Hash {
         self.0 = (self.0 ^ word).wrapping_mul(0x0100_0000_01b3);
     }
 
-    /// Folds all senses.
+    /// Folds every entry of an observation, in the order of the table of entries, so that a new sense is part of every checksum.
     pub fn observation(&mut self, seen: &Observation<'_>) {
-        let dense = [seen.proprioception, seen.vestibular.unwrap_or_default()];
-        dense.concat().iter().for_each(|v| self.fold(v.to_bits()));
-        let touch = seen.touch.unwrap_or_default().iter();
-        touch.for_each(|v| self.fold(u64::from(v.to_bits())));
-        let pooled = seen.touch_pooled.unwrap_or_default().iter();
-        pooled.for_each(|v| self.fold(v.to_bits()));
-        let pain = seen.pain.unwrap_or_default().iter();
-        pain.for_each(|v| self.fold(u64::from(v.to_bits())));
-        let eyes = [seen.eye_left, seen.eye_right].map(Option::unwrap_or_default);
-        let gray = [seen.eye_left_gray, seen.eye_right_gray].map(Option::unwrap_or_default);
-        eyes.into_iter().chain(gray).for_each(|image| self.bytes(image));
-        self.depth(&[seen.eye_left_depth, seen.eye_right_depth].map(Option::unwrap_or_default));
-        self.segmentation(&[seen.eye_left_segmentation, seen.eye_right_segmentation].map(Option::unwrap_or_default));
-        let goals = [seen.achieved_goal, seen.desired_goal].map(Option::unwrap_or_default);
-        goals.concat().iter().for_each(|v| self.fold(v.to_bits()));
+        seen.entries().for_each(|(_, values)| self.values(values));
+    }
+
+    /// Folds numbers, each as a word.
+    pub fn values(&mut self, values: Values<'_>) {
+        match values {
+            Values::F64(values) => values.iter().for_each(|v| self.fold(v.to_bits())),
+            Values::F32(values) => values.iter().for_each(|v| self.fold(u64::from(v.to_bits()))),
+            Values::U8(values) => self.bytes(values),
+            Values::I32(values) => values.iter().for_each(|v| self.fold(u64::from(v.cast_unsigned()))),
+        }
     }
 
     /// Folds bytes, each as a word.
     pub fn bytes(&mut self, bytes: &[u8]) {
         bytes.iter().for_each(|&v| self.fold(u64::from(v)));
-    }
-
-    /// Folds images of distances.
-    pub fn depth(&mut self, images: &[&[f32]]) {
-        let pixels = images.iter().copied().flatten();
-        pixels.for_each(|v| self.fold(u64::from(v.to_bits())));
-    }
-
-    /// Folds images of geoms.
-    pub fn segmentation(&mut self, images: &[&[i32]]) {
-        let pixels = images.iter().copied().flatten();
-        pixels.for_each(|v| self.fold(u64::from(v.cast_unsigned())));
     }
 }

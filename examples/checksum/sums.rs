@@ -146,8 +146,8 @@ pub fn pictures(case: Case) -> Sum {
         };
         env.senses_mut().eye_buffers([eye()?, eye()?])?;
         rgb.iter().chain(&gray).for_each(|image| hash.bytes(image));
-        hash.depth(&depth.each_ref().map(|image| &image[..]));
-        hash.segmentation(&geoms.each_ref().map(|image| &image[..]));
+        depth.iter().for_each(|image| hash.values(image.as_slice().into()));
+        geoms.iter().for_each(|image| hash.values(image.as_slice().into()));
     }
     Ok(hash.0)
 }
