@@ -7,6 +7,7 @@ use crate::model::{BiasType, DynType, GainType};
 
 use super::attribute::Sign::{Any, NonNegative};
 use super::attribute::{FLAG, Kind, RANGE, TEXT, int, real, reals, some};
+use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{BIASES, DYNAMICS, GAINS, TRI, Tri};
@@ -234,7 +235,8 @@ impl Actuator {
                     return Err(NEGATIVE_SMOOTHING);
                 }
             }
-            _ => {}
+            "general" => {}
+            _ => return Err(UNREAD),
         }
         Ok(())
     }

@@ -31,6 +31,11 @@ impl fmt::Display for Place {
     }
 }
 
+/// The fault of an element that a rule allows and no reader takes. Rules and readers are in different files: without this error an element
+/// with a rule alone would load and have no effect.
+pub(super) const UNREAD: &str =
+    "the library allows this element but does not read it: please report this as a bug, and remove it until then";
+
 /// Reports what is wrong with a document that makes no model, and where.
 ///
 /// Prints as `babybench/mimo_v1.xml:12:5: mujoco/body/geom: unknown attribute "foo"`.

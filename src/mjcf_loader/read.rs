@@ -5,6 +5,8 @@ mod attach_keys;
 mod cable;
 mod cable_skin;
 mod content;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 
@@ -13,7 +15,7 @@ use super::attached::Attachable;
 use super::custom::{Key, Numeric, Text, Tuple};
 use super::document::{Camera, Compiler, Document, Geom, Joint, Light, ModelAsset, Site};
 use super::elements;
-use super::error::{ErrorKind, LoadError};
+use super::error::{ErrorKind, LoadError, UNREAD};
 use super::mesh::{HField, Mesh};
 use super::relation::{Equality, Exclude, Pair, Tendon};
 use super::schema::{self, DEFAULT, Element};
@@ -60,7 +62,9 @@ impl Class {
             | "adhesion" => {
                 return self.actuator.drive(e);
             }
-            _ => {}
+            // a class of its own
+            DEFAULT => {}
+            _ => return Err(UNREAD),
         }
         Ok(())
     }
@@ -195,13 +199,19 @@ fn read_model(parts: &Parts, index: usize) -> Result<Document, LoadError> {
                     .for_each(|flags| document.option.flags.apply(flags));
             }
             "size" => document.size.apply(section),
-            "visual" => section.children.iter().for_each(|e| visual.apply(e)),
+            "visual" => section.children.iter().try_for_each(|e| {
+                let wrong = |what| tree.error(e.at, ErrorKind::Invalid(what));
+                visual.apply(e).map_err(wrong)
+            })?,
             "statistic" => document.statistic.apply(section),
-            "worldbody" => {}
-            _ => section
+            // read before this, or after all others
+            "compiler" | DEFAULT | "worldbody" => {}
+            name @ ("asset" | "contact" | "equality" | "tendon" | "actuator" | "sensor" | "custom" | "keyframe"
+            | "deformable") => section
                 .children
                 .iter()
-                .try_for_each(|e| add(e, section.name, &classes, &mut document))?,
+                .try_for_each(|e| add(e, name, &classes, &mut document))?,
+            _ => return Err(tree.error(section.at, ErrorKind::Invalid(UNREAD))),
         }
     }
     for model in sections("asset").flat_map(|section| &section.children) {
@@ -259,6 +269,7 @@ fn check_copies(tree: &Tree, document: &Document) -> Result<(), LoadError> {
 /// Adds an element of a section that lists its elements one after another.
 fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -> Result<(), LoadError> {
     let class = || classes.of(e, MAIN);
+    let wrong = |what| classes.error(e, ErrorKind::Invalid(what));
     match (section, e.name) {
         ("asset", "texture") => document.textures.push(Texture::read(e)),
         ("asset" | "deformable", "skin") => {
@@ -268,27 +279,30 @@ fn add(e: &Element, section: &str, classes: &Classes, document: &mut Document) -
         ("asset", "hfield") => document.hfields.push(HField::read(e)),
         ("asset", "mesh") => document.meshes.push(with(&class()?.mesh, e, Mesh::apply)),
         ("asset", "model") => {} // once the document itself is read
-        ("asset", _) => document.materials.push(with(&class()?.material, e, Material::look)),
+        ("asset", "material") => document.materials.push(with(&class()?.material, e, Material::look)),
         ("contact", "pair") => document.pairs.push(with(&class()?.pair, e, Pair::apply)),
-        ("contact", _) => document.excludes.push(Exclude::read(e)),
-        ("equality", _) => document.equalities.push(with(&class()?.equality, e, Equality::hold)),
+        ("contact", "exclude") => document.excludes.push(Exclude::read(e)),
+        ("equality", _) => {
+            let mut equality = class()?.equality.clone();
+            equality.hold(e).map_err(wrong)?;
+            document.equalities.push(equality);
+        }
         ("tendon", _) => {
             let mut tendon = with(&class()?.tendon, e, Tendon::string);
-            tendon.thread(e);
+            tendon.thread(e).map_err(wrong)?;
             document.tendons.push(tendon);
         }
         ("actuator", _) => {
             let mut actuator: Actuator = class()?.actuator.clone();
-            let wrong = |what| classes.error(e, ErrorKind::Invalid(what));
             actuator.drive(e).map_err(wrong)?;
             document.actuators.push(actuator);
         }
-        ("sensor", _) => document.sensors.push(Sensor::of(e)),
+        ("sensor", _) => document.sensors.push(Sensor::of(e).map_err(wrong)?),
         ("custom", "numeric") => document.numerics.push(Numeric::read(e)),
         ("custom", "text") => document.texts.push(Text::read(e)),
-        ("custom", _) => document.tuples.push(Tuple::hold(e)),
-        ("keyframe", _) => document.keys.push(Key::read(e)),
-        _ => {}
+        ("custom", "tuple") => document.tuples.push(Tuple::hold(e)),
+        ("keyframe", "key") => document.keys.push(Key::read(e)),
+        _ => return Err(wrong(UNREAD)),
     }
     Ok(())
 }

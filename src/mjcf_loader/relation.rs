@@ -4,6 +4,7 @@ use crate::math::Vec3;
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, Kind, RANGE, Store, TEXT, Value, int, real, reals, some};
+use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{GREY, MAX_GROUP, SOLIMP, SOLREF, TRI, Tri};
@@ -92,15 +93,17 @@ table! {
 }
 
 impl Equality {
-    /// Reads the element with what it holds.
-    pub fn hold(&mut self, e: &Element) {
+    /// Reads the element with what it holds; returns what is wrong with it.
+    pub fn hold(&mut self, e: &Element) -> Result<(), &'static str> {
         self.apply(e);
         self.held = match e.name {
             "connect" => Held::Connect(Ends::read(e)),
             "tendon" => Held::Tendon(TendonEquality::read(e)),
             "weld" => Held::Weld(WeldEquality::read(e)),
-            _ => Held::Joint(JointEquality::read(e)),
+            "joint" => Held::Joint(JointEquality::read(e)),
+            _ => return Err(UNREAD),
         };
+        Ok(())
     }
 }
 
@@ -144,13 +147,14 @@ pub(super) enum Along {
 }
 
 impl Along {
-    fn read(e: &Element) -> Self {
-        match e.name {
+    fn read(e: &Element) -> Result<Self, &'static str> {
+        Ok(match e.name {
             "site" => Self::Site(TendonSite::read(e)),
             "geom" => Self::Geom(TendonGeom::read(e)),
             "pulley" => Self::Pulley(Pulley::read(e)),
-            _ => Self::Joint(TendonJoint::read(e)),
-        }
+            "joint" => Self::Joint(TendonJoint::read(e)),
+            _ => return Err(UNREAD),
+        })
     }
 
     /// Returns the place in the text.
@@ -228,9 +232,14 @@ impl Tendon {
         self.looks.apply(e);
     }
 
-    /// Reads what it runs along.
-    pub fn thread(&mut self, e: &Element) {
-        self.spatial = e.name == "spatial";
-        self.path = e.children.iter().map(Along::read).collect();
+    /// Reads what it runs along; returns what is wrong with it.
+    pub fn thread(&mut self, e: &Element) -> Result<(), &'static str> {
+        self.spatial = match e.name {
+            "fixed" => false,
+            "spatial" => true,
+            _ => return Err(UNREAD),
+        };
+        self.path = e.children.iter().map(Along::read).collect::<Result<_, _>>()?;
+        Ok(())
     }
 }

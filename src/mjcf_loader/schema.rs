@@ -33,6 +33,17 @@ pub(super) struct Element {
 }
 
 impl Element {
+    /// Makes an element without attributes and children.
+    #[cfg(test)]
+    pub fn bare(rule: &'static Rule) -> Self {
+        Self {
+            at: 0,
+            name: rule.name,
+            values: Vec::new(),
+            children: Vec::new(),
+        }
+    }
+
     /// Returns the attributes with their values, in the order of the text.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))

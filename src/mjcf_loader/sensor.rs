@@ -4,6 +4,7 @@ use crate::model::{DataType, ObjType, SensorType};
 
 use super::attribute::Sign::NonNegative;
 use super::attribute::{Attr, Kind, TEXT, Words, int, real, words};
+use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
 
@@ -187,11 +188,11 @@ pub(super) const fn tables(kind: SensorType) -> &'static [Groups] {
 }
 
 impl Sensor {
-    /// Reads a sensor of any kind; its attributes tell what it refers to.
-    pub fn of(e: &Element) -> Self {
+    /// Reads a sensor of any kind; its attributes tell what it refers to. Returns what is wrong with it.
+    pub fn of(e: &Element) -> Result<Self, &'static str> {
         let named = |attribute: &str| e.text(attribute).map(str::to_owned);
         let kind = SensorType::ALL.iter().find(|kind| kind.name() == e.name).copied();
-        let kind = kind.unwrap_or(SensorType::Clock);
+        let kind = kind.ok_or(UNREAD)?;
         let object = match kind {
             SensorType::CamProjection => Some(Object::Picture(InPicture::read(e))),
             SensorType::User => Some(Object::User(OfUser::read(e))),
@@ -217,10 +218,10 @@ impl Sensor {
         } else {
             Object::Nothing
         };
-        Self {
+        Ok(Self {
             kind,
             object,
             ..Self::read(e)
-        }
+        })
     }
 }

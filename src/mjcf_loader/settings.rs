@@ -5,6 +5,7 @@ use crate::model::{self, ConeType, Flags, IntegratorType, JacobianFormat, Option
 
 use super::attribute::Sign::{Any, NonNegative, Positive};
 use super::attribute::{FLAG, INTS, Kind, TEXT, Words, int, real, reals, some, words};
+use super::error::UNREAD;
 use super::schema::Element;
 use super::table::{Table, table};
 use super::words::{MAX_COUNT, MAX_KEYS, MAX_PIXELS, TRI, Tri};
@@ -274,15 +275,18 @@ pub(super) struct Visual {
 }
 
 impl Visual {
-    pub fn apply(&mut self, e: &Element) {
+    /// Takes over an element of the section; returns what is wrong with it.
+    pub fn apply(&mut self, e: &Element) -> Result<(), &'static str> {
         match e.name {
             "global" => self.global.apply(e),
             "map" => self.map.apply(e),
             "quality" => self.quality.apply(e),
             "headlight" => self.headlight.apply(e),
             // colours and sizes of what is not drawn
-            _ => {}
+            "rgba" | "scale" => {}
+            _ => return Err(UNREAD),
         }
+        Ok(())
     }
 
     /// Returns the settings as the model has them: MuJoCo stores reals in single precision.

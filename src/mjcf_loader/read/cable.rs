@@ -3,7 +3,7 @@
 use super::super::composite::{Composite, CompositeSkin, CompositeType, Link, Prototypes};
 use super::super::custom::Text;
 use super::super::document::{Body, Document, Orientation};
-use super::super::error::{ErrorKind, LoadError};
+use super::super::error::{ErrorKind, LoadError, UNREAD};
 use super::super::relation::Exclude;
 use super::super::schema::Element;
 use super::super::skin::{SKIN_ELEMENTS, Skin};
@@ -27,14 +27,16 @@ fn is_lost(spot: Spot, document: &Document) -> bool {
 }
 
 /// Reads what geoms, sites and joints of a cable are like.
-fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
+pub(super) fn prototypes(e: &Element) -> Result<Prototypes, &'static str> {
     let mut like = Prototypes::initial();
     for part in &e.children {
         match part.name {
             "geom" => like.geom.apply(part),
             "site" => like.site.apply(part),
             "joint" => like.joint.apply(part),
-            _ => {}
+            // read where the bodies are done
+            "skin" => {}
+            _ => return Err(UNREAD),
         }
     }
     if e.children.iter().filter(|part| part.name == "joint").count() > 1 {

@@ -2,7 +2,7 @@
 
 use super::super::document::{Body, BodyFrame, Camera, Copied, Document, FreeJoint, Geom, Inertial, Joint};
 use super::super::document::{Light, Orientation, Replicate, Site};
-use super::super::error::{ErrorKind, LoadError};
+use super::super::error::{ErrorKind, LoadError, UNREAD};
 use super::super::schema::Element;
 use super::super::table::Table;
 use super::attach::attach_model;
@@ -230,7 +230,7 @@ fn hang(e: &Element, spot: Spot, around: &str, classes: &Classes, bodies: &mut [
             light.target.iter_mut().for_each(|target| rename(target, spot));
             body.lights.push(Light { within, ..light });
         }
-        _ => {}
+        _ => return Err(classes.error(e, ErrorKind::Invalid(UNREAD))),
     }
     Ok(())
 }
