@@ -22,7 +22,7 @@ macro_rules! arrays {
         ///
         /// # Solver parameters
         /// `solref` (2) says how fast a violated constraint returns: time constant, s, and damping ratio, no unit. If both are zero or
-        /// less, they are the negative stiffness, 1/s^2, and the negative damping, 1/s.
+        /// less, they are the negative stiffness, 1/s^2, and the negative damping, 1/s. If only one is positive, (0.02, 1) counts.
         ///
         /// `solimp` (5) says how hard a constraint is: impedance without violation and at the width, 0..1; width, m or rad; midpoint,
         /// 0..1, and power, at least 1, of the curve between the two impedances, no unit.
