@@ -67,8 +67,8 @@ impl Env {
         }
         std::mem::swap(&mut grown.rng, &mut self.rng);
         grown.set_probe(self.probe.take());
-        if self.physics.may_borrow() {
-            grown.start_borrowing();
+        if self.shares() {
+            grown.share();
         }
         grown.episode.accumulate = self.episode.accumulate;
         grown.senses.vision_deferred = self.senses.vision_deferred;

@@ -79,13 +79,13 @@ impl Engines {
         self.idle.lend(|| self.kind.make(), |engine| work(&mut **engine))
     }
 
-    /// Takes a state to work in, of which nothing means anything yet.
+    /// Takes a scratch state with unspecified contents.
     pub fn take_state(&self) -> Box<State> {
         let idle = self.states.take();
         idle.unwrap_or_else(|| self.reader.new_state().into())
     }
 
-    /// Brings a state of [`Engines::take_state`] back.
+    /// Returns a state of [`Engines::take_state`].
     pub fn put_state(&self, state: Box<State>) {
         self.states.put(state);
     }

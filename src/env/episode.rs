@@ -45,19 +45,20 @@ impl Env {
         let Play { mut scene, task, .. } = self.play();
         task.reset(&mut scene)?;
         self.begin_episode()?;
+        self.check_shared()?;
         Ok(self.observation())
     }
 
     /// Returns the scene and the task that plays in it.
     pub(super) fn play(&mut self) -> Play<'_> {
-        let (engine, state, origin, base) = self.physics.parts();
+        let (engine, state, last_call, base) = self.physics.parts();
         let scene = TaskScene {
             config: self.blueprint.config(),
             model: self.blueprint.model(),
             state,
             rng: &mut self.rng,
             engine,
-            origin,
+            last_call,
             base,
             actuation: &*self.actuation,
             paths: self.blueprint.paths(),

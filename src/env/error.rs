@@ -105,6 +105,17 @@ pub enum EnvError {
         /// Length needed.
         expected: usize,
     },
+    /// A task in a vector changed more than [`Task::only_moves`](crate::env::Task::only_moves) allows, which tests and debug builds notice.
+    #[error(
+        "the task {task:?} says that it only moves things, but a vector would return another {what} for it: return false from only_moves, \
+         or change forces, controls and parameters before the physics of a step or reset, and read nothing computed before a reset"
+    )]
+    OnlyMoves {
+        /// Name of the task.
+        task: String,
+        /// Quantity that would be wrong.
+        what: &'static str,
+    },
     /// `step` before the first `reset`.
     #[error("call reset before step")]
     NotReset,

@@ -8,11 +8,11 @@ mod by_hand;
 mod clock;
 mod details;
 mod engines;
+mod env_state;
 mod episode;
 pub(crate) mod error;
 mod eyes;
 mod fields;
-mod held;
 pub(crate) mod info;
 mod model_change;
 mod notices;
@@ -33,6 +33,7 @@ mod snapshot;
 mod stage;
 mod task;
 mod viewer;
+mod workspace;
 
 pub use blueprint::{Blueprint, BlueprintOptions};
 pub use by_hand::Parts;
@@ -66,6 +67,8 @@ pub use task::{
 #[cfg(feature = "eval")]
 pub(crate) use viewer::room_camera;
 pub use viewer::{ViewFrom, Viewer};
+
+pub(crate) use env_state::Work;
 
 use std::sync::Arc;
 
@@ -248,6 +251,7 @@ impl Env {
         self.senses.advance();
         self.sense()?;
         self.finish_step();
+        self.check_shared()?;
         let truncated = self.truncated();
         self.mark(None);
         Ok(Step {
@@ -257,34 +261,6 @@ impl Env {
             truncated,
             info: &self.info,
         })
-    }
-
-    /// Lets steps and resets borrow the room for what they compute, between [`Env::borrow_room`] and [`Env::give_room_back`], if the task
-    /// allows it. It is for a new environment.
-    pub(crate) fn start_borrowing(&mut self) {
-        if self.task.only_moves() {
-            self.physics.start_borrowing();
-        }
-    }
-
-    /// Returns whether steps and resets borrow the room for what they compute.
-    pub(crate) fn may_borrow(&self) -> bool {
-        self.physics.may_borrow()
-    }
-
-    /// Borrows room for a step, unless somebody has looked into the state since the episode began.
-    pub(crate) fn borrow_room(&mut self) {
-        self.physics.borrow_room();
-    }
-
-    /// Borrows room for a reset.
-    pub(crate) fn borrow_room_for_reset(&mut self) {
-        self.physics.borrow_room_for_reset();
-    }
-
-    /// Gives the room back: what was computed in it is computed again for whoever asks.
-    pub(crate) fn give_room_back(&mut self) {
-        self.physics.give_room_back();
     }
 
     /// Checks the length of an action, and that it is finite.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::actuation::Actuation;
 use crate::env::engines::{EngineSource, Engines};
-use crate::env::held::{Call, Held, Origin};
+use crate::env::env_state::{Call, EnvState, LastCall, Work};
 use crate::env::{Blueprint, EnvError};
 use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
@@ -16,7 +16,7 @@ pub(super) struct Physics {
     engines: Arc<Engines>,
     /// An engine of its own, for a program that asked for it.
     own: Option<Box<dyn Engine>>,
-    held: Held,
+    state: EnvState,
     /// Parameters after a reset: the blueprint's, with what locks and unlocks changed.
     pub base: Shared<Params>,
 }
@@ -24,7 +24,7 @@ pub(super) struct Physics {
 impl std::fmt::Debug for Physics {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Physics")
-            .field("state", &self.held)
+            .field("state", &self.state)
             .finish_non_exhaustive()
     }
 }
@@ -35,7 +35,7 @@ impl Clone for Physics {
         Self {
             engines: self.engines.clone(),
             own: None,
-            held: self.held.copy(&self.engines),
+            state: self.state.copy(&self.engines),
             base: self.base.clone(),
         }
     }
@@ -51,59 +51,59 @@ impl Physics {
         Self {
             engines,
             own: None,
-            held: Held::new(state),
+            state: EnvState::new(state),
             base: blueprint.params().clone(),
         }
     }
 
     /// Returns the state.
     pub fn state(&self) -> &State {
-        self.held.get(&self.engines)
+        self.state.get(&self.engines)
     }
 
     /// Returns the state, to change it.
     pub fn state_mut(&mut self) -> &mut State {
-        self.held.parts(&self.engines).0
+        self.state.parts(&self.engines).0
     }
 
     /// Returns the state, of which only what decides how the run goes on may be there.
     pub fn dynamic(&self) -> &State {
-        self.held.dynamic()
+        self.state.dynamic()
     }
 
-    /// Lets steps borrow the room for what they compute from now on; nothing is computed yet.
-    pub fn start_borrowing(&mut self) {
-        self.held.start_borrowing();
+    /// Lets steps and resets work in scratch states from now on: see [`EnvState::share`].
+    pub fn share(&mut self) {
+        self.state.share();
     }
 
     /// Returns whether they do.
-    pub fn may_borrow(&self) -> bool {
-        self.held.may_borrow()
+    pub fn shares(&self) -> bool {
+        self.state.shares()
     }
 
-    /// Borrows the room for what is computed, if steps do: see [`Held::borrow`].
-    pub fn borrow_room(&mut self) {
-        self.held.borrow(&self.engines);
+    /// Takes a scratch state for a step or reset, if the environment shares: see [`EnvState::begin`].
+    pub fn begin(&mut self, work: Work) {
+        self.state.begin(work, &self.engines);
     }
 
-    /// Borrows it for a reset, if resets do: see [`Held::borrow_for_reset`].
-    pub fn borrow_room_for_reset(&mut self) {
-        self.held.borrow_for_reset(&self.engines);
+    /// Gives it back.
+    pub fn end(&mut self) {
+        self.state.end(&self.engines);
     }
 
-    /// Gives back what was borrowed.
-    pub fn give_room_back(&mut self) {
-        self.held.give_back(&self.engines);
+    /// Returns what a reader would get with other bits after the present step or reset: see [`EnvState::unshareable`].
+    pub fn unshareable(&self) -> Option<&'static str> {
+        self.state.unshareable(&self.engines)
     }
 
     /// Returns where steps get their engine from, the state that it advances, where its calls are noted, and the parameters of a reset.
-    pub fn parts(&mut self) -> (EngineSource<'_>, &mut State, Option<&mut Origin>, &mut Shared<Params>) {
-        let (state, origin) = self.held.parts(&self.engines);
+    pub fn parts(&mut self) -> (EngineSource<'_>, &mut State, Option<&mut LastCall>, &mut Shared<Params>) {
+        let (state, last_call) = self.state.parts(&self.engines);
         let source = match &mut self.own {
             Some(own) => EngineSource::Own(&mut **own),
             None => EngineSource::Shared(&self.engines),
         };
-        (source, state, origin, &mut self.base)
+        (source, state, last_call, &mut self.base)
     }
 
     /// Returns an engine that tells what follows from the model.
@@ -113,14 +113,14 @@ impl Physics {
 
     /// Returns an engine of its own, with which the environment goes on from now on.
     pub fn own_engine(&mut self) -> &mut dyn Engine {
-        self.held.parts(&self.engines);
+        self.state.parts(&self.engines);
         &mut **self.own.get_or_insert_with(|| self.engines.make())
     }
 
     /// Goes on with the engines of another model of the same sizes.
     pub fn use_engines(&mut self, engines: &Arc<Engines>) {
         // what those of the other model computed, these would compute differently
-        self.held.parts(&self.engines);
+        self.state.parts(&self.engines);
         self.engines = engines.clone();
         if let Some(own) = &mut self.own {
             *own = self.engines.make();
@@ -129,9 +129,9 @@ impl Physics {
 
     /// Computes everything that follows from the state.
     pub fn forward(&mut self) -> Result<(), EngineError> {
-        let (mut engine, state, origin, _) = self.parts();
-        if let Some(origin) = origin {
-            origin.note(Call::Forward, state);
+        let (mut engine, state, last_call, _) = self.parts();
+        if let Some(last_call) = last_call {
+            last_call.note(Call::Forward, state);
         }
         engine.lend(|engine| engine.forward(state))
     }
@@ -158,7 +158,7 @@ impl Physics {
     }
 
     fn keep_locks(&mut self, model: &Model, report: &LockReport) {
-        let now = &self.held.dynamic().params;
+        let now = &self.state.dynamic().params;
         for e in report.changed.iter().filter_map(|&j| lock_of(model, j)) {
             self.base.eq_active[e] = now.eq_active[e];
             self.base.eq_offset[e] = now.eq_offset[e];

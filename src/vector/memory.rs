@@ -22,7 +22,7 @@ pub(super) fn estimate(env: &Env, layout: &Layout, mode: AutoresetMode) -> u64 {
     let rows = copies * layout.row_bytes();
     // what decides how the run goes on, and where the last step began; engines and the memory of pictures are shared
     let state = 4_000 + 64 * model.nv + 50 * model.nbody();
-    let computed = if env.may_borrow() {
+    let computed = if env.shares() {
         0
     } else {
         // with room for contacts and their rows

@@ -251,7 +251,7 @@ fn make(blueprint: &Blueprint) -> Result<Env, EnvError> {
     env.senses_mut().set_vision_threads(1); // the vector has threads of its own
     // a GPU draws what the environments see when all have stepped: each needs its poses until then
     if !on_gpu(&env) {
-        env.start_borrowing();
+        env.share();
     }
     Ok(env)
 }

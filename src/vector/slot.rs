@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, draw_eyes};
+use crate::env::{BehaviorInfo, Env, EnvError, Info, Observation, PerHand, Work, draw_eyes};
 use crate::threads::Job;
 use crate::vector::rows::{Layout, Rows};
 use crate::vector::{AutoresetMode, make};
@@ -85,7 +85,7 @@ impl Slot {
 
     fn perform(&mut self) {
         if !matches!(self.order, Order::Look) {
-            // whoever looks keeps what came of the last step
+            // a look leaves the results of the last step unchanged
             (self.reward, self.terminated, self.truncated) = (0.0, false, false);
             (self.ended, self.failure) = (false, None);
         }
@@ -94,26 +94,19 @@ impl Slot {
                 if let Err(e) = self.revive() {
                     self.failure = Some(e);
                 } else {
-                    self.in_borrowed_room(|slot| slot.reset(seed));
+                    self.reset(seed);
                 }
             }
-            Order::Step if self.mode != AutoresetMode::Disabled && self.over() => {
-                self.in_borrowed_room(|slot| slot.reset(None));
-            }
-            Order::Step => self.in_borrowed_room(Self::step),
+            Order::Step if self.mode != AutoresetMode::Disabled && self.over() => self.reset(None),
+            Order::Step => self.step(),
             Order::Look => self.failure = self.env.look().err(),
         }
     }
 
-    /// Steps or resets the environment in the memory of the thread, which the environment before it has left in the caches.
-    fn in_borrowed_room(&mut self, work: impl FnOnce(&mut Self)) {
-        self.env.borrow_room();
-        work(self);
-        self.env.give_room_back();
-    }
-
+    /// Steps the environment in the memory of the thread, which the environment before it has left in the caches.
     fn step(&mut self) {
-        match self.env.step(&self.action) {
+        let mut env = self.env.work(Work::Step);
+        match env.step(&self.action) {
             Ok(step) => (self.reward, self.terminated, self.truncated) = (step.reward, step.terminated, step.truncated),
             Err(e) => {
                 self.failure = Some(e);
@@ -121,15 +114,25 @@ impl Slot {
             }
         }
         if self.mode == AutoresetMode::SameStep && (self.terminated || self.truncated) {
-            self.keep_last();
+            if let Err(e) = draw_last(&mut env) {
+                self.failure.get_or_insert(e);
+            }
+            if let Some(last) = &mut self.last {
+                last.keep(&env);
+                self.ended = true;
+            }
+            drop(env);
             self.reset(None);
         }
     }
 
+    /// Resets the environment in the memory of the thread.
     fn reset(&mut self, seed: Option<u64>) {
         self.started = true;
-        self.env.borrow_room_for_reset();
-        if let Err(e) = self.env.reset(seed) {
+        let copy = self.env.before_reset();
+        let mut env = self.env.work(Work::Reset);
+        let reset = env.reset(seed).map(drop).and_then(|()| env.check_reset(copy, seed));
+        if let Err(e) = reset {
             self.failure.get_or_insert(e);
         }
     }
@@ -144,20 +147,13 @@ impl Slot {
         }
         Ok(())
     }
+}
 
-    fn keep_last(&mut self) {
-        let senses = self.env.senses();
-        if (senses.vision_is_deferred() || senses.vision_is_lazy()) && self.env.ready() {
-            // the others are still under way: this environment draws what it saw last by itself
-            if let Err(e) = draw_eyes([&mut self.env]) {
-                self.failure.get_or_insert(e);
-            }
-        }
-        if let Some(last) = &mut self.last {
-            last.keep(&self.env);
-            self.ended = true;
-        }
-    }
+/// Draws what the environment saw last, if that waits: the other environments are still under way.
+fn draw_last(env: &mut Env) -> Result<(), EnvError> {
+    let senses = env.senses();
+    let waits = senses.vision_is_deferred() || senses.vision_is_lazy();
+    if waits && env.ready() { draw_eyes([env]) } else { Ok(()) }
 }
 
 /// The end of an episode.

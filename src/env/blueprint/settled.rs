@@ -82,7 +82,7 @@ impl Settled {
             state: &mut state,
             rng: &mut NumpyRng::seed(config.seed),
             engine: EngineSource::Shared(engines),
-            origin: None,
+            last_call: None,
             base: &mut params,
             actuation,
             paths: None,

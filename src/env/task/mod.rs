@@ -159,10 +159,12 @@ pub trait Task: CloneTask + Debug + Send + Sync {
     }
 
     /// Returns whether the environments of a vector may work in the same memory, one after the other, which is faster where there are many.
+    /// By default they may not.
     ///
-    /// A task may say so if it changes nothing but `qpos` and `qvel` between the last physics step, or [`TaskScene::forward`], of a reset or step
-    /// and its end, and if its resets read nothing computed before the first of them. If a task says so and does otherwise, poses and
-    /// forces that are read between the steps of a vector are wrong. By default it does not say so.
+    /// A task may return true if it changes nothing but `qpos` and `qvel` between the last physics step, or [`TaskScene::forward`], of a
+    /// reset or step and its end, and if its resets read nothing computed before the first of them. Otherwise poses and forces that are read
+    /// between the steps of a vector are wrong. Tests and debug builds find such a task and return [`EnvError::OnlyMoves`] from the step or
+    /// reset: they compute steps 1, 2, 4, 8, ... of each episode and every reset a second time.
     fn only_moves(&self) -> bool {
         false
     }

@@ -4,7 +4,7 @@ use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
 use crate::env::action_delay::ActionDelay;
 use crate::env::engines::EngineSource;
-use crate::env::held::{Call, Origin};
+use crate::env::env_state::{Call, LastCall};
 use crate::env::paths::Paths;
 use crate::env::{EnvError, check_vector};
 use crate::mimo::{LockTarget, held_posture, lock};
@@ -28,7 +28,7 @@ pub struct TaskScene<'a> {
     pub rng: &'a mut NumpyRng,
     pub(in crate::env) engine: EngineSource<'a>,
     /// Where calls of the engine are noted, if they are.
-    pub(in crate::env) origin: Option<&'a mut Origin>,
+    pub(in crate::env) last_call: Option<&'a mut LastCall>,
     /// Parameters after a reset.
     pub(in crate::env) base: &'a mut Shared<Params>,
     pub(in crate::env) actuation: &'a dyn Actuation,
@@ -141,8 +141,8 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn forward(&mut self) -> Result<(), EnvError> {
-        if let Some(origin) = &mut self.origin {
-            origin.note(Call::Forward, self.state);
+        if let Some(last_call) = &mut self.last_call {
+            last_call.note(Call::Forward, self.state);
         }
         Ok(self.engine.lend(|engine| engine.forward(self.state))?)
     }
@@ -236,13 +236,13 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn steps(&mut self, steps: u32) -> Result<(), EnvError> {
-        let (state, paths, origin) = (&mut *self.state, self.paths, &mut self.origin);
+        let (state, paths, last_call) = (&mut *self.state, self.paths, &mut self.last_call);
         let mut step = |engine: &mut dyn Engine| {
             if let Some(paths) = paths {
                 paths.place(state);
             }
-            if let Some(origin) = origin {
-                origin.note(Call::Step, state);
+            if let Some(last_call) = last_call {
+                last_call.note(Call::Step, state);
             }
             engine.step(state)
         };

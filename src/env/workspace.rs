@@ -1,0 +1,191 @@
+//! Steps and resets of environments that share the memory for what they compute.
+
+use std::ops::{Deref, DerefMut};
+
+use crate::env::env_state::Work;
+use crate::env::{Env, EnvError};
+
+/// Whether steps and resets check [`Task::only_moves`](crate::env::Task::only_moves).
+const CHECKED: bool = cfg!(any(test, debug_assertions));
+
+/// An environment that works in a scratch state, if it shares, until this is dropped.
+pub(crate) struct Workspace<'a> {
+    env: &'a mut Env,
+}
+
+impl Deref for Workspace<'_> {
+    type Target = Env;
+
+    fn deref(&self) -> &Env {
+        self.env
+    }
+}
+
+impl DerefMut for Workspace<'_> {
+    fn deref_mut(&mut self) -> &mut Env {
+        self.env
+    }
+}
+
+impl Drop for Workspace<'_> {
+    fn drop(&mut self) {
+        self.env.physics.end();
+    }
+}
+
+impl Env {
+    /// Lets steps and resets in a [`Workspace`] share scratch states from now on, if the task allows it. It is for a new environment.
+    pub(crate) fn share(&mut self) {
+        if self.task.only_moves() {
+            self.physics.share();
+        }
+    }
+
+    /// Returns whether they do.
+    pub(crate) fn shares(&self) -> bool {
+        self.physics.shares()
+    }
+
+    /// Begins a step or reset in a scratch state, if the environment shares.
+    pub(crate) fn work(&mut self, work: Work) -> Workspace<'_> {
+        self.physics.begin(work);
+        Workspace { env: self }
+    }
+
+    /// Returns a copy for [`Env::check_reset`] before a reset that shares, in tests and debug builds.
+    pub(crate) fn before_reset(&self) -> Option<Self> {
+        (CHECKED && self.shares()).then(|| self.clone())
+    }
+
+    /// Resets a copy that keeps its whole state, and checks that the environment does not differ from it after its reset in a scratch state:
+    /// the task then has read nothing computed before the first call of the engine.
+    ///
+    /// # Errors
+    /// [`EnvError::OnlyMoves`].
+    pub(crate) fn check_reset(&self, copy: Option<Self>, seed: Option<u64>) -> Result<(), EnvError> {
+        let Some(mut copy) = copy else { return Ok(()) };
+        if copy.reset(seed).is_ok() && copy.snapshot() != self.snapshot() {
+            return Err(self.moves_more("the start of an episode"));
+        }
+        Ok(())
+    }
+
+    /// Checks, in tests and debug builds, that what a step or reset computed in a scratch state can be computed again. Steps are checked
+    /// ever less often, as it takes as long as one of physics.
+    pub(super) fn check_shared(&self) -> Result<(), EnvError> {
+        let steps = self.episode.steps;
+        let due = steps == 0 || steps.is_power_of_two();
+        if CHECKED
+            && due
+            && let Some(what) = self.physics.unshareable()
+        {
+            return Err(self.moves_more(what));
+        }
+        Ok(())
+    }
+
+    fn moves_more(&self, what: &'static str) -> EnvError {
+        EnvError::OnlyMoves {
+            task: self.task.name().to_string(),
+            what,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Behavior;
+    use crate::env::{BlueprintOptions, EnvError, Task, TaskScene};
+    use crate::vector::VectorError;
+    use crate::{Blueprint, Config, VectorEnv, VectorOptions};
+
+    fn quick(config: Config) -> Config {
+        Config {
+            touch_scale: 4.0,
+            vision_active: false,
+            max_episode_steps: 5,
+            ..config
+        }
+    }
+
+    /// Runs two episodes of a few environments on one thread.
+    fn run(blueprint: &Blueprint) -> Result<(), VectorError> {
+        let mut envs = VectorEnv::new(blueprint, 3, VectorOptions::default())?;
+        let mut actions = Vec::new();
+        envs.reset(3)?;
+        for _ in 0..9 {
+            envs.sample_actions(&mut actions)?;
+            envs.step(&actions)?;
+        }
+        Ok(())
+    }
+
+    fn error_of(task: impl Task + 'static) -> String {
+        let options = BlueprintOptions::default().with_task(task);
+        let blueprint = Blueprint::with(quick(Config::default()), options).expect("embedded assets");
+        run(&blueprint).expect_err("the task does more").to_string()
+    }
+
+    #[test]
+    fn built_in_tasks_keep_their_promise() {
+        for &behavior in Behavior::ALL {
+            let blueprint = Blueprint::new(quick(Config::of(behavior))).expect("embedded assets");
+            run(&blueprint).expect("it only moves things");
+        }
+    }
+
+    /// Pushes the hip after the physics.
+    #[derive(Clone, Debug)]
+    struct Push;
+
+    impl Task for Push {
+        fn name(&self) -> &str {
+            "push"
+        }
+
+        fn only_moves(&self) -> bool {
+            true
+        }
+
+        fn after_step(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+            scene.state.xfrc_applied[1][2] += 1.0;
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_task_that_changes_forces_after_the_physics_is_found_out() {
+        let error = error_of(Push);
+        assert!(error.contains("\"push\"") && error.contains("qfrc_smooth"), "{error}");
+    }
+
+    /// Begins an episode at the height where the last one ended.
+    #[derive(Clone, Debug)]
+    struct GoOn;
+
+    impl Task for GoOn {
+        fn name(&self) -> &str {
+            "go_on"
+        }
+
+        fn only_moves(&self) -> bool {
+            true
+        }
+
+        fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
+            let height = scene.state.xpos[10][2];
+            scene.restart()?;
+            scene.state.qpos[7] += 0.01 * height;
+            scene.forward()
+        }
+    }
+
+    #[test]
+    fn a_task_that_reads_poses_of_the_last_episode_is_found_out() {
+        let error = error_of(GoOn);
+        assert!(
+            error.contains("\"go_on\"") && error.contains("start of an episode"),
+            "{error}"
+        );
+    }
+}
