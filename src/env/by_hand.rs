@@ -2,6 +2,7 @@
 
 use super::check_vector;
 use super::outcome::clear;
+use super::task::Passed;
 use crate::env::{Env, EnvError, Observation, Snapshot};
 use crate::math::{Quat, Vec3};
 
@@ -116,7 +117,7 @@ impl<'a> Parts<'a> {
         self.env.senses.forget_picture();
         let mut scene = self.env.play().scene;
         scene.forget();
-        scene.reset_actuators();
+        scene.actuation.reset(scene.model, scene.state);
         self.env.action_delay.rest();
         let phase = self.env.phase();
         self.env.senses.reset(phase);
@@ -165,7 +166,7 @@ impl<'a> Parts<'a> {
     pub fn set_action(&mut self, action: &[f32]) -> Result<(), EnvError> {
         self.env.check_action(action)?;
         self.env.physics.check_shape()?;
-        self.env.play().scene.pass(action);
+        self.env.play().scene.set_action(action, Passed::InStep);
         Ok(())
     }
 
@@ -174,7 +175,8 @@ impl<'a> Parts<'a> {
         if self.env.physics.check_shape().is_err() {
             return; // the physics step that follows says so
         }
-        self.env.play().scene.substep();
+        let scene = self.env.play().scene;
+        scene.actuation.substep(scene.model, scene.state);
     }
 
     /// Advances by one physics step, without sensing.

@@ -81,7 +81,7 @@ use episode::{Episode, Play};
 use outcome::clear;
 use physics::Physics;
 use placed::check_vector;
-use task::Goals;
+use task::{Goals, Passed};
 
 /// A BabyBench environment.
 ///
@@ -240,9 +240,8 @@ impl Env {
         applied.clear();
         applied.extend_from_slice(action);
         task.before_step(applied);
-        let stepped = scene
-            .step(applied, frame_skip)
-            .and_then(|()| task.after_step(&mut scene));
+        scene.set_action(applied, Passed::InStep);
+        let stepped = scene.advance(frame_skip).and_then(|()| task.after_step(&mut scene));
         if let Err(e) = stepped {
             self.episode.ready = false;
             return Err(e);

@@ -2,6 +2,7 @@
 
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
+use super::starts::relax;
 use super::tracking::HeadTracking;
 use super::{Goal, Task, TaskDocument, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
@@ -234,8 +235,8 @@ impl Task for Catch {
         self.throw(scene)?;
         scene.forward()?;
         let gravity = std::mem::take(&mut scene.state.params.gravity);
-        scene.reset_actuators();
-        let settled = scene.relax(SETTLING);
+        scene.actuation.reset(scene.model, scene.state);
+        let settled = relax(scene, SETTLING);
         scene.state.params.gravity = gravity;
         settled?;
         if !self.reference {

@@ -1,7 +1,8 @@
 //! Whether the hands are in the central field of view of the eyes.
 
 use super::scene::TaskScene;
-use super::{START_ACTIONS, Task, TaskEvent, TaskSizes, body};
+use super::starts::random_start;
+use super::{Task, TaskEvent, TaskSizes, body};
 use crate::config::{Compat, Config};
 use crate::env::{BehaviorInfo, EnvError, Info, PerEyeAndHand, Regards, missing_camera};
 use crate::math::*;
@@ -90,8 +91,7 @@ impl Task for HandRegard {
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
-        scene.restart()?;
-        (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+        random_start(scene, |_| Ok(()))
     }
 
     fn forget(&mut self) {

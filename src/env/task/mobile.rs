@@ -1,7 +1,8 @@
 //! A mobile that one of the limbs moves, in the phases of the mobile paradigm.
 
 use super::scene::{TaskScene, TaskView};
-use super::{Goal, START_ACTIONS, Task, TaskEvent, TaskSizes, Verdict, body};
+use super::starts::random_start;
+use super::{Goal, Task, TaskEvent, TaskSizes, Verdict, body};
 use crate::config::{Config, Limb};
 use crate::env::{BehaviorInfo, EnvError, Info};
 use crate::math::*;
@@ -246,8 +247,7 @@ impl Task for Mobile {
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
-        scene.restart()?;
-        (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+        random_start(scene, |_| Ok(()))
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, _desired: &mut [f64]) {

@@ -16,12 +16,14 @@ mod scene;
 mod self_body;
 mod self_touch;
 mod standup;
+mod starts;
 mod tracking;
 
 use std::fmt::Debug;
 
 pub use goal::{Goal, GoalError, Outcome};
 pub(super) use goal::{Goals, rewards};
+pub(in crate::env) use scene::Passed;
 pub use scene::{TaskScene, TaskView};
 
 use crate::config::{Behavior, Config};
@@ -29,9 +31,6 @@ use crate::env::{EnvError, Info};
 use crate::mimo::{Version, scene_xml};
 use crate::model::Model;
 use crate::physics::State;
-
-/// Random actions, of one physics step each, at the start of an episode of `self_touch` and `hand_regard`.
-const START_ACTIONS: usize = 10;
 
 /// How many numbers a task hands out in each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! Which toys are touched, held and moved.
 
 use super::scene::{TaskScene, TaskView};
-use super::{Goal, START_ACTIONS, Task, TaskEvent, TaskSizes, Verdict};
+use super::starts::random_start;
+use super::{Goal, Task, TaskEvent, TaskSizes, Verdict};
 use crate::config::Config;
 use crate::env::{BehaviorInfo, EnvError, Info};
 use crate::math::*;
@@ -162,8 +163,7 @@ impl Task for Play {
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
-        scene.restart()?;
-        (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+        random_start(scene, |_| Ok(()))
     }
 
     fn begin(&mut self, scene: &mut TaskScene<'_>, _desired: &mut [f64]) {

@@ -2,6 +2,7 @@
 
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
+use super::starts::random_start;
 use super::tracking::HeadTracking;
 use super::{Goal, Task, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
@@ -10,8 +11,6 @@ use crate::math::{Vec3, norm, sub};
 use crate::model::Model;
 
 const PURPOSE: &str = "behavior reach";
-/// Random actions at the start of an episode, of one physics step each.
-const START_ACTIONS: usize = 10;
 /// How far the ball may lie from its place at the start of an episode, m: from, to.
 const BALL: [[f64; 2]; 3] = [[-0.1, 0.0], [-0.2, 0.1], [-0.1, 0.0]];
 /// Way of the ball from its first place that counts as touched, m.
@@ -67,11 +66,7 @@ impl Task for Reach {
 
     /// Ten random actions move the arm, then the ball is put to a random place: x, y, z.
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
-        scene.restart()?;
-        for _ in 0..START_ACTIONS {
-            scene.random_step()?;
-            self.after_step(scene)?;
-        }
+        random_start(scene, |scene| self.after_step(scene))?;
         let [start, _] = scene.start();
         for (k, [low, high]) in BALL.into_iter().enumerate() {
             scene.state.qpos[self.ball + k] = start[self.ball + k] + scene.rng.uniform_in(low, high);

@@ -3,6 +3,7 @@
 use super::pose::free_address;
 use super::scene::{TaskScene, TaskView};
 use super::standup::{REST, control_cost, first, reached, shaken_start};
+use super::starts::relax;
 use super::{Goal, Task, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config, StartingPosition};
 use crate::env::EnvError;
@@ -81,7 +82,7 @@ impl Task for RollOver {
         qpos[self.base + 3..self.base + 7].copy_from_slice(&quat);
         let still = vec![0.0; scene.model.nv];
         scene.place(&qpos, &still)?;
-        scene.relax(REST)
+        relax(scene, REST)
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {

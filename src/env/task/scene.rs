@@ -13,6 +13,14 @@ use crate::physics::{Engine, Params, Shared, State};
 use crate::sensors::Touch;
 use crate::spaces::NumpyRng;
 
+/// When an action is passed to the delay before the actuators.
+#[derive(Clone, Copy)]
+pub(in crate::env) enum Passed {
+    InStep,
+    /// At once, unless `compat: reference` delays actions of resets, too.
+    InReset,
+}
+
 /// Physics steps in which a scene settles before it is used.
 const SETTLING_STEPS: u32 = 100;
 
@@ -38,7 +46,7 @@ pub struct TaskScene<'a> {
     pub(in crate::env) delay: Option<&'a mut ActionDelay>,
     /// Where episodes start: positions and velocities.
     pub(in crate::env) start: [&'a [f64]; 2],
-    /// Room for a random action.
+    /// Buffer of an action.
     pub(in crate::env) action: &'a mut Vec<f32>,
 }
 
@@ -75,11 +83,6 @@ impl<'a> TaskScene<'a> {
         self.start
     }
 
-    /// Returns whether to follow the Python code where it disagrees with its description.
-    pub fn follows_reference(&self) -> bool {
-        self.config.compat == Compat::Reference
-    }
-
     /// Forgets the past: time, controls and the start of the solver are 0, the actuators rest, parameters are those of the
     /// blueprint; and computes everything at the settled state.
     ///
@@ -98,13 +101,14 @@ impl<'a> TaskScene<'a> {
         check_vector("qpos", qpos, self.model.nq)?;
         check_vector("qvel", qvel, self.model.nv)?;
         self.forget();
-        if self.follows_reference() {
+        let reference = self.config.compat == Compat::Reference;
+        if reference {
             // the reference resets its actuators before it sets the state
             self.actuation.reset(self.model, self.state);
         }
         self.state.qpos.copy_from_slice(qpos);
         self.state.qvel.copy_from_slice(qvel);
-        if !self.follows_reference() {
+        if !reference {
             self.actuation.reset(self.model, self.state);
         }
         self.forward()
@@ -152,39 +156,25 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn act(&mut self, action: &[f32], steps: u32) -> Result<(), EnvError> {
-        self.give(action);
+        self.set_action(action, Passed::InReset);
         self.advance(steps)
     }
 
-    /// Applies an action through the delay before the actuators and advances the physics.
-    pub(in crate::env) fn step(&mut self, action: &[f32], steps: u32) -> Result<(), EnvError> {
-        self.pass(action);
-        self.advance(steps)
-    }
-
-    /// Gives the action of a step to the actuators, through the delay before them.
-    pub(in crate::env) fn pass(&mut self, action: &[f32]) {
-        let action = match &mut self.delay {
-            Some(delay) => delay.pass(action, self.rng),
-            None => action,
-        };
-        self.actuation.set_action(self.model, self.state, action);
-    }
-
-    /// Gives an action to the actuators, as resets do.
-    fn give(&mut self, action: &[f32]) {
-        let action = match &mut self.delay {
-            Some(delay) => delay.pass_in_reset(action, self.rng),
-            None => action,
+    /// Gives an action to the actuators, through the delay before them.
+    pub(in crate::env) fn set_action(&mut self, action: &[f32], passed: Passed) {
+        let action = match (&mut self.delay, passed) {
+            (Some(delay), Passed::InStep) => delay.pass(action, self.rng),
+            (Some(delay), Passed::InReset) => delay.pass_in_reset(action, self.rng),
+            (None, _) => action,
         };
         self.actuation.set_action(self.model, self.state, action);
     }
 
     /// Makes physics steps, before each of which but the first the actuators are updated.
-    fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
+    pub(in crate::env) fn advance(&mut self, steps: u32) -> Result<(), EnvError> {
         for k in 0..steps {
             if k > 0 {
-                self.substep();
+                self.actuation.substep(self.model, self.state);
             }
             self.steps(1)?;
         }
@@ -197,38 +187,12 @@ impl<'a> TaskScene<'a> {
     /// # Errors
     /// The simulation diverged.
     pub fn rest(&mut self, steps: u32) -> Result<(), EnvError> {
-        self.with_action(|scene, action| {
-            action.clear();
-            action.resize(scene.actuation.action_space().len(), 0.0);
-            scene.give(action);
-            scene.steps(steps)
-        })
-    }
-
-    /// Gives the action 0 to the actuators and makes physics steps. Under `compat: reference` actuators are not updated between them.
-    ///
-    /// # Errors
-    /// The simulation diverged.
-    pub fn relax(&mut self, steps: u32) -> Result<(), EnvError> {
-        if self.follows_reference() {
-            return self.rest(steps);
-        }
-        self.with_action(|scene, action| {
-            action.clear();
-            action.resize(scene.actuation.action_space().len(), 0.0);
-            scene.act(action, steps)
-        })
-    }
-
-    /// Gives a random action to the actuators and makes a physics step.
-    ///
-    /// # Errors
-    /// The simulation diverged.
-    pub fn random_step(&mut self) -> Result<(), EnvError> {
-        self.with_action(|scene, action| {
-            scene.actuation.action_space().sample(scene.rng, action);
-            scene.act(action, 1)
-        })
+        self.action.clear();
+        self.action.resize(self.actuation.action_space().len(), 0.0);
+        let action = std::mem::take(self.action);
+        self.set_action(&action, Passed::InReset);
+        *self.action = action;
+        self.steps(steps)
     }
 
     /// Makes physics steps; actuators go on as they are.
@@ -248,16 +212,6 @@ impl<'a> TaskScene<'a> {
         };
         let stepped = self.engine.lend(|engine| (0..steps).try_for_each(|_| step(engine)));
         Ok(stepped?)
-    }
-
-    /// Updates the actuators, as before each physics step of an action but the first.
-    pub fn substep(&mut self) {
-        self.actuation.substep(self.model, self.state);
-    }
-
-    /// Lets the actuators rest.
-    pub fn reset_actuators(&mut self) {
-        self.actuation.reset(self.model, self.state);
     }
 
     /// Locks a joint at an angle, rad, in every episode; with `now` at once, too.
@@ -288,16 +242,5 @@ impl<'a> TaskScene<'a> {
         self.state.qvel.fill(0.0);
         self.forward()?;
         self.rest(SETTLING_STEPS)
-    }
-
-    /// Calls `work` with the reusable memory of an action.
-    fn with_action(
-        &mut self,
-        work: impl FnOnce(&mut Self, &mut Vec<f32>) -> Result<(), EnvError>,
-    ) -> Result<(), EnvError> {
-        let mut action = std::mem::take(self.action);
-        let done = work(self, &mut action);
-        *self.action = action;
-        done
     }
 }

@@ -2,6 +2,7 @@
 
 use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};
+use super::starts::relax;
 use super::{Goal, Task, TaskDocument, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
@@ -189,9 +190,9 @@ impl Task for SelfBody {
         set_angles(scene.model, SITTING, &mut scene.state.qpos, PURPOSE)?;
         scene.state.qpos[self.base..self.base + 7].copy_from_slice(&BASE);
         for &(joint, angle) in SITTING {
-            scene.lock(&own_joint(joint), angle, !scene.follows_reference())?;
+            scene.lock(&own_joint(joint), angle, !self.reference)?;
         }
-        scene.relax(SETTLING)?;
+        relax(scene, SETTLING)?;
         scene.state.qvel.fill(0.0);
         Ok(())
     }

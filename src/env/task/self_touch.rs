@@ -1,7 +1,8 @@
 //! Which parts of the body the palms touch.
 
 use super::scene::TaskScene;
-use super::{START_ACTIONS, Task, TaskEvent, TaskSizes, body};
+use super::starts::random_start;
+use super::{Task, TaskEvent, TaskSizes, body};
 use crate::config::Config;
 use crate::env::{BehaviorInfo, EnvError, Info, PartNames, PerHand};
 use crate::model::Model;
@@ -64,8 +65,7 @@ impl Task for SelfTouch {
     }
 
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
-        scene.restart()?;
-        (0..START_ACTIONS).try_for_each(|_| scene.random_step())
+        random_start(scene, |_| Ok(()))
     }
 
     fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {

@@ -2,6 +2,7 @@
 
 use super::pose::{Angles, free_address, set_angles};
 use super::scene::{TaskScene, TaskView};
+use super::starts::relax;
 use super::{Goal, Task, TaskSizes, Verdict, body};
 use crate::config::{Compat, Config};
 use crate::env::EnvError;
@@ -157,7 +158,7 @@ pub(super) fn shaken_start(scene: &mut TaskScene<'_>, base: usize) -> Result<(),
     }
     scene.state.qvel.fill(0.0);
     scene.forward()?;
-    scene.relax(REST)
+    relax(scene, REST)
 }
 
 /// Returns the cost of the controls: 0.01 times the sum of their squares. Controls of muscles are always 1, so there it is the

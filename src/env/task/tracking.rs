@@ -2,6 +2,7 @@
 
 use super::pose::{address, own_joint};
 use super::scene::TaskScene;
+use crate::config::Compat;
 use crate::env::EnvError;
 use crate::math::{Vec3, norm, sub};
 use crate::model::Model;
@@ -55,7 +56,7 @@ impl HeadTracking {
         let [x, y, z] = sub(point, scene.state.xpos[self.head]);
         let eyes = norm([x, y, z]) - EYE_FORWARD;
         let up = z - EYE_HEIGHT;
-        let [swivel, tilt] = if scene.follows_reference() {
+        let [swivel, tilt] = if scene.config.compat == Compat::Reference {
             [pxfm::f_atan(y / x), pxfm::f_atan(-up / x)]
         } else {
             [pxfm::f_atan2(y, x), pxfm::f_atan2(-up, x.abs())]
