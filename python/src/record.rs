@@ -70,7 +70,8 @@ impl Recorder {
         read("action", action, &[width], &mut inner.action)?;
         let (env, action) = (&mut inner.env, &inner.action);
         detached(py, || self.with(|recorder| recorder.step(env, action)))?;
-        let outcome = (inner.env.reward(), inner.env.terminated(), inner.env.truncated());
+        let last = inner.env.last_step();
+        let outcome = (last.reward, last.terminated, last.truncated);
         Ok((Env::observed(py, inner)?, outcome.0, outcome.1, outcome.2))
     }
 

@@ -115,15 +115,9 @@ impl Env {
         self.physics.state_mut()
     }
 
-    /// Returns the physics engine.
+    /// Returns a physics engine that tells what follows from the model. [`Blueprint::engine`] makes one that advances copies of the state.
     pub fn engine(&self) -> &dyn Engine {
         self.physics.reader()
-    }
-
-    /// Returns a physics engine, to advance copies of the state with it. Engines remember nothing; this one is made at the first call,
-    /// and the environment steps with it from then on.
-    pub fn engine_mut(&mut self) -> &mut dyn Engine {
-        self.physics.own_engine()
     }
 
     /// Returns the senses: what they consist of, and what they felt last.

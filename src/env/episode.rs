@@ -91,11 +91,6 @@ impl Env {
         self.episode.ready
     }
 
-    /// Returns whether the episode has reached `max_episode_steps`.
-    pub fn truncated(&self) -> bool {
-        self.episode.steps >= self.blueprint.config().max_episode_steps
-    }
-
     pub(super) fn end_episode(&mut self) -> u64 {
         self.episode.ready = false;
         self.senses.forget_picture();

@@ -251,15 +251,8 @@ impl Env {
         self.sense()?;
         self.finish_step();
         self.check_shared()?;
-        let truncated = self.truncated();
         self.mark(None);
-        Ok(Step {
-            observation: self.observation(),
-            reward: self.episode.reward,
-            terminated: self.episode.terminated,
-            truncated,
-            info: &self.info,
-        })
+        Ok(self.last_step())
     }
 
     /// Checks the length of an action, and that it is finite.

@@ -1,23 +1,39 @@
 //! The outcome of a step: reward, success, failure.
 
 use super::task::{Goals, Task, TaskEvent, TaskView};
-use super::{BehaviorInfo, Env, Info, Outcome, TaskInfo};
+use super::{BehaviorInfo, Env, Info, Outcome, Step, TaskInfo};
 use crate::config::Compat;
 
 impl Env {
-    /// Returns the reward of the last step.
-    pub fn reward(&self) -> f64 {
-        self.episode.reward
-    }
-
-    /// Returns whether the last step ended the episode in success or failure.
-    pub fn terminated(&self) -> bool {
-        self.episode.terminated
+    /// Returns the results of the last step once more; after a reset a reward of 0 and no end.
+    ///
+    /// ```
+    /// use babybench::{Config, Env};
+    ///
+    /// let mut env = Env::new(Config { vision_active: false, ..Config::default() })?;
+    /// env.reset(Some(0))?;
+    /// let reward = env.step(&vec![0.0; env.action_space().len()])?.reward;
+    /// assert_eq!(env.last_step().reward, reward);
+    /// # Ok::<(), babybench::EnvError>(())
+    /// ```
+    pub fn last_step(&self) -> Step<'_> {
+        Step {
+            observation: self.observation(),
+            reward: self.episode.reward,
+            terminated: self.episode.terminated,
+            truncated: self.truncated(),
+            info: &self.info,
+        }
     }
 
     /// Returns whether the episode is over: terminated or truncated.
     pub fn over(&self) -> bool {
-        self.terminated() || self.truncated()
+        self.episode.terminated || self.truncated()
+    }
+
+    /// Returns whether the episode has reached `max_episode_steps`.
+    fn truncated(&self) -> bool {
+        self.episode.steps >= self.blueprint.config().max_episode_steps
     }
 
     /// Looks at what is achieved, and computes outcome, reward and end of the last step.

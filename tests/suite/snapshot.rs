@@ -284,8 +284,8 @@ fn a_clone_goes_on_with_the_same_bits() {
         let mut twin = env.clone();
         assert_eq!((env.observation(), env.info()), (twin.observation(), twin.info()));
         assert_eq!(
-            (env.reward(), env.by_hand().ready()),
-            (twin.reward(), twin.by_hand().ready())
+            (env.last_step().reward, env.by_hand().ready()),
+            (twin.last_step().reward, twin.by_hand().ready())
         );
         let expect = course(&mut env, 6);
         assert!(course(&mut twin, 6) == expect);

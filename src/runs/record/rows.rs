@@ -156,9 +156,10 @@ impl Rows {
             touch.ptr.push(touch.idx.len() as i32);
         }
         self.contacts.push(env);
-        self.reward.push(env.reward());
-        self.terminated.push(u8::from(env.terminated()));
-        self.truncated.push(u8::from(env.truncated()));
+        let last = env.last_step();
+        self.reward.push(last.reward);
+        self.terminated.push(u8::from(last.terminated));
+        self.truncated.push(u8::from(last.truncated));
         self.told.push(step, env);
         let pictures = options
             .eyes_every
@@ -366,7 +367,7 @@ pub(super) fn checksum(env: &Env) -> i64 {
             }
         }
     }
-    sum.add(env.reward().to_bits());
+    sum.add(env.last_step().reward.to_bits());
     sum.0 as i64
 }
 

@@ -97,9 +97,10 @@ pub struct TaskRows {
 
 impl TaskRows {
     fn push(&mut self, env: &Env) {
-        self.reward.push(env.reward());
-        self.terminated.push(env.terminated());
-        self.truncated.push(env.truncated());
+        let last = env.last_step();
+        self.reward.push(last.reward);
+        self.terminated.push(last.terminated);
+        self.truncated.push(last.truncated);
         self.achieved_goal.extend_from_slice(env.goal().achieved);
         self.desired_goal.extend_from_slice(env.goal().desired);
     }

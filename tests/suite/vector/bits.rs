@@ -63,7 +63,7 @@ fn last(envs: &VectorEnv, row: usize) -> String {
 /// The action of an environment of a vector, by the rules of a mode: with [`AutoresetMode::Disabled`], after a reset if
 /// its episode is over.
 fn next_action(envs: &mut VectorEnv, env: usize, mode: AutoresetMode, out: &mut Vec<f32>) {
-    if mode == AutoresetMode::Disabled && envs.env(env).expect("it is here").truncated() {
+    if mode == AutoresetMode::Disabled && envs.env(env).expect("it is here").last_step().truncated {
         // as the environment alone, which draws an action before it sees that the episode is over
         let mut drawn = Vec::new();
         let alone = envs.env_mut(env).expect("it is here");

@@ -10,17 +10,17 @@ use crate::js;
 impl Core {
     /// Returns the reward of the last step.
     pub fn reward(&self) -> f64 {
-        self.env.reward()
+        self.env.last_step().reward
     }
 
     /// Returns whether the last step ended the episode in success or failure.
     pub fn terminated(&self) -> bool {
-        self.env.terminated()
+        self.env.last_step().terminated
     }
 
     /// Returns whether the episode has reached its last step.
     pub fn truncated(&self) -> bool {
-        self.env.truncated()
+        self.env.last_step().truncated
     }
 
     /// Changes the desired goal of the episode.
