@@ -67,94 +67,94 @@ pub(super) const GROWTH: &str = "Growth";
 config! {
     "General" {
         save_dir: String = "results/test_installation".to_string(), Text, "The folder of logs, videos and results.";
-        behavior: Behavior = Behavior::None, Choice(Behavior::NAMES), "The behavior that is trained and scored, or a task with a goal and a reward, whose other keys have defaults of their own." + "It also decides MIMo's version.";
-        scene: Scene = Scene::Base, SCENE, "MIMo's surroundings: a scene of the library, or an MJCF document of one's own that includes him, by its path from the configuration file's folder.";
+        behavior: Behavior = Behavior::None, Choice(Behavior::NAMES), "The behavior or task." + "A behavior is trained and scored. A task has a goal and a reward, and its own defaults for other keys. Either decides MIMo's version.";
+        scene: Scene = Scene::Base, SCENE, "A scene of the library, or a room of your own." + "A room is an MJCF document that includes MIMo. Its path starts at the configuration file's folder.";
         max_episode_steps: u64 = 1000, COUNT, "Number of steps after which an episode is truncated.";
         frame_skip: u32 = 1, FRAMES, "Physics steps of 5 ms per action.";
         render_size: u32 = 480, PIXELS, "Width and height of rendered images, pixels.";
         save_logs_every: u64 = 1000, COUNT, "Episodes between two saves of the training log.";
     }
     "This implementation's own keys" {
-        compat: Compat = Compat::Api, Choice(Compat::NAMES), "Which of them to follow where the API page and the Python code disagree.";
+        compat: Compat = Compat::Api, Choice(Compat::NAMES), "What to follow where the API page and the Python code disagree.";
         engine: EngineKind = EngineKind::Soft, Choice(EngineKind::NAMES), "The physics engine.";
         renderer: RendererKind = RendererKind::Cpu, Choice(RendererKind::NAMES), "The renderer of images.";
-        learner: Learner = Learner::Mimo, Choice(Learner::NAMES), "Which of two infants in a document of one's own learns: the one in `mimo_location` or in `other_location`.";
-        other_age: Option<f64> = None, AGE, "The age of the other infant in a document of one's own, months; none for the proportions of the original.";
-        scene_extra: String = String::new(), Document, "MJCF that is added to a scene of the library: bodies and what else stands in the world, and whole sections.";
-        mocap_motion: String = String::new(), Document, "The paths of bodies with `mocap=\"true\"`, over and over: a line of names, `time,BODY.x,BODY.y,BODY.z` and, if they turn, `BODY.qw` to `BODY.qz`, then lines of numbers.";
-        seed: u64 = 0, SEED, "The seed of all random choices until a reset is given another.";
-        facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face, which changes nothing but pictures.";
+        learner: Learner = Learner::Mimo, Choice(Learner::NAMES), "Which of two infants in a room learns: the one in `mimo_location` or in `other_location`.";
+        other_age: Option<f64> = None, AGE, "The age of the other infant in a room, months; none for the original proportions.";
+        scene_extra: String = String::new(), Document, "MJCF added to a scene of the library: elements of the world and sections.";
+        mocap_motion: String = String::new(), Document, "The paths of bodies with `mocap=\"true\"`, as a table that repeats." + "Its first line has the names `time,BODY.x,BODY.y,BODY.z` and, for bodies that turn, `BODY.qw` to `BODY.qz`. The other lines have numbers.";
+        seed: u64 = 0, SEED, "The seed of all random choices until a reset sets another.";
+        facial_expression: FacialExpression = FacialExpression::Default, Choice(FacialExpression::NAMES), "MIMo's face. It changes pictures only.";
     }
     "Tasks" {
         done_active: bool = true, Bool, "Success and failure of a task terminate the episode.";
         @group catch: CatchOptions, "Options of the task catch.", "Options of the task `catch`." {
             action_penalty as action_penalty: bool = true, Bool, "The task catch subtracts the cost of an action from the reward.";
-            jitter as jitter: bool = false, Bool, "The task catch disturbs actions, by factors that change now and then.";
+            jitter as jitter: bool = false, Bool, "The task catch disturbs actions by factors that change at random.";
             position_inaccurate as position_inaccurate: bool = false, Bool, "The eyes of the task catch follow a point beside the ball.";
         }
         @group roll_over: RollOverOptions, "Options of the task roll_over.", "Options of the task `roll_over`." {
             starting_position as starting_position: StartingPosition = StartingPosition::Supine, Choice(StartingPosition::NAMES), "How MIMo lies at the start of the task roll_over.";
         }
         @group mobile: MobileOptions, "Options of the task mobile.", "Options of the task `mobile`." {
-            limb as mobile_limb: Limb = Limb::RightFoot, Choice(Limb::NAMES), "The limb that the ribbon of the task mobile is at.";
-            baseline as mobile_baseline: f64 = 0.2, SHARE, "The share of an episode of the task mobile before the mobile is tied to the limb.";
-            extinction as mobile_extinction: f64 = 0.2, SHARE, "The share of an episode of the task mobile after the mobile is untied.";
-            reward as mobile_reward: bool = false, Bool, "The task mobile rewards movement of the mobile, by the metre.";
+            limb as mobile_limb: Limb = Limb::RightFoot, Choice(Limb::NAMES), "The limb that the ribbon of the task mobile is tied to.";
+            baseline as mobile_baseline: f64 = 0.2, SHARE, "Task mobile: the share of an episode before the mobile is tied to the limb.";
+            extinction as mobile_extinction: f64 = 0.2, SHARE, "Task mobile: the share of an episode after the mobile is untied.";
+            reward as mobile_reward: bool = false, Bool, "The task mobile rewards each metre by which the mobile moves.";
         }
         @group play: PlayOptions, "Options of the task play.", "Options of the task `play`." {
-            reward as play_reward: bool = false, Bool, "The task play rewards each toy that is touched for the first time in an episode, by 1.";
+            reward as play_reward: bool = false, Bool, "The task play rewards each toy with 1 when it is first touched in an episode.";
         }
     }
     GROWTH {
-        age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the proportions of the original.";
+        age: Option<f64> = None, AGE, "The age of MIMo's body, months; none for the original proportions.";
         strength_age: Option<f64> = None, AGE, "The age of MIMo's strength, months; none for that of his body.";
-        touch_grows: bool = false, Bool, "Touch sensors keep their number and grow with the body, instead of keeping their distances.";
+        touch_grows: bool = false, Bool, "Touch sensors keep their number and move with the body, instead of keeping their distances.";
         @group measurements: Measurements, "Measurements that replace those of the age.", "Measurements of an infant's body, as AnthroKids (1977) took them: cm, the two diameters of fingers mm. `None` leaves a measurement to the age." {
-            ankle_circumference as ankle_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the ankle, cm; none for that of the age.";
-            calf_circumference as calf_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the calf, cm; none for that of the age.";
-            elbow_hand_length as elbow_hand_length: Option<f64> = None, CENTIMETRES, "The length from the elbow to the fingertips, cm; none for that of the age.";
-            fist_breadth as fist_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the fist, cm; none for that of the age.";
-            foot_breadth as foot_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the foot, cm; none for that of the age.";
-            foot_length as foot_length: Option<f64> = None, CENTIMETRES, "The length of the foot, cm; none for that of the age.";
-            forearm_circumference as forearm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the forearm, cm; none for that of the age.";
-            hand_breadth as hand_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hand, cm; none for that of the age.";
-            hand_length as hand_length: Option<f64> = None, CENTIMETRES, "The length of the hand, cm; none for that of the age.";
-            head_circumference as head_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the head, cm; none for that of the age.";
-            hip_breadth as hip_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hip, cm; none for that of the age.";
-            knee_sole_length as knee_sole_length: Option<f64> = None, CENTIMETRES, "The length from the knee to the sole, cm; none for that of the age.";
-            middle_finger_diameter as middle_finger_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the middle finger, mm; none for that of the age.";
-            rump_knee_length as rump_knee_length: Option<f64> = None, CENTIMETRES, "The length from the rump to the knee, cm; none for that of the age.";
-            shoulder_elbow_length as shoulder_elbow_length: Option<f64> = None, CENTIMETRES, "The length from the shoulder to the elbow, cm; none for that of the age.";
-            thigh_circumference as thigh_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the thigh, half way, cm; none for that of the age.";
-            thumb_diameter as thumb_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the thumb, mm; none for that of the age.";
-            upper_arm_circumference as upper_arm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the upper arm, cm; none for that of the age.";
+            ankle_circumference as ankle_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the ankle, cm; none for the value of the age.";
+            calf_circumference as calf_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the calf, cm; none for the value of the age.";
+            elbow_hand_length as elbow_hand_length: Option<f64> = None, CENTIMETRES, "The length from the elbow to the fingertips, cm; none for the value of the age.";
+            fist_breadth as fist_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the fist, cm; none for the value of the age.";
+            foot_breadth as foot_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the foot, cm; none for the value of the age.";
+            foot_length as foot_length: Option<f64> = None, CENTIMETRES, "The length of the foot, cm; none for the value of the age.";
+            forearm_circumference as forearm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the forearm, cm; none for the value of the age.";
+            hand_breadth as hand_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hand, cm; none for the value of the age.";
+            hand_length as hand_length: Option<f64> = None, CENTIMETRES, "The length of the hand, cm; none for the value of the age.";
+            head_circumference as head_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the head, cm; none for the value of the age.";
+            hip_breadth as hip_breadth: Option<f64> = None, CENTIMETRES, "The breadth of the hip, cm; none for the value of the age.";
+            knee_sole_length as knee_sole_length: Option<f64> = None, CENTIMETRES, "The length from the knee to the sole, cm; none for the value of the age.";
+            middle_finger_diameter as middle_finger_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the middle finger, mm; none for the value of the age.";
+            rump_knee_length as rump_knee_length: Option<f64> = None, CENTIMETRES, "The length from the rump to the knee, cm; none for the value of the age.";
+            shoulder_elbow_length as shoulder_elbow_length: Option<f64> = None, CENTIMETRES, "The length from the shoulder to the elbow, cm; none for the value of the age.";
+            thigh_circumference as thigh_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the thigh at its middle, cm; none for the value of the age.";
+            thumb_diameter as thumb_diameter: Option<f64> = None, MILLIMETRES, "The diameter of the thumb, mm; none for the value of the age.";
+            upper_arm_circumference as upper_arm_circumference: Option<f64> = None, CENTIMETRES, "The circumference of the upper arm, cm; none for the value of the age.";
         }
     }
     "Delays" {
         @group delays: Delays, "Delays of senses and actions (`delay_sensory` ...).", "Delays of senses and actions, in [`Delays::unit`]; 0 is none." {
             unit as delay_unit: DelayUnit = DelayUnit::default(), Choice(DelayUnit::NAMES), "The unit of delays; milliseconds are rounded to whole steps.";
-            by_age as delay_by_age: bool = false, Bool, "Senses that have no delay of their own have that of MIMo's age, as it was measured in infants.";
-            sensory as delay_sensory: f64 = 0.0, DELAY, "The delay of senses that have none of their own.";
+            by_age as delay_by_age: bool = false, Bool, "Senses without a delay of their own have the delay measured in infants of MIMo's age.";
+            sensory as delay_sensory: f64 = 0.0, DELAY, "The delay of senses without one of their own or of their age.";
             motor as delay_motor: f64 = 0.0, DELAY, "The delay of actions.";
-            proprioception as delay_proprioception: Option<f64> = None, OWN_DELAY, "The delay of proprioception; none for that of all senses.";
-            touch as delay_touch: Option<f64> = None, OWN_DELAY, "The delay of touch and pain; none for that of all senses.";
-            vestibular as delay_vestibular: Option<f64> = None, OWN_DELAY, "The delay of the head's motion; none for that of all senses.";
-            vision as delay_vision: Option<f64> = None, OWN_DELAY, "The delay of both eyes; none for that of all senses.";
+            proprioception as delay_proprioception: Option<f64> = None, OWN_DELAY, "The delay of proprioception; none for `delay_by_age` or `delay_sensory`.";
+            touch as delay_touch: Option<f64> = None, OWN_DELAY, "The delay of touch and pain; none for `delay_by_age` or `delay_sensory`.";
+            vestibular as delay_vestibular: Option<f64> = None, OWN_DELAY, "The delay of the head's motion; none for `delay_by_age` or `delay_sensory`.";
+            vision as delay_vision: Option<f64> = None, OWN_DELAY, "The delay of both eyes; none for `delay_by_age` or `delay_sensory`.";
         }
     }
     "Noise" {
         @group noise: NoiseLevels, "Noise of senses and actions (`noise_touch` ...).", "Standard deviations of the noise of senses and actions; 0 is none." {
             proprioception as noise_proprioception: f64 = 0.0, DEVIATION, "Standard deviation of the noise of proprioception, in the unit of each number.";
-            touch as noise_touch: f64 = 0.0, DEVIATION, "Standard deviation of the noise of touch sensors that feel something, N.";
+            touch as noise_touch: f64 = 0.0, DEVIATION, "Standard deviation of the noise of active touch sensors, N.";
             vestibular as noise_vestibular: f64 = 0.0, DEVIATION, "Standard deviation of the noise of the head's motion, m/s^2 and rad/s.";
-            vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise of images, of 255.";
-            motor as noise_motor: f64 = 0.0, SHARE, "Standard deviation of the noise of actions, as a share of each number: it grows with the effort.";
+            vision as noise_vision: f64 = 0.0, DEVIATION, "Standard deviation of the noise of images, on a scale of 255.";
+            motor as noise_motor: f64 = 0.0, SHARE, "Standard deviation of the noise of actions, as a share of each number, so that it grows with effort.";
         }
     }
     "Proprioception" {
         proprio_velocity: bool = true, Bool, "Joint velocities are observed.";
         proprio_torque: bool = true, Bool, "Joint torques are observed.";
-        proprio_limits: bool = true, Bool, "How far joints are into their limits is observed.";
+        proprio_limits: bool = true, Bool, "The distance of joints into their limits is observed.";
         proprio_actuation: bool = true, Bool, "The state of the actuators is observed.";
     }
     "Vestibular" {
@@ -162,34 +162,34 @@ config! {
     }
     "Vision" {
         vision_active: bool = true, Bool, "The images of both eyes are observed.";
-        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels, where it has none of its own.";
-        vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The images of each eye that are observed.";
-        vision_threads: u32 = 1, EYES, "Threads that draw the eyes of an environment alone: 2 is faster by the clock, to the same bytes." + "Vectors of environments have threads of their own, and draw each environment with one.";
-        vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees in a second, Hz; none for one in each step." + "Between two of them the last one is observed; environments of other seeds see theirs in other steps.";
-        vision_lazy: bool = false, Bool, "Images are drawn when they are asked for, and not at all if nobody does." + "Rust asks with `Env::look`, Python by reading them. Where a later image depends on each, by noise, a delay or a rate, all are drawn.";
+        vision_resolution: u32 = 64, PIXELS, "Width and height of an eye's image, pixels, without keys of its own.";
+        vision_outputs: VisionOutputs = VisionOutputs::default(), List(VisionOutput::NAMES), "The kinds of images of each eye that are observed.";
+        vision_threads: u32 = 1, EYES, "Threads that draw both eyes of a single environment; 2 takes less wall time and gives the same bytes." + "Vectors have their own threads and draw each environment with one.";
+        vision_rate: Option<f64> = None, RATE, "Pictures that each eye sees per second, Hz; none for one in each step." + "Between two pictures the last one is observed. Environments with different seeds see pictures in different steps.";
+        vision_lazy: bool = false, Bool, "Images are drawn only on request." + "Rust requests them with `Env::look`, Python with `env.eyes()`. All are drawn if a later image depends on each, through noise, a delay or a rate.";
         @group eyes: EyeOptions, "What the eyes see, how sharp, and where (`vision_width` ...).", "What the eyes see, how sharp, and where." {
-            width as vision_width: Option<u32> = None, OWN_PIXELS, "The width of an eye's image, pixels; none for vision_resolution.";
-            width_left as vision_width_left: Option<u32> = None, OWN_PIXELS, "The width of the left eye's image, pixels; none for that of both eyes.";
-            width_right as vision_width_right: Option<u32> = None, OWN_PIXELS, "The width of the right eye's image, pixels; none for that of both eyes.";
-            height as vision_height: Option<u32> = None, OWN_PIXELS, "The height of an eye's image, pixels; none for vision_resolution.";
-            height_left as vision_height_left: Option<u32> = None, OWN_PIXELS, "The height of the left eye's image, pixels; none for that of both eyes.";
-            height_right as vision_height_right: Option<u32> = None, OWN_PIXELS, "The height of the right eye's image, pixels; none for that of both eyes.";
-            fovy as vision_fovy: Option<f64> = None, FIELD, "The vertical field of view of an eye, degrees; none for that of its camera in the scene, 60 in those of the library.";
-            fovy_left as vision_fovy_left: Option<f64> = None, FIELD, "The vertical field of view of the left eye, degrees; none for that of both eyes.";
-            fovy_right as vision_fovy_right: Option<f64> = None, FIELD, "The vertical field of view of the right eye, degrees; none for that of both eyes.";
-            acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them, or of 18 months if he has none.";
-            acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none for that of both eyes.";
-            acuity_right as vision_acuity_right: Option<f64> = None, ACUITY_AGE, "The age of the right eye's acuity, months; none for that of both eyes.";
-            foveation as vision_foveation: f64 = 0.0, STRENGTH, "How much the middle of images is enlarged: 10 is usual, 0 not at all.";
-            foveation_left as vision_foveation_left: Option<f64> = None, OWN_STRENGTH, "The foveation of the left eye; none for that of both eyes.";
-            foveation_right as vision_foveation_right: Option<f64> = None, OWN_STRENGTH, "The foveation of the right eye; none for that of both eyes.";
+            width as vision_width: Option<u32> = None, OWN_PIXELS, "The width of an eye's image, pixels; none for `vision_resolution`.";
+            width_left as vision_width_left: Option<u32> = None, OWN_PIXELS, "The width of the left eye's image, pixels; none for `vision_width`.";
+            width_right as vision_width_right: Option<u32> = None, OWN_PIXELS, "The width of the right eye's image, pixels; none for `vision_width`.";
+            height as vision_height: Option<u32> = None, OWN_PIXELS, "The height of an eye's image, pixels; none for `vision_resolution`.";
+            height_left as vision_height_left: Option<u32> = None, OWN_PIXELS, "The height of the left eye's image, pixels; none for `vision_height`.";
+            height_right as vision_height_right: Option<u32> = None, OWN_PIXELS, "The height of the right eye's image, pixels; none for `vision_height`.";
+            fovy as vision_fovy: Option<f64> = None, FIELD, "The vertical field of view of an eye, degrees; none for the camera's, 60 by default.";
+            fovy_left as vision_fovy_left: Option<f64> = None, FIELD, "The vertical field of view of the left eye, degrees; none for `vision_fovy`.";
+            fovy_right as vision_fovy_right: Option<f64> = None, FIELD, "The vertical field of view of the right eye, degrees; none for `vision_fovy`.";
+            acuity as vision_acuity: bool = false, Bool, "Images are blurred as eyes of MIMo's age see them (18 months without an age).";
+            acuity_left as vision_acuity_left: Option<f64> = None, ACUITY_AGE, "The age of the left eye's acuity, months; none to follow `vision_acuity`.";
+            acuity_right as vision_acuity_right: Option<f64> = None, ACUITY_AGE, "The age of the right eye's acuity, months; none to follow `vision_acuity`.";
+            foveation as vision_foveation: f64 = 0.0, STRENGTH, "How strongly the centre of images is enlarged; 10 is usual, 0 is off.";
+            foveation_left as vision_foveation_left: Option<f64> = None, OWN_STRENGTH, "The foveation of the left eye; none for `vision_foveation`.";
+            foveation_right as vision_foveation_right: Option<f64> = None, OWN_STRENGTH, "The foveation of the right eye; none for `vision_foveation`.";
         }
     }
     "Touch" {
         touch_active: bool = true, Bool, "Touch is observed." + "See [`Config::touch_enabled`].";
-        touch_scale: f64 = 1.0, SCALE, "Factor on the distance between sensors; 0 switches touch off.";
-        touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports; `normal` exists under `compat: api` only, `normal_force` under `compat: reference` only.";
-        touch_rate: Option<f64> = None, RATE, "How often the skin feels in a second, Hz; none for every step." + "In between, touch, pain and what is pooled are as they were last.";
+        touch_scale: f64 = 1.0, SCALE, "Factor on the distance between sensors; 0 turns touch off.";
+        touch_function: TouchFunction = TouchFunction::Normal, Choice(TouchFunction::NAMES), "What a sensor reports." + "`normal` exists under `compat: api` only, `normal_force` under `compat: reference` only.";
+        touch_rate: Option<f64> = None, RATE, "Samples of the skin per second, Hz; none for one in each step." + "In between, touch, pain and pooled touch keep their last values.";
         touch_response: TouchResponse = TouchResponse::Nearest, Choice(TouchResponse::NAMES), "How sensors share a force.";
         @parts touch = BodyParts { eyes: false, ..BodyParts::all(true) }, "Parts that have touch sensors (`touch_hands` ...)." {
             hands as touch_hands, "The hands have touch sensors.";
@@ -208,10 +208,10 @@ config! {
     "Pain" {
         pain_active: bool = false, Bool, "Pain is observed.";
         @group pain: PainOptions, "What hurts (`pain_threshold` ...).", "The sense of pain." {
-            threshold as pain_threshold: f64 = 20.0, PAIN, "The force on a sensor from which on it hurts, N.";
-            slope as pain_slope: f64 = 0.1, PAIN, "The pain for each newton beyond.";
+            threshold as pain_threshold: f64 = 20.0, PAIN, "The force on a sensor above which it hurts, N.";
+            slope as pain_slope: f64 = 0.1, PAIN, "The pain per newton above the threshold.";
             limit as pain_limit: Option<f64> = None, MOST_PAIN, "The greatest pain of a sensor; none for no limit.";
-            decay_old as pain_decay_old: f64 = 0.0, SHARE, "The share of the last step's pain that stays.";
+            decay_old as pain_decay_old: f64 = 0.0, SHARE, "The share of the last step's pain that remains.";
             decay_new as pain_decay_new: f64 = 1.0, SHARE, "The factor on new pain.";
         }
     }
@@ -229,7 +229,7 @@ config! {
         }
     }
     "Actuation" {
-        act_others: bool = false, Bool, "Actuators of other bodies than MIMo's are driven by the last numbers of an action, and observed with their joints.";
+        act_others: bool = false, Bool, "The last numbers of an action drive actuators of other bodies, which are also observed." + "The observation has their controls and their joints.";
     }
     "Locked joints" {
         @parts lock = BodyParts::all(false), "Parts whose joints are locked (`lock_hands` ...)." {

@@ -1,18 +1,18 @@
-//! The keys of the configuration, as the guide's chapter about them.
+//! The guide's chapter on the keys of the configuration.
 
 use std::io::{self, Write};
 
 use babybench::Config;
 use babybench::config::{Key, KeyKind};
 
-/// Writes every key with what it accepts, its default and its meaning, as Markdown.
+/// Writes every key with its values, default and meaning, as Markdown.
 pub fn list_keys(out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "# Configuration\n\n\
-         A configuration is a flat YAML mapping, or a table of the same keys in Rust, Python and JavaScript. Keys left out have their default; a key that\n\
-         does not exist, or a value that is not allowed, is an error that names file, line, key and what is allowed.\n\
-         `babybench inspect --keys` prints this page."
+         A configuration is a flat YAML mapping, or a table of the same keys in Rust, Python and JavaScript. Keys that are left out have their default. A key that\n\
+         does not exist and a value that is not allowed are errors. They name file, line, key and the allowed values. `babybench inspect --keys` prints this\n\
+         page."
     )?;
     let mut section = "";
     for key in Config::keys() {
@@ -29,7 +29,7 @@ pub fn list_keys(out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Says what a key accepts, names in code.
+/// Returns what a key accepts, with names as code.
 fn values(key: &Key) -> String {
     let names = |names: &[&str]| {
         let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
