@@ -32,13 +32,13 @@ struct Entry {
 
 /// Writes `README.md` and `curves.svg` beside the policies of a folder.
 pub fn write(folder: &Path) -> Result<(), Error> {
-    let (mut table, mut panels) = (String::new(), String::new());
+    let (mut returns, mut successes, mut panels) = (String::new(), String::new(), String::new());
     let entries = entries(folder)?;
     for (k, entry) in entries.iter().enumerate() {
         let row = row(folder, entry)?;
-        println!("{}", row.text);
-        table.push_str(&row.text);
-        table.push('\n');
+        print!("{}{}", row.returns, row.successes);
+        returns.push_str(&row.returns);
+        successes.push_str(&row.successes);
         let at = [PANEL[0] * (k % COLUMNS) as f64, PANEL[1] * (k / COLUMNS) as f64];
         panels.push_str(&panel(folder, entry, row.random, at)?);
     }
@@ -49,25 +49,30 @@ pub fn write(folder: &Path) -> Result<(), Error> {
          <style>{STYLE}</style><rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n{panels}</svg>\n"
     );
     std::fs::write(folder.join("curves.svg"), chart)?;
-    std::fs::write(folder.join("README.md"), page(&table))?;
+    std::fs::write(folder.join("README.md"), page(&returns, &successes))?;
     Ok(())
 }
 
-fn page(table: &str) -> String {
+fn page(returns: &str, successes: &str) -> String {
     format!(
         "# Policies of the tasks\n\n\
-         A trained policy for each of MIMo's tasks, as an ONNX model: its action is a linear function of the angles and velocities of\n\
-         his joints, of the goal, and in `roll_over` of how he lies. `babybench evaluate` takes them with `--policy`, and the page has them in a list.\n\n\
+         A trained policy for each of MIMo's tasks, as an ONNX model. Its action is a linear function of the angles and velocities of his joints, of the goal,\n\
+         and in `roll_over` of how he lies. `babybench evaluate` takes them with `--policy`, and the page lists them.\n\n\
          ```sh\n\
          cargo run --release --features onnx -- evaluate --config configs/config_reach.yml --policy policies/reach.onnx\n\
          ```\n\n\
-         Mean return of {EPISODES} episodes with seeds 0 to {}, which training has not seen, in the configuration of the task, and in brackets the\n\
-         interval that holds 95 % of the means of samples drawn from them with replacement; then the share of successes, and how long the policy took for one on average. `held` holds a random action for half a second.\n\n\
-         | policy | steps trained | its return | random | zero | held | its successes | random | zero | held | seconds |\n\
-         |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n{table}\n\
+         The tables are of {EPISODES} episodes with seeds 0 to {}, which training has not seen, in the configuration of the task. `held` holds a random action for\n\
+         half a second.\n\n\
+         The mean return, and in brackets the interval that holds 95 % of the means of samples drawn from the episodes with replacement:\n\n\
+         | policy | steps trained | its return | random | zero | held |\n\
+         |---|--:|--:|--:|--:|--:|\n{returns}\n\
+         The share of successes, and the mean time that the policy took for one:\n\n\
+         | policy | its successes | random | zero | held | seconds |\n\
+         |---|--:|--:|--:|--:|--:|\n{successes}\n\
          ![Return over steps of training](curves.svg)\n\n\
-         Return over steps of training: blue that of the policy, grey the mean of the candidates that are tried, dashed a random policy. `roll_over_N` is learned in the body of N months, with its strength. In `selfbody` one part of the body is learned after\n\
-         another, and the curve has a piece for each. Training is separable CMA-ES ([`examples/tasks`](../examples/tasks)), the same bits for the same seed, whatever the number of threads:\n\n\
+         Return over steps of training: the policy (blue), the mean of the candidates that are tried (grey), a random policy (dashed). `roll_over_N` is learned\n\
+         in the body of N months, with its strength. `selfbody` learns one part of the body after another, and its curve has a piece for each. Training is\n\
+         separable CMA-ES ([`examples/tasks`](../examples/tasks)). The same seed gives the same bits in any number of threads:\n\n\
          ```sh\n\
          cargo run --release --features onnx,npz --example tasks -- reach --seed 0    # or selfbody, standup, roll_over, catch; --age 3\n\
          cargo run --release --features onnx,npz --example tasks -- report            # this page\n\
@@ -100,7 +105,10 @@ fn entries(folder: &Path) -> Result<Vec<Entry>, Error> {
 }
 
 struct Row {
-    text: String,
+    /// Line of the table of returns.
+    returns: String,
+    /// Line of the table of successes.
+    successes: String,
     /// Mean return of a random policy.
     random: f64,
 }
@@ -142,12 +150,11 @@ fn row(folder: &Path, entry: &Entry) -> Result<Row, Error> {
     } else {
         format!("{seconds:.1}")
     };
-    let text = format!(
-        "| `{}.onnx` | {:.1} M |{returns}{successes} {seconds} |",
-        entry.name,
-        steps / 1e6
-    );
-    Ok(Row { text, random })
+    Ok(Row {
+        returns: format!("| `{}.onnx` | {:.1} M |{returns}\n", entry.name, steps / 1e6),
+        successes: format!("| `{}.onnx` |{successes} {seconds} |\n", entry.name),
+        random,
+    })
 }
 
 /// Returns the return of an episode, and the time until the first success, s.

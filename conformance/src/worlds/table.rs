@@ -82,24 +82,30 @@ fn taken(worlds: &[World]) -> String {
         "nv",
         "contacts",
         "other contacts",
-        "compiled arrays, of their limit",
+        "compiled arrays",
         "qacc p50",
         "p90",
         "max",
-        "max that MuJoCo's own spread does not explain",
+        "unexplained",
         "100 steps",
         "floor",
-        "CPU time over MuJoCo's",
+        "CPU time",
     ];
     let mut out = format!(
         "\n| {} |\n|---|{}\n",
         columns.join(" | "),
         "--:|".repeat(columns.len() - 1)
     );
-    let mut notes = String::new();
+    let (mut notes, mut above) = (String::new(), String::new());
     for world in worlds {
         let Outcome::Both(f) = &world.outcome else { continue };
         let place = place(world);
+        // a row for the folder and short rows for its documents, so that rows fit on a screen
+        let (folder, file) = place.rsplit_once('/').unwrap_or(("", &place));
+        if folder != above {
+            let _ = writeln!(out, "| {folder}/ |{}", "|".repeat(columns.len() - 1));
+            above = folder.to_owned();
+        }
         let [ours, floor] = f.rollout.map_or([f64::NAN; 2], |rollout| [rollout.ours, rollout.floor]);
         let figures = [f.arrays, f.qacc.p50, f.qacc.p90, f.qacc.max, f.unexplained, ours, floor].map(short);
         let cpu = if f.cpu.is_nan() {
@@ -109,7 +115,7 @@ fn taken(worlds: &[World]) -> String {
         };
         let _ = writeln!(
             out,
-            "| {place} | {} | {:.1} | {} of {} | {} | {cpu} |",
+            "| {file} | {} | {:.1} | {} of {} | {} | {cpu} |",
             f.nv,
             f.contacts,
             f.other_contacts,

@@ -153,8 +153,8 @@ impl Benchmark {
         // writing to a string cannot fail
         let _ = writeln!(
             out,
-            "{} seeds, {} steps each; measures are of the first {} episodes of a run. Each cell has the mean over seeds, and in brackets the \
-             interval that holds 95 % of the means of samples drawn from them with replacement. Babybench {}.\n",
+            "{} seeds, {} steps each. Measures are of the first {} episodes of a run. Each cell has the mean over seeds, and in brackets the interval that\n\
+             holds 95 % of the means of samples drawn from the seeds with replacement. Babybench {}.\n",
             plan.seeds, plan.steps, plan.record, self.babybench
         );
         let columns = self.columns();
@@ -186,8 +186,10 @@ impl Benchmark {
     }
 }
 
-/// Appends the section of a configuration: a table with a line for each policy and age.
+/// Appends the section of a configuration: tables with a line for each policy and age.
 fn section(out: &mut String, group: &[Row], columns: &[(String, String, usize)]) {
+    // columns of a table, so that its rows fit on a screen
+    const WIDTH: usize = 5;
     let Some(first) = group.first() else {
         return;
     };
@@ -196,9 +198,14 @@ fn section(out: &mut String, group: &[Row], columns: &[(String, String, usize)])
         .iter()
         .filter(|(name, ..)| group.iter().any(|row| row.metrics.contains_key(name)))
         .collect();
+    shown.chunks(WIDTH).for_each(|shown| table(out, group, shown));
+}
+
+/// Appends a table of some columns.
+fn table(out: &mut String, group: &[Row], shown: &[&(String, String, usize)]) {
     let ages = group.iter().any(|row| row.age.is_some());
     let _ = write!(out, "| policy |{}", if ages { " age, months |" } else { "" });
-    for (_, heading, _) in &shown {
+    for (_, heading, _) in shown {
         let _ = write!(out, " {heading} |");
     }
     let _ = writeln!(out, "\n|---|{}", "--:|".repeat(shown.len() + usize::from(ages)));
@@ -211,7 +218,7 @@ fn section(out: &mut String, group: &[Row], columns: &[(String, String, usize)])
                 row.age.map_or("original".to_string(), |age| age.to_string())
             );
         }
-        for (name, _, decimals) in &shown {
+        for (name, _, decimals) in shown {
             let _ = write!(out, " {} |", row.text(name, *decimals).unwrap_or_default());
         }
         out.push('\n');
