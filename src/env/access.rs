@@ -28,7 +28,7 @@ impl Env {
             low: entry.low,
             high: entry.high,
         };
-        // images have their place whether they are drawn or wait
+        // images have an entry, drawn or not
         self.with_goals(self.senses.observation_with(true))
             .entries()
             .map(space)
@@ -45,15 +45,15 @@ impl Env {
         &*self.task
     }
 
-    /// Returns what reward, success and failure of the last step follow from.
+    /// Returns the goals and terms of the last step, from which reward, success and failure follow.
     pub fn goal(&self) -> Goal<'_> {
         self.goals.row()
     }
 
-    /// Sets the desired goal; reward and outcome are computed anew.
+    /// Sets the desired goal and recomputes reward and outcome.
     ///
     /// # Errors
-    /// A wrong length, numbers that are not finite; nothing is changed then.
+    /// A wrong length or numbers that are not finite, which change nothing.
     pub fn set_goal(&mut self, desired: &[f64]) -> Result<(), EnvError> {
         check_vector("desired_goal", desired, self.goals.desired.len())?;
         self.physics.check_shape()?;
@@ -62,9 +62,9 @@ impl Env {
         Ok(())
     }
 
-    /// Computes what each row of goals would have earned: Gymnasium-Robotics' `compute_reward`, for as many rows as `out` has, with
-    /// the desired goals of a program's choice. `terms` ([`Goal::terms`]) are those of the steps in which the goals were achieved. For
-    /// the goals of a step it is the reward of the step, to the bit.
+    /// Computes the reward of each row of goals, like Gymnasium-Robotics' `compute_reward`, for as many rows as `out` has, with desired
+    /// goals of the program's choice. `terms` ([`Goal::terms`]) are those of the steps in which the goals were achieved. For the goals of
+    /// a step it is the reward of that step, to the bit.
     ///
     /// ```
     /// use babybench::config::Behavior;
@@ -81,7 +81,7 @@ impl Env {
     /// ```
     ///
     /// # Errors
-    /// Arrays that do not have a row of the task's length for each reward.
+    /// Arrays without a row of the task's length for each reward.
     pub fn compute_reward(&self, goals: Goal<'_>, out: &mut [f64]) -> Result<(), GoalError> {
         rewards(&*self.task, self.blueprint.task_sizes(), goals, out)
     }
@@ -103,14 +103,15 @@ impl Env {
 
     /// Returns the state of the scene.
     ///
-    /// An environment of a [`VectorEnv`](crate::VectorEnv) keeps what decides how the run goes on. What its last step computed is computed again at
-    /// the first call, which takes as long as a physics step; it then has memory for it, as one alone has, until its next episode.
+    /// An environment of a [`VectorEnv`](crate::VectorEnv) stores only what decides how the run continues. The first call recomputes the
+    /// derived quantities of the last step, which takes as long as a physics step. The environment then keeps them, as a single
+    /// environment does, until its next episode.
     pub fn state(&self) -> &State {
         self.physics.state()
     }
 
-    /// Returns the state of the scene, to change positions, velocities, warm start, applied forces or parameters. Quantities that
-    /// follow from them, and the observation, are brought up to date by the next step or [`Env::refresh`].
+    /// Returns the state of the scene, to change positions, velocities, warm start, applied forces or parameters. The next step or
+    /// [`Env::refresh`] updates derived quantities and the observation.
     pub fn state_mut(&mut self) -> &mut State {
         self.physics.state_mut()
     }
@@ -125,7 +126,7 @@ impl Env {
         &self.senses
     }
 
-    /// Returns the senses, to change them or to draw what the eyes see now.
+    /// Returns the senses, to change them or to draw the current view of the eyes.
     pub fn senses_mut(&mut self) -> SensesMut<'_> {
         SensesMut {
             senses: &mut self.senses,
@@ -139,13 +140,13 @@ impl Env {
         self.rng.drawn()
     }
 
-    /// Puts the generator of random choices to where it is after `drawn` numbers.
+    /// Moves the generator of random choices to its position after `drawn` numbers.
     #[cfg(all(feature = "eval", feature = "npz"))]
     pub fn draw_from(&mut self, drawn: u64) {
         self.rng = NumpyRng::at(self.rng.seed_value(), drawn);
     }
 
-    /// Returns the memory that delays and other transforms take, bytes.
+    /// Returns the memory of delays and other transforms, bytes.
     pub(crate) fn transform_memory(&self) -> usize {
         self.senses.pipeline.memory() + self.action_delay.memory()
     }

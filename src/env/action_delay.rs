@@ -10,7 +10,7 @@ use crate::spaces::NumpyRng;
 #[derive(Clone, Debug)]
 pub(super) struct ActionDelay {
     line: Option<DelayLine>,
-    /// The action that comes out before the first of an episode.
+    /// The action that reaches the actuators before the first of an episode.
     rest: Vec<f32>,
     compat: Compat,
     /// Standard deviation of the noise, as a share of each number.
@@ -26,7 +26,7 @@ impl ActionDelay {
         let bounds = space.low().iter().zip(space.high());
         Self {
             line: (steps > 0).then(|| DelayLine::new(steps, space.len())),
-            // an angle of 0 need not be within the limits of a joint: the middle of its range is
+            // 0 may be outside the limits of a joint, the middle of its range is not
             rest: bounds
                 .map(|(low, high)| if centred { low + (high - low) / 2.0 } else { 0.0 })
                 .collect(),
@@ -47,7 +47,7 @@ impl ActionDelay {
             Some(line) => line.pass(action),
             None => action,
         };
-        // without noise nothing is drawn: episodes stay what they are
+        // without noise no random number is drawn, so episodes do not change
         if self.deviation == 0.0 {
             return action;
         }
@@ -57,8 +57,8 @@ impl ActionDelay {
         &self.noisy
     }
 
-    /// Returns the action that reaches the actuators when `action` is given in a reset: at once, but in the code that
-    /// `compat: reference` follows as any other.
+    /// Returns the action that reaches the actuators when `action` is given in a reset: without delay, except in the code that
+    /// `compat: reference` follows.
     pub fn pass_in_reset<'a>(&'a mut self, action: &'a [f32], rng: &mut NumpyRng) -> &'a [f32] {
         match self.compat {
             Compat::Api => action,
@@ -86,7 +86,7 @@ impl ActionDelay {
         }
     }
 
-    /// Takes over what was saved; `false` if it is something else.
+    /// Restores what was saved; `false` if the data do not fit.
     pub fn load(&mut self, bytes: &[u8]) -> bool {
         match &mut self.line {
             Some(line) => line.load(bytes),

@@ -1,23 +1,21 @@
-//! Growing between two episodes, and making faces in the middle of one.
+//! Changes of age between two episodes, and of the face at any time.
 
 use crate::config::FacialExpression;
 use crate::env::{Env, EnvError};
 
 impl Env {
-    /// Lets MIMo grow, between two episodes, to an age in months; `None` gives him the original proportions. The next call is
-    /// a reset. Locks, the generator of random choices, transforms that were added and the probe stay; names and ids are
-    /// the same at every age.
+    /// Changes MIMo's age, in months, between two episodes; `None` gives him the original proportions. The next call is a reset. Locks,
+    /// the generator of random choices, added transforms and the probe remain. Names and ids are the same at every age.
     ///
     /// # Errors
-    /// As [`Blueprint::with_age`](crate::Blueprint::with_age); nothing is changed then.
+    /// Those of [`Blueprint::with_age`](crate::Blueprint::with_age), which change nothing.
     pub fn set_age(&mut self, age: Option<f64>) -> Result<(), EnvError> {
         let grown = self.grown(age)?;
         self.become_grown(grown);
         Ok(())
     }
 
-    /// Lets MIMo make another face, at any moment; the next step has the same bits as without. Images that the eyes observe are drawn
-    /// anew.
+    /// Changes MIMo's face at any time. The next step has the same bits as without the change. Images of the eyes are redrawn.
     ///
     /// ```
     /// use babybench::config::FacialExpression;
@@ -31,7 +29,7 @@ impl Env {
     /// ```
     ///
     /// # Errors
-    /// As [`Blueprint::with_facial_expression`](crate::Blueprint::with_facial_expression); nothing is changed then.
+    /// Those of [`Blueprint::with_facial_expression`](crate::Blueprint::with_facial_expression), which change nothing.
     pub fn swap_facial_expression(&mut self, face: FacialExpression) -> Result<(), EnvError> {
         if self.config().facial_expression == face {
             return Ok(());
@@ -39,12 +37,12 @@ impl Env {
         let other = self.blueprint.with_facial_expression(face)?.env()?;
         let (snapshot, ready, details) = (self.snapshot(), self.ready(), self.info.details.clone());
         let mut before = self.become_grown(other);
-        // nothing but the pictures is another's, so that its own snapshot fits
+        // only pictures differ, so the environment's own snapshot fits
         self.restore(&snapshot)?;
         if ready {
             self.by_hand().resume(&snapshot)?;
             self.info.details = details;
-            // a step feels the contacts that it ends with, not those of the state that it leaves
+            // a step senses the contacts of its last physics step, not those of its final state
             if before.senses.known {
                 self.senses.take_felt(&mut before.senses);
             }
@@ -57,10 +55,10 @@ impl Env {
         self.blueprint.with_age(age)?.env()
     }
 
-    /// Turns into an environment of another age. Returns what it was.
+    /// Becomes an environment of another age. Returns the previous one.
     pub(crate) fn become_grown(&mut self, mut grown: Self) -> Self {
         let (old, new) = (&self.physics.base, &mut grown.physics.base);
-        // only what differs, as parameters are shared until they are written to
+        // only what differs, because parameters are shared until they are written
         if (&new.eq_active, &new.eq_offset) != (&old.eq_active, &old.eq_offset) {
             new.eq_active.clone_from(&old.eq_active);
             new.eq_offset.clone_from(&old.eq_offset);

@@ -1,4 +1,4 @@
-//! The part that all environments of one configuration share.
+//! Blueprints: everything that environments of one configuration share.
 
 mod options;
 mod settled;
@@ -52,14 +52,14 @@ pub struct Blueprint {
     init_qpos: Arc<Vec<f64>>,
     init_qvel: Arc<Vec<f64>>,
     params: Shared<Params>,
-    /// The identity that a snapshot must fit.
+    /// The identity that a snapshot must match.
     identity: Arc<Identity>,
-    /// The same, the model and its parameters before a program changed the model.
+    /// Identity, model and parameters before a program changed the model.
     origin: Arc<Origin>,
     surface: Surface,
 }
 
-/// What follows from configuration and model and never changes. Environments share it: each would fetch its own into the caches.
+/// Constant tables derived from configuration and model. Environments share them, because copies would compete for the caches.
 #[derive(Clone)]
 pub(super) struct Tables {
     pub actuation: Arc<dyn Actuation>,
@@ -105,8 +105,8 @@ impl Blueprint {
     /// Builds a scene with a user-defined task, from other assets, or both.
     ///
     /// Compiles the document of the task, applies the locks (under `compat: reference` after settling) and lets the task settle the
-    /// scene: for BabyBench's behaviors 100 steps from `qpos0` with the action 0. The blueprint keeps the assets: textures are
-    /// decoded when something is first drawn, at once if `vision_active`.
+    /// scene. BabyBench's behaviors settle for 100 steps from `qpos0` with the action 0. The blueprint keeps the assets. Textures are
+    /// decoded when something is first drawn, or immediately with `vision_active`.
     ///
     /// ```
     /// use babybench::env::{BlueprintOptions, Goal, Task, Verdict};
@@ -132,8 +132,8 @@ impl Blueprint {
     /// ```
     ///
     /// # Errors
-    /// A configuration that is not allowed, assets that do not load, a scene that the engine cannot simulate or that diverges, and
-    /// any error the task returns.
+    /// An invalid configuration, assets that do not load, a scene that the engine cannot simulate or that diverges, and errors of the
+    /// task.
     pub fn with(config: Config, options: BlueprintOptions) -> Result<Self, EnvError> {
         config.validate()?;
         if config.renderer == RendererKind::Wgpu && cfg!(not(feature = "wgpu")) {
@@ -196,8 +196,8 @@ impl Blueprint {
         })
     }
 
-    /// Returns the same blueprint with a model that a program has changed: not settled anew. `changes` are the arrays that differ from those
-    /// of the scene.
+    /// Returns the same blueprint with a model that a program has changed, without settling again. `changes` are the arrays that differ
+    /// from those of the scene.
     pub(super) fn with_model(
         &self,
         model: Arc<Model>,
@@ -219,10 +219,10 @@ impl Blueprint {
         (&self.origin.model, &self.origin.params)
     }
 
-    /// Returns the same blueprint with another actuation model: settled anew, on the same compiled scene where the actuators are the same.
+    /// Returns the same blueprint with another actuation model, settled again, on the same compiled scene if the actuators are the same.
     ///
-    /// `spring_damper` and `muscle` share the scene's motors. To and from `positional`, whose actuators are servos, the scene is
-    /// compiled again; all that is not an actuator keeps its number.
+    /// `spring_damper` and `muscle` share the scene's motors. Changes to and from `positional`, whose actuators are servos, compile the
+    /// scene again. Everything that is not an actuator keeps its number.
     ///
     /// # Errors
     /// As [`Blueprint::with`].
@@ -247,7 +247,7 @@ impl Blueprint {
 
     /// Returns a blueprint of the same configuration with MIMo at another age, months; `None` for the original proportions.
     ///
-    /// Names and ids stay. So do the spaces, but for the length of touch, which follows the size of the body unless
+    /// Names and ids remain. So do the spaces, except for the length of touch, which follows the size of the body unless
     /// [`Config::touch_grows`].
     ///
     /// # Errors
@@ -267,15 +267,15 @@ impl Blueprint {
     /// Returns a blueprint of the same configuration in which MIMo makes another face. Snapshots of both are exchangeable.
     ///
     /// # Errors
-    /// As [`Blueprint::with`]; assets without the texture of the face, `tex_head_NAME`. Without the feature `faces`, pictures of all faces
-    /// but the default one must be among the assets, as `tex/face_NAME.png`.
+    /// As [`Blueprint::with`]; assets without the texture of the face, `tex_head_NAME`. Without the feature `faces`, the assets must have
+    /// the pictures of all faces but the default one, as `tex/face_NAME.png`.
     pub fn with_facial_expression(&self, facial_expression: FacialExpression) -> Result<Self, EnvError> {
         let config = Config {
             facial_expression,
             ..Config::clone(&self.config)
         };
         let made = task_model(&config, &*self.task, &*self.surface.given)?;
-        // nothing but pictures is different: whatever a program has changed stays
+        // only pictures differ: changes by a program remain
         let model = self.model.edited(|arrays| arrays.materials.clone_from(&made.materials));
         let blueprint = Self {
             config: Arc::new(config),
@@ -294,7 +294,7 @@ impl Blueprint {
         Ok(blueprint)
     }
 
-    /// Returns the assets that the scene is built from; see [`scene_assets`].
+    /// Returns the assets of the scene; see [`scene_assets`].
     pub fn assets(&self) -> &dyn AssetSource {
         &*self.surface.assets
     }
@@ -304,12 +304,12 @@ impl Blueprint {
         &*self.task
     }
 
-    /// Returns what all its environments share.
+    /// Returns the tables that all its environments share.
     pub(super) fn tables(&self) -> &Tables {
         &self.tables
     }
 
-    /// Returns how many numbers the task hands out in each step.
+    /// Returns how many numbers the task produces in each step.
     pub(super) fn task_sizes(&self) -> TaskSizes {
         self.sizes
     }
@@ -317,12 +317,12 @@ impl Blueprint {
     /// Creates an environment.
     ///
     /// # Errors
-    /// Parts of the scene that the behavior needs are missing.
+    /// The scene lacks parts that the behavior needs.
     pub fn env(&self) -> Result<Env, EnvError> {
         Env::from_blueprint(self)
     }
 
-    /// Returns how many steps of an environment pass until an action reaches the actuators.
+    /// Returns the delay of actions, in steps of the environment.
     pub fn action_delay(&self) -> usize {
         let steps = self
             .config
@@ -331,7 +331,7 @@ impl Blueprint {
         effective(&self.config, steps)
     }
 
-    /// Returns how many steps of an environment pass until the observation has what a sense reports.
+    /// Returns the delay of a sense, in steps of the environment.
     pub fn sense_delay(&self, sense: Sense) -> usize {
         effective(&self.config, sense.delay(&self.config))
     }
@@ -361,12 +361,12 @@ impl Blueprint {
         &self.model
     }
 
-    /// Returns where bodies that the engine does not move are over time.
+    /// Returns the paths of bodies that the engine does not move.
     pub(super) fn paths(&self) -> Option<&Paths> {
         self.paths.as_deref()
     }
 
-    /// Returns what a snapshot must fit to be restored.
+    /// Returns the identity that a snapshot must match.
     pub(super) fn identity(&self) -> &Identity {
         &self.identity
     }
@@ -386,7 +386,7 @@ impl Blueprint {
         &self.params
     }
 
-    /// Returns where the touch sensors are, if touch is active.
+    /// Returns the positions of the touch sensors, if touch is active.
     pub fn skin(&self) -> Option<&Arc<SkinLayout>> {
         self.surface.skin.as_ref()
     }

@@ -1,4 +1,4 @@
-//! Resets and steps that a program puts together itself.
+//! Resets and steps that a program composes itself.
 
 use super::check_vector;
 use super::outcome::clear;
@@ -38,7 +38,7 @@ pub struct Parts<'a> {
 }
 
 impl Env {
-    /// Returns the parts of resets and steps, for programs that put them together in another way.
+    /// Returns the parts of resets and steps, for programs that combine them differently.
     pub fn by_hand(&mut self) -> Parts<'_> {
         Parts { env: self }
     }
@@ -86,9 +86,9 @@ impl<'a> Parts<'a> {
         Ok(env.observation())
     }
 
-    /// Goes back to a snapshot, as [`Env::restore`] does, with what it does not hold as [`Env::refresh`] computes it: poses, contacts,
-    /// touch, pain and images. The rest of the observation stays the original's, so that a policy that looks at it goes on with
-    /// the same bits; after [`Env::refresh`] alone it is that of the present state, with another acceleration of the head.
+    /// Restores a snapshot like [`Env::restore`], and computes what it does not hold like [`Env::refresh`]: poses, contacts, touch, pain
+    /// and images. The rest of the observation remains the original's, so a policy that reads it continues with the same bits. After
+    /// [`Env::refresh`] alone the observation is that of the current state, with another acceleration of the head.
     ///
     /// # Errors
     /// Those of [`Env::restore`], which change nothing; those of [`Env::refresh`].
@@ -96,7 +96,7 @@ impl<'a> Parts<'a> {
         let env = self.env;
         env.restore(snapshot)?;
         env.refresh()?;
-        // what was sensed just now takes the place of what the snapshot holds
+        // the values sensed now replace those of the snapshot
         let picture = env.senses.picture;
         env.restore(snapshot)?;
         (env.senses.known, env.senses.picture) = (true, picture);
@@ -108,11 +108,11 @@ impl<'a> Parts<'a> {
         self.env.end_episode()
     }
 
-    /// Forgets the past as MuJoCo's `mj_resetData` does: time and controls are 0, positions are `qpos0`, velocities are 0 and the
-    /// actuators rest. Nothing is computed there: [`Parts::forward`] does that. Delays and pain forget the past. Counters and
-    /// information stay.
+    /// Resets like MuJoCo's `mj_resetData`: time and controls are 0, positions are `qpos0`, velocities are 0 and the actuators rest. It
+    /// computes nothing from them; [`Parts::forward`] does. Delays and pain are cleared. Counters and information remain.
     ///
-    /// Under `compat: reference` a reset of the environment is this, [`Parts::forward`] at the settled state, and the start actions.
+    /// Under `compat: reference` a reset of the environment consists of this, [`Parts::forward`] at the settled state, and the start
+    /// actions.
     pub fn reset_data(&mut self) {
         self.env.senses.forget_picture();
         let mut scene = self.env.play().scene;
@@ -123,8 +123,8 @@ impl<'a> Parts<'a> {
         self.env.senses.reset(phase);
     }
 
-    /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the
-    /// solver stay.
+    /// Computes everything at positions (nq) and velocities (nv), without sensing it. Time, controls, locks and the start of the solver
+    /// remain.
     ///
     /// # Errors
     /// Wrong lengths or numbers that are not finite, which change nothing; a state from which the simulation diverges.
@@ -136,7 +136,7 @@ impl<'a> Parts<'a> {
         forward
     }
 
-    /// Sets positions (nq) and velocities (nv) for the next physics step, without computing anything there.
+    /// Sets positions (nq) and velocities (nv) for the next physics step, without computing anything from them.
     ///
     /// # Errors
     /// Wrong lengths or numbers that are not finite, which change nothing.
@@ -148,7 +148,7 @@ impl<'a> Parts<'a> {
     /// to [0, 1].
     ///
     /// # Errors
-    /// A wrong length (motors and servos have none) or numbers that are not finite; nothing is changed then.
+    /// A wrong length (motors and servos have none) or numbers that are not finite, which change nothing.
     pub fn set_activity(&mut self, activity: &[f64]) -> Result<(), EnvError> {
         let state = self.env.physics.state_mut();
         check_vector("activity", activity, state.act.len())?;
@@ -159,7 +159,7 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Gives an action, clipped to the action space, to the actuators, or to the delay on their way.
+    /// Passes an action, clipped to the action space, to the actuators, or to the delay before them.
     ///
     /// # Errors
     /// An action of wrong length or with numbers that are not finite, which changes nothing.
@@ -170,10 +170,10 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Updates the actuators, as before each physics step of a step but the first.
+    /// Updates the actuators, as happens before every physics step of a step except the first.
     pub fn substep(&mut self) {
         if self.env.physics.check_shape().is_err() {
-            return; // the physics step that follows says so
+            return; // the next physics step reports it
         }
         let scene = self.env.play().scene;
         scene.actuation.substep(scene.model, scene.state);
@@ -190,26 +190,26 @@ impl<'a> Parts<'a> {
         stepped
     }
 
-    /// Senses the state: computes [`Env::observation`] anew. Noise is drawn anew, and delays take it for a further step.
+    /// Senses the state and recomputes [`Env::observation`]. Noise is drawn again, and delays count it as a further step.
     ///
     /// # Errors
-    /// As the renderer.
+    /// Those of the renderer.
     pub fn observe(&mut self) -> Result<(), EnvError> {
         self.env.senses.advance();
         self.env.sense()
     }
 
-    /// Counts what the behavior counts, in [`Env::info`].
+    /// Updates the behavior's counters in [`Env::info`].
     pub fn track(&mut self) {
         if self.env.physics.check_shape().is_err() {
-            return; // the next step says so
+            return; // the next step reports it
         }
         self.env.track();
     }
 
-    /// Shows the scene at positions (nq) and velocities (nv) as a step of its own: poses, contacts and forces there, what is sensed,
-    /// [`Parts::track`], outcome and reward, and a step more in the information. Nothing moves by itself: neither action nor
-    /// time act on positions, and accelerations are those with which the scene would go on from there.
+    /// Shows the scene at positions (nq) and velocities (nv) as a step: computes poses, contacts and forces there, senses, calls
+    /// [`Parts::track`], computes outcome and reward, and counts a step in the information. Nothing moves: neither action nor time act on
+    /// positions, and accelerations are those with which the scene would continue from there.
     ///
     /// # Errors
     /// As [`Parts::forward`] and [`Parts::observe`].
@@ -221,9 +221,9 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Puts a body with `mocap="true"` at a position (world, m) and an orientation (w, x, y, z, of any length; of zeros it is none), from the next step on
-    /// until it is put elsewhere; a reset puts it back where the document has it. Paths of [`Config::mocap_motion`](crate::Config::mocap_motion)
-    /// go before: they put their bodies where they are in every step.
+    /// Moves a body with `mocap="true"` to a position (world, m) and an orientation (w, x, y, z, of any nonzero length), from the next
+    /// step on. The body stays there until it is moved again or a reset puts it back where the document has it. Paths of
+    /// [`Config::mocap_motion`](crate::Config::mocap_motion) take precedence: they set the poses of their bodies in every step.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -240,7 +240,7 @@ impl<'a> Parts<'a> {
     /// ```
     ///
     /// # Errors
-    /// No such body, numbers that are not finite: they change nothing.
+    /// A body that does not exist or numbers that are not finite, which change nothing.
     pub fn set_mocap(&mut self, body: &str, pos: Vec3, quat: Quat) -> Result<(), EnvError> {
         let env = &mut *self.env;
         let model = env.blueprint.model();
@@ -260,17 +260,17 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Returns whether a step may follow: there was a reset, and nothing diverged since.
+    /// Returns whether a step may follow: there was a reset, and nothing has diverged since.
     pub fn ready(&self) -> bool {
         self.env.ready()
     }
 
-    /// Sets whether resets leave the counters and lists of the behavior as they are, instead of clearing them.
+    /// Sets whether resets keep the counters and lists of the behavior instead of clearing them.
     pub fn accumulate_info(&mut self, on: bool) {
         self.env.episode.accumulate = on;
     }
 
-    /// Clears what the behavior has counted.
+    /// Clears the behavior's counters.
     pub fn clear_info(&mut self) {
         let env = &mut *self.env;
         env.task.forget();

@@ -1,21 +1,21 @@
-//! When senses look that do not look in every step.
+//! Clocks of senses that sample less often than the environment steps.
 
-/// The clock of a sense with a rate of its own. It looks at the start of an episode, and then whenever the number of looks that its
-/// rate asks for grows by one: a step comes too late by less than its length, and the rate holds on average.
+/// The clock of a sense with a rate of its own. The sense samples at the start of an episode, and then whenever the number of samples
+/// that its rate asks for grows by one. A sample is late by less than a step, and the rate holds on average.
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
-    /// Looks for each step, at most 1.
+    /// Samples per step, at most 1.
     per_step: f64,
-    /// How far the first look after that of the start is on its way, from 0 to 1.
+    /// The phase of the first sample after the initial one, from 0 to 1.
     phase: f64,
     /// Steps since the start of the episode.
     steps: u64,
-    /// Steps since the last look.
+    /// Steps since the last sample.
     age: u64,
 }
 
 impl Clock {
-    /// Creates the clock of a sense that looks `rate` times a second in an environment whose steps take `dt` s.
+    /// Creates the clock of a sense that samples `rate` times a second in an environment whose steps take `dt` s.
     pub fn new(rate: f64, dt: f64) -> Self {
         Self {
             per_step: (rate * dt).min(1.0),
@@ -25,24 +25,24 @@ impl Clock {
         }
     }
 
-    /// Begins an episode, with a look. Environments with other phases, from 0 to 1, look in other steps, so that the work of many is
-    /// spread.
+    /// Starts an episode with a sample. Environments with different phases, from 0 to 1, sample in different steps, which spreads the
+    /// work of many.
     pub fn reset(&mut self, phase: f64) {
         (self.phase, self.steps, self.age) = (phase, 0, 0);
     }
 
-    /// Goes on by a step.
+    /// Advances by a step.
     pub fn advance(&mut self) {
         self.steps += 1;
         self.age = if self.is_due_at(self.steps) { 0 } else { self.age + 1 };
     }
 
-    /// Returns whether the sense looks in the present step.
+    /// Returns whether the sense samples in the current step.
     pub fn is_due(&self) -> bool {
         self.age == 0
     }
 
-    /// Returns whether it will look in the next step.
+    /// Returns whether the sense will sample in the next step.
     pub fn will_be_due(&self) -> bool {
         self.is_due_at(self.steps + 1)
     }
@@ -52,24 +52,24 @@ impl Clock {
         looks(step) > looks(step - 1)
     }
 
-    /// Returns the number of steps since the last look.
+    /// Returns the number of steps since the last sample.
     pub fn age(&self) -> u64 {
         self.age
     }
 
-    /// Appends what it remembers, for a snapshot.
+    /// Appends the clock's state, for a snapshot.
     pub fn save(&self, out: &mut Vec<u8>) {
         for word in [self.phase.to_bits(), self.steps, self.age] {
             out.extend_from_slice(&word.to_le_bytes());
         }
     }
 
-    /// Takes over what [`Clock::save`] wrote; `false` if the bytes are something else.
+    /// Restores what [`Clock::save`] wrote; `false` if the bytes do not fit.
     pub fn load(&mut self, bytes: &[u8]) -> bool {
         let (words, rest) = bytes.as_chunks::<8>();
         let &[phase, steps, age] = words else { return false };
         let (phase, [steps, age]) = (f64::from_le_bytes(phase), [steps, age].map(u64::from_le_bytes));
-        // no run is that long, and counting on from there does not overflow
+        // no run is that long, and counting from there cannot overflow
         if !rest.is_empty() || !(0.0..1.0).contains(&phase) || steps > 1 << 62 || age > steps {
             return false;
         }
@@ -82,7 +82,7 @@ impl Clock {
 mod tests {
     use super::*;
 
-    /// The steps of the first hundred in which a clock of 30 looks a second looks, 200 steps a second.
+    /// The steps, of the first hundred at 200 steps a second, in which a clock of 30 samples a second samples.
     fn looks(phase: f64) -> Vec<u64> {
         let mut clock = Clock::new(30.0, 0.005);
         clock.reset(phase);

@@ -8,16 +8,16 @@ use crate::model::Model;
 /// Additions to the reference's information. The pickles of logs leave them out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InfoDetails {
-    /// Names of the parts that the right and the left palm have touched, in the order of the lists of geoms, if the
-    /// behavior is `self_touch`; see [`PartNames`].
+    /// Names of the parts that the right and the left palm have touched, in the order of the lists of geoms, for the behavior
+    /// `self_touch`; see [`PartNames`].
     pub touched_parts: Option<PerHand<Vec<Arc<str>>>>,
-    /// How far each hand is off the axis of each eye, rad, if the behavior is
-    /// `hand_regard`. Less than 15 degrees count. None right after a reset or a restored snapshot.
+    /// Angle of each hand from the axis of each eye, rad, for the behavior `hand_regard`. Less than 15 degrees count. `None` right after
+    /// a reset or a restored snapshot.
     pub gaze_angles: Option<PerEyeAndHand<f64>>,
-    /// How old the pictures are that the eyes show, s, without their delay, if there is a
-    /// [`vision_rate`](crate::Config::vision_rate). None right after a reset or a restored snapshot.
+    /// Age of the pictures of the eyes, s, without their delay, with a [`vision_rate`](crate::Config::vision_rate). `None` right after a
+    /// reset or a restored snapshot.
     pub vision_age: Option<f64>,
-    /// Both ways to count hands in view, if the behavior is `hand_regard`. One of them is also what [`BehaviorInfo`] holds, by
+    /// Both ways to count hands in view, for the behavior `hand_regard`. [`BehaviorInfo`] holds one of them, by
     /// [`Compat`](crate::config::Compat).
     pub regards: Option<Regards>,
 }
@@ -25,9 +25,9 @@ pub struct InfoDetails {
 /// Steps in which a hand was in the central field of view of an eye, counted in two ways.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Regards {
-    /// As BabyBench's page describes it: within 15 degrees of the axis of the eye's camera.
+    /// As the API page describes it: within 15 degrees of the axis of the eye's camera.
     pub page: PerEyeAndHand<u64>,
-    /// As the kit computes it: within 15 degrees of the -z axis of the eye's body, which points down the face.
+    /// As the starter kit computes it: within 15 degrees of the -z axis of the eye's body, which points down the face.
     pub kit: PerEyeAndHand<u64>,
 }
 
@@ -39,7 +39,7 @@ impl InfoDetails {
         self.gaze_angles = None;
     }
 
-    /// Forgets everything, but keeps the room.
+    /// Clears everything but keeps the allocations.
     pub(crate) fn clear(&mut self) {
         if let Some(parts) = &mut self.touched_parts {
             parts.each_mut().into_iter().for_each(Vec::clear);
@@ -47,7 +47,7 @@ impl InfoDetails {
         (self.gaze_angles, self.vision_age, self.regards) = (None, None, None);
     }
 
-    /// Brings the names up to date with the lists of geoms, which have grown or been cleared.
+    /// Updates the names from the lists of geoms, which have grown or been cleared.
     pub(crate) fn name_parts(&mut self, behavior: &BehaviorInfo, names: &PartNames) {
         let Some(touches) = behavior.touches() else {
             self.touched_parts = None;
@@ -64,7 +64,7 @@ impl InfoDetails {
 
 /// The names of MIMo's geoms as parts of the body, such as `right_foot 2/3`.
 ///
-/// A name is that of the body, with the number of the geom among the body's if there are several.
+/// A name is the body's, with the number of the geom within the body if there are several.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PartNames(Arc<[Arc<str>]>);
 
@@ -82,7 +82,7 @@ impl PartNames {
         Self((0..model.ngeom()).map(name).collect())
     }
 
-    /// Returns the name of a geom; one that does not exist has its number.
+    /// Returns the name of a geom, or its number if it does not exist.
     pub fn get(&self, geom: usize) -> Arc<str> {
         let number = || format!("geom {geom}").into();
         self.0.get(geom).cloned().unwrap_or_else(number)

@@ -10,16 +10,16 @@ use crate::physics::{Engine, SoftModel, SoftOptions, State};
 use crate::rapier::{RapierModel, RapierOptions};
 use crate::shelf::Shelf;
 
-/// Where the steps of an environment get their engine from.
+/// The source of the engine that an environment steps with.
 pub(in crate::env) enum EngineSource<'a> {
-    /// From the environment itself, whose engine a program asked for or looks into.
+    /// The environment's own engine, which a program requested or reads.
     Own(&'a mut dyn Engine),
-    /// From those that the environments of a blueprint share.
+    /// The engines that the environments of a blueprint share.
     Shared(&'a Engines),
 }
 
 impl EngineSource<'_> {
-    /// Returns an engine that tells what follows from the model.
+    /// Returns an engine that answers questions about the model.
     pub fn reader(&self) -> &dyn Engine {
         match self {
             Self::Own(engine) => &**engine,
@@ -36,14 +36,14 @@ impl EngineSource<'_> {
     }
 }
 
-/// The engines of a blueprint. They remember nothing from one step to the next, so the environments share them: a thread that
-/// steps many environments has the working memory of one engine in its cache instead of that of each.
+/// The engines of a blueprint. They keep nothing from one step to the next, so environments share them: a thread that steps many
+/// environments has the working memory of one engine in its cache instead of one for each.
 pub(in crate::env) struct Engines {
     kind: EngineMaker,
-    /// Answers questions about the model; it never steps.
+    /// An engine that answers questions about the model and never steps.
     reader: Box<dyn Engine>,
     idle: Shelf<Box<dyn Engine>>,
-    /// States whose computed part serves one environment of a vector after the other.
+    /// Scratch states for the computed part of one environment of a vector at a time.
     states: Shelf<Box<State>>,
 }
 
@@ -64,12 +64,12 @@ impl Engines {
         })
     }
 
-    /// Returns an engine that tells what follows from the model.
+    /// Returns an engine that answers questions about the model.
     pub fn reader(&self) -> &dyn Engine {
         &*self.reader
     }
 
-    /// Makes an engine for whoever keeps it.
+    /// Creates an engine for a caller to keep.
     pub fn make(&self) -> Box<dyn Engine> {
         self.kind.make()
     }
@@ -85,13 +85,13 @@ impl Engines {
         idle.unwrap_or_else(|| self.reader.new_state().into())
     }
 
-    /// Returns a state of [`Engines::take_state`].
+    /// Returns a scratch state of [`Engines::take_state`].
     pub fn put_state(&self, state: Box<State>) {
         self.states.put(state);
     }
 }
 
-/// A maker of engines of one kind for one model.
+/// A factory of engines of one kind for one model.
 #[derive(Clone, Debug)]
 enum EngineMaker {
     Soft(SoftModel),

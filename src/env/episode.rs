@@ -5,7 +5,7 @@ use crate::env::outcome::clear;
 use crate::env::task::Goals;
 use crate::env::{Env, EnvError, Observation, Task, TaskScene};
 
-/// The scene of an environment and its task, to be used together.
+/// The scene of an environment together with its task.
 pub(super) struct Play<'a> {
     pub scene: TaskScene<'a>,
     pub task: &'a mut dyn Task,
@@ -18,9 +18,9 @@ pub(super) struct Play<'a> {
 pub(super) struct Episode {
     /// Number of steps done.
     pub steps: u64,
-    /// Whether a step may follow: there was a reset, and nothing diverged since.
+    /// Whether a step may follow: there was a reset, and nothing has diverged since.
     pub ready: bool,
-    /// Whether information goes on from episode to episode.
+    /// Whether information continues from episode to episode.
     pub accumulate: bool,
     /// Reward of the last step.
     pub reward: f64,
@@ -29,11 +29,11 @@ pub(super) struct Episode {
 }
 
 impl Env {
-    /// Starts an episode as the task says: for `self_touch` and `hand_regard` the settled state, then ten physics steps with random
-    /// actions. The information of a reset is empty.
+    /// Starts an episode as the task defines it. For `self_touch` and `hand_regard` it is the settled state, then ten physics steps with
+    /// random actions. The information of a reset is empty.
     ///
-    /// Under `compat: api` a seed reseeds every random choice. Under `compat: reference` it is ignored, as the start
-    /// actions come from the generator of the action space: see [`Env::seed_action_space`].
+    /// Under `compat: api` a seed reseeds every random choice. Under `compat: reference` it is ignored, because the start actions come
+    /// from the generator of the action space: see [`Env::seed_action_space`].
     ///
     /// # Errors
     /// The simulation diverged.
@@ -49,7 +49,7 @@ impl Env {
         Ok(self.observation())
     }
 
-    /// Returns the scene and the task that plays in it.
+    /// Returns the scene together with its task.
     pub(super) fn play(&mut self) -> Play<'_> {
         let (engine, state, last_call, base) = self.physics.parts();
         let scene = TaskScene {
@@ -78,7 +78,7 @@ impl Env {
     /// chooses a goal.
     ///
     /// # Errors
-    /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges; the episode is then over.
+    /// Wrong lengths, numbers that are not finite, or a state from which the simulation diverges. The episode is then over.
     pub fn reset_to(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
         self.end_episode();
         self.play().scene.place(qpos, qvel)?;
@@ -86,7 +86,7 @@ impl Env {
         Ok(self.observation())
     }
 
-    /// Returns whether a step may follow: there was a reset, and nothing diverged since.
+    /// Returns whether a step may follow: there was a reset, and nothing has diverged since.
     pub(crate) fn ready(&self) -> bool {
         self.episode.ready
     }
@@ -117,8 +117,8 @@ impl Env {
         Ok(())
     }
 
-    /// Returns where in their periods the senses begin an episode that do not look in every step: a number from 0 to 1 that follows
-    /// from the generator without drawing from it, so that environments with other seeds look in other steps.
+    /// Returns the phase at which senses with rates of their own start an episode: a number from 0 to 1 derived from the generator
+    /// without drawing from it, so that environments with different seeds sample in different steps.
     pub(super) fn phase(&self) -> f64 {
         let word = self.rng.clone().word();
         (word >> 11) as f64 / (1_u64 << 53) as f64

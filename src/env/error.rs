@@ -18,16 +18,16 @@ use crate::sensors::transform::Sense;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum EnvError {
-    /// The configuration is not allowed.
+    /// The configuration is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The assets cannot be loaded.
     #[error("cannot load the scene: {0}")]
     Load(#[from] LoadError),
-    /// A custom scene is not as it must be.
+    /// A custom scene breaks a rule.
     #[error(transparent)]
     Room(#[from] RoomError),
-    /// The paths of the configuration cannot be read, or are those of bodies that the scene does not have.
+    /// The paths of the configuration cannot be read, or name bodies that the scene does not have.
     #[error(transparent)]
     MocapMotion(#[from] PathError),
     /// MIMo cannot grow to the age of the configuration.
@@ -39,10 +39,10 @@ pub enum EnvError {
     /// The scene cannot be drawn.
     #[error("cannot draw the scene: {0}")]
     Render(#[from] RenderError),
-    /// The eyes are asked for while vision is off.
+    /// A program uses the eyes while vision is off.
     #[error("vision is off: set vision_active to True")]
     NoVision,
-    /// A transform is to be added to a sense that is not observed.
+    /// A program adds a transform to a sense that is not observed.
     #[error("{} is off, so nothing can transform it: set `{}` to True", .sense.key(), .sense.switch())]
     SenseOff {
         /// The sense.
@@ -51,7 +51,7 @@ pub enum EnvError {
     /// An actuator does not fit the actuation model.
     #[error(transparent)]
     Actuation(#[from] ActuationError),
-    /// Something cannot be locked or unlocked.
+    /// A joint or part cannot be locked or unlocked.
     #[error(transparent)]
     Lock(#[from] LockError),
     /// A snapshot cannot be restored.
@@ -60,7 +60,7 @@ pub enum EnvError {
     /// The model cannot be changed in this way.
     #[error(transparent)]
     ModelChange(#[from] ModelChangeError),
-    /// The configuration asks for the engine `rapier`, which this build leaves out.
+    /// The configuration asks for the engine `rapier`, which is not part of this build.
     #[error("engine: rapier needs the cargo feature rapier: build with `--features rapier`, or use engine: soft")]
     NoRapier,
     /// The engine that the configuration asks for cannot simulate the scene.
@@ -88,14 +88,14 @@ pub enum EnvError {
     /// An action is not finite.
     #[error("action[{index}] ({actuator}) is {value}: actions must be finite")]
     ActionNotFinite {
-        /// Position in the action.
+        /// Index in the action.
         index: usize,
-        /// Actuator it belongs to.
+        /// The actuator of this number.
         actuator: String,
         /// The value.
         value: f32,
     },
-    /// A state has the wrong length or numbers.
+    /// A state has a wrong length or numbers that are not finite.
     #[error("{what} has {found} values but the model needs {expected}")]
     StateLength {
         /// Name of the vector.
@@ -119,7 +119,7 @@ pub enum EnvError {
     /// `step` before the first `reset`.
     #[error("call reset before step")]
     NotReset,
-    /// The engine cannot go on.
+    /// The engine cannot continue.
     #[error(transparent)]
     Engine(#[from] EngineError),
 }

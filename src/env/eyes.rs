@@ -9,19 +9,19 @@ use crate::sensors::EyeImages;
 use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
 
-/// Where the picture is that belongs to the last observation.
+/// The state of the picture of the last observation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Picture {
-    /// In the observation.
+    /// Drawn, in the observation.
     Drawn,
     /// Not drawn yet.
     Waiting,
-    /// Never drawn, and the scene has moved on.
+    /// Not drawn before the scene moved on.
     Gone,
 }
 
 impl Senses {
-    /// Draws what the eyes see, if they look now, and transforms it.
+    /// Draws what the eyes see, if they sample now, and transforms it.
     pub(super) fn observe_eyes(&mut self, state: &State, rng: &mut NumpyRng) -> Result<(), EnvError> {
         let looks = self.eyes_look();
         let Some(vision) = &mut self.vision else { return Ok(()) };
@@ -41,17 +41,17 @@ impl Senses {
         }
     }
 
-    /// Returns whether what the eyes see is drawn when somebody asks for it. What a later picture depends on is drawn in any case.
+    /// Returns whether the eyes are drawn on request. Pictures that later ones depend on are always drawn.
     pub(super) fn is_lazy(&self) -> bool {
         self.vision_lazy && self.vision.is_some() && Sense::EYES.iter().all(|&eye| self.pipeline.is_independent(eye))
     }
 
-    /// Returns whether there is something to draw for those who draw the eyes when they want to.
+    /// Returns whether there is a picture to draw for programs that draw the eyes themselves.
     pub(super) fn wants_drawing(&self) -> bool {
         self.picture == Picture::Waiting || !self.is_lazy()
     }
 
-    /// Gives up a picture that nobody asked for, as the scene that it would show moves on.
+    /// Drops a picture that was not requested, because the scene that it would show moves on.
     pub(super) fn forget_picture(&mut self) {
         if self.picture == Picture::Waiting {
             self.picture = Picture::Gone;
@@ -60,9 +60,9 @@ impl Senses {
 }
 
 impl Env {
-    /// Draws what the eyes see at the last observation, if that waits for somebody who asks ([`Config::vision_lazy`](crate::Config::vision_lazy)),
-    /// and returns the whole observation. It has the bits that it has without `vision_lazy`, whatever was asked for before. Until then, and
-    /// for good if a step comes first, the observation is without images. Otherwise nothing is drawn.
+    /// Draws the picture of the last observation, if it is still to be drawn ([`Config::vision_lazy`](crate::Config::vision_lazy)), and
+    /// returns the whole observation. The picture has the bits that it has without `vision_lazy`, whatever was requested before. Until
+    /// then the observation has no images, and if a step comes first the picture is lost. Otherwise nothing is drawn.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -89,9 +89,9 @@ impl Env {
     }
 }
 
-/// Draws what the eyes of many environments see into their observations, and transforms it. With `renderer: wgpu`, all environments of a
-/// blueprint are drawn in one submission and one transfer; by the CPU, one environment after the other. Those with
-/// [`Config::vision_lazy`](crate::Config::vision_lazy) whose eyes have been drawn already are left as they are.
+/// Draws the eyes of many environments into their observations, and transforms the images. With `renderer: wgpu`, all environments of a
+/// blueprint are drawn in one submission and one transfer. On the CPU they are drawn one after the other. Environments with
+/// [`Config::vision_lazy`](crate::Config::vision_lazy) whose eyes have already been drawn are left unchanged.
 ///
 /// ```
 /// use babybench::env::draw_eyes;
@@ -130,7 +130,7 @@ pub fn draw_eyes<'e>(environments: impl IntoIterator<Item = &'e mut Env>) -> Res
     Ok(())
 }
 
-/// Draws what the eyes of environments see that GPUs draw, in one submission for each.
+/// Draws the eyes of the environments with a GPU renderer, in one submission for each GPU.
 fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
     let mut batches: Vec<Batch> = Vec::new();
     for env in environments.iter_mut().filter(|env| env.senses.eyes_look()) {
@@ -157,7 +157,7 @@ fn draw_on_gpus(environments: &mut [&mut Env]) -> Result<(), EnvError> {
     Ok(())
 }
 
-/// The pictures that one GPU draws.
+/// The pictures drawn by one GPU.
 struct Batch<'e> {
     gpu: SharedGpu,
     requests: Vec<RenderRequest<'e>>,

@@ -1,5 +1,4 @@
-//! The contents of information: keys and values, for whoever writes or reads it. Logs, lines of JSON, serde, snapshots and Python's
-//! dictionaries follow from this one description.
+//! The keys and values of information. Logs, lines of JSON, serde, snapshots and Python's dictionaries follow from this description.
 
 use std::sync::Arc;
 
@@ -12,7 +11,7 @@ use crate::env::{
 const TOUCHES: [&str; 2] = ["right_hand_touches", "left_hand_touches"];
 /// Keys of their names.
 pub(crate) const PARTS: [&str; 2] = ["right_hand_parts", "left_hand_parts"];
-/// Keys of what a task with a goal reports.
+/// Keys of the report of a task with a goal.
 const TASK: [&str; 4] = ["task", "is_success", "is_failure", "return"];
 /// The key of the number of steps.
 pub(crate) const STEPS: &str = "steps";
@@ -43,7 +42,7 @@ pub enum InfoValue<'a> {
 pub type InfoField<'a> = (&'static str, InfoValue<'a>);
 
 impl BehaviorInfo {
-    /// Iterates over keys and values, in the order of the reference; what a task measures comes last.
+    /// Iterates over keys and values, in the order of the reference. A task's measures come last.
     ///
     /// ```
     /// use babybench::config::Behavior;
@@ -85,7 +84,7 @@ impl BehaviorInfo {
         values.into_iter().flatten().chain(measures)
     }
 
-    /// Reads the information of whatever behavior a source has keys of, in the order in which [`BehaviorInfo::fields`] hands them out.
+    /// Reads the information of the behavior whose keys a source has, in the order in which [`BehaviorInfo::fields`] returns them.
     pub(crate) fn read<S: InfoSource>(source: &mut S) -> Result<Self, S::Error> {
         if source.has(TOUCHES[0]) {
             let [right_hand, left_hand] = [source.geoms(TOUCHES[0])?, source.geoms(TOUCHES[1])?];
@@ -132,7 +131,7 @@ impl BehaviorInfo {
 }
 
 impl InfoDetails {
-    /// Iterates over keys and values, those that there are.
+    /// Iterates over the keys and values that exist.
     pub fn fields(&self) -> impl Iterator<Item = InfoField<'_>> {
         let parts = self.touched_parts.as_ref().map(PerHand::each_ref);
         let parts = parts.map(|parts| [0, 1].map(|hand| (PARTS[hand], InfoValue::Parts(parts[hand]))));
@@ -156,8 +155,7 @@ impl InfoDetails {
 }
 
 impl Info {
-    /// Iterates over keys and values as everything that this library writes has them: the behavior's, the details, if they are
-    /// wanted, `steps`.
+    /// Iterates over keys and values in the order in which this library writes them: the behavior's, the details if wanted, `steps`.
     pub fn fields<'a>(&'a self, details: Option<&'a InfoDetails>) -> impl Iterator<Item = InfoField<'a>> {
         let details = details.into_iter().flat_map(InfoDetails::fields);
         let steps = (STEPS, InfoValue::Count(self.steps));
@@ -175,12 +173,12 @@ impl Info {
     }
 }
 
-/// Where information is read from: values by key.
+/// A source of information: values by key.
 pub(crate) trait InfoSource {
-    /// Why a value cannot be read.
+    /// The reason why a value cannot be read.
     type Error;
 
-    /// Returns whether there is a value.
+    /// Returns whether the value exists.
     fn has(&self, key: &'static str) -> bool;
 
     /// Reads a number of steps.
@@ -198,7 +196,7 @@ pub(crate) trait InfoSource {
     /// Reads a finite number.
     fn number(&mut self, key: &'static str) -> Result<f64, Self::Error>;
 
-    /// Reads a number that a task measures.
+    /// Reads a measure of a task.
     fn measure(&mut self, key: &'static str) -> Result<f64, Self::Error> {
         self.number(key)
     }

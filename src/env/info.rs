@@ -116,7 +116,7 @@ pub enum BehaviorInfo {
         /// Geom ids that each palm has touched, in the order of first touch.
         touches: PerHand<Vec<usize>>,
     },
-    /// How often a hand was in the central field of view of an eye in this episode.
+    /// Steps of this episode in which a hand was in the central field of view of an eye.
     HandRegard {
         /// Number of steps for each eye and hand.
         counts: PerEyeAndHand<u64>,
@@ -132,14 +132,13 @@ pub struct TaskInfo {
     pub task: Arc<str>,
     /// Success and failure in the last step.
     pub outcome: Outcome,
-    /// Sum of the rewards in this episode.
+    /// Sum of the rewards of this episode.
     pub episode_return: f64,
     /// Further measures of the task.
     pub measures: Measures,
 }
 
-/// Measures of a task in an episode, besides its outcome: numbers with names. Information, logs and Python's dictionaries have them under
-/// these names.
+/// Measures of a task in an episode, besides its outcome: named numbers. Information, logs and Python's dictionaries use these names.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     names: &'static [&'static str],
@@ -189,7 +188,7 @@ impl BehaviorInfo {
         }
     }
 
-    /// Returns what a task with a goal reports.
+    /// Returns the report of a task with a goal.
     pub fn task(&self) -> Option<&TaskInfo> {
         match self {
             Self::Task(info) => Some(info),
@@ -197,7 +196,7 @@ impl BehaviorInfo {
         }
     }
 
-    /// Returns the geoms touched by the right and by the left hand, if the behavior is `self_touch`.
+    /// Returns the geoms touched by the right and the left hand, for the behavior `self_touch`.
     pub fn touches(&self) -> Option<[&[usize]; 2]> {
         match self {
             Self::SelfTouch { touches } => Some([&touches.right_hand, &touches.left_hand]),
@@ -205,8 +204,7 @@ impl BehaviorInfo {
         }
     }
 
-    /// Returns the score that an episode of `steps` steps would have alone, 0 to 1, for `self_touch` at most 62/68; `None`
-    /// without steps or behavior.
+    /// Returns the score of a single episode of `steps` steps, 0 to 1, for `self_touch` at most 62/68; `None` without steps or behavior.
     pub fn score(&self, steps: u64) -> Option<f64> {
         if steps == 0 {
             return None;
@@ -224,7 +222,7 @@ impl BehaviorInfo {
         }
     }
 
-    /// Returns the four counters, in the order of [`EYE_HAND_PAIRS`], if the behavior is `hand_regard`.
+    /// Returns the four counters, in the order of [`EYE_HAND_PAIRS`], for the behavior `hand_regard`.
     pub fn regards(&self) -> Option<[u64; 4]> {
         match self {
             Self::HandRegard { counts } => Some(counts.to_array()),

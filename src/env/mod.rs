@@ -114,14 +114,14 @@ pub struct Env {
     info: Info,
     episode: Episode,
     rng: NumpyRng,
-    /// Room for the random actions at the start of an episode.
+    /// A buffer for the random actions at the start of an episode.
     action: Vec<f32>,
-    /// The action of the present step, as the task has changed it.
+    /// The action of the current step, after the task's changes.
     applied: Vec<f32>,
     probe: Option<EnvProbe>,
 }
 
-/// A copy goes on with the same bits as the original. It shares the blueprint and has no probe.
+/// A copy continues with the same bits as the original. It shares the blueprint and has no probe.
 impl Clone for Env {
     fn clone(&self) -> Self {
         Self {
@@ -152,7 +152,8 @@ impl std::fmt::Debug for Env {
 }
 
 impl Env {
-    /// Builds an environment from the embedded assets. Several environments of one configuration are cheaper from one [`Blueprint`].
+    /// Builds an environment from the embedded assets. Several environments of one configuration are cheaper to make from one
+    /// [`Blueprint`].
     ///
     /// # Errors
     /// As [`Blueprint::new`].
@@ -183,8 +184,8 @@ impl Env {
         })
     }
 
-    /// Locks a joint, or all joints of a part, at an angle in rad, from the next step on. Locks outlast resets; those that
-    /// the configuration asks for can be moved and taken off too.
+    /// Locks a joint, or all joints of a part, at an angle in rad, from the next step on. Locks outlast resets. Locks of the
+    /// configuration can be moved and removed, too.
     ///
     /// ```
     /// use babybench::config::Part;
@@ -200,8 +201,8 @@ impl Env {
     /// ```
     ///
     /// # Errors
-    /// No such joint, a joint that cannot be locked, an angle that is not finite. Joints that the scene holds are not
-    /// errors but in the report.
+    /// A joint that does not exist or cannot be locked, or an angle that is not finite. Joints that the scene holds are listed in the
+    /// report and are not errors.
     pub fn lock<'a>(&mut self, target: impl Into<LockTarget<'a>>, angle: f64) -> Result<LockReport, EnvError> {
         self.physics.lock(self.blueprint.model(), target.into(), angle)
     }
@@ -209,18 +210,18 @@ impl Env {
     /// Unlocks a joint, or all joints of a part, from the next step on and for later episodes.
     ///
     /// # Errors
-    /// No such joint, a joint that cannot be locked.
+    /// A joint that does not exist or cannot be locked.
     pub fn unlock<'a>(&mut self, target: impl Into<LockTarget<'a>>) -> Result<LockReport, EnvError> {
         self.physics.unlock(self.blueprint.model(), target.into())
     }
 
     /// Applies an action for `frame_skip` physics steps.
     ///
-    /// Values out of the action space are clipped. Stepping on after truncation is allowed.
+    /// Values outside the action space are clipped. Steps after truncation are allowed.
     ///
     /// # Errors
-    /// An action of wrong length or with numbers that are not finite, which leaves the state untouched; a simulation that
-    /// diverged, after which [`Env::reset`] is needed.
+    /// An action of wrong length or with numbers that are not finite, which leaves the state untouched. A simulation that diverged, after
+    /// which [`Env::reset`] is needed.
     pub fn step(&mut self, action: &[f32]) -> Result<Step<'_>, EnvError> {
         if !self.episode.ready {
             return Err(EnvError::NotReset);
@@ -255,7 +256,7 @@ impl Env {
         Ok(self.last_step())
     }
 
-    /// Checks the length of an action, and that it is finite.
+    /// Checks that an action has the right length and finite numbers.
     pub(crate) fn check_action(&self, action: &[f32]) -> Result<(), EnvError> {
         let expected = self.action_space().len();
         if action.len() != expected {
@@ -278,14 +279,14 @@ impl Env {
         Ok(())
     }
 
-    /// Counts what the behavior counts.
+    /// Updates the behavior's counters.
     fn track(&mut self) {
         let state = self.physics.state();
         self.task.count(state);
         self.task.inform(TaskEvent::Step(state), &mut self.info);
     }
 
-    /// Notes how old the pictures are that the eyes show.
+    /// Records the age of the pictures of the eyes.
     fn date_pictures(&mut self) {
         let age = self.senses.vision_age();
         self.info.details.vision_age = age.map(|steps| steps as f64 * self.blueprint.dt());
@@ -300,14 +301,14 @@ impl Env {
             .observe(model, state, &*self.actuation, append, &mut self.rng)
     }
 
-    /// Returns the observation of the last reset, step or [`Env::refresh`], all of it of one moment: after [`Env::restore`] it is without
-    /// what a snapshot does not hold (touch, pain, images), and changes of [`Env::state_mut`] are not in it. Images that wait for
-    /// [`Env::look`] are not in it, either.
+    /// Returns the observation of the last reset, step or [`Env::refresh`], all of one moment. After [`Env::restore`] it lacks what a
+    /// snapshot does not hold (touch, pain, images). It does not include changes through [`Env::state_mut`], nor images that
+    /// [`Env::look`] has yet to draw.
     pub fn observation(&self) -> Observation<'_> {
         self.with_goals(self.senses.observation())
     }
 
-    /// Adds the goals to what is sensed.
+    /// Adds the goals to the observation.
     fn with_goals<'a>(&'a self, sensed: Observation<'a>) -> Observation<'a> {
         fn goal(values: &[f64]) -> Option<&[f64]> {
             (!values.is_empty()).then_some(values)
@@ -324,7 +325,7 @@ impl Env {
         self.actuation.action_space().sample(&mut self.rng, action);
     }
 
-    /// Draws a seed from the generator of [`Env::sample_action`], so that what is made with it follows from the environment's seed.
+    /// Draws a seed from the generator of [`Env::sample_action`], so that whatever uses it follows from the environment's seed.
     pub(crate) fn draw_seed(&mut self) -> u64 {
         self.rng.word()
     }

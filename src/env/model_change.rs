@@ -1,4 +1,4 @@
-//! Numbers of the model that a program changes while an environment lives.
+//! Changes of the model's numbers while an environment runs.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::physics::{Params, Row};
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ModelChangeError {
-    /// Something else was changed.
+    /// Anything else was changed.
     #[error(
         "the model was changed in what cannot change while an environment lives; what can are the numbers of {}: change the document or the \
          configuration for the rest, and make another environment",
@@ -26,7 +26,7 @@ pub enum ModelChangeError {
     NotFinite {
         /// Name of the array.
         name: &'static str,
-        /// Place of the number in the array, rows one after the other.
+        /// Index of the number in the array, row by row.
         index: usize,
         /// Its value, as text.
         value: String,
@@ -36,7 +36,7 @@ pub enum ModelChangeError {
     TooSmall {
         /// Name of the array.
         name: &'static str,
-        /// Place of the number in the array, rows one after the other.
+        /// Index of the number in the array, row by row.
         index: usize,
         /// Its value, as text.
         value: String,
@@ -50,10 +50,10 @@ pub enum ModelChangeError {
     Muscles,
 }
 
-/// Lists numbers that a program may change: first those that parameters hold, with their name there, then those that the model holds.
+/// Lists the numbers that a program may change: first those of the parameters, with their name there, then those of the model.
 macro_rules! changeable {
     (parameters { $($own:literal = $($path:ident).+, $field:ident;)* } model { $($name:literal = $($at:ident).+;)* }) => {
-        /// The names of what [`Env::change_model`] may change, as in [`Arrays`].
+        /// The names of the arrays that [`Env::change_model`] may change, as in [`Arrays`].
         pub const CHANGEABLE: &[&str] = &[$($own,)* $($name),*];
 
         fn rows(arrays: &Arrays) -> Vec<&[f64]> {
@@ -126,7 +126,7 @@ changeable! {
     }
 }
 
-/// Of arrays in which no number may be negative.
+/// Arrays without negative numbers.
 const AT_LEAST_ZERO: [&str; 6] = [
     "dof_armature",
     "dof_damping",
@@ -135,7 +135,7 @@ const AT_LEAST_ZERO: [&str; 6] = [
     "pair_friction",
     "geom_rbound",
 ];
-/// Of arrays in which what is above 0 has to stay so.
+/// Arrays in which positive numbers must stay positive.
 const ABOVE_ZERO: [&str; 4] = ["opt.timestep", "body_mass", "body_inertia", "geom_size"];
 
 /// A model before and after a change.
@@ -145,7 +145,7 @@ struct Change {
 }
 
 impl Change {
-    /// Checks what was changed.
+    /// Checks the changes.
     fn check(&self) -> Result<(), ModelChangeError> {
         let (before, after) = (rows(&self.before), rows(&self.after));
         if before.iter().zip(&after).any(|(a, b)| a.len() != b.len()) {
@@ -190,7 +190,7 @@ impl Change {
         place.is_some_and(|k| before[k] != after[k])
     }
 
-    /// Writes the numbers that were changed into rows of the same order; there may be fewer rows.
+    /// Writes the changed numbers into rows of the same order. There may be fewer rows.
     fn apply(&self, to: Vec<&mut [f64]>) {
         let changed = rows(&self.before).into_iter().zip(rows(&self.after));
         for (to, (before, after)) in to.into_iter().zip(changed) {
@@ -202,11 +202,11 @@ impl Change {
         }
     }
 
-    /// Writes the numbers that were changed into parameters.
+    /// Writes the changed numbers into parameters.
     fn apply_to(&self, params: &mut Params, model: &Arrays) {
         self.apply(parameters_mut(params));
         if self.concerns("body_mass") {
-            // what is below a body weighs as much as its bodies do, as MuJoCo sums it up in each step
+            // the mass of a subtree is the sum of its bodies, as MuJoCo computes it in each step
             params.body_subtreemass.clone_from(&params.body_mass);
             for body in (1..model.nbody()).rev() {
                 params.body_subtreemass[model.body_parentid[body]] += params.body_subtreemass[body];
@@ -215,7 +215,7 @@ impl Change {
     }
 }
 
-/// Returns the arrays of a model as its parameters have them.
+/// Returns the arrays of a model with the values of its parameters.
 fn shown(model: &Model, params: &Params) -> Arrays {
     let mut arrays = Arrays::clone(model);
     for (to, from) in rows_mut(&mut arrays).into_iter().zip(parameters(params)) {
@@ -225,13 +225,13 @@ fn shown(model: &Model, params: &Params) -> Arrays {
 }
 
 impl Env {
-    /// Returns the arrays of the model as they are now: with what [`Env::change_model`] has changed, and with the parameters of the actuation
-    /// model after a reset.
+    /// Returns the current arrays of the model, with the changes of [`Env::change_model`] and the actuation model's parameters after a
+    /// reset.
     pub fn model_arrays(&self) -> Arrays {
         shown(self.model(), &self.physics.base)
     }
 
-    /// Returns the names of what differs from the model of the scene.
+    /// Returns the names of the arrays that differ from the model of the scene.
     pub fn model_changes(&self) -> Vec<&'static str> {
         let (model, params) = self.blueprint.origin();
         let (first, now) = (shown(model, params), shown(self.model(), self.blueprint.params()));
@@ -242,13 +242,12 @@ impl Env {
     }
 
     /// Changes numbers of the model from the next step on, in this and in later episodes: gravity and timestep, mass, inertia, size,
-    /// friction, damping, stiffness, armature, gears, softness. It is what a program does that writes into MuJoCo's `mjModel`:
-    /// constants that follow from numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) stay as they are, as there, unless the
-    /// program writes them, too.
+    /// friction, damping, stiffness, armature, gears, softness. It has the effect of writing into MuJoCo's `mjModel`: constants derived
+    /// from these numbers (`body_invweight0`, `dof_invweight0`, `geom_rbound`) keep their values unless the program writes them, too.
     ///
-    /// Bodies of which a task has changed mass or size in an episode keep that until its end. Snapshots of an environment fit others with the same
-    /// changes only; [`Env::set_age`] makes the model anew, without them. Delays stay the same number of steps, and so do the
-    /// rates of senses.
+    /// A body whose mass or size a task has changed in an episode keeps the task's values until the episode ends. Snapshots of an
+    /// environment fit others with the same changes only. [`Env::set_age`] rebuilds the model without them. Delays keep their number of
+    /// steps, and so do the rates of senses.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -265,8 +264,8 @@ impl Env {
     /// ```
     ///
     /// # Errors
-    /// [`ModelChangeError`]: anything else is changed, numbers that are not finite or too small; an engine that cannot
-    /// simulate the model. Nothing is changed then.
+    /// [`ModelChangeError`]: other changes, numbers that are not finite or too small, or an engine that cannot simulate the model. They
+    /// change nothing.
     pub fn change_model(&mut self, edit: impl FnOnce(&mut Arrays)) -> Result<(), EnvError> {
         self.physics.check_shape()?;
         let before = self.model_arrays();
@@ -278,7 +277,7 @@ impl Env {
             return Err(ModelChangeError::Muscles.into());
         }
         let blueprint = self.blueprint.changed(&change)?;
-        // a picture that waits is that of the geoms as they are
+        // a picture still to be drawn shows the geoms as they are
         self.look()?;
         self.blueprint = blueprint;
         let model = self.blueprint.model();
@@ -290,7 +289,7 @@ impl Env {
 }
 
 impl Blueprint {
-    /// Returns the blueprint of environments whose model was changed.
+    /// Returns the blueprint of environments with the changed model.
     fn changed(&self, change: &Change) -> Result<Self, EnvError> {
         let model = Arc::new(self.model().edited(|arrays| change.apply(rows_mut(arrays))));
         let mut params = self.params().clone();

@@ -5,8 +5,8 @@ use crate::sensors::EYES;
 use crate::sensors::transform::acuity_cutoff;
 
 impl Blueprint {
-    /// Returns what the configuration asks for and cannot have, a sentence each: images that are too small for the acuity of the eyes,
-    /// so that it is the number of pixels that limits what MIMo sees.
+    /// Returns a sentence for each request of the configuration that cannot be met: images too small for the acuity of the eyes, so that
+    /// the number of pixels limits what MIMo sees.
     pub fn notices(&self) -> Vec<String> {
         let (config, model) = (self.config(), self.model());
         if !config.vision_active {

@@ -11,7 +11,7 @@ macro_rules! observation {
     ) => {
         /// The observation: what MIMo senses. The vectors belong to the environment and change with the next step.
         ///
-        /// Every entry is a field. [`Observation::entries`] iterates over those that are there, for programs that treat them alike:
+        /// Every entry is a field. [`Observation::entries`] iterates over the existing ones, for programs that treat them alike:
         ///
         /// ```
         /// use babybench::{Config, Env};
@@ -29,8 +29,8 @@ macro_rules! observation {
         }
 
         impl<'a> Observation<'a> {
-            /// Makes an observation of what `values` returns for each entry, in the order of [`ObservationEntry::ALL`]. Numbers of
-            /// another type than the entry's are left out.
+            /// Makes an observation from the numbers that `values` returns for each entry, in the order of [`ObservationEntry::ALL`].
+            /// Numbers of another type than the entry's are left out.
             pub fn from_fn(mut values: impl FnMut(&'static ObservationEntry) -> Option<Values<'a>>) -> Self {
                 let mut entries = ObservationEntry::ALL.iter();
                 let mut next = || entries.next().and_then(&mut values);
@@ -40,7 +40,7 @@ macro_rules! observation {
                 }
             }
 
-            /// Returns the numbers of each entry, in the order of [`ObservationEntry::ALL`]; `None` for those that are not there.
+            /// Returns the numbers of each entry, in the order of [`ObservationEntry::ALL`]; `None` for missing entries.
             pub fn values(&self) -> [Option<Values<'a>>; ObservationEntry::ALL.len()] {
                 [Some(self.$first.into()), $(self.$field.map(Values::from)),*]
             }
@@ -50,13 +50,13 @@ macro_rules! observation {
 observation_entries!(observation);
 
 impl<'a> Observation<'a> {
-    /// Iterates over the entries that are there, with their numbers.
+    /// Iterates over the existing entries and their numbers.
     pub fn entries(&self) -> impl Iterator<Item = (&'static ObservationEntry, Values<'a>)> {
         let all = ObservationEntry::ALL.iter().zip(self.values());
         all.filter_map(|(entry, values)| Some((entry, values?)))
     }
 
-    /// Returns the numbers under a key, if they are there.
+    /// Returns the numbers under a key, if it exists.
     pub fn get(&self, key: &str) -> Option<Values<'a>> {
         self.entries()
             .find(|(entry, _)| entry.key == key)

@@ -7,11 +7,11 @@ use crate::model::{JointType, Model, SensorType};
 use crate::physics::State;
 use crate::spaces::BoxSpace;
 
-/// Another infant in the scene of an environment, as a second policy moves it and feels it: [`Env::others`].
+/// The second infant in the scene of an environment, which a second policy moves and observes: [`Env::others`].
 ///
-/// Its action is a number for each of its motors, in [-1, 1], or for each of its servos (`actuation_model: positional`), an angle in rad. Its
-/// observation has, in this order, the angles (rad) and velocities (rad/s) of its joints, and its sensors: acceleration (m/s^2) and angular velocity
-/// (rad/s) of the head, and the torque (N m) on each part, three numbers each.
+/// Its action has a number for each of its motors, in [-1, 1], or for each of its servos (`actuation_model: positional`), an angle in
+/// rad. Its observation has, in this order, the angles (rad) and velocities (rad/s) of its joints, the acceleration (m/s^2) and angular
+/// velocity (rad/s) of its head, and the torque (N m) on each part, three numbers each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherInfant {
     space: BoxSpace,
@@ -74,7 +74,8 @@ impl OtherInfant {
         2 * self.joints.len() + 3 * self.sensors.len()
     }
 
-    /// Gives it an action, clipped to its space, in the environment whose [`Env::others`] it is one of. It holds until the next one, or a reset.
+    /// Sets its action, clipped to its space, in the environment that returned it from [`Env::others`]. The action holds until the next
+    /// one, or a reset.
     ///
     /// # Errors
     /// An action of wrong length or with numbers that are not finite, which changes nothing.
@@ -99,7 +100,7 @@ impl OtherInfant {
         Ok(())
     }
 
-    /// Writes its observation in a state of the scene, in the place of what `out` has.
+    /// Writes its observation in a state of the scene, replacing the contents of `out`.
     pub fn observe(&self, model: &Model, state: &State, out: &mut Vec<f64>) {
         out.clear();
         out.extend(self.joints.iter().map(|&j| state.qpos[model.jnt_qposadr[j]]));
@@ -112,8 +113,8 @@ impl OtherInfant {
 }
 
 impl Env {
-    /// Lists the other infants in the scene: one, if a custom document includes `other_mimo.xml`. With muscles there are none to move, as
-    /// only the learner's are muscles.
+    /// Lists the other infants in the scene: one, if a custom document includes `other_mimo.xml`. With muscles there are none, because
+    /// only the learner has muscles.
     ///
     /// A second policy moves it step by step: [`OtherInfant::act`] before each step of the learner.
     pub fn others(&self) -> Vec<OtherInfant> {

@@ -36,7 +36,7 @@ impl Env {
         self.episode.steps >= self.blueprint.config().max_episode_steps
     }
 
-    /// Looks at what is achieved, and computes outcome, reward and end of the last step.
+    /// Reads the achieved goal, and computes outcome, reward and end of the last step.
     pub(super) fn judge(&mut self) {
         let view = TaskView {
             model: self.blueprint.model(),
@@ -53,7 +53,7 @@ impl Env {
         self.conclude();
     }
 
-    /// Ends a step once everything is sensed: outcome, what is counted, information, number of steps.
+    /// Ends a step after sensing: outcome, counters, information, number of steps.
     pub(super) fn finish_step(&mut self) {
         self.judge();
         if let BehaviorInfo::Task(info) = &mut self.info.behavior {
@@ -84,7 +84,7 @@ impl Env {
     }
 }
 
-/// Tells whether a task reports success and failure, and not the counters of one of BabyBench's behaviors.
+/// Returns whether a task reports success and failure instead of the counters of a behavior.
 #[cfg(feature = "eval")]
 pub(crate) fn reports_outcome(task: &dyn Task) -> bool {
     let mut info = Info::default();
@@ -92,7 +92,7 @@ pub(crate) fn reports_outcome(task: &dyn Task) -> bool {
     info.behavior.task().is_some()
 }
 
-/// Sets what is counted as it is at the start of an episode.
+/// Sets the counters to their values at the start of an episode.
 pub(super) fn clear(task: &dyn Task, info: &mut Info) {
     if matches!(info.behavior, BehaviorInfo::None | BehaviorInfo::Task(_)) {
         let (name, measures) = match &mut info.behavior {
@@ -108,7 +108,7 @@ pub(super) fn clear(task: &dyn Task, info: &mut Info) {
         });
     }
     task.inform(TaskEvent::Start, info);
-    // only where it is needed and not there already: a reset allocates nothing
+    // only if needed and missing, because a reset allocates nothing
     if let BehaviorInfo::Task(named) = &mut info.behavior
         && *named.task != *task.name()
     {

@@ -1,4 +1,4 @@
-//! Paths of bodies that a document marks with `mocap="true"`: a hand that comes and goes, whatever happens.
+//! Paths of bodies that a document marks with `mocap="true"`, such as a hand that comes and goes.
 
 use thiserror::Error;
 
@@ -20,24 +20,24 @@ pub struct PathError {
     pub reason: String,
 }
 
-/// What bodies do over time.
+/// Poses of bodies over time.
 #[derive(Debug, PartialEq)]
 pub(super) struct Paths {
-    /// The moments of the poses, s, ascending; the first is that of the start of an episode.
+    /// The times of the poses, s, ascending. The first is the start of an episode.
     times: Vec<f64>,
     bodies: Vec<Path>,
 }
 
 #[derive(Debug, PartialEq)]
 struct Path {
-    /// Its number among the bodies that are moved so.
+    /// Its number among the mocap bodies.
     mocap: usize,
     pos: Vec<Vec3>,
-    /// Nothing where the text says nothing of orientations.
+    /// Empty if the text has no orientations.
     quat: Vec<Quat>,
 }
 
-/// Columns of a body in the text: where each of its values stands.
+/// The columns of a body's values in the text.
 struct Columns<'a> {
     body: &'a str,
     mocap: usize,
@@ -45,8 +45,8 @@ struct Columns<'a> {
 }
 
 impl Paths {
-    /// Reads paths: a line of names, `time` and `BODY.x`, `BODY.y`, `BODY.z`, with or without `BODY.qw` to `BODY.qz`, then a line of numbers for
-    /// each moment. Nothing of an empty text.
+    /// Reads paths: a line of names, `time` and `BODY.x`, `BODY.y`, `BODY.z`, with or without `BODY.qw` to `BODY.qz`, then a line of
+    /// numbers for each time. An empty text has none.
     pub fn new(text: &str, model: &Model) -> Result<Option<Self>, PathError> {
         let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
@@ -60,7 +60,7 @@ impl Paths {
         let mut bodies: Vec<Path> = columns.iter().map(Path::of).collect();
         for (line, row) in lines {
             let values = numbers(row, names.len()).map_err(|reason| fault(line, reason))?;
-            // from the first moment on, whenever that is
+            // from the first time on, whatever it is
             let time = values[0];
             match times.last() {
                 Some(last) if time <= *last => {
@@ -80,7 +80,7 @@ impl Paths {
         Ok(Some(Self { times, bodies }))
     }
 
-    /// Puts the bodies where they are at the time of a state. After the last moment everything begins again.
+    /// Moves the bodies to their poses at the time of a state. After the last time the paths start again.
     pub fn place(&self, state: &mut State) {
         let (before, share) = self.moment(state.time);
         let after = (before + 1).min(self.times.len() - 1);
@@ -88,7 +88,7 @@ impl Paths {
             let (a, b) = (path.pos[before], path.pos[after]);
             state.mocap_pos[path.mocap] = [0, 1, 2].map(|k| a[k] + share * (b[k] - a[k]));
             if let (Some(a), Some(b)) = (path.quat.get(before), path.quat.get(after)) {
-                // the shorter way, as both signs are one orientation
+                // the shorter way, because both signs are the same orientation
                 let along: f64 = (0..4).map(|k| a[k] * b[k]).sum();
                 let sign = if along < 0.0 { -1.0 } else { 1.0 };
                 let mixed = [0, 1, 2, 3].map(|k| a[k] + share * (sign * b[k] - a[k]));
@@ -97,7 +97,7 @@ impl Paths {
         }
     }
 
-    /// Returns the moment at or before a time, and which share of the way to the next has passed.
+    /// Returns the index of the last time before a time, and the elapsed share of the interval to the next.
     fn moment(&self, time: f64) -> (usize, f64) {
         let last = self.times.len() - 1;
         if last == 0 {
@@ -177,7 +177,7 @@ fn columns<'a>(names: &[&'a str], model: &Model) -> Result<Vec<Columns<'a>>, Str
     Ok(all)
 }
 
-/// Returns the number of a body among those that are moved so.
+/// Returns the number of a body among the mocap bodies.
 fn mocap(body: &str, model: &Model) -> Result<usize, String> {
     let found = model.body(body).and_then(|id| model.body_mocapid[id]);
     found.ok_or_else(|| {
@@ -258,7 +258,7 @@ mod tests {
             (turned[0] - half).abs() < 1e-15 && (turned[2] + half).abs() < 1e-15,
             "{turned:?}"
         );
-        // from the end back to the beginning, which is the same orientation with the other sign
+        // from the end to the start, which is the same orientation with the other sign
         let turned = at(2.5).1;
         assert!((turned[0].abs() - half).abs() < 1e-15, "{turned:?}");
         assert_eq!(at(3.0), at(0.0));

@@ -10,11 +10,11 @@ use crate::mimo::{LockReport, LockTarget, lock, lock_of, unlock};
 use crate::model::Model;
 use crate::physics::{Engine, EngineError, Params, Shared, State};
 
-/// The state of a scene, and what advances it.
+/// The state of a scene and the engines that advance it.
 pub(super) struct Physics {
-    /// Those that all environments of the blueprint share.
+    /// The engines that all environments of the blueprint share.
     engines: Arc<Engines>,
-    /// An engine of its own, for a program that asked for it.
+    /// An engine of its own, on a program's request.
     own: Option<Box<dyn Engine>>,
     state: EnvState,
     /// Parameters after a reset: the blueprint's, with what locks and unlocks changed.
@@ -29,7 +29,7 @@ impl std::fmt::Debug for Physics {
     }
 }
 
-/// A copy shares the engines, which remember nothing that changes a later step.
+/// A copy shares the engines, whose memory changes no later step.
 impl Clone for Physics {
     fn clone(&self) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl Physics {
         let engines = blueprint.engines().clone();
         let mut state = engines.reader().new_state();
         actuation.prepare(blueprint.model(), &mut state);
-        // shared from the start: copies into what is one's own would stay that
+        // shared from the start, because copies into an own allocation would stay unshared
         state.params = blueprint.params().clone();
         Self {
             engines,
@@ -66,7 +66,7 @@ impl Physics {
         self.state.parts(&self.engines).0
     }
 
-    /// Returns the state, of which only what decides how the run goes on may be there.
+    /// Returns the state, which may hold only what decides how the run continues.
     pub fn dynamic(&self) -> &State {
         self.state.dynamic()
     }
@@ -106,18 +106,18 @@ impl Physics {
         (source, state, last_call, &mut self.base)
     }
 
-    /// Returns an engine that tells what follows from the model.
+    /// Returns an engine that answers questions about the model.
     pub fn reader(&self) -> &dyn Engine {
         self.own.as_deref().unwrap_or_else(|| self.engines.reader())
     }
 
-    /// Returns an engine of its own, with which the environment goes on from now on.
+    /// Returns an engine of its own, with which the environment steps from now on.
     pub fn own_engine(&mut self) -> &mut dyn Engine {
         self.state.parts(&self.engines);
         &mut **self.own.get_or_insert_with(|| self.engines.make())
     }
 
-    /// Goes on with the engines of another model of the same sizes.
+    /// Switches to the engines of another model of the same sizes.
     pub fn use_engines(&mut self, engines: &Arc<Engines>) {
         // what those of the other model computed, these would compute differently
         self.state.parts(&self.engines);
@@ -136,7 +136,7 @@ impl Physics {
         engine.lend(|engine| engine.forward(state))
     }
 
-    /// Checks that the vectors of the state, which a program may change, still fit the model.
+    /// Checks that the vectors of the state, which programs may change, still fit the model.
     pub fn check_shape(&self) -> Result<(), EngineError> {
         self.reader().check_shape(self.state())
     }

@@ -1,4 +1,4 @@
-//! The way from the senses to the observation: the transforms of each sense, in order.
+//! Pipelines from the senses to the observation: the transforms of each sense, in order.
 
 use crate::config::{Compat, Config, Delays};
 use crate::model::Model;
@@ -25,10 +25,10 @@ impl Stage {
 #[derive(Clone, Default)]
 struct Chain {
     stages: Vec<Stage>,
-    /// The number of the first stages that use what is sensed now and nothing else: acuity, foveation.
+    /// The number of leading stages that depend on the current values only: acuity, foveation.
     optics: usize,
-    /// For a sense that does not look in every step: what it saw last, after a number of stages. Those behind, a delay and what a program
-    /// added, go on in every step.
+    /// For a sense with a rate of its own: its last sample, after the leading stages. Later stages, a delay and those that a program
+    /// added, run in every step.
     hold: Option<(usize, Hold)>,
 }
 
@@ -37,13 +37,12 @@ struct Chain {
 pub(super) struct Pipeline {
     /// By sense, in the order of [`Sense::ALL`].
     chains: [Chain; Sense::ALL.len()],
-    /// Whether a sense has transforms, side by side: it is asked several times in every step, and mostly none has.
+    /// Whether each sense has transforms. It is read several times in every step, and is mostly false.
     changes: [bool; Sense::ALL.len()],
 }
 
 impl Pipeline {
-    /// Sets up the transforms that a configuration asks for, of a sense whose signals have the size of `like`: acuity,
-    /// foveation, noise, delay.
+    /// Sets up the transforms of a configuration for a sense whose signals have the size of `like`: acuity, foveation, noise, delay.
     pub fn configure(&mut self, model: &Model, config: &Config, sense: Sense, like: &Signal<'_>) {
         let chain = &mut self.chains[sense as usize];
         if let (&Signal::Eye { height, width, .. }, Some(eye)) = (like, sense.eye()) {
@@ -79,8 +78,8 @@ impl Pipeline {
         self.changes[sense as usize]
     }
 
-    /// Returns whether what a sense reports in a step can be left out without changing what comes later: no transform remembers it or draws
-    /// random numbers for it.
+    /// Returns whether the values of a sense in a step can be skipped without changing later ones: no transform remembers them or draws
+    /// random numbers for them.
     pub fn is_independent(&self, sense: Sense) -> bool {
         let chain = &self.chains[sense as usize];
         chain.stages.len() == chain.optics && chain.hold.is_none()
@@ -91,7 +90,7 @@ impl Pipeline {
         self.chains[sense as usize].stages.iter().map(|stage| &*stage.transform)
     }
 
-    /// Transforms what a sense reports. If it has not looked in this step, it is what it saw last.
+    /// Transforms the values of a sense. Without a sample in this step they are those of the last one.
     pub fn apply(&mut self, sense: Sense, mut signal: Signal<'_>, looked: bool, rng: &mut NumpyRng) {
         let Chain { stages, hold, .. } = &mut self.chains[sense as usize];
         let mut apply = |stages: &mut [Stage], signal: &mut Signal<'_>| {
@@ -121,7 +120,7 @@ impl Pipeline {
         self.note_changes();
     }
 
-    /// Takes over the transforms that were added to another, which the configuration did not ask for.
+    /// Takes over the transforms that a program added to another pipeline.
     pub fn take_added(&mut self, other: &mut Self) {
         for (own, others) in self.chains.iter_mut().zip(&mut other.chains) {
             let stages = std::mem::take(&mut others.stages);
@@ -134,12 +133,12 @@ impl Pipeline {
         other.note_changes();
     }
 
-    /// Forgets the last episode.
+    /// Clears the memory of the last episode.
     pub fn reset(&mut self) {
         self.stages_mut().for_each(|stage| stage.transform.reset());
     }
 
-    /// Appends what the transforms remember.
+    /// Appends the memory of the transforms.
     pub fn save(&self, out: &mut Vec<u8>) {
         let mut memory = Vec::new();
         for chain in &self.chains {
@@ -154,7 +153,7 @@ impl Pipeline {
         }
     }
 
-    /// Takes over what the same transforms saved, from the front of `bytes`; `false` if it is something else.
+    /// Restores what the same transforms saved, from the front of `bytes`; `false` if the data do not fit.
     pub fn load(&mut self, bytes: &mut &[u8]) -> bool {
         self.chains.iter_mut().all(|Chain { stages, hold, .. }| {
             let loaded = stages
@@ -181,8 +180,8 @@ impl Pipeline {
     }
 }
 
-/// Returns what a configuration's eye, 0 for the left and 1 for the right, makes of each image of some width and height by itself: acuity,
-/// foveation.
+/// Returns the transforms that a configuration applies to each image of an eye (0 left, 1 right) of some width and height on its own:
+/// acuity, foveation.
 pub(super) fn optics(
     model: &Model,
     config: &Config,
@@ -203,13 +202,13 @@ pub(super) fn optics(
     transforms
 }
 
-/// Moves a part to the end of bytes, behind its length.
+/// Appends a part to bytes, after its length.
 pub(super) fn append_part(out: &mut Vec<u8>, part: &mut Vec<u8>) {
     out.extend_from_slice(&(part.len() as u64).to_le_bytes());
     out.append(part);
 }
 
-/// Takes a part behind its length from the front of bytes.
+/// Takes a part, after its length, from the front of bytes.
 pub(super) fn take_part<'b>(bytes: &mut &'b [u8]) -> Option<&'b [u8]> {
     let (length, rest) = bytes.split_first_chunk::<8>()?;
     let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
@@ -218,8 +217,8 @@ pub(super) fn take_part<'b>(bytes: &mut &'b [u8]) -> Option<&'b [u8]> {
     Some(part)
 }
 
-/// Returns how many steps later something comes that a configuration delays by some steps. The code that `compat: reference` follows
-/// takes the new value out of its list one step early.
+/// Returns the effective delay of a configured number of steps. The code that `compat: reference` follows takes the new value out of its
+/// list one step early.
 pub(super) fn effective(config: &Config, steps: usize) -> usize {
     match config.compat {
         Compat::Api => steps,

@@ -1,14 +1,14 @@
-//! States that a program chooses.
+//! States set by a program.
 
 use crate::env::{Env, EnvError, Observation};
 use crate::physics::EngineError;
 
 impl Env {
-    /// Puts the scene at positions (nq) and velocities (nv) in the middle of an episode, with everything computed there.
-    /// Time, counters, information, locks, muscle activations and the start of the solver stay.
+    /// Moves the scene to positions (nq) and velocities (nv) in the middle of an episode, and computes everything there. Time, counters,
+    /// information, locks, muscle activations and the start of the solver remain.
     ///
     /// # Errors
-    /// As [`Env::reset_to`]; vectors of wrong length or with numbers that are not finite change nothing.
+    /// As [`Env::reset_to`]. Vectors of wrong length or with numbers that are not finite change nothing.
     pub fn set_state(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<Observation<'_>, EnvError> {
         self.set_position(qpos, qvel)?;
         self.senses.forget_picture();
@@ -21,13 +21,13 @@ impl Env {
         Ok(self.observation())
     }
 
-    /// Computes poses, contacts, forces and senses anew from the present state, after [`Env::restore`] or changes to
+    /// Recomputes poses, contacts, forces and senses from the current state, after [`Env::restore`] or changes through
     /// [`Env::state_mut`], and returns the observation.
     ///
-    /// The next step has the same bits as without it: time, the start of the solver, the random generator and what delays, pain and
-    /// other transforms remember are left as they were. So are counters, reward and the end of the episode. After a step, poses and
-    /// forces are those at the start of its last physics step; here they belong to the present positions. Noise is that of the next
-    /// draw, and a delayed sense shows the moment that it would show one step later.
+    /// The next step has the same bits as without this call: time, the start of the solver, the random generator and the memory of
+    /// delays, pain and other transforms do not change. Nor do counters, reward and the end of the episode. After a step, poses and
+    /// forces are those at the start of its last physics step; here they belong to the current positions. Noise is that of the next draw,
+    /// and a delayed sense shows the moment that it would show one step later.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -43,10 +43,10 @@ impl Env {
     /// ```
     ///
     /// # Errors
-    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which
-    /// [`Env::reset`] is needed; as the renderer.
+    /// A state of wrong lengths, with numbers that are not finite, or from which the simulation diverges, after which [`Env::reset`] is
+    /// needed; errors of the renderer.
     pub fn refresh(&mut self) -> Result<Observation<'_>, EnvError> {
-        // the solver leaves its solution in the state as the start of the next one: the state gets its own back
+        // the solver leaves its solution in the state as the start of the next one, so the original start is restored
         self.senses.forget_picture();
         let before = self.physics.state().clone();
         let posed = self.physics.forward();
@@ -67,7 +67,7 @@ impl Env {
         Ok(self.observation())
     }
 
-    /// Sets positions (nq) and velocities (nv), of which nothing is computed yet.
+    /// Sets positions (nq) and velocities (nv) without computing anything from them.
     pub(super) fn set_position(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
         let model = self.blueprint.model();
         check_vector("qpos", qpos, model.nq)?;

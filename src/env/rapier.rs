@@ -1,12 +1,12 @@
-//! The scene of an environment in Rapier, for its queries.
+//! The scene of an environment in Rapier, for queries.
 
 use crate::env::{Env, EnvError};
 use crate::physics::contact::Quirks;
 use crate::rapier::RapierScene;
 
 impl Env {
-    /// Makes a mirror of the scene in Rapier, in step with [`Env::state`], for ray casts and shape queries. After a step,
-    /// [`RapierScene::sync`] brings it up to date for much less than making it costs.
+    /// Creates a mirror of the scene in Rapier, at [`Env::state`], for ray casts and shape queries. After a step, [`RapierScene::sync`]
+    /// updates it for much less than its creation costs.
     ///
     /// ```
     /// use babybench::rapier::rapier3d_f64::prelude::{QueryFilter, Ray, Vector};
@@ -30,7 +30,7 @@ impl Env {
     /// # Errors
     /// As [`RapierScene::sync`].
     pub fn rapier_scene(&self) -> Result<RapierScene, EnvError> {
-        // the peculiarities of contact geometry that both engines keep
+        // the peculiarities of contact geometry that both engines share
         let mut scene = RapierScene::new(self.model().clone(), Quirks::default());
         scene.sync(self.state())?;
         Ok(scene)

@@ -1,4 +1,4 @@
-//! The senses of an environment and what they observe.
+//! The senses of an environment and their observations.
 
 use std::sync::Arc;
 
@@ -20,10 +20,10 @@ use crate::sensors::{
 };
 use crate::spaces::{NumpyRng, Values};
 
-/// The images of eyes of which nothing is known.
+/// The images of eyes without any picture yet.
 static NO_IMAGES: [EyeImages; 2] = [EyeImages::NONE, EyeImages::NONE];
 
-/// The senses of an environment that the configuration turns on, with what they observed last: [`Env::senses`](crate::Env::senses).
+/// The active senses of an environment, with their last observations: [`Env::senses`](crate::Env::senses).
 #[derive(Clone)]
 pub struct Senses {
     pub(super) proprioception: Arc<Proprioception>,
@@ -32,25 +32,25 @@ pub struct Senses {
     pub(super) vestibular: Option<Arc<Vestibular>>,
     pub(super) pool: Option<TouchPool>,
     pub(super) pain: Option<Pain>,
-    /// The numbers that a sense reports, by sense; `None` for those that are off, and for skins and eyes.
+    /// The numbers of each sense; `None` for senses that are off, and for skins and eyes.
     numbers: [Option<Vec<f64>>; Sense::ALL.len()],
     pub(super) eyes: [EyeImages; 2],
     pub(super) pipeline: Pipeline,
-    /// When the eyes look and when the skin feels, if not in every step.
+    /// The clocks of the eyes and of the skin, if they do not sample in every step.
     pub(super) clocks: [Option<Clock>; 2],
-    /// Touch and pain after their transforms, where they have any.
+    /// Touch and pain after their transforms, if they have any.
     touch_values: SkinValues,
     pain_values: SkinValues,
-    /// Whether [`super::draw_eyes`] draws what the eyes see, instead of each step.
+    /// Whether [`super::draw_eyes`] draws the eyes instead of each step.
     pub(super) vision_deferred: bool,
-    /// Whether pictures wait for somebody who asks for them.
+    /// Whether pictures are drawn on request.
     pub(super) vision_lazy: bool,
     pub(super) picture: Picture,
-    /// How often the eyes were drawn.
+    /// Number of times the eyes were drawn.
     pub(super) drawn: u64,
-    /// How often there was an observation.
+    /// Number of observations.
     pub(super) moment: u64,
-    /// Whether touch, pain and images belong to the same moment as the rest: a restored snapshot does not hold them.
+    /// Whether touch, pain and images belong to the same moment as the rest. A restored snapshot does not hold them.
     pub(super) known: bool,
 }
 
@@ -134,7 +134,7 @@ impl Senses {
         }
     }
 
-    /// Returns what a sense reports in numbers; nothing, if it is off or reports something else.
+    /// Returns the numbers of a sense; `None` if it is off or reports something else.
     pub(super) fn numbers(&self, sense: Sense) -> &[f64] {
         self.numbers[sense as usize].as_deref().unwrap_or_default()
     }
@@ -157,7 +157,7 @@ impl Senses {
         self.make_room();
     }
 
-    /// Takes over what the skin of other senses of the same body felt.
+    /// Takes over the last touch from other senses of the same body.
     pub(super) fn take_felt(&mut self, other: &mut Self) {
         std::mem::swap(&mut self.touch, &mut other.touch);
         std::mem::swap(&mut self.pain, &mut other.pain);
@@ -167,7 +167,7 @@ impl Senses {
         std::mem::swap(&mut self.numbers[pooled], &mut other.numbers[pooled]);
     }
 
-    /// Makes room for touch and pain apart from what the skin feels, where they have transforms.
+    /// Reserves buffers for touch and pain after their transforms, if they have any.
     fn make_room(&mut self) {
         let like = |felt: Option<&SkinValues>, changed| match felt {
             Some(felt) if changed => {
@@ -197,7 +197,7 @@ impl Senses {
         }
     }
 
-    /// Transforms what a sense reports.
+    /// Transforms the values of a sense.
     pub(super) fn transform(&mut self, sense: Sense, rng: &mut NumpyRng) {
         if self.pipeline.changes(sense) {
             let mut pipeline = std::mem::take(&mut self.pipeline);
@@ -207,7 +207,7 @@ impl Senses {
         }
     }
 
-    /// Returns the clock of a sense that does not look in every step.
+    /// Returns the clock of a sense that does not sample in every step.
     fn clock(&self, sense: Sense) -> Option<&Clock> {
         match sense {
             Sense::EyeLeft | Sense::EyeRight => self.clocks[0].as_ref(),
@@ -216,27 +216,27 @@ impl Senses {
         }
     }
 
-    /// Returns whether a sense looks in the present step.
+    /// Returns whether a sense samples in the current step.
     fn looks(&self, sense: Sense) -> bool {
         self.clock(sense).is_none_or(Clock::is_due)
     }
 
-    /// Returns whether the eyes look in the present step.
+    /// Returns whether the eyes sample in the current step.
     pub(super) fn eyes_look(&self) -> bool {
         self.looks(Sense::EyeLeft)
     }
 
-    /// Returns how many steps ago the pictures were drawn that the eyes show, before delays, if they have a rate of their own.
+    /// Returns the age of the pictures of the eyes, in steps and without delays, if they have a rate of their own.
     pub(super) fn vision_age(&self) -> Option<u64> {
         self.clock(Sense::EyeLeft).map(Clock::age)
     }
 
-    /// Goes on by a step.
+    /// Advances by a step.
     pub(super) fn advance(&mut self) {
         self.clocks.iter_mut().flatten().for_each(Clock::advance);
     }
 
-    /// Forgets the last episode. The phase, from 0 to 1, decides in which steps senses look that do not look in every step.
+    /// Clears the memory of the last episode. The phase, from 0 to 1, decides in which steps senses with rates of their own sample.
     pub(super) fn reset(&mut self, phase: f64) {
         for clock in self.clocks.iter_mut().flatten() {
             clock.reset(phase);
@@ -276,7 +276,7 @@ impl Senses {
         Ok(())
     }
 
-    /// Observes touch and what follows from it, if the skin feels now, and transforms it.
+    /// Observes touch and its derived senses, if the skin samples now, and transforms them.
     fn observe_skin(&mut self, model: &Model, state: &State, rng: &mut NumpyRng) {
         if self.looks(Sense::Touch) {
             self.feel(model, state);
@@ -286,7 +286,7 @@ impl Senses {
         }
     }
 
-    /// Lets the skin feel.
+    /// Samples the skin.
     fn feel(&mut self, model: &Model, state: &State) {
         let Some(touch) = &mut self.touch else { return };
         touch.observe(model, state);
@@ -304,7 +304,7 @@ impl Senses {
         }
     }
 
-    /// Wakes the thread that draws the second eye, as both will be drawn in a moment.
+    /// Wakes the thread that draws the second eye, because both are drawn next.
     pub(super) fn prepare(&self) {
         let look = !self.is_lazy() && self.clocks[0].as_ref().is_none_or(Clock::will_be_due);
         if let (Some(vision), true) = (&self.vision, look) {
@@ -312,7 +312,7 @@ impl Senses {
         }
     }
 
-    /// Returns touch as it was observed last, if it is.
+    /// Returns touch as last observed, if it is active.
     pub(super) fn touch_values(&self) -> Option<&SkinValues> {
         if self.pipeline.changes(Sense::Touch) {
             Some(&self.touch_values)
@@ -321,7 +321,7 @@ impl Senses {
         }
     }
 
-    /// Returns pain as it was observed last, if it is.
+    /// Returns pain as last observed, if it is active.
     pub(super) fn pain_values(&self) -> Option<&SkinValues> {
         if self.pipeline.changes(Sense::Pain) {
             Some(&self.pain_values)
@@ -330,12 +330,12 @@ impl Senses {
         }
     }
 
-    /// Returns what was observed last, without images that have not been drawn.
+    /// Returns the last observation, without images that have not been drawn.
     pub(super) fn observation(&self) -> Observation<'_> {
         self.observation_with(self.picture == Picture::Drawn)
     }
 
-    /// Returns what was observed last, with images of whatever moment or without.
+    /// Returns the last observation, with images of any moment or without images.
     pub(super) fn observation_with(&self, images: bool) -> Observation<'_> {
         let eyes = if self.known && images { &self.eyes } else { &NO_IMAGES };
         Observation::from_fn(|entry| match (entry.sense?, entry.image) {
@@ -363,7 +363,7 @@ impl Senses {
     }
 }
 
-/// Returns the room for the numbers of a sense, which is empty if it has none.
+/// Returns the buffer for the numbers of a sense, which is empty if it has none.
 fn numbers_of(numbers: &mut [Option<Vec<f64>>], sense: Sense) -> &mut [f64] {
     numbers[sense as usize].as_deref_mut().unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! The senses of an environment as a program may read and change them.
+//! Access to the senses of an environment.
 
 use std::ops::Deref;
 
@@ -10,19 +10,18 @@ use crate::sensors::transform::{Sense, Transform};
 use crate::sensors::{Pain, Proprioception, SkinValues, Touch, TouchPool, Vestibular, Vision};
 
 impl Senses {
-    /// Returns the proprioceptive sense: names and ranges of its values.
+    /// Returns proprioception: names and ranges of its values.
     pub fn proprioception(&self) -> &Proprioception {
         &self.proprioception
     }
 
-    /// Returns the sense of touch, if it is active: sensor positions, active sensors, contacts and sums of forces, as last felt and
+    /// Returns the sense of touch, if it is active: sensor positions, active sensors, contacts and sums of forces, as last sampled and
     /// before all transforms.
     pub fn touch(&self) -> Option<&Touch> {
         self.touch.as_ref()
     }
 
-    /// Returns touch as it is observed, with the list of sensors that are not zero, if it is active and known: see
-    /// [`Env::restore`](crate::Env::restore).
+    /// Returns touch as observed, with the list of nonzero sensors, if it is active and known: see [`Env::restore`](crate::Env::restore).
     pub fn touch_observed(&self) -> Option<&SkinValues> {
         self.touch_values().filter(|_| self.known)
     }
@@ -37,7 +36,7 @@ impl Senses {
         self.pain.as_ref()
     }
 
-    /// Returns pain as it is observed, if it is active and known: see [`Env::restore`](crate::Env::restore).
+    /// Returns pain as observed, if it is active and known: see [`Env::restore`](crate::Env::restore).
     pub fn pain_observed(&self) -> Option<&SkinValues> {
         self.pain_values().filter(|_| self.known)
     }
@@ -47,47 +46,47 @@ impl Senses {
         self.vestibular.as_deref()
     }
 
-    /// Returns the sense of vision, if it is active. [`Vision::requests`] tells what the eyes see of a state, to be drawn by any
-    /// renderer.
+    /// Returns the sense of vision, if it is active. [`Vision::requests`] describes the eyes' view of a state, for any renderer.
     pub fn vision(&self) -> Option<&Vision> {
         self.vision.as_ref()
     }
 
-    /// Returns by how many threads the eyes are drawn: 1 or 2.
+    /// Returns the number of threads that draw the eyes: 1 or 2.
     pub fn vision_threads(&self) -> usize {
         self.vision.as_ref().map_or(1, |vision| vision.renderer().threads())
     }
 
-    /// Returns how often the eyes were drawn for observations, both at once: with [`Config::vision_lazy`](crate::Config::vision_lazy), only for
-    /// those who asked.
+    /// Returns how often the eyes were drawn for observations, both together. With [`Config::vision_lazy`](crate::Config::vision_lazy) it
+    /// counts only requests.
     pub fn pictures_drawn(&self) -> u64 {
         self.drawn
     }
 
-    /// Returns whether the eyes are drawn when somebody asks for it ([`Env::look`](crate::Env::look)): the configuration says
-    /// [`vision_lazy`](crate::Config::vision_lazy), and no later picture depends on each, by noise, a delay, a rate or a transform that a program added.
+    /// Returns whether the eyes are drawn on request ([`Env::look`](crate::Env::look)): the configuration sets
+    /// [`vision_lazy`](crate::Config::vision_lazy), and no later picture depends on each, through noise, a delay, a rate or a transform
+    /// that a program added.
     pub fn vision_is_lazy(&self) -> bool {
         self.is_lazy()
     }
 
-    /// Returns how often there was an observation: two are of one moment where it is the same.
+    /// Returns the number of observations. Two calls with the same result are of the same moment.
     pub fn moment(&self) -> u64 {
         self.moment
     }
 
-    /// Returns whether [`draw_eyes`](crate::env::draw_eyes) draws the eyes' images, not each step.
+    /// Returns whether [`draw_eyes`](crate::env::draw_eyes) draws the eyes' images instead of each step.
     pub fn vision_is_deferred(&self) -> bool {
         self.vision_deferred
     }
 
-    /// Iterates over the senses that are observed, each with its transforms in their order.
+    /// Iterates over the observed senses, each with its transforms in order.
     pub fn transforms(&self) -> impl Iterator<Item = (Sense, impl Iterator<Item = &dyn Transform>)> {
         let on = Sense::ALL.into_iter().filter(|&sense| self.is_on(sense));
         on.map(|sense| (sense, self.pipeline.of(sense)))
     }
 }
 
-/// The senses of an environment, to be changed, and what they could sense now: [`Env::senses_mut`](crate::Env::senses_mut).
+/// Mutable access to the senses of an environment and to their current view: [`Env::senses_mut`](crate::Env::senses_mut).
 #[derive(Debug)]
 pub struct SensesMut<'a> {
     pub(super) senses: &'a mut Senses,
@@ -110,17 +109,17 @@ impl<'a> SensesMut<'a> {
         Ok((vision, self.physics.state()))
     }
 
-    /// Draws what both eyes see in grey: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.
+    /// Draws gray images of both eyes: left and right, (H, W) bytes from the top, by the weights 0.2989, 0.5870, 0.1140.
     ///
     /// # Errors
-    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    /// [`EnvError::NoVision`]; buffers that do not have H W values.
     pub fn eye_gray(&mut self, eyes: [&mut [u8]; 2]) -> Result<(), EnvError> {
         let (vision, state) = self.sight()?;
         Ok(vision.gray(state, eyes)?)
     }
 
-    /// Draws how far away is what both eyes see: left and right, (H, W) distances from the camera's plane from the top, m;
-    /// infinite where nothing is.
+    /// Draws depth images of both eyes: left and right, (H, W) distances from the camera's plane from the top, m; infinite for the
+    /// background.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -136,24 +135,23 @@ impl<'a> SensesMut<'a> {
     /// ```
     ///
     /// # Errors
-    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    /// [`EnvError::NoVision`]; buffers that do not have H W values.
     pub fn eye_depth(&mut self, eyes: [&mut [f32]; 2]) -> Result<(), EnvError> {
         let (vision, state) = self.sight()?;
         Ok(vision.depth(state, eyes)?)
     }
 
-    /// Draws which geoms both eyes see: left and right, (H, W) ids from the top; -1 where none is.
+    /// Draws segmentation images of both eyes: left and right, (H, W) geom ids from the top; -1 for the background.
     ///
     /// # Errors
-    /// [`EnvError::NoVision`]; pictures that do not have H W values.
+    /// [`EnvError::NoVision`]; buffers that do not have H W values.
     pub fn eye_segmentation(&mut self, eyes: [&mut [i32]; 2]) -> Result<(), EnvError> {
         let (vision, state) = self.sight()?;
         Ok(vision.segmentation(state, eyes)?)
     }
 
-    /// Draws several images of what both eyes see, left and right, those for which there are buffers. On the CPU all images
-    /// of an eye come from one pass, each with the bytes that it has alone. They are what is before the eyes, without the
-    /// transforms of the observation.
+    /// Draws several kinds of images of both eyes, left and right: those with a buffer. On the CPU all images of an eye come from one
+    /// pass, each with the bits that it has alone. They are without the transforms of the observation.
     ///
     /// ```
     /// use babybench::render::ImageBuffers;
@@ -179,25 +177,25 @@ impl<'a> SensesMut<'a> {
         Ok(vision.draw(state, eyes)?)
     }
 
-    /// Sets by how many threads the eyes are drawn: with 2, a thread of its own draws the right eye, to the same bytes. It
-    /// takes the place of [`Config::vision_threads`](crate::Config::vision_threads); see
-    /// [`Renderer::set_threads`](crate::render::Renderer::set_threads). Without eyes nothing happens.
+    /// Sets the number of threads that draw the eyes. With 2, another thread draws the right eye, with the same bytes. This overrides
+    /// [`Config::vision_threads`](crate::Config::vision_threads); see [`Renderer::set_threads`](crate::render::Renderer::set_threads).
+    /// Without eyes it has no effect.
     pub fn set_vision_threads(&mut self, threads: usize) {
         if let Some(vision) = &mut self.senses.vision {
             vision.set_threads(threads);
         }
     }
 
-    /// Sets whether resets and steps leave the eyes' images as they are, for [`draw_eyes`](crate::env::draw_eyes) to draw, once for each.
+    /// Sets whether resets and steps leave the eyes' images to [`draw_eyes`](crate::env::draw_eyes), which draws them once for each.
     pub fn defer_vision(&mut self, deferred: bool) {
         self.senses.vision_deferred = deferred;
     }
 
-    /// Adds a transform of a sense, behind those that there are. Those of the configuration are, in this order: acuity and
-    /// foveation of the eyes, noise, delay.
+    /// Adds a transform of a sense after the existing ones. Those of the configuration are, in this order: acuity and foveation of the
+    /// eyes, noise, delay.
     ///
-    /// Random numbers are drawn in each reset and step after the observation is computed, sense by sense in the order of
-    /// [`Sense::ALL`] and transform by transform, from the generator that draws actions, too.
+    /// Random numbers are drawn in each reset and step after the observation is computed, sense by sense in the order of [`Sense::ALL`]
+    /// and transform by transform, from the generator that also draws actions.
     ///
     /// # Errors
     /// [`EnvError::SenseOff`].
@@ -209,7 +207,7 @@ impl<'a> SensesMut<'a> {
         Ok(())
     }
 
-    /// Returns the sense of pain, if it is active, to change how soft and how sensitive bodies are.
+    /// Returns the sense of pain, if it is active, to change the softness and sensitivity of bodies.
     pub fn pain_mut(self) -> Option<&'a mut Pain> {
         self.senses.pain.as_mut()
     }

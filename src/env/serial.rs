@@ -43,15 +43,15 @@ impl Info {
 }
 
 impl Serialize for BehaviorInfo {
-    /// Serializes the keys of the reference without `steps`; nothing but an empty map for behavior `none`.
+    /// Serializes the keys of the reference without `steps`; an empty map for the behavior `none`.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.fields())
     }
 }
 
 impl Serialize for InfoDetails {
-    /// Serializes `right_hand_parts` and `left_hand_parts` (names) or `gaze_angles` (rad, by pair of eye and hand)
-    /// with `page_regards` and `kit_regards` (steps, by the same), whichever there are. A hand at the very place of an eye has no angle, which is `null` in JSON.
+    /// Serializes `right_hand_parts` and `left_hand_parts` (names), or `gaze_angles` (rad, by pair of eye and hand) with `page_regards`
+    /// and `kit_regards` (steps, by the same pairs), whichever exist. A hand exactly at an eye has no angle, which is `null` in JSON.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.fields())
     }
@@ -105,7 +105,7 @@ impl Serialize for Detailed<'_> {
     }
 }
 
-/// A value as a file may hold it.
+/// A value of a file.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Found {
@@ -124,7 +124,7 @@ struct Keys<E> {
 }
 
 impl<E: serde::de::Error> Keys<E> {
-    /// Takes a value out.
+    /// Removes and returns a value.
     fn take<T>(&mut self, key: &str, expected: &str, read: impl FnOnce(Found) -> Option<T>) -> Result<T, E> {
         let found = self.values.remove(key);
         let found =
@@ -181,7 +181,7 @@ impl<'de> Deserialize<'de> for Info {
     /// Deserializes the keys of the reference. Other keys, such as those of the details, are ignored.
     ///
     /// # Errors
-    /// No `steps`, or some but not all keys of a behavior.
+    /// A missing `steps`, or some but not all keys of a behavior.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let values = BTreeMap::<String, Option<Found>>::deserialize(deserializer)?;
         let mut keys = Keys {

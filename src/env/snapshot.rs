@@ -17,17 +17,17 @@ use crate::sensors::transform::Sense;
 use crate::spaces::NumpyRng;
 use format::{CUT, HEADER, MAGIC, Reader, VERSION, checksum, damaged};
 
-/// Number of vectors for which a snapshot makes room.
+/// Number of vectors that a snapshot reserves.
 const VECTORS: usize = 40;
-/// Whole numbers that stand for the values of the information.
+/// Whole numbers that encode the values of the information.
 const COUNTS: usize = 4;
 /// Whole numbers at the front of the payload.
 const WHOLE: usize = 6 + COUNTS;
-/// The largest counter: no run gets there, and counting on from it does not overflow.
+/// The largest counter: no run reaches it, and counting from it cannot overflow.
 const MAX_COUNT: u64 = 1 << 62;
 
 impl Env {
-    /// Returns what the task remembers.
+    /// Returns the task's memory.
     fn task_memory(&self) -> Vec<f64> {
         let mut memory = Vec::new();
         self.task.save(&mut memory);
@@ -84,7 +84,7 @@ impl Env {
         out
     }
 
-    /// Takes a snapshot of the present moment, to come back to with [`Env::restore`].
+    /// Takes a snapshot of the current moment, which [`Env::restore`] returns to.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -112,7 +112,7 @@ impl Env {
                 InfoValue::Geoms(geoms) => Some((geoms.len() as u64, geoms)),
                 InfoValue::Count(count) => Some((count, &[][..])),
                 InfoValue::Number(number) => Some((number.to_bits(), &[][..])),
-                // the task and its goals tell the rest
+                // the task and its goals determine the rest
                 _ => None,
             });
         for (k, (count, geoms)) in counted.take(COUNTS).enumerate() {
@@ -154,13 +154,13 @@ impl Env {
         Snapshot { bytes }
     }
 
-    /// Goes back to a snapshot of this environment, or of another of the same configuration and scene.
+    /// Restores a snapshot of this environment, or of another with the same configuration and scene.
     ///
-    /// Touch, pain, images, poses and contacts are not in a snapshot: the next step or [`Env::refresh`] computes them. Until then,
-    /// [`Env::observation`] is without touch, pain and images; its other parts are the original's.
+    /// Touch, pain, images, poses and contacts are not in a snapshot. The next step or [`Env::refresh`] computes them. Until then
+    /// [`Env::observation`] has no touch, pain and images; its other parts are the original's.
     ///
     /// # Errors
-    /// A snapshot of another environment, or a damaged one; nothing is changed then.
+    /// A snapshot of another environment, or a damaged one, which change nothing.
     #[doc(alias = "mj_setState")]
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
         let (content, keys) = snapshot.content()?;
@@ -172,7 +172,7 @@ impl Env {
             .map_err(|e| self.blueprint.identity().refuse(keys, e))
     }
 
-    /// Takes over what follows the header of a snapshot, but for its keys.
+    /// Restores what follows the header of a snapshot, except its keys.
     fn restore_content(&mut self, content: &[u8]) -> Result<(), SnapshotError> {
         let mut r = Reader(content);
         let mut whole = [0; WHOLE];
@@ -180,8 +180,7 @@ impl Env {
             *v = r.u64().ok_or(CUT)?;
         }
         let [step, steps, info_steps, ready, seed, drawn, counts @ ..] = whole;
-        // room to count on
-        // what tasks have in the place of counters is a number
+        // headroom for counting; what tasks have in place of counters is a number
         let counts_checked = if self.info.behavior.task().is_some() {
             &[][..]
         } else {
@@ -196,7 +195,7 @@ impl Env {
             return Err(damaged("a counter is out of range"));
         }
         if self.physics.check_shape().is_err() {
-            // a program has cleared a vector, which leaves no room for its numbers
+            // a vector that a program has cleared cannot take its numbers
             let state = self.physics.reader().new_state();
             *self.physics.state_mut() = state;
             self.actuation.prepare(self.blueprint.model(), self.physics.state_mut());
@@ -228,8 +227,8 @@ impl Env {
         Ok(())
     }
 
-    /// Checks everything that follows the whole numbers but for the memory of senses, and reads the information of the
-    /// behavior. Returns the memory, too.
+    /// Checks everything after the whole numbers except the memory of senses, and reads the information of the behavior. Also returns the
+    /// memory.
     fn parse<'b>(&self, r: &Reader<'b>, counts: [u64; COUNTS]) -> Result<(BehaviorInfo, &'b [u8]), SnapshotError> {
         let mut r = Reader(r.0);
         let numbers: usize = self.numbers(&self.task_memory()).iter().map(|n| n.len()).sum();
@@ -252,7 +251,7 @@ impl Env {
     }
 }
 
-/// The information in a snapshot, of the behavior that an environment has now.
+/// The information in a snapshot, for the current behavior of an environment.
 struct Counted<'n, 'b> {
     now: &'n BehaviorInfo,
     counts: std::array::IntoIter<u64, COUNTS>,
@@ -262,7 +261,7 @@ struct Counted<'n, 'b> {
 }
 
 impl Counted<'_, '_> {
-    /// Returns what the environment has under a key now.
+    /// Returns the environment's current value of a key.
     fn now(&self, key: &str) -> Option<InfoValue<'_>> {
         self.now.fields().find(|field| field.0 == key).map(|field| field.1)
     }
@@ -284,7 +283,7 @@ impl InfoSource for Counted<'_, '_> {
         if n > ngeom as u64 {
             return Err(damaged("more parts are touched than there are"));
         }
-        // room for all parts, as after a reset, so that later steps need not allocate
+        // space for all parts, as after a reset, so that later steps need not allocate
         let mut geoms = Vec::with_capacity(ngeom);
         for _ in 0..n {
             let geom = self.lists.u32().ok_or(CUT)? as usize;
@@ -313,7 +312,7 @@ impl InfoSource for Counted<'_, '_> {
         }
     }
 
-    /// Returns what is measured now: the memory of the task has the snapshot's, and tells it when it is restored.
+    /// Returns the current measures. The memory of the task has the snapshot's, which it reports when it is restored.
     fn measure(&mut self, key: &'static str) -> Result<f64, SnapshotError> {
         match self.now(key) {
             Some(InfoValue::Number(number)) => Ok(number),

@@ -35,23 +35,23 @@ impl EnvStage {
     }
 }
 
-/// A function that is called when a stage begins, and with `None` when a step is done; for timing, as the library has no
+/// A function that is called when a stage starts, and with `None` when a step is done. It is for timing, because the library has no
 /// clock.
 pub type EnvProbe = Arc<dyn Fn(Option<EnvStage>) + Send + Sync>;
 
 impl Env {
-    /// Installs or removes a probe that is told when each stage of a step begins and when the step is done.
+    /// Installs or removes a probe that is called when each stage of a step starts and when the step is done.
     pub fn set_probe(&mut self, probe: Option<EnvProbe>) {
         self.physics.own_engine().set_probe(probe.clone().map(|probe| -> Probe {
             Box::new(move |stage| {
-                // between the physics steps the actuation is at work
+                // between the physics steps the actuation works
                 probe(Some(stage.map_or(EnvStage::Actuation, EnvStage::Physics)));
             })
         }));
         self.probe = probe;
     }
 
-    /// Tells the probe, if there is one, that a stage begins, or with `None` that the step is done.
+    /// Calls the probe, if there is one, when a stage starts, or with `None` when the step is done.
     #[inline]
     pub(super) fn mark(&self, stage: Option<EnvStage>) {
         if let Some(probe) = &self.probe {

@@ -13,13 +13,13 @@ use crate::spaces::NumpyRng;
 pub enum ViewFrom<'a> {
     /// A camera of the scene, by name: `corner`, `top`, `side1`, `side2`, `closeup`, `eye_left` or `eye_right`.
     Camera(&'a str),
-    /// A camera anywhere.
+    /// A camera at any pose.
     Free(FreeCamera),
 }
 
 impl<'a> ViewFrom<'a> {
-    /// Returns a camera of the scene, or, if the scene has none of that name, one that looks at MIMo from where it would stand: those
-    /// of tasks have eyes only.
+    /// Returns a camera of the scene, or, if the scene has none of that name, a free camera that looks at MIMo from that camera's place
+    /// in the room. Scenes of tasks only have eyes.
     pub fn room(env: &Env, name: &'a str) -> Self {
         match room_camera(env.model(), &env.state().xpos, name) {
             Some(camera) => Self::Free(camera),
@@ -28,7 +28,7 @@ impl<'a> ViewFrom<'a> {
     }
 }
 
-/// Returns where a camera of the room would stand, if the scene has none of that name.
+/// Returns the place of a camera of the room, for scenes that lack it.
 pub(crate) fn room_camera(model: &Model, xpos: &[Vec3], name: &str) -> Option<FreeCamera> {
     let (distance, azimuth, elevation) = match name {
         "corner" => (1.8, 135.0, -25.0),
@@ -61,7 +61,7 @@ impl From<FreeCamera> for ViewFrom<'_> {
     }
 }
 
-/// A renderer of environments of one blueprint from the cameras of their scene, for people to look at.
+/// A renderer that draws environments of one blueprint from the cameras of their scene, for display.
 ///
 /// ```
 /// use babybench::env::Viewer;
@@ -78,7 +78,7 @@ pub struct Viewer {
     renderer: Renderer,
     rgb: Vec<u8>,
     rgba: Vec<u8>,
-    /// The transforms of the eyes' images, from when they were first looked through.
+    /// The transforms of the eyes' images, made on first use.
     optics: Option<[Vec<Box<dyn Transform>>; 2]>,
 }
 
@@ -104,8 +104,8 @@ impl Viewer {
         })
     }
 
-    /// Draws the room from the camera `corner`, or from where [`ViewFrom::room`] says, `render_size` by `render_size` pixels: Gymnasium's
-    /// `render`.
+    /// Draws the room from the camera `corner`, or from the place that [`ViewFrom::room`] gives, `render_size` by `render_size` pixels:
+    /// Gymnasium's `render`.
     ///
     /// # Errors
     /// As [`Viewer::draw`].
@@ -118,7 +118,7 @@ impl Viewer {
     /// each pixel, rows from the top. Like the eyes, the picture shows the start of the last physics step.
     ///
     /// # Errors
-    /// A camera that does not exist or is nowhere, a size that is not allowed, a GPU that fails.
+    /// A camera that does not exist or has no valid pose, a size that is not allowed, a GPU that fails.
     pub fn draw<'c>(
         &mut self,
         env: &Env,
@@ -164,9 +164,9 @@ impl Viewer {
         Ok(&self.rgba)
     }
 
-    /// Draws what both eyes see at this moment, with the acuity and the foveation of the configuration; noise and delay belong
-    /// to the observation, which stays as it is. Returns the left and then the right picture, of the sizes of the
-    /// observation: red, green, blue and 255 of each pixel.
+    /// Draws the current view of both eyes, with the acuity and the foveation of the configuration. Noise and delay belong to the
+    /// observation, which does not change. Returns the left and then the right picture, of the sizes of the observation: red, green, blue
+    /// and 255 of each pixel.
     ///
     /// ```
     /// use babybench::env::Viewer;
@@ -205,7 +205,7 @@ impl Viewer {
                     height,
                     width,
                 };
-                transform.apply(signal, &mut NumpyRng::seed(0)); // which neither acuity nor foveation uses
+                transform.apply(signal, &mut NumpyRng::seed(0)); // neither acuity nor foveation uses it
             }
             self.rgb = images.rgb;
             let pixels = self.rgb.as_chunks::<3>().0;

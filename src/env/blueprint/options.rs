@@ -27,10 +27,10 @@ use crate::mimo::embedded;
 /// ```
 #[derive(Clone)]
 pub struct BlueprintOptions {
-    /// The task; `None` for that of the key `behavior`, which is not used otherwise.
+    /// The task; `None` for that of the key `behavior`, which is otherwise ignored.
     pub task: Option<Box<dyn Task>>,
-    /// Where documents and textures come from, laid out like the embedded ones, which are the default. A custom scene
-    /// ([`Scene::File`](crate::config::Scene::File)) is looked for here first; this may then hold its files alone.
+    /// The source of documents and textures, laid out like the embedded ones, which are the default. A custom scene
+    /// ([`Scene::File`](crate::config::Scene::File)) is searched for here first; the source may then have only the scene's own files.
     pub assets: Arc<dyn AssetSource>,
 }
 
@@ -51,7 +51,7 @@ impl BlueprintOptions {
         self
     }
 
-    /// Sets where documents and textures come from.
+    /// Sets the source of documents and textures.
     #[must_use]
     pub fn with_assets(mut self, assets: impl AssetSource + 'static) -> Self {
         self.assets = Arc::new(assets);

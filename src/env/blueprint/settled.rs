@@ -1,4 +1,4 @@
-//! A scene compiled for its task, with its skin, and come to rest.
+//! Scenes compiled for their task, with their skin, and settled.
 
 use crate::actuation::Actuation;
 use crate::assets::AssetSource;
@@ -42,7 +42,7 @@ pub fn make_skin(
     Ok(layout(&original_model)?.scaled(&original_model, model))
 }
 
-/// A scene after it came to rest.
+/// A scene at rest.
 pub struct Settled {
     pub qpos: Vec<f64>,
     pub qvel: Vec<f64>,
@@ -50,8 +50,7 @@ pub struct Settled {
 }
 
 impl Settled {
-    /// Lets a task settle the scene, with the locks of the configuration; under `compat: reference` they hold from the first
-    /// reset on.
+    /// Lets a task settle the scene, with the locks of the configuration. Under `compat: reference` locks apply from the first reset on.
     pub fn new(
         config: &Config,
         task: &dyn Task,
@@ -62,7 +61,7 @@ impl Settled {
     ) -> Result<Self, EnvError> {
         let mut state = engines.reader().new_state();
         if let Some(paths) = paths {
-            // where they begin, and stay while the rest comes to rest
+            // where they start, and stay while everything else settles
             paths.place(&mut state);
         }
         actuation.prepare(model, &mut state);

@@ -1,4 +1,4 @@
-//! The bodies of a scene as they are felt and seen, which its environments share.
+//! The skin and the look of a scene's bodies, which its environments share.
 
 use std::sync::{Arc, OnceLock};
 
@@ -9,7 +9,7 @@ use crate::env::EnvError;
 use crate::render::{Renderer, Scenery, SharedGpu, SharedMemory, open_gpu};
 use crate::sensors::SkinLayout;
 
-/// The skin and the look of a scene's bodies, whatever moves them.
+/// The skin and the look of a scene's bodies.
 #[derive(Clone)]
 pub(super) struct Surface {
     /// The caller's assets.
@@ -19,7 +19,7 @@ pub(super) struct Surface {
     pub(super) skin: Option<Arc<SkinLayout>>,
     /// Meshes and textures, made when they are first needed.
     pub(super) scenery: Arc<OnceLock<Arc<Scenery>>>,
-    /// The memory in which the eyes of environments are drawn on the CPU.
+    /// The buffers in which the eyes of environments are drawn on the CPU.
     pub(super) painting: SharedMemory,
     /// The renderer on a GPU, opened when it is first needed.
     pub(super) gpu: Arc<OnceLock<SharedGpu>>,
@@ -50,7 +50,7 @@ impl Blueprint {
     /// Creates the renderer that the configuration asks for. On a GPU, environments of a blueprint share one.
     ///
     /// # Errors
-    /// Textures that cannot be read; for `renderer: wgpu` no graphics adapter, a build without it, a browser.
+    /// Textures that cannot be read; for `renderer: wgpu` a missing graphics adapter, a build without it, or a browser.
     pub fn renderer(&self) -> Result<Renderer, EnvError> {
         match self.config.renderer {
             RendererKind::Cpu => Ok(Renderer::cpu(self.scenery()?)),
@@ -58,7 +58,7 @@ impl Blueprint {
         }
     }
 
-    /// Creates the renderer of an environment's eyes, which draw in memory that the environments of the blueprint share.
+    /// Creates the renderer of an environment's eyes. The environments of the blueprint share its buffers.
     pub(in crate::env) fn eyes_renderer(&self) -> Result<Renderer, EnvError> {
         match self.config.renderer {
             RendererKind::Cpu => Ok(Renderer::sharing(self.scenery()?, self.surface.painting.clone())),
@@ -66,11 +66,11 @@ impl Blueprint {
         }
     }
 
-    /// Returns the renderer on a GPU that environments of this blueprint share, opened when it is first asked for. It is there
-    /// whatever renderer the configuration asks for.
+    /// Returns the GPU renderer that environments of this blueprint share, whatever renderer the configuration asks for. It is opened on
+    /// first use.
     ///
     /// # Errors
-    /// Textures that cannot be read, no graphics adapter, a build without `wgpu`, a browser.
+    /// Textures that cannot be read, a missing graphics adapter, a build without `wgpu`, or a browser.
     pub fn gpu(&self) -> Result<SharedGpu, EnvError> {
         if let Some(gpu) = self.surface.gpu.get() {
             return Ok(gpu.clone());

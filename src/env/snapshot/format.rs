@@ -9,18 +9,18 @@ pub(super) const VERSION: u32 = 1;
 /// Magic, version, a zero, fingerprint, checksum.
 pub(super) const HEADER: usize = 32;
 
-/// An environment at one moment: [`Env::snapshot`](crate::Env::snapshot) takes it, [`Env::restore`](crate::Env::restore) goes back to it.
+/// An environment at one moment: [`Env::snapshot`](crate::Env::snapshot) takes it, and [`Env::restore`](crate::Env::restore) returns to
+/// it.
 ///
-/// It holds positions, velocities, controls, activations, applied forces, the start of the solver, all parameters with the
-/// locks, the random generator, the goals and the memory of the task, the information and counters of the episode, the vectors
-/// of the senses that report plain numbers, such as `observation` and `vestibular`, and what delays, pain and other transforms remember. A continuation from it has the
-/// same bits as the original, in the same environment or
-/// in another of the same configuration and scene.
+/// It holds positions, velocities, controls, activations, applied forces, the start of the solver, all parameters with the locks, the
+/// random generator, the goals and the memory of the task, the information and counters of the episode, the vectors of the senses that
+/// report plain numbers, such as `observation` and `vestibular`, and the memory of delays, pain and other transforms. A continuation has
+/// the same bits as the original, in the same environment or in another with the same configuration and scene.
 ///
-/// The bytes are little-endian and the same on all machines: the magic `BBSNAP\r\n`, the version of the layout (`u32`), a
-/// zero (`u32`), a fingerprint of configuration and scene (`u64`), a checksum of what follows (`u64`), whole numbers
-/// (`u64`), numbers (`f64`), flags (a byte each), touched geoms (`u32`), what is remembered, each part behind its length (`u64`), and
-/// the keys of the configuration that are not as they are by default, a line each, before their length (`u32`).
+/// The bytes are little-endian and the same on all machines: the magic `BBSNAP\r\n`, the version of the layout (`u32`), a zero (`u32`), a
+/// fingerprint of configuration and scene (`u64`), a checksum of the rest (`u64`), whole numbers (`u64`), numbers (`f64`), flags (a byte
+/// each), touched geoms (`u32`), memory, each part after its length (`u64`), and the keys of the configuration that differ from their
+/// defaults, a line each, before their length (`u32`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Snapshot {
     pub(super) bytes: Vec<u8>,
@@ -38,7 +38,7 @@ pub struct SnapshotInfo {
     pub physics_steps: u64,
     /// Steps of the environment in its episode.
     pub steps: u64,
-    /// Whether the episode can go on; otherwise the next step needs a reset.
+    /// Whether the episode can continue; otherwise the next step needs a reset.
     pub ready: bool,
     /// Seed of the random generator.
     pub seed: u64,
@@ -52,7 +52,7 @@ pub struct SnapshotInfo {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SnapshotError {
-    /// The bytes are something else.
+    /// The bytes are not a snapshot.
     #[error("these bytes are not a snapshot: they do not begin with the magic bytes of one")]
     NotASnapshot,
     /// Written by another version of this library.
@@ -61,7 +61,7 @@ pub enum SnapshotError {
         /// Version found.
         found: u32,
     },
-    /// The bytes were cut or changed.
+    /// The bytes were truncated or changed.
     #[error("the snapshot is damaged: {what}")]
     Damaged {
         /// The fault.
@@ -70,10 +70,10 @@ pub enum SnapshotError {
     /// Taken with other values of keys of the configuration, or with another model ([`Env::change_model`](crate::Env::change_model)).
     #[error("the snapshot was taken with another configuration: {differences}")]
     OtherConfiguration {
-        /// The differences: each key with its value of then and of now.
+        /// The differences: each key with its value then and now.
         differences: String,
     },
-    /// Taken from an environment whose configuration is the same, but whose scene is another one.
+    /// Taken from an environment of another scene, or, in a layout that cannot tell, of another configuration.
     #[error(
         "the snapshot was taken with another behavior, scene, actuation model, compat, set of actuators or of senses"
     )]
@@ -81,7 +81,7 @@ pub enum SnapshotError {
 }
 
 impl Snapshot {
-    /// Returns what the snapshot says about itself.
+    /// Returns the snapshot's description of itself.
     ///
     /// ```
     /// use babybench::{Config, Env};
@@ -95,7 +95,7 @@ impl Snapshot {
     /// # Ok::<(), babybench::EnvError>(())
     /// ```
     pub fn info(&self) -> SnapshotInfo {
-        // a snapshot has its header and its whole numbers, or it would not be one
+        // a snapshot always has its header and its whole numbers
         let mut header = Reader(self.bytes.get(MAGIC.len()..HEADER).unwrap_or_default());
         let (version, _, fingerprint) = (header.u32(), header.u32(), header.u64());
         let mut whole = Reader(self.bytes.get(HEADER..).unwrap_or_default());
@@ -112,15 +112,15 @@ impl Snapshot {
         }
     }
 
-    /// Returns the bytes, to be kept.
+    /// Returns the bytes, for storage.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Reads a snapshot from bytes that were kept.
+    /// Reads a snapshot from stored bytes.
     ///
     /// # Errors
-    /// Bytes that are not a snapshot of this version, or were cut or changed.
+    /// Bytes that are not a snapshot of this version, or were truncated or changed.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, SnapshotError> {
         if !bytes.starts_with(&MAGIC) {
             return Err(SnapshotError::NotASnapshot);

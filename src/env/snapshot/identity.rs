@@ -9,12 +9,12 @@ use crate::math::order;
 use crate::model::Model;
 use crate::text::quoted;
 
-/// The scenes and configurations whose snapshots an environment can restore.
+/// The identity of environments that can restore each other's snapshots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::env) struct Identity {
-    /// Checksum of all that must be equal.
+    /// Checksum of everything that must be equal.
     pub fingerprint: u64,
-    /// Keys of the configuration that are not as they are by default, a line each: what is told where a snapshot does not fit.
+    /// Keys of the configuration that differ from their defaults, a line each, for the error about a snapshot that does not match.
     pub keys: String,
 }
 
@@ -54,7 +54,7 @@ impl Identity {
         }
     }
 
-    /// Returns the same with another model: `changes` are its arrays that differ from those of the scene.
+    /// Returns the same identity with another model. `changes` are its arrays that differ from those of the scene.
     pub fn with_changes(&self, changes: &BTreeMap<&'static str, &[f64]>) -> Self {
         let mut keys = self.keys.clone();
         for (name, values) in changes {
@@ -88,15 +88,15 @@ impl Identity {
     }
 }
 
-/// Before the names of arrays of a model that was changed.
+/// Precedes the names of changed arrays of the model.
 const MODEL: &str = "model.";
 
-/// Splits lines of a key and its value.
+/// Splits lines into a key and its value.
 fn lines(keys: &str) -> BTreeMap<&str, &str> {
     order::map(keys.lines().filter_map(|line| line.split_once(": ")))
 }
 
-/// Tells what a key was and what it is.
+/// Describes the old and the new value of a key.
 fn difference(name: &str, then: Option<&&str>, now: Option<&&str>) -> String {
     if name.starts_with(MODEL) {
         return format!("{} was another one", quoted(name));

@@ -6,7 +6,7 @@ use crate::env::Env;
 use crate::env::pipeline::{append_part, take_part};
 
 impl Env {
-    /// Appends what actions on their way, pain and transforms remember, each part behind its length.
+    /// Appends the memory of the action delay, pain and transforms, each part after its length.
     pub(in crate::env) fn save_memory(&self, out: &mut Vec<u8>) {
         let mut part = Vec::new();
         self.action_delay.save(&mut part);
@@ -22,7 +22,7 @@ impl Env {
         }
     }
 
-    /// Takes over what [`Env::save_memory`] wrote; changes nothing if it is something else.
+    /// Restores what [`Env::save_memory`] wrote. Other data change nothing.
     pub(in crate::env) fn load_memory(&mut self, bytes: &[u8]) -> Result<(), SnapshotError> {
         let mut before = Vec::new();
         self.save_memory(&mut before);

@@ -61,9 +61,9 @@ const TOUCH: &[(&str, f64)] = &[
 
 /// MIMo holds his right hand out, a ball of random size and mass falls into it, and he holds it for a hundred steps.
 ///
-/// Goals are empty. The reward is 1 for contact with the ball, minus 40 times the cost of the actuation model (if
-/// `action_penalty`), 100 on success and -100 on failure: the ball lies 10 cm below the hand or 50 cm from it. Terms: contact,
-/// cost, success, failure. The radius of the ball is the last entry of proprioception.
+/// Goals are empty. The reward is 1 for contact with the ball, minus 40 times the cost of the actuation model (if `action_penalty`), 100
+/// on success and -100 on failure: the ball is 10 cm below the hand or 50 cm from it. Terms: contact, cost, success, failure. The radius
+/// of the ball is the last entry of proprioception.
 ///
 /// Under `compat: reference` the ball starts in one place, contacts of the last episode count for success, and muscles are not
 /// updated while the arm settles.
@@ -92,7 +92,7 @@ struct Memory {
     error: Vec3,
     /// Steps until the factors change.
     period: u64,
-    /// Whether there was contact in each of the last steps; step k is at `k % HELD`.
+    /// Whether there was contact in each of the last steps. Step k is at index `k % HELD`.
     past: [bool; HELD],
     /// Factors on actions, if there is jitter.
     factors: Vec<f64>,
@@ -111,7 +111,7 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Returns where the contact of the present step stands.
+    /// Returns the index of the current step's contact.
     fn now(&self) -> usize {
         (self.steps % HELD as u64) as usize
     }
@@ -124,7 +124,7 @@ impl Memory {
         out.extend_from_slice(&self.factors);
     }
 
-    /// Takes over numbers that were saved; of others whatever fits.
+    /// Restores saved numbers. Numbers from an untrusted snapshot are clamped.
     fn load(&mut self, numbers: &[f64]) {
         let Some((&[steps, x, y, z, period], rest)) = numbers.split_first_chunk() else {
             return;

@@ -1,9 +1,9 @@
-//! No task at all.
+//! The absence of a task.
 
 use super::TaskEvent;
 use crate::env::{BehaviorInfo, Info, Task};
 
-/// MIMo does what the actions say, and nothing is counted.
+/// MIMo follows the actions, and nothing is counted.
 #[derive(Clone, Debug)]
 pub(super) struct FreePlay;
 

@@ -1,4 +1,4 @@
-//! Whether the hands are in the central field of view of the eyes.
+//! Hand regard: hands in the central field of view of the eyes.
 
 use super::scene::TaskScene;
 use super::starts::random_start;
@@ -20,18 +20,18 @@ pub(super) struct HandRegard {
     hands: [usize; 2],
     compat: Compat,
     cos_half_angle: f64,
-    /// Steps in which a hand was in view by the rule that the information does not follow.
+    /// Steps in which a hand was in view by the rule that the information does not use.
     other: [u64; 4],
 }
 
 impl HandRegard {
-    /// Tells whether the origin of a hand lies less than 15 degrees off the axis of an eye (0 right, 1 left, both).
+    /// Returns whether the origin of a hand is less than 15 degrees off the axis of an eye (0 right, 1 left, both).
     fn sees(&self, s: &State, eye: usize, hand: usize) -> bool {
         let (axis, direction) = self.axis_and_direction(s, self.compat, eye, hand);
         within_cone(axis, direction, self.cos_half_angle)
     }
 
-    /// Tells whether the other rule counts a hand.
+    /// Returns whether the other rule counts a hand.
     fn sees_otherwise(&self, s: &State, eye: usize, hand: usize) -> bool {
         let other = match self.compat {
             Compat::Api => Compat::Reference,
@@ -41,8 +41,8 @@ impl HandRegard {
         within_cone(axis, direction, self.cos_half_angle)
     }
 
-    /// Returns the axis of an eye's camera and the way from it to the origin of a hand; under `compat: reference` the -z
-    /// axis of the eye's body, which points down the face.
+    /// Returns the axis of an eye's camera and the vector from it to the origin of a hand; under `compat: reference` the -z axis of the
+    /// eye's body, which points down the face.
     fn axis_and_direction(&self, s: &State, compat: Compat, eye: usize, hand: usize) -> (Vec3, Vec3) {
         let (origin, axis) = match compat {
             Compat::Api => (
@@ -54,7 +54,7 @@ impl HandRegard {
         (axis, sub(s.xpos[self.hands[hand]], origin))
     }
 
-    /// Computes the angles between the axes and the hands, rad; infinite where a hand is at the eye.
+    /// Computes the angles between the axes and the hands, rad; infinite for a hand at the eye.
     fn angles(&self, s: &State) -> PerEyeAndHand<f64> {
         PerEyeAndHand::from_fn(|eye, hand| {
             let (axis, direction) = self.axis_and_direction(s, self.compat, eye, hand);
@@ -111,7 +111,7 @@ impl Task for HandRegard {
 
     fn load(&mut self, numbers: &[f64]) {
         for (count, number) in self.other.iter_mut().zip(numbers) {
-            // numbers that someone made up leave room to count on
+            // numbers from an untrusted snapshot must not overflow the counters
             *count = (*number as u64).min(1 << 52);
         }
     }
@@ -142,7 +142,7 @@ impl Task for HandRegard {
     }
 }
 
-/// Tells whether `direction` is strictly inside the cone about the unit vector `axis`. A zero direction is not.
+/// Returns whether `direction` is strictly inside the cone about the unit vector `axis`. A zero direction is not.
 fn within_cone(axis: Vec3, direction: Vec3, cos_half_angle: f64) -> bool {
     let length = norm(direction);
     length > 0.0 && dot(axis, direction) > cos_half_angle * length

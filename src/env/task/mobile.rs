@@ -1,4 +1,4 @@
-//! A mobile that one of the limbs moves, in the phases of the mobile paradigm.
+//! The mobile paradigm: a mobile that one of the limbs moves, in phases.
 
 use super::scene::{TaskScene, TaskView};
 use super::starts::random_start;
@@ -30,41 +30,41 @@ pub(super) const NAMES: &[&str] = &[
     "left_hand_movements_extinction",
     "baseline_ratio",
 ];
-/// Phases: before the mobile is tied, while it is, afterwards.
+/// Phases: before the mobile is tied, while it is tied, and afterwards.
 const PHASES: usize = 3;
 /// The phase in which the mobile is tied.
 const REINFORCEMENT: usize = 1;
-/// The limbs, of which one has the ribbon.
+/// The limbs, one of which has the ribbon.
 const LIMBS: usize = Limb::ALL.len();
 /// A movement begins when the end of a limb is faster than this, in the frame of the hip, m/s.
 const BEGINS: f64 = 0.2;
-/// It ends when the end of the limb is slower than this, m/s, or turns back.
+/// A movement ends when the end of the limb is slower than this, m/s, or turns back.
 const ENDS: f64 = 0.1;
-/// Rate of movements while the mobile is tied, in that of the baseline, that counts as having learned.
+/// Ratio of the rates of movements, tied over baseline, that counts as having learned.
 const LEARNED: f64 = 1.5;
-/// Physics steps in which the ribbon finds its limb and comes to rest.
+/// Physics steps in which the ribbon reaches its limb and comes to rest.
 const REST: u32 = 400;
 
 /// MIMo moves a mobile with one of his limbs, after Rovee and Rovee (1969).
 ///
-/// A ribbon leads from a limb to a hook on a spring. In the first phase (baseline) the hook hangs beside the mobile; in the second
-/// (conjugate reinforcement) the mobile is tied to the hook, so that it moves as much as the limb does; in the third (extinction) it is not.
-/// Success is a rate of movements of that limb in the second phase that is 1.5 times that of the first. The reward is 0 or, if it is
-/// asked for, the movement of the mobile in the step, m. Terms: that movement, and the ratio of the rates.
+/// A ribbon leads from a limb to a hook on a spring. In the first phase (baseline) the hook hangs beside the mobile. In the second
+/// (conjugate reinforcement) the mobile is tied to the hook and moves as much as the limb does. In the third (extinction) it is untied.
+/// Success is a rate of movements of that limb in the second phase that is 1.5 times that of the first. The reward is 0 or, with
+/// `mobile_reward`, the movement of the mobile in the step, m. Terms: that movement, and the ratio of the rates.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mobile {
     hip: usize,
     limbs: [usize; LIMBS],
-    /// Which of them has the ribbon.
+    /// The index of the limb with the ribbon.
     limb: usize,
     /// The bodies that hang from the mobile.
     pendants: Vec<usize>,
     /// The constraints that hold the cuff, for each limb.
     tethers: [usize; LIMBS],
     tie: usize,
-    /// Where mobile and hook stand in `qpos`.
+    /// Indices of mobile and hook in `qpos`.
     heights: [usize; 2],
-    /// Steps at which the second and the third phase begin.
+    /// Steps at which the second and the third phase start.
     starts: [u64; 2],
     /// Time of a step, s.
     dt: f64,
@@ -84,9 +84,9 @@ struct Memory {
     movements: [[f64; PHASES]; LIMBS],
     /// Velocity of each limb at the beginning of its movement, m/s; 0 while it is at rest.
     moving: [Vec3; LIMBS],
-    /// Where the ends of the limbs were, in the frame of the hip, m.
+    /// Last positions of the ends of the limbs, in the frame of the hip, m.
     ends: [Vec3; LIMBS],
-    /// Where the pendants were, m.
+    /// Last positions of the pendants, m.
     hung: Vec<Vec3>,
 }
 
@@ -100,7 +100,7 @@ impl Memory {
         out.extend(self.hung.as_flattened());
     }
 
-    /// Takes over numbers that were saved; of others whatever fits.
+    /// Restores saved numbers. Numbers from an untrusted snapshot are clamped.
     fn load(&mut self, numbers: &[f64]) {
         let mut numbers = numbers.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();
@@ -120,14 +120,13 @@ impl Mobile {
         self.starts.iter().filter(|start| step >= **start).count()
     }
 
-    /// Returns the number of steps that phase has had.
+    /// Returns the number of steps of a phase so far.
     fn lasted(&self, phase: usize) -> u64 {
         let bounds = [0, self.starts[0], self.starts[1], u64::MAX];
         self.memory.steps.min(bounds[phase + 1]).saturating_sub(bounds[phase])
     }
 
-    /// Computes the rate of movements of the limb with the ribbon while the mobile is tied, in that of the baseline; 0 as long as there
-    /// is one of them not.
+    /// Computes the ratio of the rates of movements of the limb with the ribbon, tied over baseline; 0 while either has no movements.
     fn ratio(&self) -> f64 {
         let rate = |phase: usize| match self.lasted(phase) {
             0 => 0.0,
@@ -141,14 +140,14 @@ impl Mobile {
         }
     }
 
-    /// Returns where the end of a limb is in the frame of the hip.
+    /// Returns the position of the end of a limb in the frame of the hip.
     fn end(&self, state: &State, limb: usize) -> Vec3 {
         let way = sub(state.xpos[self.limbs[limb]], state.xpos[self.hip]);
         let frame = &state.xmat[self.hip];
         std::array::from_fn(|k| dot(way, column(frame, k)))
     }
 
-    /// Ties the mobile to the hook, as high as each is, or unties it, if a phase begins.
+    /// Ties the mobile to the hook at their current heights, or unties it, when a phase starts.
     fn change_phase(&self, scene: &mut TaskScene<'_>) {
         let tied = self.phase(self.memory.steps) == REINFORCEMENT;
         let state = &mut *scene.state;
@@ -159,7 +158,7 @@ impl Mobile {
         state.params.eq_active[self.tie] = tied;
     }
 
-    /// Counts what moved in a step of some phase.
+    /// Counts the movements in a step of a phase.
     fn count(&mut self, state: &State, phase: usize) {
         let mut sum = 0.0;
         for (before, &pendant) in self.memory.hung.iter_mut().zip(&self.pendants) {
@@ -236,7 +235,7 @@ impl Task for Mobile {
         })
     }
 
-    /// Puts the cuff on the limb, and waits until the ribbon is at rest.
+    /// Attaches the cuff to the limb, and waits until the ribbon is at rest.
     fn settle(&self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         for (limb, &tether) in self.tethers.iter().enumerate() {
             scene.base.eq_active[tether] = limb == self.limb;

@@ -1,7 +1,7 @@
 //! Tasks of environments.
 //!
-//! A [`Task`] is a value: which scene, where episodes start, what is counted or rewarded, when an episode succeeds or fails. BabyBench's
-//! behaviors are tasks, and so are MIMo's tasks with goals; [`BlueprintOptions`](crate::env::BlueprintOptions) take any other.
+//! A [`Task`] is a value that defines the scene, the start of episodes, counters, reward, success and failure. BabyBench's behaviors are
+//! tasks, and so are MIMo's tasks with goals. [`BlueprintOptions`](crate::env::BlueprintOptions) take any other.
 
 mod catch;
 mod free_play;
@@ -37,20 +37,20 @@ use crate::physics::State;
 pub struct TaskSizes {
     /// Length of the achieved and of the desired goal.
     pub goal: usize,
-    /// Length of what the reward depends on besides goals.
+    /// Length of the terms, on which the reward depends besides goals.
     pub terms: usize,
-    /// Length of what is appended to proprioception.
+    /// Length of the values appended to proprioception.
     pub observation: usize,
 }
 
 /// The source of a task's scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaskDocument {
-    /// The MJCF document. It lies in the folder `babybench` of the assets, and includes files from there.
+    /// The MJCF document. It is in the folder `babybench` of the assets, and includes files from there.
     pub xml: String,
     /// The version of MIMo in it.
     pub version: Version,
-    /// The bodies with touch sensors and the distances between those, m, at `touch_scale: 1`; none for MIMo's own table with the keys
+    /// The bodies with touch sensors and the distances between sensors, m, at `touch_scale: 1`; none for MIMo's own table with the keys
     /// `touch_...`. Observations are ordered by body id regardless of this order.
     pub touch_spacing: &'static [(&'static str, f64)],
 }
@@ -77,23 +77,23 @@ pub struct Verdict {
     pub is_failure: bool,
 }
 
-/// When a task brings the information up to date.
+/// The occasions on which a task updates the information.
 #[derive(Clone, Copy, Debug)]
 pub enum TaskEvent<'a> {
-    /// An episode starts: what is counted is as if nothing had happened, with room for all that may come.
+    /// An episode starts: counters are cleared, with space reserved for everything that may come.
     Start,
-    /// A step was made, which led to this state.
+    /// A step led to this state.
     Step(&'a State),
-    /// A snapshot was restored: what was counted is there, poses are not known.
+    /// A snapshot was restored: counters are known, poses are not.
     Restored,
 }
 
 /// The purpose of an environment: its scene, the start of its episodes, goals, reward, success and failure.
 ///
-/// An environment holds one, made by cloning that of its blueprint, and calls it in this order: [`Task::document`], [`Task::bind`] and
-/// [`Task::settle`] once, while the blueprint is made; [`Task::reset`] and [`Task::begin`] at the start of an episode; in each step
-/// [`Task::before_step`], the physics, [`Task::after_step`], the senses, [`Task::achieve`], and then [`Task::judge`], which is a function of
-/// goals and terms alone. Every method but the name has a default.
+/// An environment holds a task, a clone of its blueprint's. It calls [`Task::document`], [`Task::bind`] and [`Task::settle`] once, while
+/// the blueprint is made; [`Task::reset`] and [`Task::begin`] at the start of an episode; and in each step [`Task::before_step`], the
+/// physics, [`Task::after_step`], the senses, [`Task::achieve`], and then [`Task::judge`], which is a function of goals and terms alone.
+/// Every method except the name has a default.
 ///
 /// A user-defined task, `examples/own_task.rs`:
 ///
@@ -105,13 +105,13 @@ pub trait Task: CloneTask + Debug + Send + Sync {
     /// Returns the name, for errors and reports.
     fn name(&self) -> &str;
 
-    /// Returns what its scene is compiled from; by default, what the keys of the configuration ask for.
+    /// Returns the source of its scene; by default, the one that the keys of the configuration ask for.
     fn document(&self, config: &Config) -> TaskDocument {
         TaskDocument::of(config)
     }
 
-    /// Finds what it needs in the compiled scene, takes its options from the configuration, and returns how many numbers it will
-    /// hand out in each step.
+    /// Finds what it needs in the compiled scene, takes its options from the configuration, and returns how many numbers it produces in
+    /// each step.
     ///
     /// # Errors
     /// [`EnvError::Missing`].
@@ -120,7 +120,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         Ok(TaskSizes::default())
     }
 
-    /// Brings a new scene to the state from which episodes start. What [`TaskScene::lock`] locks stays so at every reset.
+    /// Brings a new scene to the state from which episodes start. Joints locked through [`TaskScene::lock`] stay locked at every reset.
     ///
     /// By default 100 physics steps pass with the action 0, from `qpos0`.
     ///
@@ -130,7 +130,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         scene.settle()
     }
 
-    /// Brings the scene to the start of an episode: by default to the settled state.
+    /// Brings the scene to the start of an episode, by default the settled state.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -138,7 +138,7 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         scene.restart()
     }
 
-    /// Starts an episode in the scene as it is, after [`Task::reset`] or where a program has put it, and chooses the desired goal.
+    /// Starts an episode in the current scene, after [`Task::reset`] or where a program has put it, and chooses the desired goal.
     fn begin(&mut self, scene: &mut TaskScene<'_>, desired: &mut [f64]) {
         let _ = (scene, desired);
     }
@@ -148,64 +148,62 @@ pub trait Task: CloneTask + Debug + Send + Sync {
         let _ = action;
     }
 
-    /// Looks at the scene, and perhaps changes it, after the physics steps of a step.
+    /// Reads, and possibly changes, the scene after the physics steps of a step.
     ///
     /// # Errors
-    /// Whatever it does to the scene.
+    /// Errors of its changes to the scene.
     fn after_step(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         let _ = scene;
         Ok(())
     }
 
-    /// Returns whether the environments of a vector may work in the same memory, one after the other, which is faster where there are many.
-    /// By default they may not.
+    /// Returns whether the environments of a vector may share scratch states, which is faster for many environments.
     ///
     /// A task may return true if it changes nothing but `qpos` and `qvel` between the last physics step, or [`TaskScene::forward`], of a
-    /// reset or step and its end, and if its resets read nothing computed before the first of them. Otherwise poses and forces that are read
-    /// between the steps of a vector are wrong. Tests and debug builds find such a task and return [`EnvError::OnlyMoves`] from the step or
-    /// reset: they compute steps 1, 2, 4, 8, ... of each episode and every reset a second time.
+    /// reset or step and its end, and if its resets read nothing computed before the first of them. If a task that does otherwise returns
+    /// true, poses and forces that are read between the steps of a vector are wrong. The default is false.
     fn only_moves(&self) -> bool {
         false
     }
 
-    /// Writes what is appended to proprioception.
+    /// Writes the values appended to proprioception.
     fn observe(&self, state: &State, out: &mut [f64]) {
         let _ = (state, out);
     }
 
-    /// Writes the achieved goal, and what else the reward depends on.
+    /// Writes the achieved goal and the terms of the reward.
     fn achieve(&self, view: &TaskView<'_>, desired: &[f64], achieved: &mut [f64], terms: &mut [f64]) {
         let _ = (view, desired, achieved, terms);
     }
 
-    /// Returns reward, success and failure: a function of goals and terms, so that a program can ask what another goal would have
-    /// earned. By default there is no reward, and no end.
+    /// Returns reward, success and failure as a function of goals and terms, so that programs can compute the reward of another goal. By
+    /// default there is no reward and no end.
     fn judge(&self, goal: Goal<'_>) -> Verdict {
         let _ = goal;
         Verdict::default()
     }
 
-    /// Forgets what it has counted, where the information is cleared: at the start of an episode, unless counters go on.
+    /// Clears its counters when the information is cleared: at the start of an episode, unless counters continue.
     fn forget(&mut self) {}
 
-    /// Counts, after a step that led to this state, what it will tell in [`Task::inform`] besides what the information holds itself;
-    /// [`Task::save`] keeps it.
+    /// Updates its counters after a step that led to this state, except those that the information holds itself. [`Task::inform`] reports
+    /// them and [`Task::save`] stores them.
     fn count(&mut self, state: &State) {
         let _ = state;
     }
 
-    /// Brings the information up to date. Success, failure and return ([`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task)) are
-    /// there at the start, and follow from [`Task::judge`]; a task that counts something else puts that in their place.
+    /// Updates the information. Success, failure and return ([`BehaviorInfo::Task`](crate::env::BehaviorInfo::Task)) are there at the
+    /// start, and follow from [`Task::judge`]. A task with other counters replaces them.
     fn inform(&self, event: TaskEvent<'_>, info: &mut Info) {
         let _ = (event, info);
     }
 
-    /// Appends what it remembers from step to step, besides goals, as numbers: snapshots hold them. Their count never changes.
+    /// Appends its memory from step to step, besides goals, as numbers for snapshots. Their count never changes.
     fn save(&self, out: &mut Vec<f64>) {
         let _ = out;
     }
 
-    /// Takes over numbers that [`Task::save`] once wrote, or as many that someone made up.
+    /// Restores what [`Task::save`] wrote. The numbers may come from an untrusted snapshot.
     fn load(&mut self, numbers: &[f64]) {
         let _ = numbers;
     }
@@ -245,7 +243,7 @@ pub(super) fn of_config(config: &Config) -> Box<dyn Task> {
     }
 }
 
-/// Returns the names of what a task of the library measures; none for those that measure nothing, and for custom tasks.
+/// Returns the names of the measures of one of the library's tasks; none for tasks without measures and for custom tasks.
 pub(super) fn measures_of(task: &str) -> &'static [&'static str] {
     match Behavior::from_name(task) {
         Some(Behavior::Mobile) => mobile::NAMES,

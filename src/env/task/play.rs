@@ -1,4 +1,4 @@
-//! Which toys are touched, held and moved.
+//! Play: toys that are touched, held and moved.
 
 use super::scene::{TaskScene, TaskView};
 use super::starts::random_start;
@@ -19,14 +19,14 @@ pub(super) const NAMES: &[&str] = &[
     "holding_time",
     "toys_path",
 ];
-/// How far from its place a toy that was touched counts as moved, m.
+/// Distance from its start from which on a touched toy counts as moved, m.
 const MOVED: f64 = 0.05;
 
-/// MIMo plays: he touches, holds and moves toys, which are all bodies that are free to move and not his.
+/// MIMo plays: he touches, holds and moves toys, which are all free bodies that are not his.
 ///
-/// A toy is held in a step at whose end it touches one of his hands, and nothing that is not his. Success is to have touched all
-/// toys. The reward is 0 or, if it is asked for, 1 for each toy that is touched for the first time in the episode. Terms: how many those
-/// are in the step, and the share of toys that were touched.
+/// A toy is held in a step if it touches one of his hands at the end of the step, and nothing that is not his. Success is to have touched
+/// all toys. The reward is 0 or, with `play_reward`, 1 for each toy that is first touched in the step. Terms: the number of those toys,
+/// and the share of toys touched so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Play {
     toys: Vec<usize>,
@@ -40,7 +40,7 @@ pub(super) struct Play {
     seen: Vec<Contacts>,
 }
 
-/// Whose a geom is.
+/// The owner of a geom.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Owner {
     #[default]
@@ -48,7 +48,7 @@ enum Owner {
     Mimo,
     /// A hand or its fingers.
     Hand,
-    /// A toy, by its place in the list.
+    /// A toy, by its index in the list.
     Toy(usize),
 }
 
@@ -66,9 +66,9 @@ struct Toy {
     touched: bool,
     held: bool,
     moved: bool,
-    /// Where it was at the start, m.
+    /// Position at the start, m.
     start: Vec3,
-    /// Where it was after the last step, m.
+    /// Position after the last step, m.
     last: Vec3,
 }
 
@@ -78,7 +78,7 @@ struct Memory {
     toys: Vec<Toy>,
     /// Steps in which a toy was held.
     holding: f64,
-    /// Way of the toys since they were touched, m.
+    /// Path of the toys since they were touched, m.
     path: f64,
     /// Toys that were touched for the first time in the last step.
     new: f64,
@@ -91,7 +91,7 @@ impl Memory {
 }
 
 impl Play {
-    /// Brings together what each toy touches.
+    /// Collects the contacts of each toy.
     fn look(&mut self, state: &State) {
         self.seen.fill(Contacts::default());
         for contact in &state.contact {
@@ -108,7 +108,7 @@ impl Play {
         }
     }
 
-    /// Returns whether all toys were touched; there must be one.
+    /// Returns whether there are toys and all were touched.
     fn share(&self) -> f64 {
         let toys = self.memory.toys.len();
         if toys == 0 {
@@ -247,7 +247,7 @@ impl Task for Play {
         }
     }
 
-    /// Takes over numbers that were saved; of others whatever fits.
+    /// Restores saved numbers. Numbers from an untrusted snapshot are clamped.
     fn load(&mut self, numbers: &[f64]) {
         let mut numbers = numbers.iter().copied();
         let mut next = || numbers.next().unwrap_or_default();

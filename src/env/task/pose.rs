@@ -7,7 +7,7 @@ use crate::model::{JointType, Model};
 /// Angles of joints by name, without `robot:`, rad.
 pub(super) type Angles = [(&'static str, f64)];
 
-/// Writes angles of joints into positions (nq). Joints of a table that the scene lacks are an error.
+/// Writes joint angles into positions (nq). A joint of the table that the scene lacks is an error.
 pub(super) fn set_angles(
     model: &Model,
     angles: &Angles,
@@ -20,7 +20,7 @@ pub(super) fn set_angles(
     Ok(())
 }
 
-/// Returns the whole name of one of MIMo's own joints.
+/// Returns the full name of one of MIMo's own joints.
 pub(super) fn own_joint(name: &str) -> String {
     format!("{JOINT_PREFIX}{name}")
 }

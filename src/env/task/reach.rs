@@ -13,16 +13,16 @@ use crate::model::Model;
 const PURPOSE: &str = "behavior reach";
 /// How far the ball may lie from its place at the start of an episode, m: from, to.
 const BALL: [[f64; 2]; 3] = [[-0.1, 0.0], [-0.2, 0.1], [-0.1, 0.0]];
-/// Way of the ball from its first place that counts as touched, m.
+/// Displacement of the ball that counts as touched, m.
 const MOVED: f64 = 0.01;
 /// Reward of success.
 const BONUS: f64 = 100.0;
 
-/// MIMo hangs in the air and knocks a hovering ball from its place with the right hand, on which his eyes are.
+/// MIMo hangs in the air and knocks a hovering ball away with the right hand. His eyes follow the ball.
 ///
-/// The achieved goal is the place of the right fingers, the desired goal that of the ball at the start of the episode, world, m.
-/// The reward is minus their distance, and 100 more on success, which a term tells: the ball has moved by more than 1 cm. Under
-/// `compat: reference` goals are empty, and the distance is that to the ball as it moves.
+/// The achieved goal is the position of the right fingers, the desired goal that of the ball at the start of the episode, world, m. The
+/// reward is minus their distance, plus 100 on success: the ball has moved by more than 1 cm, which a term reports. Under
+/// `compat: reference` goals are empty, and the distance is that to the moving ball.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reach {
     fingers: usize,
@@ -30,7 +30,7 @@ pub(super) struct Reach {
     ball: usize,
     head: HeadTracking,
     has_goals: bool,
-    /// Where the ball was at the start of the episode, m.
+    /// Position of the ball at the start of the episode, m.
     first: Vec3,
 }
 
@@ -64,7 +64,7 @@ impl Task for Reach {
         scene.restart()
     }
 
-    /// Ten random actions move the arm, then the ball is put to a random place: x, y, z.
+    /// Ten random actions move the arm, then the ball is moved to a random position: x, y, z.
     fn reset(&mut self, scene: &mut TaskScene<'_>) -> Result<(), EnvError> {
         random_start(scene, |scene| self.after_step(scene))?;
         let [start, _] = scene.start();

@@ -11,18 +11,18 @@ use crate::model::Model;
 use crate::physics::State;
 
 const PURPOSE: &str = "behavior roll_over";
-/// Part of the way from one side to the other that counts as rolled over.
+/// Share of the way from one side to the other that counts as rolled over.
 const ROLLED: f64 = 0.8;
 /// Half of the square root of 2.
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Height of the base before MIMo comes to rest, m.
+/// Height of the base before MIMo settles, m.
 const HEIGHT: f64 = 0.1;
 
 /// MIMo lies on his back (or on his belly) and rolls over.
 ///
-/// The achieved goal is 0 as he lies at first and 1 on the other side: with the angle `a` of the x axis of hip and chest above
-/// the horizon, the mean of `1/2 + a/180` degrees, or 1 minus that. The desired goal is 0.8. The reward is the achieved goal minus the
-/// cost of the controls, the only term. Under `compat: reference` the hip alone counts, as in the Python code.
+/// The achieved goal is 0 in his initial position and 1 on the other side: with the angle `a` of the x axis of hip and chest above the
+/// horizon, the mean of `1/2 + a/180` degrees, or 1 minus that. The desired goal is 0.8. The reward is the achieved goal minus the cost
+/// of the controls, the only term. Under `compat: reference` only the hip counts, as in the Python code.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RollOver {
     base: usize,

@@ -1,4 +1,4 @@
-//! The simulation as a task may inspect and modify it.
+//! The simulation, for a task to inspect and modify.
 
 use crate::actuation::Actuation;
 use crate::config::{Compat, Config};
@@ -24,7 +24,7 @@ pub(in crate::env) enum Passed {
 /// Physics steps in which a scene settles before it is used.
 const SETTLING_STEPS: u32 = 100;
 
-/// The simulation of an environment as its task may inspect and modify it, between physics steps.
+/// The simulation of an environment, for its task to inspect and modify between physics steps.
 pub struct TaskScene<'a> {
     /// The configuration.
     pub config: &'a Config,
@@ -40,13 +40,13 @@ pub struct TaskScene<'a> {
     /// Parameters after a reset.
     pub(in crate::env) base: &'a mut Shared<Params>,
     pub(in crate::env) actuation: &'a dyn Actuation,
-    /// Where bodies that the engine does not move are over time; nothing while the scene settles.
+    /// Paths of bodies that the engine does not move; empty while the scene settles.
     pub(in crate::env) paths: Option<&'a Paths>,
     /// The delay before the actuators; none while the scene settles.
     pub(in crate::env) delay: Option<&'a mut ActionDelay>,
-    /// Where episodes start: positions and velocities.
+    /// The start of episodes: positions and velocities.
     pub(in crate::env) start: [&'a [f64]; 2],
-    /// Buffer of an action.
+    /// A buffer for a random action.
     pub(in crate::env) action: &'a mut Vec<f32>,
 }
 
@@ -58,14 +58,14 @@ impl std::fmt::Debug for TaskScene<'_> {
     }
 }
 
-/// The parts of an environment that a task may look at after a step.
+/// The parts of an environment that a task may read after a step.
 #[derive(Clone, Copy)]
 pub struct TaskView<'a> {
     /// The compiled scene.
     pub model: &'a Model,
     /// The state of the scene.
     pub state: &'a State,
-    /// The sense of touch, if it is active, before it is transformed.
+    /// The sense of touch, if it is active, before transforms.
     pub touch: Option<&'a Touch>,
     /// The actuation model.
     pub actuation: &'a dyn Actuation,
@@ -93,10 +93,10 @@ impl<'a> TaskScene<'a> {
         self.place(qpos, qvel)
     }
 
-    /// Forgets the past as [`TaskScene::restart`] does, and computes everything at positions (nq) and velocities (nv).
+    /// Resets the scene as [`TaskScene::restart`] does, and computes everything at positions (nq) and velocities (nv).
     ///
     /// # Errors
-    /// Wrong lengths, numbers that are not finite, a state from which the simulation diverges.
+    /// Wrong lengths, numbers that are not finite, or a state from which the simulation diverges.
     pub fn place(&mut self, qpos: &[f64], qvel: &[f64]) -> Result<(), EnvError> {
         check_vector("qpos", qpos, self.model.nq)?;
         check_vector("qvel", qvel, self.model.nv)?;
@@ -114,13 +114,13 @@ impl<'a> TaskScene<'a> {
         self.forward()
     }
 
-    /// Forgets the past: `qpos0` at rest, of which nothing is computed. Actuators are as they were.
+    /// Resets the state to `qpos0` at rest without computing anything from it. Actuators do not change.
     pub(in crate::env) fn forget(&mut self) {
         if let Some(delay) = &mut self.delay {
             delay.clear();
         }
         if self.engine.reader().check_shape(self.state).is_err() {
-            // a program has cleared a vector; what is forgotten need not have been whole
+            // a program may have cleared a vector; a state to be reset need not be complete
             *self.state = self.engine.reader().new_state();
             self.actuation.prepare(self.model, self.state);
         }
@@ -151,7 +151,7 @@ impl<'a> TaskScene<'a> {
         Ok(self.engine.lend(|engine| engine.forward(self.state))?)
     }
 
-    /// Gives an action, of the length of the action space, to the actuators, and makes physics steps.
+    /// Passes an action, of the length of the action space, to the actuators, and makes physics steps.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -181,8 +181,8 @@ impl<'a> TaskScene<'a> {
         Ok(())
     }
 
-    /// Gives the action 0 to the actuators once, and makes physics steps. As in the Python code, the actuators are not updated
-    /// between them.
+    /// Passes the action 0 to the actuators once, and makes physics steps. As in the Python code, the actuators are not updated between
+    /// them.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -195,7 +195,7 @@ impl<'a> TaskScene<'a> {
         self.steps(steps)
     }
 
-    /// Makes physics steps; actuators go on as they are.
+    /// Makes physics steps. Actuators are not updated.
     ///
     /// # Errors
     /// The simulation diverged.
@@ -217,7 +217,7 @@ impl<'a> TaskScene<'a> {
     /// Locks a joint at an angle, rad, in every episode; with `now` at once, too.
     ///
     /// # Errors
-    /// No such joint, a joint that cannot be locked.
+    /// A joint that does not exist or cannot be locked.
     pub fn lock(&mut self, joint: &str, angle: f64, now: bool) -> Result<(), EnvError> {
         lock(self.model, self.base, LockTarget::Name(joint), angle)?;
         if now {
@@ -226,14 +226,14 @@ impl<'a> TaskScene<'a> {
         Ok(())
     }
 
-    /// Lets a scene settle for 100 steps from `qpos0` with the action 0. Muscles pull as they do at the start throughout. A MIMo with an
-    /// age starts in the posture in which the scene holds him: of other proportions than the original's, his legs would be too
-    /// deep in the floor on their way there.
+    /// Lets a scene settle for 100 steps from `qpos0` with the action 0. Muscles keep their initial pull throughout. A MIMo with an age
+    /// starts in the posture in which the scene holds him: with other proportions than the original's, his legs would sink too deep into
+    /// the floor on their way there.
     ///
     /// # Errors
     /// The simulation diverged.
     pub fn settle(&mut self) -> Result<(), EnvError> {
-        // the step that the reference makes before it looks at its sensors: it leaves the warm start of the solver
+        // the step that the reference makes before it reads its sensors: it leaves the warm start of the solver
         self.steps(1)?;
         match self.config.age {
             None => self.state.qpos.copy_from_slice(&self.model.qpos0),

@@ -1,4 +1,4 @@
-//! Touching a part of one's own body.
+//! Touching a part of the own body.
 
 use super::pose::{Angles, free_address, own_joint, set_angles};
 use super::scene::{TaskScene, TaskView};
@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::sensors::Touch;
 
 const PURPOSE: &str = "behavior selfbody";
-/// Length of a goal: the reference's number of geoms; entries of bodies and of parts of the body are numbered by body.
+/// Length of a goal: the reference's number of geoms. Entries of bodies and of parts of the body are numbered by body.
 const GOAL: usize = 37;
 /// Reward of success.
 const BONUS: f64 = 500.0;
@@ -49,7 +49,7 @@ const BASE: [f64; 7] = [
     -0.450353,
     -0.0135029,
 ];
-/// Joint angles of the sitting MIMo, all but those of the right arm, at which they are locked.
+/// Joint angles at which all joints of the sitting MIMo except those of the right arm are locked.
 const SITTING: &Angles = &[
     ("hip_lean1", 0.039088),
     ("hip_rot1", 0.113112),
@@ -94,13 +94,13 @@ const SITTING: &Angles = &[
 
 /// MIMo sits, all but his right arm is locked, and he touches a part of himself with the right hand.
 ///
-/// The desired goal has a 1 at the number of the target's body, the achieved goal one at each part that the right hand or its
-/// fingers touch. The reward is 500 on success; else, if the fingers feel anything, minus their distance from the target, m;
-/// else -1. Terms: whether the fingers feel anything, and the distances from them to all possible targets.
+/// The desired goal has a 1 at the number of the target's body, the achieved goal a 1 at each part that the right hand or its fingers
+/// touch. The reward is 500 on success; otherwise, if the fingers feel anything, minus their distance from the target, m; otherwise -1.
+/// Terms: whether the fingers feel anything, and the distances from them to all possible targets.
 ///
-/// Under `compat: reference` the achieved goal is zero, any touch of the target is a success and the left forearm counts as
-/// a finger, as in the Python code, where a force counts if a component is positive; and the distance is that from the body of
-/// the geom whose number is the target's.
+/// Under `compat: reference` the achieved goal is zero, any touch of the target is a success and the left forearm counts as a finger, as
+/// in the Python code, where a force counts if a component is positive. The distance is that from the body of the geom whose number is
+/// the target's.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SelfBody {
     base: usize,
@@ -118,7 +118,7 @@ impl SelfBody {
         &self.skin[..self.skin.len().saturating_sub(OWN)]
     }
 
-    /// Tells whether one of the bodies in `by` touches a body with any force.
+    /// Returns whether one of the bodies in `by` touches a body with any force.
     fn touches(&self, view: &TaskView<'_>, by: &[usize], body: usize) -> bool {
         view.state.contact.iter().any(|c| {
             let [a, b] = c.geom.map(|g| view.model.geom_bodyid[g]);

@@ -1,4 +1,4 @@
-//! Which parts of the body the palms touch.
+//! Self-touch: parts of the body that the palms touch.
 
 use super::scene::TaskScene;
 use super::starts::random_start;
@@ -8,7 +8,7 @@ use crate::env::{BehaviorInfo, EnvError, Info, PartNames, PerHand};
 use crate::model::Model;
 use crate::physics::State;
 
-/// MIMo touches himself; which of his geoms (ngeom) are palms.
+/// MIMo touches himself. Holds which of his geoms (ngeom) are palms.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SelfTouch {
     right_palm: Vec<bool>,

@@ -11,7 +11,7 @@ use crate::model::Model;
 const PURPOSE: &str = "behavior standup";
 /// Height of the head that counts as standing, m.
 const STANDING: f64 = 0.5;
-/// Height of the head that earns nothing, m.
+/// Height of the head at which the reward is 0, m.
 const SITTING: f64 = 0.2;
 /// Weight of the cost of the controls.
 pub(super) const COST: f64 = 0.01;
@@ -72,10 +72,10 @@ const CROUCHING: &Angles = &[
     ("left_toes", 0.0182025),
 ];
 
-/// MIMo crouches before a railing that he holds, and raises his head.
+/// MIMo crouches at a railing that he holds, and raises his head.
 ///
-/// The achieved goal is the height of the head, m; the desired goal is 0.5. The reward is the achieved goal minus 0.2 minus the
-/// cost of the controls, which is the only term: see [`control_cost`].
+/// The achieved goal is the height of the head, m; the desired goal is 0.5. The reward is the achieved goal minus 0.2 minus the cost of
+/// the controls, which is the only term: see [`control_cost`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Standup {
     head: usize,
@@ -135,7 +135,7 @@ impl Task for Standup {
     }
 }
 
-/// Tells whether a goal of one number is reached: it is to be exceeded.
+/// Returns whether a goal of one number is exceeded.
 pub(super) fn reached(goal: Goal<'_>) -> bool {
     first(goal.achieved) >= first(goal.desired)
 }
@@ -147,7 +147,7 @@ pub(super) fn first(values: &[f64]) -> f64 {
 
 /// Starts an episode: the settled pose with every joint angle changed by up to 0.01 rad, at rest, then half a second without action.
 ///
-/// Under `compat: reference` muscles are not updated in that time.
+/// Under `compat: reference` muscles are not updated during that time.
 pub(super) fn shaken_start(scene: &mut TaskScene<'_>, base: usize) -> Result<(), EnvError> {
     scene.restart()?;
     for q in 0..scene.model.nq {

@@ -1,4 +1,4 @@
-//! The head and the eyes follow a point.
+//! Head and eyes that follow a point.
 
 use super::pose::{address, own_joint};
 use super::scene::TaskScene;
@@ -49,7 +49,7 @@ impl HeadTracking {
         })
     }
 
-    /// Turns head and eyes towards a point of the world, m; velocities stay.
+    /// Turns head and eyes towards a point of the world, m. Velocities do not change.
     ///
     /// Under `compat: reference` the head turns the wrong way from a point behind it.
     pub fn look_at(&self, scene: &mut TaskScene<'_>, point: Vec3) {
