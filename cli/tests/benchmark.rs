@@ -63,7 +63,7 @@ fn runs_are_recorded_repeated_and_measured() {
     let json: Value = serde_json::from_str(&succeed(&["measure", &record, "--json", "--episode", "0"])).expect("JSON");
     assert_eq!(json["steps"], 60);
     let error = fail(&["run", "--config", &config, "--record", &record, "--quiet"]);
-    assert!(error.contains("there is a record in this folder already"), "{error}");
+    assert!(error.contains("this folder already has a record"), "{error}");
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn submissions_are_checked_and_packed() {
         "--abstract",
         &pdf.display().to_string(),
     ]);
-    assert!(error.contains("no PDF document"), "{error}");
+    assert!(error.contains("not a PDF document"), "{error}");
     std::fs::write(&pdf, "%PDF-1.7\n").expect("a file");
     let out = succeed(&[
         "pack",

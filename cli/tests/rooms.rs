@@ -86,7 +86,7 @@ fn a_new_room_is_checked_drawn_run_trained_in_and_reported() {
         "actuators       44      44",
         "cameras: corner, eye_left, eye_right",
         "\"ball\" of body \"ball\" with all of his geoms",
-        "In each other before anything moves\n  nothing",
+        "Overlaps at the start\n  nothing",
         "Without effect here\n  nothing",
     ] {
         assert!(checked.contains(part), "no {part:?} in {checked}");

@@ -166,7 +166,7 @@ class Record(Exports, Mapping[int, Episode]):
             try:
                 manifest = json.load(file)
             except ValueError as error:
-                raise ValueError(f"{path}: no record of babybench: {error}") from None
+                raise ValueError(f"{path}: not a record of babybench: {error}") from None
         if not isinstance(manifest, dict) or manifest.get("format") != FORMAT:
             raise ValueError(f"{path}: no record of babybench")
         if manifest["version"] > VERSION:

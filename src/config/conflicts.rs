@@ -137,7 +137,7 @@ impl Config {
             ),
             Compat::Reference if self.rates().next().is_some() => {
                 let (key, rate) = self.rates().next().unwrap_or(("vision_rate", 0.0));
-                let reason = "the Python code that `compat: reference` follows looks and feels in every step";
+                let reason = "the Python code that `compat: reference` follows samples vision and touch in every step";
                 return Some((key, format!("{rate:?}"), reason.to_string()));
             }
             Compat::Reference if self.vision_lazy => (
@@ -239,7 +239,7 @@ impl Config {
                 None => ("delay_sensory", format!("{:?}", delays.sensory)),
             };
             let reason = format!(
-                "the images that wait would take {} MB, and may take {}; lower it, or `vision_resolution`",
+                "the delayed images would take {} MB; the limit is {} MB. Lower it, or `vision_resolution`",
                 waiting / 1_000_000,
                 MAX_WAITING / 1_000_000
             );

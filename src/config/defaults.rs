@@ -105,7 +105,7 @@ fn second_infant(config: &Config) -> Option<Conflict> {
     } else {
         ("other_age", config.other_age?.to_string())
     };
-    let reason = "only a document of one's own has a second infant; set `scene` to its path, or leave it out";
+    let reason = "only a custom document has a second infant; set `scene` to its path, or leave it out";
     Some((key, value, reason.to_string()))
 }
 
@@ -115,7 +115,7 @@ pub(super) fn conflict(config: &Config) -> Option<Conflict> {
         return Some(conflict);
     }
     if config.act_others && config.actuation_model == ActuationModel::Muscle {
-        let reason = "with muscles all actuators pull as muscles do, which other bodies do not have; use spring_damper or positional";
+        let reason = "`actuation_model: muscle` turns all actuators into muscles, which other bodies do not have; use spring_damper or positional";
         return Some(("act_others", config.act_others.to_string(), reason.to_string()));
     }
     let task = !matches!(

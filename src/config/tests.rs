@@ -193,7 +193,7 @@ fn what_is_no_flat_mapping_is_refused() {
     check_error("&a {seed: 1}", &format!(":1:4: an anchor (`&`): {flat}"));
     check_error(
         "? [seed]\n: 1",
-        &format!(":1:3: a key that is itself a list or mapping: {flat}"),
+        &format!(":1:3: a key that is a list or mapping: {flat}"),
     );
     check_error(
         "scene: *a",

@@ -125,7 +125,7 @@ impl<'t> Reader<'t> {
                 (name, at)
             }
             (Event::Alias(_), at) => return self.unsupported(at, "an alias"),
-            (_, at) => return self.unsupported(at, "a key that is itself a list or mapping"),
+            (_, at) => return self.unsupported(at, "a key that is a list or mapping"),
         };
         let Some(index) = KEYS.iter().position(|key| key.name == name) else {
             let nearest = error::nearest(&name, KEYS.iter().map(|key| key.name));

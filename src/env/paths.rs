@@ -162,7 +162,7 @@ fn columns<'a>(names: &[&'a str], model: &Model) -> Result<Vec<Columns<'a>>, Str
             }
         };
         if all[k].places[value].replace(place).is_some() {
-            return Err(format!("\"{}\" stands there twice", quoted(name)));
+            return Err(format!("\"{}\" appears twice", quoted(name)));
         }
     }
     for columns in &all {
@@ -295,7 +295,7 @@ mod tests {
                 "time,still.x".to_owned(),
                 "no body \"still\" with mocap=\"true\"; there are: \"hand\", \"other\"",
             ),
-            ("time,hand.x,hand.x".to_owned(), "\"hand.x\" stands there twice"),
+            ("time,hand.x,hand.x".to_owned(), "\"hand.x\" appears twice"),
             ("time,hand.x,hand.y".to_owned(), "\"hand\" needs x, y and z"),
             (format!("{head},hand.qw"), "of qw, qx, qy and qz all or none"),
             (format!("\n{head}\n"), "line 2: there are no poses"),

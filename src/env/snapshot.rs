@@ -281,7 +281,7 @@ impl InfoSource for Counted<'_, '_> {
     fn geoms(&mut self, key: &'static str) -> Result<Vec<usize>, SnapshotError> {
         let (n, ngeom) = (self.count(key)?, self.ngeom);
         if n > ngeom as u64 {
-            return Err(damaged("more parts are touched than there are"));
+            return Err(damaged("more parts are touched than exist"));
         }
         // space for all parts, as after a reset, so that later steps need not allocate
         let mut geoms = Vec::with_capacity(ngeom);

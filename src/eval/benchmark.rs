@@ -61,7 +61,7 @@ pub enum BenchmarkError {
         source: Box<EpisodeError>,
     },
     /// The progress callback stopped the benchmark.
-    #[error("stopped after {done} of {planned} runs; they are kept, and the same command goes on from there")]
+    #[error("stopped after {done} of {planned} runs; they are kept, and the same command continues from there")]
     Stopped {
         /// Number of runs that are done and kept.
         done: usize,

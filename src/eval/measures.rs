@@ -86,8 +86,7 @@ impl Measures {
             reason: reason.to_string(),
         };
         let manifest = record.manifest();
-        let steps =
-            Steps::read(&npz, manifest)?.ok_or_else(|| unfit("its contacts are not those of its description"))?;
+        let steps = Steps::read(&npz, manifest)?.ok_or_else(|| unfit("its contacts do not match its description"))?;
         let velocity = npz.get_f64("qvel")?;
         let (dt, t) = (manifest.dt, steps.len());
         if !(dt.is_finite() && dt > 0.0) {
@@ -96,7 +95,7 @@ impl Measures {
         let joints = Joints::of(manifest);
         let columns = velocity.shape.get(1).copied().unwrap_or(0);
         if velocity.shape.first() != Some(&t) || velocity.shape.len() != 2 || joints.dof.iter().any(|&d| d >= columns) {
-            return Err(unfit("its velocities are not those of its description"));
+            return Err(unfit("its velocities do not match its description"));
         }
         let series = |dof: usize| -> Vec<f64> {
             velocity

@@ -47,7 +47,7 @@ pub enum PackError {
         reason: String,
     },
     /// The abstract is no PDF document.
-    #[error("{}: this is no PDF document; a submission has an extended abstract of two pages", path.display())]
+    #[error("{}: this is not a PDF document; a submission has an extended abstract of two pages", path.display())]
     Abstract {
         /// The file.
         path: PathBuf,

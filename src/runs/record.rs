@@ -39,13 +39,13 @@ const MANIFEST: &str = "manifest.json";
 #[non_exhaustive]
 pub enum RecordError {
     /// The folder has a record already.
-    #[error("{}: there is a record in this folder already; name another folder, or remove this one", path.display())]
+    #[error("{}: this folder already has a record; choose another folder, or remove this one", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
     },
     /// Images are to be recorded, but the eyes do not see.
-    #[error("nothing is seen that could be recorded: set vision_active: true, or record without the eyes")]
+    #[error("there are no images to record: set vision_active: true, or record without the eyes")]
     Blind,
     /// Steps are to be recorded before an episode began.
     #[error("no episode is being recorded: call Recorder::begin after the reset of the environment")]
@@ -73,7 +73,7 @@ pub enum RecordError {
         source: io::Error,
     },
     /// The description is damaged, or of something else.
-    #[error("{}: no record of babybench: {reason}", path.display())]
+    #[error("{}: not a record of babybench: {reason}", path.display())]
     Manifest {
         /// The file.
         path: PathBuf,

@@ -270,7 +270,7 @@ fn write_observation(out: &mut impl Write, env: &Env) -> io::Result<()> {
 
 /// Writes the way of each sense to the observation, and that of actions to the actuators.
 fn write_pipeline(out: &mut impl Write, env: &Env) -> io::Result<()> {
-    writeln!(out, "\nSenses on their way to the observation")?;
+    writeln!(out, "\nFrom the senses to the observation")?;
     for (sense, chain) in env.senses().transforms() {
         let chain: Vec<String> = chain.map(|transform| transform.describe()).collect();
         let way = if chain.is_empty() {
@@ -293,7 +293,7 @@ fn write_pipeline(out: &mut impl Write, env: &Env) -> io::Result<()> {
 fn list_mjcf(out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "Attributes with what they may hold, their default (* if a default class may give another) and their meaning"
+        "Attributes with their values, default (* if a default class may set another) and meaning"
     )?;
     for element in elements() {
         writeln!(out, "\n{}", element.path)?;

@@ -206,7 +206,7 @@ fn parse(bytes: &[u8]) -> Result<Option<(Request, usize)>, Refusal> {
         found.map(|h| String::from_utf8_lossy(h.value).into_owned())
     };
     if text("transfer-encoding").is_some() {
-        return Err(("501 Not Implemented", "bodies come with their length"));
+        return Err(("501 Not Implemented", "a body needs a Content-Length"));
     }
     let length = text("content-length").map_or(Ok(0), |length| length.parse::<usize>());
     let length = length.map_err(|_| (BAD, "the length of the body is not a number"))?;

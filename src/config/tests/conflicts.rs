@@ -116,7 +116,7 @@ fn what_shapes_a_sense_that_is_off_is_refused() {
         ),
         (
             "delay_sensory: 100\nvision_resolution: 4096",
-            ":1:16: `delay_sensory` is 100.0, but the images that wait would take 10066 MB, and may take 1073; lower it, or \
+            ":1:16: `delay_sensory` is 100.0, but the delayed images would take 10066 MB; the limit is 1073 MB. Lower it, or \
              `vision_resolution`",
         ),
     ] {

@@ -53,7 +53,7 @@ pub struct SnapshotInfo {
 #[non_exhaustive]
 pub enum SnapshotError {
     /// The bytes are not a snapshot.
-    #[error("these bytes are not a snapshot: they do not begin with the magic bytes of one")]
+    #[error("these bytes are not a snapshot: they do not start with its magic bytes")]
     NotASnapshot,
     /// Written by another version of this library.
     #[error("the snapshot has layout {found}, but this library reads layout {VERSION}")]

@@ -30,7 +30,7 @@ impl Env {
             return Ok(());
         }
         self.try_load(&before);
-        Err(damaged("what its senses remember does not fit"))
+        Err(damaged("the memory of its senses does not fit"))
     }
 
     fn try_load(&mut self, mut bytes: &[u8]) -> bool {

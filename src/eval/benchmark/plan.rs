@@ -193,7 +193,7 @@ fn entries(text: &str) -> Result<Vec<Entry>, (u32, String)> {
         let fault = |what: &str| {
             Err((
                 line,
-                format!("a plan holds keys with values and lists of values, and no {what}"),
+                format!("a plan has keys with values and lists of values; it has no {what}"),
             ))
         };
         match event {
@@ -218,14 +218,14 @@ fn entries(text: &str) -> Result<Vec<Entry>, (u32, String)> {
                     }
                 }
                 (None, None) if found.iter().any(|entry| entry.key == *value) => {
-                    return Err((line, format!("the key `{}` stands here twice", quoted(&value))));
+                    return Err((line, format!("the key `{}` appears twice", quoted(&value))));
                 }
                 (None, None) => key = Some((value.into_owned(), line)),
             },
-            Event::Scalar(..) => return fault("single value"),
-            Event::Alias(_) => return fault("alias"),
-            Event::SequenceStart(..) => return fault("list in a list"),
-            _ => return fault("mapping in a mapping"),
+            Event::Scalar(..) => return fault("single values"),
+            Event::Alias(_) => return fault("aliases"),
+            Event::SequenceStart(..) => return fault("lists in lists"),
+            _ => return fault("mappings in mappings"),
         }
     }
     Ok(found)
@@ -280,12 +280,12 @@ mod tests {
             ("configs: [a]\npolices: [x]", 2, "unknown key `polices`"),
             ("configs: [a]\npolicies: [x]\nseeds: 0", 3, "from 1 to 1000"),
             ("configs: [a]\npolicies: [x]\nseeds: [1, 2]", 3, "one value"),
-            ("configs: [a]\npolicies: [[x]]", 2, "list in a list"),
+            ("configs: [a]\npolicies: [[x]]", 2, "lists in lists"),
             ("configs: {a: b}", 1, "mapping in a mapping"),
             ("configs: [a]\nconfigs: [b]", 2, "twice"),
             ("configs: [a]\npolicies: [x]\nages: [25]", 3, "not an age"),
             ("configs: [a", 1, "not valid YAML"),
-            ("- a", 1, "no list in a list"),
+            ("- a", 1, "no lists in lists"),
         ] {
             let (found, reason) = BenchmarkPlan::parse(text, PathBuf::new()).expect_err(text);
             assert!(reason.contains(part), "{text}: {reason}");

@@ -157,7 +157,7 @@ impl Lines {
             // the system copies this by itself where it can
             let copied = io::copy(&mut files::open(path)?, file)?;
             if copied != known.length {
-                return Err(io::Error::other("it is another file by now"));
+                return Err(io::Error::other("it is a different file now"));
             }
             let mut writer = self.writer(file);
             more.for_each(|info| writer.push(info));

@@ -74,7 +74,7 @@ impl Motion {
         let mut names: Vec<&String> = self.names.iter().collect();
         names.sort();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-            return unfit(format!("{} stands twice among the names of joints", quoted(pair[0])));
+            return unfit(format!("{} appears twice among the names of joints", quoted(pair[0])));
         }
         let rate = self.rate;
         if !(rate > 0.0 && rate <= HIGHEST) {

@@ -121,7 +121,7 @@ impl Record {
         let (checksums, na) = (npz.get_i64("checksum")?.data, env.action_space().len());
         let steps = checksums.len();
         if actions.shape != [steps, na] || drawn.shape != [steps] {
-            return Err(unfit("its actions are not those of this configuration"));
+            return Err(unfit("its actions do not match this configuration"));
         }
         let snapshot = |source| RecordError::Snapshot {
             path: path.clone(),

@@ -142,7 +142,7 @@ fn write_contacts(out: &mut impl Write, env: &Env) -> io::Result<()> {
         }
     }
     deep.sort_by(|(_, a), (_, b)| b.total_cmp(a));
-    writeln!(out, "\nIn each other before anything moves")?;
+    writeln!(out, "\nOverlaps at the start")?;
     for ([a, b], depth) in &deep {
         let advice = if *depth > DEEP {
             ": they will fly apart; move one of them"
